@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake_errors/bumpy_truth.h"
 #include "error_metrics.h"
+#include "error_tables/bumpy_reference.h"
 #include "experiment_checks.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/normal_space.h"

@@ -1,26 +1,127 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs every command that --help pages, README.md, ARCHITECTURE.md, docs/*.md and conformance/*.md
-// show, page by page, in a folder laid out like a built checkout; out/ there is its own. Scripts
-// must exist and be executable, but are not run: they set up whole machines.
+// Documents against the program. Every command in --help pages, README.md, ARCHITECTURE.md,
+// docs/*.md and conformance/*.md runs in a folder laid out like a built checkout, with its own
+// out/. Scripts must exist and be executable, but do not run, because they set up whole machines.
+// REFERENCES.md lists exactly the sources that the code cites as [Author Year].
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
-#include "docs/shown_commands.h"
 #include "support/shared_data.h"
 #include "tools/help_pages.h"
 
 namespace relief::test {
 namespace {
 
+struct ShownCommand {
+    int line = 0;  ///< Counted from 1.
+    std::string text;
+};
+
+std::string trimmed(const std::string& line) {
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first == std::string::npos) return "";
+    return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
+}
+
+bool is_shell(const std::string& language) {
+    return language == "console" || language == "sh" || language == "shell" || language == "bash";
+}
+
+bool calls_relief(const std::string& command) {
+    for (const char* start : {"relief-", "build/release/bin/relief-", "scripts/", "./scripts/"}) {
+        if (command.starts_with(start)) return true;
+    }
+    return false;
+}
+
+/// Joins a line that ends in a backslash with the lines that follow.
+std::string with_continuations(std::string command, std::istringstream& lines, int& number) {
+    std::string next;
+    while (command.ends_with('\\') && std::getline(lines, next)) {
+        ++number;
+        command.pop_back();
+        command = trimmed(command) + " " + trimmed(next);
+    }
+    return command;
+}
+
+std::vector<ShownCommand> shown_commands(const std::string& page) {
+    std::vector<ShownCommand> commands;
+    std::istringstream lines(page);
+    bool in_block = false;
+    bool in_shell = false;
+    bool has_prompts = false;  // Lines without a prompt are then output.
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+        std::string text = trimmed(line);
+        if (text.starts_with("```")) {
+            in_block = !in_block;
+            in_shell = in_block && is_shell(trimmed(text.substr(3)));
+            has_prompts = false;
+            continue;
+        }
+        const bool prompted = text.starts_with("$ ");
+        has_prompts = has_prompts || prompted;
+        if (prompted) text = trimmed(text.substr(2));
+        if (!calls_relief(text) || !(prompted || (in_shell && !has_prompts))) continue;
+        const int first = number;
+        commands.push_back({first, with_continuations(text, lines, number)});
+    }
+    return commands;
+}
+
+std::string called_script(const std::string& command) {
+    const std::string word = command.substr(0, command.find(' '));
+    const std::string path = word.starts_with("./") ? word.substr(2) : word;
+    return path.starts_with("scripts/") ? path : "";
+}
+
+TEST(ShownCommands, StandBehindAPromptOrInAShellBlock) {
+    const std::vector<ShownCommand> commands = shown_commands(
+        "relief-mesh turns meshes\n"            // prose
+        "$ relief-mesh info a.obj\n"            // 2
+        "```sh\n"                               //
+        "build/release/bin/relief-bake bump\n"  // 4
+        "git clone somewhere\n"                 //
+        "  $ scripts/demo --fast\n"             // 6
+        "```\n"                                 //
+        "```cpp\n"                              //
+        "relief-mesh in code\n"                 //
+        "```\n"                                 //
+        "```console\n"                          //
+        "$ relief-view a.obj \\\n"              // 12
+        "      --output b.png\n"                //
+        "relief-view: error: said so\n"         // 14: output that looks like a command
+        "```\n");
+    ASSERT_EQ(commands.size(), 4U);
+    EXPECT_EQ(commands[0].line, 2);
+    EXPECT_EQ(commands[0].text, "relief-mesh info a.obj");
+    EXPECT_EQ(commands[1].text, "build/release/bin/relief-bake bump");
+    EXPECT_EQ(commands[2].text, "scripts/demo --fast");
+    EXPECT_EQ(commands[3].line, 12);
+    EXPECT_EQ(commands[3].text, "relief-view a.obj --output b.png");
+}
+
+TEST(ShownCommands, KnowWhichScriptTheyCall) {
+    EXPECT_EQ(called_script("scripts/demo --fast"), "scripts/demo");
+    EXPECT_EQ(called_script("./scripts/test"), "scripts/test");
+    EXPECT_EQ(called_script("relief-mesh info scripts/demo"), "");
+}
+
 namespace fs = std::filesystem;
 
-/// Pages relative to the sources, sorted.
+/// Returns the pages relative to the sources, sorted.
 std::vector<std::string> documents() {
     std::set<std::string> found;
     for (const char* folder : {".", "conformance", "docs"}) {
@@ -49,12 +150,12 @@ std::vector<Page> help_pages(const Workplace& workplace) {
 
 Page document_page(const std::string& name) {
     Page page{name, {}};
-    for (const ShownCommand& command : shown_commands(contents_of(source_directory() / name)))
+    for (const ShownCommand& command : shown_commands(read_bytes(source_directory() / name)))
         page.commands.push_back(command.text);
     return page;
 }
 
-/// The first page that shows each command: help pages, then documents.
+/// Maps each command to the first page that shows it: help pages first, then documents.
 const std::map<std::string, std::string>& first_pages() {
     static const auto first = [] {
         std::map<std::string, std::string> pages;
@@ -72,7 +173,7 @@ const std::map<std::string, std::string>& first_pages() {
     return first;
 }
 
-/// Whether a later command of the page names a file below out/ that this one names.
+/// Returns whether a later command of the page names a file below out/ that this command names.
 bool is_needed_later(const Page& page, std::size_t index) {
     std::istringstream words(page.commands[index]);
     for (std::string word; words >> word;) {
@@ -89,7 +190,8 @@ bool is_needed_later(const Page& page, std::size_t index) {
     return false;
 }
 
-/// A command of `relief-accuracy run` split into its output folder and the rest; empty for others.
+/// A command of `relief-accuracy run`, split into its output folder and the rest. Both are empty
+/// for other commands.
 struct Measurement {
     std::string folder;
     std::string rest;
@@ -176,6 +278,42 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                          testing::Values("relief-accuracy", "relief-bake", "relief-mesh",
                                          "relief-view"),
                          test_name);
+
+/// Collects the citations of a text with the file that contains them.
+void collect(const std::string& text, const std::string& place,
+             std::map<std::string, std::string>& citations) {
+    static const std::regex citation(R"(\[[A-Z][^\[\]\n]* [12][0-9]{3}\])");
+    for (std::sregex_iterator match(text.begin(), text.end(), citation), end; match != end;
+         ++match) {
+        citations.emplace(match->str(), place);
+    }
+}
+
+std::map<std::string, std::string> cited_by_the_code() {
+    std::map<std::string, std::string> citations;
+    for (const char* part : {"libmesh", "libshade", "libaccuracy", "shaders", "tools", "data"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(source_directory() / part)) {
+            const std::string kind = entry.path().extension().string();
+            if (kind != ".h" && kind != ".cpp" && kind != ".glsl") continue;
+            collect(read_bytes(entry.path()),
+                    entry.path().lexically_relative(source_directory()).string(), citations);
+        }
+    }
+    return citations;
+}
+
+TEST(References, ListEverythingThatTheCodeCites) {
+    std::map<std::string, std::string> listed;
+    collect(read_bytes(source_directory() / "REFERENCES.md"), "REFERENCES.md", listed);
+    const std::map<std::string, std::string> cited = cited_by_the_code();
+    ASSERT_GE(cited.size(), 10U) << "the code cites more than that";
+    for (const auto& [citation, file] : cited) {
+        EXPECT_TRUE(listed.contains(citation)) << citation << " is cited by " << file;
+    }
+    for (const auto& [citation, file] : listed) {
+        EXPECT_TRUE(cited.contains(citation)) << citation << " is cited nowhere";
+    }
+}
 
 }  // namespace
 }  // namespace relief::test

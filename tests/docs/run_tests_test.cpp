@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// scripts/run-tests: what it makes of cases that fail, crash, do not end, or pass when they run
-// once more.
+// scripts/run-tests with cases that fail, crash, do not end, or pass in a second run.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +22,7 @@ class RunTests : public testing::Test {
         describe(300);
     }
 
-    /// Writes what CMake writes, with a time limit for each case.
+    /// Writes the description that CMake writes, with a time limit for each case.
     void describe(int case_seconds) const {
         std::ofstream(build_ / "tests/test-programs.json") << fmt::format(
             R"({{"case_seconds": {}, "environment": {{"RUN_TESTS_SAMPLE_MARK": "{}"}},

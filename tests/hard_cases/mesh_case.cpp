@@ -6,17 +6,46 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "hard_cases/counted_findings.h"
+#include "relief/mesh/report.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/tangents.h"
 #include "support/angle.h"
+#include "support/hard_meshes.h"
+#include "support/invariants.h"
 
 namespace relief::test {
 namespace {
 
-// Rounding of a unit vector to floats.
+std::map<std::string, std::size_t> counts_of(const Report& report) {
+    std::map<std::string, std::size_t> counts;
+    for (const Finding& finding : report.findings())
+        counts[finding.kind] = finding.count;
+    return counts;
+}
+
+std::string as_text(const std::map<std::string, std::size_t>& counts) {
+    std::string text;
+    for (const auto& [kind, count] : counts)
+        text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", count, kind);
+    return text.empty() ? "nothing" : text;
+}
+
+std::string reported(const std::vector<std::pair<std::string, std::size_t>>& findings) {
+    std::string text;
+    for (const auto& [kind, count] : findings)
+        text += fmt::format("{} {} x {}", text.empty() ? "; reported:" : ",", count, kind);
+    return text;
+}
+
+// The rounding error of a unit vector in floats.
 constexpr double unit_tolerance = 1e-6;
 
-/// The mesh with its triangles in reverse order, and every triangle begun at another corner.
+/// Returns the mesh with its triangles in reverse order, each beginning at another corner.
 Mesh reordered(Mesh mesh) {
     std::reverse(mesh.triangles.begin(), mesh.triangles.end());
     for (glm::uvec3& triangle : mesh.triangles)
@@ -52,12 +81,12 @@ std::string wrong_normals(const Mesh& mesh, NormalWeight weight,
 }
 
 std::string inaccurate(const Mesh& mesh, NormalWeight weight, double degrees,
-                       const TrueNormal& ground_truth) {
+                       const ReferenceNormal& reference) {
     Report report;
     const std::vector<glm::vec3> normals =
         vertex_normals(mesh.positions, mesh.triangles, weight, report);
     for (std::size_t v = 0; v < normals.size(); ++v) {
-        const std::optional<glm::dvec3> expected = ground_truth(mesh, v);
+        const std::optional<glm::dvec3> expected = reference(mesh, v);
         if (!expected) continue;
         const double error = degrees_between(glm::dvec3(normals[v]), *expected);
         if (!(error <= degrees)) return fmt::format("vertex {} is {} degrees off", v, error);
@@ -113,13 +142,13 @@ MeshCase& MeshCase::normals_by(const std::string& step, const std::vector<Normal
 }
 
 MeshCase& MeshCase::accurate(const std::vector<NormalWeight>& weights, double degrees,
-                             const std::string& truth_text, const TrueNormal& ground_truth) {
-    const std::string outcome = degrees == 0.0
-                                    ? "exactly " + truth_text
-                                    : fmt::format("within {} degrees of {}", degrees, truth_text);
-    return expect("normals", outcome, [weights, degrees, ground_truth](const Mesh& mesh) {
+                             const std::string& reference_name, const ReferenceNormal& reference) {
+    const std::string outcome =
+        degrees == 0.0 ? "exactly " + reference_name
+                       : fmt::format("within {} degrees of {}", degrees, reference_name);
+    return expect("normals", outcome, [weights, degrees, reference](const Mesh& mesh) {
         for (const NormalWeight weight : weights) {
-            if (std::string problem = inaccurate(mesh, weight, degrees, ground_truth);
+            if (std::string problem = inaccurate(mesh, weight, degrees, reference);
                 !problem.empty())
                 return fmt::format("weight {}: {}", static_cast<int>(weight), problem);
         }
@@ -132,6 +161,118 @@ MeshCase& MeshCase::expect(const std::string& step, const std::string& outcome,
     row_.expectations.push_back(
         {step, outcome, [make = make_, problem] { return problem(make()); }});
     return *this;
+}
+
+namespace {
+
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, const TangentMethod& method, Report& report) {
+    return method.call(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
+}
+
+Mesh textured(const Mesh& mesh) {
+    return mesh.texcoords.empty() ? textured_from_above(mesh) : mesh;
+}
+
+std::string wrong_tangents(const Mesh& mesh, const TangentMethod& method,
+                           const std::map<std::string, std::size_t>& expected) {
+    Report report;
+    const std::vector<glm::vec4> tangents = tangents_of(mesh, method, report);
+    if (const std::string problem = broken_tangents(mesh, tangents); !problem.empty())
+        return problem;
+    if (counts_of(report) != expected) return "reports " + as_text(counts_of(report));
+    const std::size_t count = mesh.triangles.size();
+    for (const auto& order : {reversed(count), shuffled(count)}) {
+        Report other;
+        const auto again = tangents_of(with_triangle_order(mesh, order), method, other);
+        if (!same_bits(again, corners_in_order(tangents, order)))
+            return "other bits for another order of triangles";
+        if (counts_of(other) != expected) return "reports differently for another order";
+    }
+    return "";
+}
+
+std::string too_far(const Mesh& mesh, const TangentMethod& method, double degrees,
+                    const ReferenceTangent& reference) {
+    Report report;
+    const std::vector<glm::vec4> tangents = tangents_of(mesh, method, report);
+    for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
+        const std::optional<glm::dvec4> expected = reference(mesh, corner);
+        if (!expected) continue;
+        const glm::dvec4 tangent(tangents[corner]);
+        const double error = degrees_between(glm::dvec3(tangent), glm::dvec3(*expected));
+        if (!(error <= degrees)) return fmt::format("corner {} is {} degrees off", corner, error);
+        if (expected->w != 0.0 && expected->w != tangent.w)
+            return fmt::format("corner {} has w {}", corner, tangent.w);
+    }
+    return "";
+}
+
+/// Returns the first problem of any method.
+template <typename Problem>
+std::function<std::string(const Mesh&)> with_each(const std::vector<TangentMethod>& methods,
+                                                  const Problem& problem) {
+    return [methods, problem](const Mesh& bare) {
+        const Mesh mesh = textured(bare);
+        for (const TangentMethod& method : methods) {
+            if (const std::string found = problem(mesh, method); !found.empty())
+                return method.name + ": " + found;
+        }
+        return std::string();
+    };
+}
+
+}  // namespace
+
+const std::vector<TangentMethod>& all_tangent_methods() {
+    static const std::vector<TangentMethod> methods = {{"mikktspace", mikktspace_tangents},
+                                                       {"area-weighted", area_weighted_tangents},
+                                                       {"lengyel", lengyel_tangents}};
+    return methods;
+}
+
+MeshCase& MeshCase::tangents(const Findings& findings) {
+    return tangents_by("tangents", all_tangent_methods(), findings);
+}
+
+MeshCase& MeshCase::tangents_by(const std::string& step, const std::vector<TangentMethod>& methods,
+                                const Findings& findings) {
+    const std::map<std::string, std::size_t> expected(findings.begin(), findings.end());
+    return expect(step, "orthonormal" + reported(findings),
+                  with_each(methods, [expected](const Mesh& mesh, const TangentMethod& method) {
+                      return wrong_tangents(mesh, method, expected);
+                  }));
+}
+
+MeshCase& MeshCase::tangents_near(double degrees, const std::string& reference_name,
+                                  const ReferenceTangent& reference) {
+    const std::string outcome =
+        degrees == 0.0 ? "exactly " + reference_name
+                       : fmt::format("within {} degrees of {}", degrees, reference_name);
+    return expect(
+        "tangents", outcome,
+        with_each(all_tangent_methods(), [=](const Mesh& mesh, const TangentMethod& method) {
+            return too_far(mesh, method, degrees, reference);
+        }));
+}
+
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, const TangentMethod& method) {
+    Report ignored;
+    return method.call(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, ignored);
+}
+
+Mesh textured_torus() {
+    return make_torus(0.4F, 24, 12);
+}
+
+Mesh textured_grid() {
+    return textured_from_above(flat_grid(4));
+}
+
+Mesh coarsely_textured() {
+    Mesh mesh = textured_from_above(wavy_grid(6));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        mesh.texcoords[v].x += 0.0625F * static_cast<float>(v % 3);
+    return mesh;
 }
 
 }  // namespace relief::test

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
+// Hard cases of normal maps: normals without direction, length or z, and maps with an unknown
+// convention.
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
-#include "hard_cases/map_cases.h"
+#include "hard_cases/hard_cases.h"
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/heights_from_normals.h"
 #include "relief/mesh/normal_blend.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_map_check.h"
 #include "relief/mesh/normal_map_operations.h"
 #include "relief/mesh/normal_mips.h"
 #include "relief/mesh/normal_resize.h"
+#include "relief/mesh/normal_space.h"
+#include "relief/mesh/shapes.h"
+#include "support/images.h"
 
 namespace relief::test {
 namespace {
-
-template <typename Sample>
-Image image_of(int width, int channels, std::vector<Sample> samples) {
-    Image image = make_image(width, static_cast<int>(samples.size()) / width / channels, channels,
-                             sizeof(Sample) * 8, ColorSpace::data);
-    image.samples = std::move(samples);
-    return image;
-}
 
 std::string not_these(const Image& image, const std::vector<float>& expected) {
     const auto samples = image.as<float>();
@@ -39,9 +41,9 @@ std::string first_of(const std::string& problem, const std::string& other) {
     return problem.empty() ? other : problem;
 }
 
-/// Texels that stand upright, and one that faces outwards.
+/// Texels with vertical surfaces, and one texel that faces outwards.
 Image steep_normals() {
-    return image_of<float>(4, 3, {1, 0, 0, 0, -1, 0, 0.6F, 0, -0.8F, 0, 0, 1});
+    return image_of<float>(3, {1, 0, 0, 0, -1, 0, 0.6F, 0, -0.8F, 0, 0, 1});
 }
 
 HardCase steep_case() {
@@ -74,10 +76,10 @@ HardCase steep_case() {
               "finite; onto a base that faces straight back, the base; "
               "reported: 1 x blend without direction",
               [] {
-                  Image base = image_of<float>(1, 3, {0, 0, -1});
+                  Image base = image_of<float>(3, {0, 0, -1});
                   Report report;
-                  blend_normals(base, image_of<float>(1, 3, {0.6F, 0, 0.8F}),
-                                NormalBlend::reoriented, report);
+                  blend_normals(base, image_of<float>(3, {0.6F, 0, 0.8F}), NormalBlend::reoriented,
+                                report);
                   return first_of(not_these(base, {0, 0, -1}),
                                   not_counted(report, "blend without direction", 1));
               }}}};
@@ -91,7 +93,7 @@ HardCase zero_case() {
         {{"decode", "flat; reported: 1 x normal without direction",
           [] {
               Report report;
-              const Image gray = image_of<std::uint8_t>(1, 3, {128, 128, 128});
+              const Image gray = image_of<std::uint8_t>(3, {128, 128, 128});
               const Image normals = decode_normal_map(gray, Green::up, FlatCode::middle, report);
               Report of_half;
               const Image half = decode_normal_map(gray, Green::up, FlatCode::half, of_half);
@@ -100,7 +102,7 @@ HardCase zero_case() {
                                        not_counted(of_half, "normal without direction", 1)));
           }},
          {"resize, mips", "flat; reported: 1 x normals that cancel", [] {
-              const Image opposite = image_of<float>(2, 3, {1, 0, 0, -1, 0, 0});
+              const Image opposite = image_of<float>(3, {1, 0, 0, -1, 0, 0});
               ResizeOptions options;
               options.domain = ResizeDomain::vectors;
               options.filter = ResizeFilter::box;
@@ -121,21 +123,21 @@ HardCase two_channel_case() {
             "Daemon PR#260, Falcor#478 (NaN)",
             {{"rebuild z", "z = 0, x and y of length 1; reported: 1 x x and y longer than 1", [] {
                   Report report;
-                  const Image normals = decode_xy_map(image_of<std::uint8_t>(1, 2, {255, 1}),
-                                                      {0, 1}, Green::up, FlatCode::middle, report);
+                  const Image normals = decode_xy_map(image_of<std::uint8_t>(2, {255, 1}), {0, 1},
+                                                      Green::up, FlatCode::middle, report);
                   const float half = std::sqrt(0.5F);
                   return first_of(not_these(normals, {half, -half, 0}),
                                   not_counted(report, "x and y longer than 1", 1));
               }}}};
 }
 
-/// Slopes of 1 to the left and to the right in turns.
+/// A map whose slopes alternate between 1 and -1.
 Image checker() {
     std::vector<float> slopes;
     for (int i = 0; i < 16; ++i)
         slopes.insert(slopes.end(), {(i + i / 4) % 2 == 0 ? 1.0F : -1.0F, 0.0F});
     Report report;
-    return normals_from_slopes(image_of<float>(4, 2, std::move(slopes)), report);
+    return normals_from_slopes(image_of(4, 4, 2, ColorSpace::data, std::move(slopes)), report);
 }
 
 HardCase checker_case() {
@@ -167,7 +169,7 @@ HardCase code_zero_case() {
             "opposite.",
             "signed 8-bit maps",
             {{"flip", "255, as of code 1; reported: 1 x code 0 without an opposite", [] {
-                  Image map = image_of<std::uint8_t>(2, 3, {0, 128, 128, 1, 128, 128});
+                  Image map = image_of<std::uint8_t>(3, {0, 128, 128, 1, 128, 128});
                   Report report;
                   map_axes(map, {{{0, true}, {1, false}, {2, false}}}, FlatCode::middle, report);
                   const bool is_right =
@@ -181,6 +183,232 @@ HardCase code_zero_case() {
 
 std::vector<HardCase> normal_map_cases() {
     return {steep_case(), zero_case(), two_channel_case(), checker_case(), code_zero_case()};
+}
+
+namespace {
+
+/// A green-up map of hills in 8 bits.
+Image hills() {
+    Report report;
+    return normal_map_from_height(
+        wave_heights(64, 64, tiling_waves(64, 64, 8, 8.0, 0.5, 3)).heights,
+        {Kernel::central3, Wrap::repeat, 1.0}, {.bits = 8}, report);
+}
+
+/// Applies `change` to every sample of `channels`, in the range 0 to 1.
+template <typename Change>
+Image with_channel(Image map, std::size_t channel, const Change& change) {
+    for (std::size_t i = 0; i < map.sample_count(); ++i) {
+        if (channel < 3 && i % 3 != channel) continue;
+        std::uint8_t& sample = map.as<std::uint8_t>()[i];
+        sample = static_cast<std::uint8_t>(
+            std::lround(255.0F * change(static_cast<float>(sample) / 255.0F)));
+    }
+    return map;
+}
+constexpr std::size_t every_channel = 3;
+
+/// Returns a problem unless the check reports exactly these conditions.
+std::string not_found(const Image& map, const std::vector<MapCondition>& expected,
+                      const std::map<std::string, std::string>& metadata = {}) {
+    std::vector<MapCondition> conditions;
+    std::string words;
+    for (const MapConditionCount& found : check_normal_map(map, metadata).found) {
+        conditions.push_back(found.condition);
+        words += std::string(condition_info(found.condition).word) + "; ";
+    }
+    return conditions == expected ? "" : "it finds: " + words;
+}
+
+HardCase color_case() {
+    return {"normal map stored as a colour",
+            "The sRGB curve was applied when it was saved, or undone when it was read: flat is 188 "
+            "or 55 of 255.",
+            "paintsystem#132",
+            {{"check map", "trouble: stored through the sRGB curve",
+              [] {
+                  return not_found(with_channel(hills(), every_channel, srgb_from_linear),
+                                   {MapCondition::stored_through_srgb});
+              }},
+             {"check map", "trouble: darkened by the sRGB curve", [] {
+                  return not_found(with_channel(hills(), every_channel, linear_from_srgb),
+                                   {MapCondition::decoded_from_srgb});
+              }}}};
+}
+
+HardCase green_case() {
+    const auto flipped = [](float sample) { return std::min(1.0F, 256.0F / 255.0F - sample); };
+    return {"green of unknown direction",
+            "A normal map of hills, with green up or down and nothing that says which; and one of "
+            "ripples along an axis, which both directions suit.",
+            "OpenGL's and DirectX's conventions",
+            {{"check map",
+              "up is told, and down; of a file that says the opposite, trouble: green "
+              "is not as said",
+              [flipped] {
+                  const std::string up = not_found(hills(), {});
+                  if (!up.empty()) return up;
+                  const Image down = with_channel(hills(), 1, flipped);
+                  const std::string told = not_found(down, {MapCondition::green_down});
+                  if (!told.empty()) return told;
+                  return not_found(down,
+                                   {MapCondition::green_contradicted, MapCondition::green_down},
+                                   {{"relief:green", "up"}});
+              }},
+             {"check map", "ripples: no guess; remarked: green cannot be told", [] {
+                  const HeightWave wave{1.0, {2.0 * 3.14159265358979 / 16.0, 0.0}, 0.0};
+                  Report report;
+                  return not_found(normal_map_from_height(
+                                       wave_heights(64, 64, std::span(&wave, 1)).heights,
+                                       {Kernel::central3, Wrap::repeat, 1.0}, {.bits = 8}, report),
+                                   {MapCondition::green_unknown, MapCondition::y_constant});
+              }}}};
+}
+
+HardCase whirl_case() {
+    return {"normals that no heights have",
+            "Slopes that run in circles, 0.1 each way.",
+            "painted and blended normal maps",
+            {{"heights", "flat; the whole slope is left over, and said: 0.1 (RMS)", [] {
+                  Image normals = make_image(32, 32, 3, 32, ColorSpace::data);
+                  for (int row = 0; row < 32; ++row) {
+                      for (int column = 0; column < 32; ++column) {
+                          float* n =
+                              &normals.as<float>()[static_cast<std::size_t>(row * 32 + column) * 3];
+                          const double turn = 2.0 * 3.14159265358979 / 8.0;
+                          n[0] = 0.1F * static_cast<float>(std::sin(turn * row));
+                          n[1] = 0.1F * static_cast<float>(std::sin(turn * column));
+                          n[2] = 1.0F;
+                      }
+                  }
+                  Report report;
+                  const IntegratedHeights result = heights_from_normals(normals, {}, report);
+                  const bool is_right =
+                      result.highest < 1e-6 && std::abs(result.residual_slope - 0.1) < 1e-6;
+                  return is_right ? std::string()
+                                  : fmt::format("heights of {}, {} left over", result.highest,
+                                                result.residual_slope);
+              }}}};
+}
+
+/// Returns the owners of the texels of a map by rows: "0", "1", ..., and "." for none.
+std::string owners(const std::vector<glm::vec2>& texels, const std::vector<glm::uvec3>& triangles,
+                   int side, Report& report) {
+    std::vector<glm::vec2> texcoords;
+    for (const glm::vec2& texel : texels)
+        texcoords.push_back(texel / static_cast<float>(side));
+    CoverageOptions options;
+    options.width = options.height = side;
+    std::string rows;
+    cover_texels(
+        texcoords, triangles, options,
+        [&](int, std::span<const CoveredTexel> covered) {
+            for (const CoveredTexel& texel : covered)
+                rows += texel.is_covered() ? std::to_string(texel.triangle) : ".";
+        },
+        report);
+    return rows;
+}
+
+std::string not_owned(const std::string& rows, const std::string& expected, const Report& report,
+                      const std::string& kind = "", std::size_t count = 0) {
+    if (rows != expected) return "owners are " + rows;
+    if (!kind.empty() && report.count(kind) != count)
+        return fmt::format("{} x {}, not {}", report.count(kind), kind, count);
+    return kind.empty() && !report.empty() ? to_string(report.findings().front()) : "";
+}
+
+HardCase shared_edge_case() {
+    return {"texel centres on a shared edge",
+            "A square of two triangles on 4 x 4 texels: their diagonal runs through four centres.",
+            "rasterisers without a fill rule",
+            {{"cover texels", "each of the 16 has one owner, in either order of the triangles", [] {
+                  const std::vector<glm::vec2> corners = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+                  Report report;
+                  const std::string problem =
+                      not_owned(owners(corners, {{0, 2, 1}, {0, 3, 2}}, 4, report),
+                                "0000100011001110", report);
+                  if (!problem.empty()) return problem;
+                  return not_owned(owners(corners, {{0, 3, 2}, {0, 2, 1}}, 4, report),
+                                   "1111011100110001", report);
+              }}}};
+}
+
+HardCase small_chart_case() {
+    return {"chart smaller than a texel",
+            "A triangle of a tenth of a texel, away from the centre of any.",
+            "bakers that lose such charts",
+            {{"cover texels", "owns the texel, with the nearest point on it", [] {
+                  Report report;
+                  return not_owned(
+                      owners({{1.1F, 1.1F}, {1.2F, 1.1F}, {1.1F, 1.2F}}, {{0, 2, 1}}, 3, report),
+                      "....0....", report);
+              }}}};
+}
+
+HardCase overlap_case() {
+    return {"charts on top of each other",
+            "Two squares with the same texels, the first of them mirrored.",
+            "bakers whose winner is whoever comes last",
+            {{"cover texels",
+              "the one that is not mirrored owns all; reported: 4 x texel of "
+              "mirrored triangles",
+              [] {
+                  Report report;
+                  const std::vector<glm::vec2> corners = {{-1, -1}, {5, -1}, {-1, 5}};
+                  return not_owned(owners(corners, {{0, 1, 2}, {0, 2, 1}}, 2, report), "1111",
+                                   report, "texel of mirrored triangles", 4);
+              }}}};
+}
+
+HardCase nothing_case() {
+    return {"texture triangles that cover nothing",
+            "One on a line, one at a point, one with a coordinate that is not finite.",
+            "models without a full unwrap",
+            {{"cover texels",
+              "no texel; reported: 2 x triangle without area in the image, 1 x "
+              "texture not finite",
+              [] {
+                  Report report;
+                  const float nan = std::numeric_limits<float>::quiet_NaN();
+                  const std::string problem =
+                      not_owned(owners({{0, 0}, {1, 1}, {2, 2}, {nan, 0}},
+                                       {{0, 1, 2}, {0, 0, 0}, {0, 1, 3}}, 2, report),
+                                "....", report, "triangle without area in the image", 2);
+                  return problem.empty() && report.count("texture not finite") != 1
+                             ? "texture not finite is not reported"
+                             : problem;
+              }}}};
+}
+
+HardCase no_frame_case() {
+    return {"tangent along the normal, under a map",
+            "A square whose stored tangents point along its normals: no plane to express a normal "
+            "in.",
+            "models with broken tangents",
+            {{"to tangent space", "(0, 0, 1); reported: 16 x texel without a frame", [] {
+                  Mesh quad = make_quad();
+                  quad.tangents.assign(quad.positions.size(), glm::vec4(0, 0, 1, 1));
+                  Image normals = make_image(4, 4, 3, 32, ColorSpace::data);
+                  for (std::size_t i = 0; i < normals.sample_count(); ++i)
+                      normals.as<float>()[i] = i % 3 == 0 ? 1.0F : 0.0F;
+                  Report report;
+                  const Image result = tangent_from_object(normals, quad, {}, report).normals;
+                  for (std::size_t i = 0; i < result.sample_count(); ++i) {
+                      if (result.as<float>()[i] != (i % 3 == 2 ? 1.0F : 0.0F))
+                          return fmt::format("sample {} is {}", i, result.as<float>()[i]);
+                  }
+                  return report.count("texel without a frame") == 16
+                             ? std::string()
+                             : std::string("not all are reported");
+              }}}};
+}
+
+}  // namespace
+
+std::vector<HardCase> map_check_cases() {
+    return {color_case(),       green_case(),   whirl_case(),   shared_edge_case(),
+            small_chart_case(), overlap_case(), nothing_case(), no_frame_case()};
 }
 
 }  // namespace relief::test

@@ -1,21 +1,138 @@
 // SPDX-License-Identifier: Apache-2.0
+// Hard cases of surfaces: triangles without area, and the ways in which triangles meet.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "hard_cases/hard_cases.h"
 #include "hard_cases/mesh_case.h"
-#include "hard_cases/mesh_cases.h"
-#include "hard_cases/sample_meshes.h"
+#include "support/hard_meshes.h"
+#include "support/shapes.h"
 
 namespace relief::test {
 namespace {
 
-/// Two triangles on one edge, the second folded back over the first.
-Mesh fold_over() {
-    return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2F, 0.7F, 0}}, {{0, 1, 2}, {1, 0, 3}});
+Mesh with_triangle(Mesh mesh, const glm::uvec3& triangle) {
+    mesh.triangles.push_back(triangle);
+    return mesh;
 }
 
-/// A flat grid with a triangle in its middle the wrong way round.
+Mesh with_vertex(Mesh mesh, const glm::vec3& position) {
+    mesh.positions.push_back(position);
+    return mesh;
+}
+
+/// Returns +z for the first `count` vertices, which belong to the square or grid in the xy plane.
+ReferenceNormal up_at_first(std::size_t count) {
+    return [count](const Mesh&, std::size_t vertex) -> std::optional<glm::dvec3> {
+        if (vertex >= count) return std::nullopt;
+        return glm::dvec3(0, 0, 1);
+    };
+}
+
+/// A triangle of length 1 and width 1e-6, rotated about its length by half a radian.
+Mesh needle() {
+    const float width = 1e-6F;
+    return mesh_from({{0, 0, 0}, {1, 0, 0}, {0.5F, width * std::cos(0.5F), width * std::sin(0.5F)}},
+                     {{0, 1, 2}});
+}
+
+/// Two edges along (1,2,3). At the end of the longer one they are one unit in the last place of 6
+/// apart.
+Mesh parallel_edges() {
+    return mesh_from({{0, 0, 0}, {1, 2, 3}, {2, 4, std::nextafter(6.0F, 7.0F)}}, {{0, 1, 2}});
+}
+
+}  // namespace
+
+std::vector<HardCase> triangle_cases() {
+    using enum MeshCondition;
+    return {
+        MeshCase("triangle with a repeated index",
+                 "A square and a triangle that names one vertex twice.", "trimesh#522",
+                 [] {
+                     return with_triangle(square(), {0, 1, 1});
+                 })
+            .checked({{triangle_collapsed, 1}, {edge_boundary, 4}})
+            .normals({{"degenerate triangle", 1}})
+            .accurate(all_weights(), 0, "the square's", up_at_first(4))
+            .tangents({{"triangle with coinciding corners", 1}}),
+        MeshCase("triangle on a line",
+                 "A triangle whose three corners are on a line, on the side of another.",
+                 "libigl#791, libigl#1923",
+                 [] {
+                     return mesh_from({{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 0, 0}},
+                                      {{0, 1, 2}, {0, 3, 1}});
+                 })
+            .checked({{triangle_collinear, 1}, {edge_boundary, 4}, {vertex_degenerate_fan, 1}})
+            .normals({{"degenerate triangle", 1}, {"vertex with only degenerate triangles", 1}})
+            .accurate(all_weights(), 0, "the sound triangle's", up_at_first(3))
+            .tangents({{"corner without texture direction", 1},
+                       {"triangle without texture gradient", 1}}),
+        MeshCase(
+            "vertex with only degenerate triangles",
+            "A square and a vertex that only a collapsed triangle uses; its normal is (0,0,1).",
+            "trimesh#522",
+            [] {
+                return with_triangle(with_vertex(square(), {3, 3, 3}), {0, 4, 4});
+            })
+            .checked({{triangle_collapsed, 1}, {edge_boundary, 4}, {vertex_degenerate_fan, 1}})
+            .normals({{"degenerate triangle", 1}, {"vertex with only degenerate triangles", 1}})
+            .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5))
+            .tangents(
+                {{"corner without texture direction", 2}, {"triangle with coinciding corners", 1}}),
+        MeshCase("isolated vertex",
+                 "A square and a vertex that no triangle uses; its normal is (0,0,1).",
+                 "CGAL PR#847",
+                 [] {
+                     return with_vertex(square(), {3, 3, 3});
+                 })
+            .checked({{edge_boundary, 4}, {vertex_isolated, 1}})
+            .normals({{"isolated vertex", 1}})
+            .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5))
+            .tangents(),
+        MeshCase("needle", "A triangle of length 1 and width 1e-6, turned about its length.",
+                 "6.6 degrees off in float, measured", needle)
+            .checked({{triangle_needle, 1}, {edge_boundary, 3}})
+            .normals()
+            .accurate(all_weights(), 1e-4, "the true normal",
+                      [](const Mesh&, std::size_t) -> std::optional<glm::dvec3> {
+                          return glm::dvec3(0, -std::sin(0.5), std::cos(0.5));
+                      })
+            .tangents(),
+        MeshCase("edges all but parallel",
+                 "A triangle between two edges whose directions differ by less than a float can "
+                 "hold: an arc cosine of their product would have an argument above 1.",
+                 "rgl#372", parallel_edges)
+            .checked({{triangle_needle, 1}, {edge_boundary, 3}})
+            .normals()
+            .accurate(all_weights(), 1e-4, "the true normal",
+                      [](const Mesh&, std::size_t) -> std::optional<glm::dvec3> {
+                          return glm::dvec3(2, -1, 0);
+                      })
+            .tangents({{"corner without texture direction", 3},
+                       {"triangle without texture gradient", 1}}),
+        MeshCase("repeated triangle",
+                 "A square with one of its triangles three times over, begun at different corners.",
+                 "three copies of a face in assets exported twice",
+                 [] {
+                     return with_triangle(with_triangle(square(), {1, 2, 0}), {2, 0, 1});
+                 })
+            .checked({{triangle_repeated, 2}, {edge_boundary, 4}})
+            .normals()
+            .accurate(all_weights(), 0, "the square's", up_at_first(4))
+            .tangents({{"repeated triangle", 2}}),
+    };
+}
+
+namespace {
+
+/// Two triangles at one edge. The second is folded back over the first.
+Mesh fold_over() {
+    return mesh_from({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2F, 0.7F, 0}}, {{0, 1, 2}, {1, 0, 3}});
+}
+
+/// A flat grid with an inverted triangle in its middle.
 Mesh flipped_triangle() {
     Mesh mesh = flat_grid(4);
     std::swap(mesh.triangles[10].x, mesh.triangles[10].y);
@@ -28,7 +145,7 @@ Mesh double_sided_square() {
     return mesh;
 }
 
-/// A cone of height 1 with an open base, its tip at vertex 0.
+/// A cone of height 1 with an open base. Vertex 0 is its tip.
 Mesh cone() {
     Mesh mesh = fan(16);
     mesh.positions[0].z = 1.0F;
@@ -40,23 +157,24 @@ std::optional<glm::dvec3> cone_axis_at_tip(const Mesh&, std::size_t vertex) {
     return glm::dvec3(0, 0, 1);
 }
 
-/// Three triangles on the edge between vertices 0 and 1.
+/// Three triangles at the edge between vertices 0 and 1.
 Mesh three_on_an_edge() {
-    return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}},
-                   {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+    return mesh_from({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}},
+                     {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
 }
 
-/// Two triangles that meet in vertex 0 alone, at right angles.
+/// Two perpendicular triangles that share only vertex 0.
 Mesh bow_tie() {
-    return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
-                   {{0, 1, 2}, {0, 3, 4}});
+    return mesh_from({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
+                     {{0, 1, 2}, {0, 3, 4}});
 }
 
 std::optional<glm::dvec3> corner_of_cube(const Mesh& mesh, std::size_t vertex) {
     return glm::dvec3(mesh.positions[vertex]);
 }
 
-/// At the common edge of a ramp, half way between its two sides; else the side's own.
+/// Returns the bisector of both sides at the common edge of a ramp, and the normal of the side
+/// elsewhere.
 std::optional<glm::dvec3> ramp_normal(const Mesh& mesh, std::size_t vertex) {
     const glm::dvec3 flat(0, 0, 1);
     const glm::dvec3 rising = glm::dvec3(-1, 0, 1) / std::sqrt(2.0);
@@ -64,7 +182,7 @@ std::optional<glm::dvec3> ramp_normal(const Mesh& mesh, std::size_t vertex) {
     return mesh.positions[vertex].x < 0.0F ? flat : flat + rising;
 }
 
-/// Whether normals with edges hard from this angle on are each triangle's own, or differ somewhere.
+/// Returns whether normals with this hard-edge angle all equal the face normals.
 bool all_flat(const Mesh& mesh, double degrees) {
     Report report;
     const std::vector<glm::vec3> flat = triangle_normals(mesh.positions, mesh.triangles, report);
@@ -74,13 +192,14 @@ bool all_flat(const Mesh& mesh, double degrees) {
         corner_normals(mesh.positions, mesh.triangles, NormalWeight::angle, {}, hard_edges, report)
             .normals;
     for (std::size_t c = 0; c < corners.size(); ++c) {
-        // Flat normals are not rounded to the grid that averaged ones are on: 2e-9.
+        // Averaged normals are rounded to a grid, and flat normals are not. The difference is 2e-9.
         if (!(glm::distance(corners[c], flat[c / 3]) < 1e-7F)) return false;
     }
     return true;
 }
 
-/// Chosen normals are nowhere further off than those by area.
+/// Returns a problem if an automatically weighted normal has a larger error than the area-weighted
+/// one.
 std::string worse_than_area(const Mesh& mesh) {
     Report report;
     const ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, {}, report);
@@ -92,7 +211,7 @@ std::string worse_than_area(const Mesh& mesh) {
     return chosen.by_area > 0 ? "" : "no vertex is weighted by area";
 }
 
-/// With a tolerance of a millionth the two edges of the ramp are one.
+/// With a relative tolerance of 1e-6, both edges of the ramp are one edge.
 std::string not_joined(const Mesh& mesh) {
     NormalOptions options;
     options.weld_tolerance = 1e-6;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-hard-cases-page FILE: writes docs/hard-cases.md from the catalogue.
+// `relief-hard-cases-page docs/hard-cases.md` writes the page from the catalogue.
 #include <cstdio>
 #include <fstream>
 
-#include "hard_cases/page.h"
-#include "support/error_page.h"
+#include "error_tables/error_tables.h"
+#include "hard_cases/hard_cases.h"
 
 int main(int argc, char** argv) {
     if (!relief::test::is_one_path(argc, argv)) {

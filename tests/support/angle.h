@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Directions are compared by the angle between them, never by components.
+/// Directions are compared by the angle between them, not by components.
 #pragma once
 
 #include <numbers>

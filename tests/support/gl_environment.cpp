@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts for tests, and what they have in common. See gl_environment.h.
 #include "support/gl_environment.h"
 
 #include <array>
@@ -99,7 +98,7 @@ GlState state_of(const gl::Api& api) {
 struct SharedContext {
     Backend backend = Backend::automatic;
     std::unique_ptr<Context> context;
-    GlState new_state;  ///< Of the context when it was made.
+    GlState new_state;  ///< The state of the context after its creation.
 };
 
 SharedContext& shared() {

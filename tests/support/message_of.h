@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What an error says, for tests that compare its words.
+/// Error messages, for tests that compare them.
 #pragma once
 
 #include <string>
 
 namespace relief::test {
 
-/// The words of the Error that `call` throws; "no error" if it throws none. Any other exception
-/// passes.
+/// Returns the message of the Error that `call` throws, or "no error". Other exceptions pass
+/// through.
 template <class Error, class Call>
 std::string message_of(const Call& call) {
     try {

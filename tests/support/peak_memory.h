@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The most memory that this process held so far: libraries, threads and all.
+/// The peak memory of this process, including libraries and all threads.
 ///
-/// A test of it has the process to itself, or it sees what others took. It links
-/// relief_memory_test_support, without which AddressSanitizer counts up to 256 MB of what was
-/// freed.
+/// A test that measures it needs a process of its own, and links relief_memory_test_support.
+/// Without that library, AddressSanitizer counts up to 256 MB of freed memory.
 #pragma once
+
+#include <sys/resource.h>
 
 namespace relief::test {
 
-double peak_megabytes();
+inline double peak_megabytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
+}
 
 }  // namespace relief::test

@@ -10,7 +10,8 @@ glm::dvec3 random_direction(std::mt19937_64& random) {
     // Standard distributions differ between libraries; the generator does not.
     const auto coordinate = [&] { return static_cast<double>(random() >> 11U) * 0x1p-52 - 1.0; };
     while (true) {
-        // Drawn one by one: arguments of a call have no order.
+        // The order of evaluation of function arguments is unspecified, so each value has its own
+        // statement.
         const double x = coordinate();
         const double y = coordinate();
         const glm::dvec3 vector(x, y, coordinate());
@@ -21,16 +22,16 @@ glm::dvec3 random_direction(std::mt19937_64& random) {
 
 }  // namespace
 
-void TrueFrames::add(const glm::dvec3& normal, const glm::dvec3& tangent, float w) {
+void ReferenceFrames::add(const glm::dvec3& normal, const glm::dvec3& tangent, float w) {
     normals.push_back(normal);
     tangents.push_back(tangent);
     float_normals.emplace_back(normal);
     float_tangents.emplace_back(glm::vec3(tangent), w);
 }
 
-TrueFrames random_frames(std::size_t count) {
+ReferenceFrames random_frames(std::size_t count) {
     std::mt19937_64 random(1);
-    TrueFrames frames;
+    ReferenceFrames frames;
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dvec3 normal = random_direction(random);
         const glm::dvec3 other = random_direction(random);

@@ -8,8 +8,8 @@
 
 namespace relief::test {
 
-/// Frames before they are rounded to float, so that float's own error is seen too.
-struct TrueFrames {
+/// Frames in double, and the same frames rounded to float.
+struct ReferenceFrames {
     std::vector<glm::dvec3> normals;
     std::vector<glm::dvec3> tangents;
     std::vector<glm::vec3> float_normals;
@@ -18,7 +18,7 @@ struct TrueFrames {
     void add(const glm::dvec3& normal, const glm::dvec3& tangent, float w);
 };
 
-/// Evenly distributed, left- and right-handed by turns; the same on every machine.
-TrueFrames random_frames(std::size_t count);
+/// Uniformly distributed frames with alternating handedness, the same on every machine.
+ReferenceFrames random_frames(std::size_t count);
 
 }  // namespace relief::test

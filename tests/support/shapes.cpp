@@ -39,4 +39,9 @@ Mesh soup(const Mesh& mesh) {
     return result;
 }
 
+Mesh with_tangents(Mesh mesh, TangentMode mode) {
+    Report report;
+    return with_frames(std::move(mesh), {.tangents = mode}, report).mesh;
+}
+
 }  // namespace relief::test

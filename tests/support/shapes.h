@@ -1,37 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Meshes whose true normals and tangents are known in closed form.
+/// Meshes whose exact normals and tangents are known in closed form.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <utility>
 #include <vector>
 
+#include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief::test {
 
-/// The unit square in the xy plane, facing +z, n x n cells; texture coordinates cover [0,1]^2 with
-/// the image upright: u along +x, v down along -y.
+/// The unit square in the xy plane, facing +z, of n x n cells. The texture coordinates cover
+/// [0,1]^2 with an upright image: u runs along +x, v along -y.
 Mesh grid(int cells);
 
-/// The unit sphere by longitude and latitude, with a texture seam and poles; normals are the
-/// positions, u eastwards, v from the north pole (+y) down.
+/// The unit sphere by longitude and latitude, with a texture seam and poles. Normals are the
+/// positions, u runs eastwards, v from the north pole (+y) down.
 Mesh sphere(int slices, int stacks);
 
-/// A cube of edge 2 around the origin, 24 vertices: every face has its own, with its own normal and
-/// the whole texture upright on it.
+/// A cube of edge 2 around the origin with 24 vertices. Every face has its own normal and the whole
+/// upright image.
 Mesh cube();
 
-/// The same triangles, each with vertices of its own; positions, normals and texture coordinates.
+/// Returns the same triangles, each with its own vertices, with positions, normals and texture
+/// coordinates.
 Mesh soup(const Mesh& mesh);
 
-/// With nothing but these.
+/// Returns a mesh with only positions and triangles.
 inline Mesh mesh_from(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
     Mesh mesh;
     mesh.positions = std::move(positions);
     mesh.triangles = std::move(triangles);
     return mesh;
+}
+
+/// Returns the mesh with tangents at its vertices. Vertices are split if necessary.
+Mesh with_tangents(Mesh mesh, TangentMode mode = TangentMode::mikktspace);
+
+/// Returns the vertex at a corner of a triangle; triangle t has the corners 3t to 3t + 2.
+inline std::uint32_t vertex_at(const Mesh& mesh, std::size_t corner) {
+    return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
 }
 
 }  // namespace relief::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// AddressSanitizer asks the program for options of its own; other builds call nothing here.
+// AddressSanitizer calls this function for the default options of the program.
 
 extern "C" const char* __asan_default_options();
 

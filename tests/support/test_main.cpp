@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// main() of every test program. Many cases share a process, so each begins with the state of a
-// fresh process, and a case that changes the environment, the working directory or a signal and
-// does not restore it fails.
+// The main function of every test program. Many cases share a process, so each begins with the
+// state of a fresh process. A case that changes the environment, the working directory or a signal
+// and does not restore it fails.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -22,7 +22,7 @@
 namespace relief::test {
 namespace {
 
-/// What one case must not change for the next: name and value.
+/// Name and value of each part of the state that a case must restore.
 using ProcessState = std::map<std::string, std::string>;
 
 ProcessState process_state() {

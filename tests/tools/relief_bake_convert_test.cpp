@@ -12,7 +12,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normal_map_operations.h"
-#include "support/resized_waves.h"
+#include "support/images.h"
 #include "support/shared_data.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"

@@ -12,7 +12,6 @@
 #include "tools/read_files.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
-#include "view_output.h"
 
 namespace relief::tools {
 namespace {

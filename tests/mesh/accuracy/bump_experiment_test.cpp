@@ -1,20 +1,233 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods measured on a map, and the cheapest within a bound.
-#include "relief/mesh/bump_experiment.h"
-
+// The bump experiment: its reference fields, the convergence order of each kernel, and the choice
+// of the cheapest method within an error limit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
 
+#include "relief/mesh/analytic_heights.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/bump_experiment.h"
+#include "relief/mesh/bump_fields.h"
 #include "relief/mesh/error.h"
-#include "support/height_fields.h"
+#include "relief/mesh/height_statistics.h"
+#include "support/images.h"
 
 namespace relief {
 namespace {
 
 using testing::HasSubstr;
+
+FieldRecipe recipe_of(FieldShape shape, FieldCoding coding = FieldCoding::float32,
+                      double noise = 0.0) {
+    return {"", shape, 40.0, 0.3, coding, noise, 9};
+}
+
+/// Returns the share of texels whose reference normal differs by more than `degrees` from finite
+/// differences.
+double share_beyond(double degrees, const BumpField& field) {
+    BumpOptions options = field.options;
+    options.kernel = Kernel::central7;
+    Report report;
+    const Image found = normals_from_height(field.heights, options, report);
+    const std::span<const float> n = found.as<float>();
+    double beyond = 0.0;
+    double all = 0.0;
+    for (std::size_t i = 0; i < field.normals.size(); ++i) {
+        if (std::isnan(field.normals[i].x)) continue;
+        all += 1.0;
+        const glm::dvec3 normal(n[3 * i], n[3 * i + 1], n[3 * i + 2]);
+        if (degrees_between(normal, field.normals[i]) > degrees) beyond += 1.0;
+    }
+    return beyond / all;
+}
+
+TEST(BumpFields, TheirNormalsAreThoseOfDifferencesOfHighOrder) {
+    for (const FieldShape shape : {FieldShape::waves, FieldShape::mixed}) {
+        EXPECT_EQ(share_beyond(2e-3, make_bump_field(recipe_of(shape), 160, 128)), 0.0);
+    }
+    // These fields have bends at rims, folds at ridges, or open borders. Finite differences are
+    // wrong only there.
+    EXPECT_EQ(share_beyond(0.5, make_bump_field(recipe_of(FieldShape::domes), 160, 128)), 0.0);
+    EXPECT_LT(share_beyond(2e-3, make_bump_field(recipe_of(FieldShape::domes), 160, 128)), 0.35);
+    EXPECT_LT(share_beyond(2e-3, make_bump_field(recipe_of(FieldShape::open), 160, 128)), 0.1);
+    const double near_ridges = 1.0 - std::pow(1.0 - 12.0 / 40.0, 2) + 1e-12;
+    EXPECT_LE(share_beyond(2e-3, make_bump_field(recipe_of(FieldShape::creases), 160, 160)),
+              near_ridges);
+    EXPECT_LT(share_beyond(2e-3, make_bump_field(recipe_of(FieldShape::terraces), 160, 160)), 0.5);
+}
+
+TEST(BumpFields, AFieldOfItsOwnIsSampledWithTheSlopeOfItsFormula) {
+    const AnalyticHeights field = sampled_heights(5, 4, [](const glm::dvec2& p) {
+        return HeightSample{p.x * p.x * 0.25 - 2.0 * p.y, {0.5 * p.x, -2.0}};
+    });
+    EXPECT_EQ(field.heights.as<float>()[1 * 5 + 4], 2.0F);
+    EXPECT_LT(glm::length(field.normals[1 * 5 + 4] - glm::normalize(glm::dvec3(-2.0, -2.0, 1.0))),
+              1e-15);
+}
+
+TEST(BumpFields, TerracesHaveNoNormalBesideWallsAndOneElsewhere) {
+    const BumpField field = make_bump_field(recipe_of(FieldShape::terraces), 160, 160);
+    const std::span<const float> heights = field.heights.as<float>();
+    std::size_t without = 0;
+    for (std::size_t y = 0; y < 160; ++y) {
+        for (std::size_t x = 0; x + 1 < 160; ++x) {
+            const std::size_t i = y * 160 + x;
+            // Walls are 1.2 texels high, and the ground rises by less than 0.9 per texel.
+            if (std::abs(heights[i + 1] - heights[i]) > 0.9F) {
+                EXPECT_TRUE(std::isnan(field.normals[i].x) && std::isnan(field.normals[i + 1].x));
+            }
+            without += std::isnan(field.normals[i].x) ? 1 : 0;
+        }
+    }
+    EXPECT_GT(without, 300U);
+    EXPECT_LT(without, 160U * 160U / 4U);
+}
+
+TEST(BumpFields, AreStoredAsTheySay) {
+    const auto stored = [](FieldCoding coding) {
+        return make_bump_field(recipe_of(FieldShape::waves, coding), 128, 128);
+    };
+    EXPECT_EQ(height_depth(stored(FieldCoding::float32).heights).bits, 0);
+    EXPECT_EQ(height_depth(stored(FieldCoding::bits16).heights).bits, 16);
+    EXPECT_EQ(height_depth(stored(FieldCoding::bits8).heights).bits, 8);
+    const BumpField wide = stored(FieldCoding::bits8_in_16);
+    EXPECT_EQ(wide.heights.bits(), 16);
+    EXPECT_EQ(height_depth(wide.heights).bits, 8);
+    EXPECT_EQ(wide.options.strength, stored(FieldCoding::bits8).options.strength);
+    const BumpField dim = stored(FieldCoding::bits8_dim);
+    const auto codes = dim.heights.as<std::uint8_t>();
+    EXPECT_EQ((std::set<int>(codes.begin(), codes.end()).size()), 25U);
+    EXPECT_EQ(*std::min_element(codes.begin(), codes.end()), 100);
+    // 24 codes of 255 span the range of the float heights.
+    EXPECT_NEAR(dim.options.strength * 24.0 / 255.0, wide.options.strength, 1e-9);
+    const BumpField half = stored(FieldCoding::float16);
+    for (const float height : half.heights.as<float>()) {
+        int exponent = 0;
+        const double times = std::frexp(static_cast<double>(height), &exponent) * 2048.0;
+        ASSERT_EQ(times, std::round(times));
+    }
+}
+
+TEST(BumpFields, NoiseHasItsDeviationAndTheTruthHasNone) {
+    const BumpField clean = make_bump_field(recipe_of(FieldShape::waves), 128, 128);
+    const BumpField noisy =
+        make_bump_field(recipe_of(FieldShape::waves, FieldCoding::float32, 0.2), 128, 128);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < clean.normals.size(); ++i) {
+        const double noise = static_cast<double>(noisy.heights.as<float>()[i]) -
+                             static_cast<double>(clean.heights.as<float>()[i]);
+        squares += noise * noise;
+        ASSERT_EQ(noisy.normals[i], clean.normals[i]);
+    }
+    EXPECT_NEAR(std::sqrt(squares / static_cast<double>(clean.normals.size())), 0.2, 0.003);
+}
+
+TEST(BumpFields, TheSetsHaveEveryShapeAndCodingAndAreApart) {
+    std::set<std::string> names;
+    std::set<std::uint32_t> seeds;
+    for (const auto& set : {tuning_fields(), evaluation_fields()}) {
+        std::set<FieldShape> shapes;
+        std::set<FieldCoding> codings;
+        int noisy = 0;
+        for (const FieldRecipe& recipe : set) {
+            EXPECT_TRUE(names.insert(recipe.name).second) << recipe.name;
+            EXPECT_TRUE(seeds.insert(recipe.seed).second) << recipe.name;
+            shapes.insert(recipe.shape);
+            codings.insert(recipe.coding);
+            noisy += recipe.noise > 0.0 ? 1 : 0;
+        }
+        EXPECT_EQ(shapes.size(), 6U);
+        EXPECT_EQ(codings.size(), 6U);
+        EXPECT_GE(noisy, 7);
+    }
+}
+
+TEST(BumpFields, SizesThatDoNotFitAreRefused) {
+    EXPECT_THROW(make_bump_field(recipe_of(FieldShape::waves), 7, 64), InvalidInput);
+    const BumpField field = make_bump_field(recipe_of(FieldShape::waves), 16, 16);
+    EXPECT_THROW(field_error(make_image(16, 15, 3, 32, ColorSpace::data), field), InvalidInput);
+}
+
+constexpr int coarse_side = 96;
+constexpr int border_margin = 8;  ///< No kernel of these tests reaches farther.
+
+struct WaveError {
+    double inside = 0.0;
+    double border = 0.0;  ///< The error of the outermost texels only.
+};
+
+/// Returns the error on an oblique, clamped wave of slope 1, so that both axes have an error.
+WaveError error_on(Kernel kernel, double wavelength) {
+    const double steepness = 2.0 * std::numbers::pi / wavelength;
+    const HeightWave wave{1.0 / steepness, steepness * glm::dvec2(std::cos(0.6), std::sin(0.6)),
+                          0.7};
+    const AnalyticHeights field = wave_heights(coarse_side, coarse_side, std::span(&wave, 1));
+    BumpOptions options;
+    options.kernel = kernel;
+    options.wrap = Wrap::clamp;
+    options.strength = 1.0;
+    options.arithmetic = Arithmetic::float64;
+    Report report;
+    const Image normals = normals_from_height(field.heights, options, report);
+    const DirectionError all = normal_error(normals, field, 0);
+    const DirectionError but_border = normal_error(normals, field, 1);
+    const auto squares = [](const DirectionError& error) {
+        return error.rms * error.rms * static_cast<double>(error.count);
+    };
+    const auto of_border = static_cast<double>(all.count - but_border.count);
+    return {normal_error(normals, field, border_margin).rms,
+            std::sqrt((squares(all) - squares(but_border)) / of_border)};
+}
+
+/// Returns the negative slope of the best line through log error over log wavelength.
+double fitted_order(const std::vector<double>& wavelengths, const std::vector<double>& errors) {
+    double x = 0.0;
+    double y = 0.0;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        x += std::log(wavelengths[i]) / static_cast<double>(errors.size());
+        y += std::log(errors[i]) / static_cast<double>(errors.size());
+    }
+    double products = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        products += (std::log(wavelengths[i]) - x) * (std::log(errors[i]) - y);
+        squares += (std::log(wavelengths[i]) - x) * (std::log(wavelengths[i]) - x);
+    }
+    return -products / squares;
+}
+
+TEST(BumpConvergence, EveryKernelHasItsOrderInsideAndFirstOrderAtAClampedBorder) {
+    for (const Kernel kernel :
+         {Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3, Kernel::scharr3,
+          Kernel::sobel5, Kernel::scharr5, Kernel::central5, Kernel::central7, Kernel::gaussian}) {
+        const int order = gradient_kernel(kernel).order;
+        // The wavelengths end where the rounding of heights to float shows: errors of order 6
+        // decrease fast.
+        const std::vector<double> wavelengths =
+            order == 6   ? std::vector{9.0, 11.0, 13.0, 16.0, 19.0}
+            : order == 4 ? std::vector{11.0, 14.0, 18.0, 23.0, 29.0}
+                         : std::vector{20.0, 25.0, 31.0, 39.0, 48.0};
+        std::vector<double> inside;
+        std::vector<double> border;
+        for (const double wavelength : wavelengths) {
+            const WaveError error = error_on(kernel, wavelength);
+            inside.push_back(error.inside);
+            border.push_back(error.border);
+        }
+        EXPECT_NEAR(fitted_order(wavelengths, inside), order, 0.15 * order)
+            << static_cast<int>(kernel);
+        // The heights beyond the border are a reflection, whose curvature differs from that of the
+        // wave.
+        EXPECT_NEAR(fitted_order(wavelengths, border), 1.0, 0.35) << static_cast<int>(kernel);
+    }
+}
 
 constexpr std::array both_arithmetics = {Arithmetic::float32, Arithmetic::float64};
 constexpr std::array all_depths = {8, 16, 32};
@@ -49,7 +262,7 @@ TEST(BumpExperiment, OnAKnownFieldTheErrorsAreThoseOfTheirMethods) {
     const auto rms = [&](Kernel kernel, Arithmetic arithmetic, int bits) {
         return measurement_of(experiment, {kernel, 4, arithmetic, bits, false}).error.rms;
     };
-    // As direct measurement has it.
+    // The results equal those of direct measurements.
     BumpOptions sobel = field.options;
     sobel.kernel = Kernel::sobel3;
     sobel.arithmetic = Arithmetic::float64;
@@ -74,7 +287,7 @@ TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
     EXPECT_EQ(experiment.reference.method->arithmetic, Arithmetic::float64);
     EXPECT_GT(experiment.reference.reference_degrees, 0.01);
     EXPECT_THAT(experiment.reference.words, HasSubstr("its steps smoothed away"));
-    // It is truer than what the choice for the map as it is would give.
+    // The result is more accurate than the choice for the unchanged map.
     BumpOptions plain = field.options;
     plain.kernel = experiment.choice.kernel;
     plain.gaussian_radius = experiment.choice.gaussian_radius;
@@ -95,16 +308,17 @@ TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
         const BumpMeasurement* one = cheapest_within(experiment, {std::nullopt, degrees, kind});
         return one == nullptr ? std::nullopt : std::optional(one->method);
     };
-    // Half a degree: 8 bits do, and a plain kernel.
+    // For half a degree, 8 bits and a simple kernel suffice.
     ASSERT_TRUE(chosen(0.5, ErrorKind::rms));
     EXPECT_EQ(chosen(0.5, ErrorKind::rms)->bits, 8);
     EXPECT_EQ(chosen(0.5, ErrorKind::rms)->arithmetic, Arithmetic::float32);
-    // A hundredth: 16 bits and a kernel of higher order.
+    // A hundredth of a degree needs 16 bits and a kernel of higher order.
     ASSERT_TRUE(chosen(0.01, ErrorKind::rms));
     EXPECT_EQ(chosen(0.01, ErrorKind::rms)->bits, 16);
     EXPECT_EQ(chosen(0.01, ErrorKind::rms)->kernel, Kernel::central5);
     EXPECT_FALSE(chosen(1e-9, ErrorKind::max));
-    // Every other within the bound costs as much or more, and every cheaper one is beyond it.
+    // Every other method within the limit costs at least as much, and every cheaper one is beyond
+    // it.
     for (const double bound : {3.0, 0.5, 0.1, 0.01, 1e-3, 1e-4}) {
         for (const ErrorKind kind : {ErrorKind::rms, ErrorKind::max}) {
             const BumpMeasurement* best = cheapest_within(experiment, {std::nullopt, bound, kind});
@@ -139,7 +353,7 @@ TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
         EXPECT_EQ(upper.added, error.added);
         EXPECT_NEAR(error.total() / known.measurements[i].error.rms, 1.0, 0.3) << i;
     }
-    // The added part of many is far below a limit that no total is within.
+    // The added error of many methods is far below a limit that no total error meets.
     const double limit = 0.5 * guess.reference.reference_degrees;
     EXPECT_EQ(cheapest_within(guess, {limit, std::nullopt, ErrorKind::rms}), nullptr);
     EXPECT_NE(cheapest_within(guess, {std::nullopt, limit, ErrorKind::rms}), nullptr);
@@ -147,7 +361,7 @@ TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
         guess, {1.5 * guess.reference.reference_degrees, std::nullopt, ErrorKind::rms});
     ASSERT_NE(total, nullptr);
     EXPECT_EQ(total->method.bits, 8);
-    // What is not known is within no limit.
+    // An unknown error is within no limit.
     BumpExperiment unknown = guess;
     unknown.reference.reference_degrees = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(cheapest_within(unknown, {90.0, std::nullopt, ErrorKind::rms}), nullptr);
@@ -189,7 +403,7 @@ TEST(BumpExperiment, SmoothingIsTimedInEachRoundAndPartOfThoseThatWantIt) {
         for (const BumpMeasurement& one : experiment->measurements) {
             EXPECT_EQ(one.seconds.count, 3U);
             if (!one.method.destaircased) continue;
-            // What is longer in every round is so at every rank.
+            // A method that is slower in every round is slower at every percentile.
             EXPECT_GT(one.seconds.p10, smoothing.p10);
             EXPECT_GT(one.seconds.median, smoothing.median);
             EXPECT_GT(one.seconds.p90, smoothing.p90);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The choice of a kernel on noisy maps, and the error it expects, against known surfaces. Surfaces
+// The choice of a kernel on noisy maps, and its expected error, against known surfaces. Surfaces
 // and noises come from other generators than those that the choice assumes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,12 +26,13 @@ using testing::HasSubstr;
 
 constexpr int side = 256;
 constexpr double turn = 2.0 * std::numbers::pi;
-/// Of the best kernel's error, and of the expected error over the true one or the reverse.
+/// The largest ratio of the error to that of the best kernel, and of the expected error to the
+/// exact one or the reverse.
 constexpr double promised = 1.5;
 
 struct Surface {
     std::vector<double> heights;
-    std::vector<glm::dvec3> normals;  ///< NaN where none is judged.
+    std::vector<glm::dvec3> normals;  ///< NaN at texels that the test does not compare.
 };
 
 using HeightFunction = std::function<double(double, double)>;
@@ -107,7 +108,7 @@ Surface rocks() {
         0.3);
 }
 
-/// 1 inside of discs, 0 outside, over an edge of some texels.
+/// Returns 1 inside of discs and 0 outside, with an edge of this width in texels.
 double discs(double x, double y, double edge) {
     double height = 0.0;
     std::minstd_rand random(77);
@@ -182,7 +183,7 @@ std::vector<double> noise_of(NoiseKind kind) {
     return noise;
 }
 
-/// The surface with noise, as a file of 8 or 16 bits or of floats has it.
+/// The surface with noise, as a file of 8 bits, 16 bits or floats stores it.
 BumpField noisy_map(const Surface& surface, NoiseKind kind, double ratio, int bits) {
     const std::vector<double> noise = noise_of(kind);
     const double deviation = deviation_of(surface.heights);
@@ -193,7 +194,7 @@ BumpField noisy_map(const Surface& surface, NoiseKind kind, double ratio, int bi
     }
     BumpField map;
     map.normals = surface.normals;
-    // At a clamped border, slopes are one-sided and noisier: not what is expected of the map.
+    // At a clamped border, slopes are one-sided and noisier than the rest of the map.
     for (int i = 0; i < side * side; ++i) {
         constexpr int margin = 8;
         const int nearest =
@@ -233,11 +234,11 @@ double min_error(const BumpField& map) {
     return least;
 }
 
-/// The greatest range of expected errors where the noise tells itself from the surface.
+/// The largest ratio of the ends of the expected range if noise and surface are distinguishable.
 constexpr double narrow = 2.5;
 constexpr double any_width = std::numeric_limits<double>::infinity();
 
-/// \param widest  the greatest upper expected error, of the lower one
+/// \param widest  the largest ratio of the upper to the lower expected error
 void expect_range_holds(const KernelChoice& choice, double error, const std::string& name,
                         double widest) {
     EXPECT_LE(choice.rms_degrees, promised * error) << name;
@@ -272,7 +273,7 @@ class KernelChoiceAtAllRatios : public testing::TestWithParam<NoiseKind> {};
 TEST_P(KernelChoiceAtAllRatios, OnSines) {
     const bool is_colored = GetParam() == NoiseKind::blurred || GetParam() == NoiseKind::pink;
     for (const double ratio : all_ratios) {
-        // Strong colored noise hides the waves themselves.
+        // Strong colored noise hides the waves.
         expect_promise_kept(noisy_map(sines(0.3), GetParam(), ratio, 8), std::to_string(ratio),
                             is_colored ? any_width : narrow);
     }
@@ -316,7 +317,8 @@ TEST(KernelChoiceOnNoisyMaps, AlsoOnMasksWithSpikes) {
 
 TEST_P(KernelChoiceAtAllRatios, OnAPhotograph) {
     RELIEF_NEEDS_SHARED(file, "data/textures/bricks_godot/texture_bricks.jpg");
-    // Every other texel of the photograph after a Gaussian, whose derivatives are the true slopes.
+    // Every other texel of the photograph after a Gaussian filter, whose derivatives are the
+    // reference slopes.
     const Image photo = height_field(read_image(file, ImageUse::data));
     const std::span<const float> values = photo.as<float>();
     constexpr int reach = 5;
@@ -345,10 +347,10 @@ TEST_P(KernelChoiceAtAllRatios, OnAPhotograph) {
             surface.normals.push_back(glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
         }
     }
-    // Its detail looks like blurred and like pink noise.
+    // Its detail resembles blurred and pink noise.
     const bool tells = GetParam() != NoiseKind::blurred && GetParam() != NoiseKind::pink;
     for (const double ratio : all_ratios) {
-        // The noise hides most of the bricks here: the upper end is 0.53 of the true error.
+        // The noise hides most of the bricks here: the upper end is 0.53 of the exact error.
         if (GetParam() == NoiseKind::pink && ratio == 1.5) continue;
         expect_promise_kept(noisy_map(surface, GetParam(), ratio, 8), std::to_string(ratio),
                             any_width, tells);
@@ -399,7 +401,7 @@ TEST(KernelChoiceOnMasks, AntialiasedEdgesAreNotBlurred) {
 }
 
 TEST(KernelChoiceOnGrain, SaysWhatFollowsFromBothReadings) {
-    // Nothing but grain: detail, since a map of noise alone would be for nothing.
+    // A map of grain only: the grain counts as detail, since a map of noise alone is useless.
     Surface flat{std::vector<double>(static_cast<std::size_t>(side) * side, 0.0),
                  std::vector<glm::dvec3>(static_cast<std::size_t>(side) * side, {0.0, 0.0, 1.0})};
     Image grain = make_image(side, side, 1, 8, ColorSpace::data);
@@ -416,7 +418,7 @@ TEST(KernelChoiceOnGrain, SaysWhatFollowsFromBothReadings) {
     EXPECT_THAT(detail.reason, HasSubstr("and hardly anything else, is taken for detail"));
     ASSERT_TRUE(detail.otherwise);
     EXPECT_TRUE(detail.is_ambiguous());
-    // If it is noise after all, the ground is level: the error is that of all slopes.
+    // If the grain is noise, the surface is flat, and the error is that of all slopes.
     const double if_noise = error_by(map, detail.kernel, detail.gaussian_radius);
     EXPECT_NEAR(detail.otherwise->rms_degrees / if_noise, 1.0, 0.1);
     EXPECT_EQ(detail.otherwise->best.kernel, Kernel::gaussian);
@@ -426,14 +428,14 @@ TEST(KernelChoiceOnGrain, SaysWhatFollowsFromBothReadings) {
     EXPECT_GT(asked.noise, 0.0);
     EXPECT_LE(error_by(map, asked.kernel, asked.gaussian_radius), promised * min_error(map));
 
-    // Noise on a surface: smoothed, unless it is said to be detail.
+    // Noise on a surface is smoothed, unless the options declare it as detail.
     const BumpField noisy = noisy_map(sines(0.3), NoiseKind::white, 0.6, 8);
     const KernelChoice smooth = choose_kernel(noisy.heights, noisy.options);
     EXPECT_TRUE(smooth.is_ambiguous());
     EXPECT_GT(smooth.otherwise->rms_degrees, 30.0);
     EXPECT_NE(choose_kernel(noisy.heights, noisy.options, false, Grain::detail).kernel,
               Kernel::gaussian);
-    // Where there is no grain, nothing depends on it.
+    // Without grain, the option has no effect.
     const BumpField clean = noisy_map(sines(0.3), NoiseKind::white, 0.0, 16);
     EXPECT_FALSE(choose_kernel(clean.heights, clean.options).otherwise);
 }
@@ -457,7 +459,7 @@ TEST(DefaultOptions, AreSettledByTheMap) {
     EXPECT_EQ(settled.kernel, choice.kernel);
     EXPECT_EQ(settled.gaussian_radius, choice.gaussian_radius);
     EXPECT_EQ(settled.wrap, detect_tiling(noisy.heights).wraps());
-    // What is given stays, and conversions settle the rest alike.
+    // Given options stay, and conversions choose the others in the same way.
     Report report;
     EXPECT_EQ(normals_from_height(noisy.heights, open, report).samples,
               normals_from_height(noisy.heights, settled, report).samples);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps that are off by known angles, and each stage alone.
-#include "relief/mesh/bake_check.h"
-
+// Checks of a baked map: maps with known errors, the error of each stage, and trials of other
+// settings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +10,9 @@
 #include <numeric>
 
 #include "mesh/bake/bake_support.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/bake_check.h"
+#include "relief/mesh/bake_trials.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
@@ -62,7 +64,7 @@ double all_shares(const BakeCheck& check) {
                            [](double sum, const StageError& one) { return sum + one.share; });
 }
 
-/// A square over that of make_quad(), with these normals.
+/// A square above that of make_quad(), with these normals.
 Mesh tilted_square(const glm::vec3& normal, float height = 0.0F) {
     Mesh mesh = make_quad();
     for (glm::vec3& position : mesh.positions)
@@ -96,7 +98,7 @@ TEST(BakeCheck, NormalsTurnedByOneDegreeAreOneDegreeOff) {
     EXPECT_EQ(check.discontinuous, 0U);
     ASSERT_EQ(errors.size(), 64U * 96U);
     EXPECT_NEAR(errors[1234], 1.0F, 1e-5F);
-    // Turned all ways, they are so by no convention.
+    // Vectors in all directions follow no convention.
     EXPECT_TRUE(check.convention.was_searched);
     EXPECT_FALSE(check.convention.is_explained);
 }
@@ -108,7 +110,8 @@ TEST(BakeCheck, AMeshOntoItselfIsFlatWithinQuantisation) {
             const BakeCheck check =
                 checked(mesh, mesh, options, baked_map(mesh, mesh, options, bits));
             EXPECT_EQ(check.missed, 0U);
-            // No code is zero: flat is half a code off in x and in y. What is left is float's.
+            // No code is zero: flat has an error of half a code in x and in y. The rest is the
+            // rounding error of float.
             const double half_a_code = std::atan(std::sqrt(2.0) / (bits == 8 ? 255.0 : 65535.0));
             EXPECT_NEAR(check.error.max, half_a_code / degree, 0.002) << bits;
             EXPECT_FALSE(check.convention.was_searched);
@@ -121,8 +124,8 @@ TEST(BakeCheck, QuantisationAloneIsWhatRoundingToCodesDoes) {
     const BakeOptions options = sized(32, 32);
     const Image map = baked_map(high, make_quad(), options, 8);
     const BakeCheck check = checked(high, make_quad(), options, map);
-    // 127.5 * (0.6, 0, 0.8) is (76.5, 0, 102): 76.5 above 127.5 is a code, the others lie between
-    // two.
+    // 127.5 * (0.6, 0, 0.8) is (76.5, 0, 102): 76.5 above 127.5 is a code, and the others lie
+    // between two.
     const auto code = [&](std::size_t axis) { return map.as<std::uint8_t>()[axis] - 127.5; };
     EXPECT_EQ(code(0), 76.5);
     EXPECT_EQ(code(1), 0.5);
@@ -137,7 +140,8 @@ TEST(BakeCheck, QuantisationAloneIsWhatRoundingToCodesDoes) {
 }
 
 TEST(BakeCheck, SamplingAloneIsWhatOneSampleMissesOfTheMean) {
-    // A texel is a sixteenth wide: waves of a third of that, which one sample cannot tell.
+    // A texel has a width of one sixteenth. The waves are three times shorter, so one sample cannot
+    // resolve them.
     const Mesh high = waves(512, 100.0);
     BakeOptions options = sized(32, 32);
     const auto errors_of = [&](int samples) {
@@ -159,7 +163,7 @@ TEST(BakeCheck, SamplingAloneIsWhatOneSampleMissesOfTheMean) {
 TEST(BakeCheck, BasisIsWhatASkewedFrameMakesOfRounding) {
     const Mesh high = tilted_square({0.6F, 0.0F, 0.8F}, 0.1F);
     Mesh low = make_quad();
-    // Leaning out of the plane by 60 degrees, and with it the angle between x and z.
+    // The tangent leaves the plane by 60 degrees, which changes the angle between x and z.
     low.tangents.assign(low.positions.size(), {0.5F, 0.0F, 0.866025F, 1.0F});
     const BakeOptions options = sized(32, 32);
     const BakeCheck check = checked(high, low, options, baked_map(high, low, options, 8));
@@ -175,7 +179,7 @@ TEST(BakeCheck, BasisIsWhatASkewedFrameMakesOfRounding) {
 }
 
 TEST(BakeCheck, ProjectionIsWhereTheSurfaceJumpsWithinATexel) {
-    // Two squares at different heights, tilted to either side, that meet within the same texels.
+    // Two squares at different heights, tilted to opposite sides, that meet within the same texels.
     Mesh high = tilted_square({0.6F, 0.0F, 0.8F}, 0.3F);
     Mesh other = tilted_square({-0.6F, 0.0F, 0.8F}, 0.0F);
     for (std::size_t i = 0; i < other.positions.size(); ++i) {
@@ -212,7 +216,7 @@ TEST(BakeCheck, WhatRaysMissHasNoTruthAndIsCounted) {
     EXPECT_EQ(check.missed, 512U);
     EXPECT_EQ(check.error.count, 512U);
     EXPECT_TRUE(std::isnan(errors[16]));
-    // A flat texel of 16 bits: half a code off in x and y.
+    // A flat texel of 16 bits has an error of half a code in x and y.
     EXPECT_NEAR(errors[15], 0.00124F, 1e-5F);
 }
 
@@ -236,7 +240,7 @@ TEST(BakeCheck, TheWorstTexelsAreNamed) {
     EXPECT_EQ(check.worst[1].x, 63);
     EXPECT_NEAR(check.worst[1].degrees, 10.0, 0.002);
     EXPECT_NEAR(check.error.rms, std::sqrt(500.0 / (64 * 200)), 1e-3);
-    // Flat texels: half a code of 16 bits in x and y. Percentiles are read from bins.
+    // Flat texels have an error of half a 16-bit code in x and y. Percentiles are read from bins.
     EXPECT_LT(check.error.p99, 0.0015);
 }
 
@@ -279,6 +283,111 @@ TEST(BakeCheck, RefusesWhatIsNoMapOfThatSize) {
                           make_image(16, 16, 2, 8, ColorSpace::data));
               }),
               "an image of 2 channels holds no normals");
+}
+
+struct Trials {
+    Mesh high = waves(256, 20.0);
+    BakeOptions options = sized(64, 192);
+    Report report;
+    Baker baker{std::span(&high, 1), make_quad(), options, report};
+    std::vector<NormalMapFormat> formats = {{.bits = 8}, {.bits = 16}};
+
+    BakeCheck check_of(int samples, const NormalMapFormat& format) {
+        BakeMapOptions map = options;
+        map.samples = samples;
+        Image normals = make_image(64, 192, 3, 32, ColorSpace::data);
+        std::size_t at = 0;
+        baker.bake(
+            map,
+            [&](const BakedRows& rows) {
+                for (const float value : rows.normals)
+                    normals.as<float>()[at++] = value;
+            },
+            report);
+        BakeCheckOptions check;
+        check.map = map;
+        check.reference_samples = 64;
+        return check_bake(baker, encode_normal_map(normals, format, report), check, {}, report);
+    }
+};
+
+TEST(BakeBenchmark, SayOfAWholeMapWhatACheckSays) {
+    Trials all;
+    const BakeBenchmark trials(all.baker, all.options, 64 * 192, 64);
+    EXPECT_TRUE(trials.is_whole());
+    EXPECT_EQ(trials.texels(), 64U * 192U);
+    EXPECT_EQ(trials.reference_samples(), 64);
+    for (const int samples : {1, 4}) {
+        const BakeMeasurement trial = trials.measure({samples}, all.formats);
+        EXPECT_GE(trial.rays, static_cast<std::size_t>(samples) * 64U * 192U);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const BakeCheck check = all.check_of(samples, all.formats[i]);
+            EXPECT_NEAR(trial.errors[i].rms, check.error.rms, 1e-9);
+            EXPECT_EQ(trial.errors[i].max, check.error.max);
+            const auto codes = static_cast<std::size_t>(BakeStage::quantization);
+            EXPECT_NEAR(trial.quantization[i].rms, check.stages.at(codes).rms, 1e-6);
+        }
+    }
+}
+
+TEST(BakeBenchmark, MoreSamplesAndBitsAreTruer) {
+    Trials all;
+    const BakeBenchmark trials(all.baker, all.options, 64 * 192);
+    EXPECT_EQ(trials.reference_samples(), 256);
+    const BakeMeasurement one = trials.measure({1}, all.formats);
+    const BakeMeasurement four = trials.measure({4}, all.formats);
+    EXPECT_LT(four.errors[1].rms, one.errors[1].rms / 2.0);
+    EXPECT_LT(four.errors[1].rms, four.errors[0].rms);
+    EXPECT_LT(four.quantization[1].rms, 0.001);
+    EXPECT_GT(four.quantization[0].rms, 0.05);
+    // A map with one sample at the center is exact there.
+    EXPECT_LT(one.centre[1].max, 0.002);
+}
+
+TEST(BakeBenchmark, ErrorMapsHoldTheErrorsOfEachTexel) {
+    Trials all;
+    for (const std::size_t texels : {std::size_t{64 * 192}, std::size_t{1}}) {
+        const BakeBenchmark trials(all.baker, all.options, texels);
+        const BakeMeasurement trial = trials.measure({4}, all.formats);
+        const Image map = trials.error_map({4}, all.formats[0]);
+        EXPECT_EQ(map.width, 64);
+        EXPECT_EQ(static_cast<std::size_t>(map.height), trials.texels() / 64);
+        const std::span<const float> texel_errors = map.as<float>();
+        const AngleDistribution all_errors =
+            angle_distribution({texel_errors.begin(), texel_errors.end()});
+        EXPECT_EQ(all_errors.count, trial.errors[0].count);
+        EXPECT_NEAR(all_errors.rms, trial.errors[0].rms, 1e-6);
+        EXPECT_NEAR(all_errors.max, trial.errors[0].max, 1e-6);
+    }
+}
+
+TEST(BakeBenchmark, OfAPartAreNearlyThoseOfTheWhole) {
+    Trials all;
+    const BakeBenchmark part(all.baker, all.options, 1);
+    EXPECT_FALSE(part.is_whole());
+    EXPECT_EQ(part.texels(), 64U * 64U);
+    const BakeBenchmark whole(all.baker, all.options, 64 * 192);
+    EXPECT_NEAR(part.measure({1}, all.formats).errors[1].rms,
+                whole.measure({1}, all.formats).errors[1].rms, 0.01);
+}
+
+TEST(BakeBenchmark, SeparateSamplingFromRoundingUpTo256Samples) {
+    Trials all;
+    const BakeBenchmark trials(all.baker, all.options, 64, 1024);
+    EXPECT_EQ(trials.reference_samples(), 1024);
+    const BakeMeasurement few = trials.measure({16}, all.formats);
+    const BakeMeasurement many = trials.measure({256}, all.formats);
+    // A map is not compared with its own samples. Four times as many samples per side are better.
+    EXPECT_GT(many.sampling.rms, 0.0);
+    EXPECT_LT(many.sampling.rms, 0.5 * few.sampling.rms);
+    // Rounding and sampling are independent, and their sum is the error.
+    EXPECT_NEAR(many.errors[0].rms, std::hypot(many.sampling.rms, many.quantization[0].rms),
+                0.05 * many.errors[0].rms);
+    // Larger maps have no memory for this number of samples.
+    BakeMapOptions large = all.options;
+    large.width = 2112;
+    large.height = 64;
+    EXPECT_EQ(BakeBenchmark(all.baker, large, 64, 1024).reference_samples(), 256);
 }
 
 }  // namespace

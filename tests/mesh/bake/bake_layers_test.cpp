@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers of a bake: each against its truth, and that none has a say in another.
-#include "relief/mesh/bake_layers.h"
-
+// The layers of a bake (heights, occlusion, curvature, positions, colors) against reference
+// values; no layer changes another.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 
+#include "bake/layers.h"
 #include "mesh/bake/bake_support.h"
+#include "relief/mesh/bake_layers.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/shapes.h"
 #include "relief/mesh/threads.h"
 #include "support/message_of.h"
@@ -30,7 +33,7 @@ BakeOptions all_layers(int width, int height) {
     return options;
 }
 
-/// A torus with colours, by place.
+/// A torus with colors that depend on the position.
 Mesh colored_torus() {
     Mesh mesh = make_torus(0.45F, 120, 60);
     for (const glm::vec3& position : mesh.positions)
@@ -109,7 +112,7 @@ TEST(BakeLayers, CurvatureIsThatOfTheHighMesh) {
     const Mesh low = moved(make_sphere(32, 16), 2.5F, glm::vec3(0));
     for (const float here : bake({high}, low, options).curvature)
         EXPECT_NEAR(here, 0.4, 0.001);
-    // Seen from inside the same surface is hollow.
+    // From the inside, the same surface is concave.
     Mesh turned = high;
     for (glm::uvec3& triangle : turned.triangles)
         std::swap(triangle.y, triangle.z);
@@ -119,8 +122,8 @@ TEST(BakeLayers, CurvatureIsThatOfTheHighMesh) {
 }
 
 TEST(BakeLayers, OcclusionIsThatOfTheHighMeshes) {
-    // A floor, and 0.5 above it a roof that rays begin below: half a turn of sky is left at its
-    // rim, none to speak of well below it.
+    // A floor, and a roof 0.5 above it, below which rays begin. At its rim, half of the sky is
+    // visible; far below it, almost nothing.
     Mesh roof = moved(make_quad(), 8.0F, {8.0F, 0, 0.5F});
     BakeOptions options = sized(33, 1);
     options.layers.occlusion = OcclusionOptions{.rays = 1024, .distance = 100.0};
@@ -132,9 +135,10 @@ TEST(BakeLayers, OcclusionIsThatOfTheHighMeshes) {
     EXPECT_EQ(image.result.occlusion_rays, 33U * 1024U);
     for (std::size_t i = 0; i < 33; ++i) {
         const double x = (static_cast<double>(i) + 0.5) / 16.5 - 1.0;
-        // An endless half plane: half of 1 minus the sine of its rim's angle from upright.
-        const double ground_truth = 0.5 * (1.0 - x / std::hypot(x, 0.5));
-        EXPECT_NEAR(image.occlusion[i], ground_truth, 0.01) << x;
+        // An infinite half plane: half of 1 minus the sine of the angle between its rim and the
+        // vertical.
+        const double reference = 0.5 * (1.0 - x / std::hypot(x, 0.5));
+        EXPECT_NEAR(image.occlusion[i], reference, 0.01) << x;
     }
 }
 
@@ -211,6 +215,189 @@ TEST(BakeLayers, OfAMapAreSomeOfThoseThatItsBakerWasMadeFor) {
                       map, [](const auto&) {}, report);
               }),
               "a map wants a layer that its baker was not made for");
+}
+
+RayMesh ray_mesh(const Mesh& mesh) {
+    return {mesh.positions, mesh.triangles};
+}
+
+/// A disc of radius 1 that faces the z axis, with this number of sides. Its area is that of the
+/// circle.
+Mesh disc(float height, double aside = 0.0, int sides = 512) {
+    const double angle = 2.0 * std::numbers::pi / sides;
+    const double radius = std::sqrt(angle / std::sin(angle));
+    Mesh mesh;
+    mesh.positions.emplace_back(aside, 0, height);
+    for (int i = 0; i < sides; ++i) {
+        mesh.positions.emplace_back(aside + radius * std::cos(i * angle),
+                                    radius * std::sin(i * angle), height);
+        const auto here = static_cast<std::uint32_t>(i);
+        mesh.triangles.emplace_back(0, here + 1,
+                                    (here + 1) % static_cast<std::uint32_t>(sides) + 1);
+    }
+    return mesh;
+}
+
+/// The same point for several texels of a map, each with its own ray directions.
+std::vector<OcclusionPlace> from_origin(std::size_t texels, std::uint32_t samples = 1) {
+    std::vector<OcclusionPlace> places;
+    for (std::size_t texel = 0; texel < texels; ++texel) {
+        for (std::uint32_t sample = 0; sample < samples; ++sample)
+            places.push_back({glm::dvec3(0), {0, 0, 1}, {0, 0, 1}, texel, sample});
+    }
+    return places;
+}
+
+struct OcclusionError {
+    double root_mean_square = 0.0;
+    double mean = 0.0;
+};
+
+OcclusionError error_of(const std::vector<double>& shares, double reference) {
+    OcclusionError error;
+    for (const double share : shares) {
+        error.mean += (share - reference) / static_cast<double>(shares.size());
+        error.root_mean_square +=
+            (share - reference) * (share - reference) / static_cast<double>(shares.size());
+    }
+    error.root_mean_square = std::sqrt(error.root_mean_square);
+    return error;
+}
+
+OcclusionOptions rays(int count, double distance = 10.0) {
+    return {.rays = count, .distance = distance};
+}
+
+/// Returns the unoccluded share at the origin: the closed-form configuration factor of a disc
+/// parallel to an element.
+double open_beside(double height, double aside) {
+    const double away = height * height + aside * aside;
+    const double z = 1.0 + away;
+    return 1.0 - 0.5 * (1.0 - (away - 1.0) / std::sqrt(z * z - 4.0 * aside * aside));
+}
+
+TEST(Occlusion, UnderADiscIsItsClosedForm) {
+    Report report;
+    EXPECT_DOUBLE_EQ(open_beside(2.0, 0.0), 0.8);
+    for (const auto& [height, aside] : {std::pair(0.5F, 0.0), {1.0F, 0.3}, {2.0F, 1.5}}) {
+        const Mesh mesh = disc(height, aside);
+        const RayScene scene({ray_mesh(mesh)});
+        const double reference = open_beside(double{height}, aside);
+        const auto shares = Occlusion(rays(256), 1).open_shares(scene, from_origin(500), report);
+        EXPECT_LT(error_of(shares, reference).root_mean_square, 0.009) << height;
+        EXPECT_NEAR(error_of(shares, reference).mean, 0.0, 0.001) << height;
+        // Surfaces beyond the length of the rays occlude nothing.
+        const auto near =
+            Occlusion(rays(64, 0.9 * height), 1).open_shares(scene, from_origin(10), report);
+        EXPECT_EQ(error_of(near, 1.0).root_mean_square, 0.0);
+    }
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(Occlusion, ErrorFallsFasterThanThatOfRaysAtRandom) {
+    const Mesh mesh = disc(0.8F, 0.6);
+    const RayScene scene({ray_mesh(mesh)});
+    const double reference = open_beside(0.8F, 0.6);
+    Report report;
+    double before = 0.0;
+    for (const int count : {4, 64, 1024}) {
+        const auto shares = Occlusion(rays(count), 1).open_shares(scene, from_origin(1000), report);
+        const double error = error_of(shares, reference).root_mean_square;
+        // Random directions have an error of about 0.5 / sqrt(count), which decreases by 4 for 16
+        // times as many. Here it decreases by 8, for rays at a border in the disc of directions.
+        EXPECT_LT(error, 0.5 / std::sqrt(count));
+        if (before > 0.0) {
+            EXPECT_LT(error, 0.16 * before) << count;
+        }
+        before = error;
+    }
+    EXPECT_LT(before, 0.003);
+}
+
+TEST(Occlusion, SamplesShareTheRaysOfATexel) {
+    const Mesh mesh = disc(1.0F);
+    const RayScene scene({ray_mesh(mesh)});
+    Report report;
+    const Occlusion shared(rays(256), 16);
+    EXPECT_EQ(shared.rays_of_sample(), 16U);
+    EXPECT_EQ(Occlusion(rays(20), 16).rays_of_sample(), 2U);
+    const auto shares = shared.open_shares(scene, from_origin(500, 16), report);
+    std::vector<double> means;
+    for (std::size_t texel = 0; texel < 500; ++texel) {
+        double sum = 0.0;
+        for (std::size_t sample = 0; sample < 16; ++sample)
+            sum += shares[16 * texel + sample] / 16.0;
+        means.push_back(sum);
+    }
+    // The result is as accurate as that of one sample with all rays.
+    EXPECT_LT(error_of(means, 0.5).root_mean_square, 0.009);
+}
+
+TEST(Occlusion, EveryPlaceInABowlSeesTheShareOfTheSphereThatIsMissing) {
+    // The inner side of a sphere, cut off above y = 0 and above y = 0.5.
+    for (const int kept : {32, 48}) {
+        constexpr int stacks = 64;
+        Mesh mesh = make_sphere(128, stacks);
+        std::erase_if(mesh.triangles, [&](const glm::uvec3& triangle) {
+            const float height = mesh.positions[triangle.x].y + mesh.positions[triangle.y].y +
+                                 mesh.positions[triangle.z].y;
+            return height > 3.0F * std::cos(std::numbers::pi_v<float> *
+                                            static_cast<float>(stacks - kept) / stacks);
+        });
+        const RayScene scene({ray_mesh(mesh)});
+        std::vector<OcclusionPlace> places;
+        for (std::size_t i = 0; i < mesh.triangles.size(); i += 5) {
+            const auto corners = scene.corners(0, static_cast<std::uint32_t>(i));
+            const glm::dvec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            const glm::dvec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+            if (glm::length(cross) < 1e-9) continue;
+            places.push_back({middle, -glm::normalize(middle), -glm::normalize(cross), i, 0});
+        }
+        Report report;
+        const double open = 0.5 * (1.0 - std::cos(std::numbers::pi * (stacks - kept) / stacks));
+        const auto shares = Occlusion(rays(256), 1).open_shares(scene, places, report);
+        EXPECT_LT(error_of(shares, open).root_mean_square, 0.02) << kept;
+        EXPECT_NEAR(error_of(shares, open).mean, 0.0, 0.003) << kept;
+    }
+}
+
+TEST(Occlusion, NothingHidesItself) {
+    // A coarse sphere whose smooth normals differ by up to 20 degrees from its face normals, and
+    // the same square twice.
+    Report report;
+    const Mesh sphere = make_sphere(12, 8);
+    const RayScene round({ray_mesh(sphere)});
+    std::vector<OcclusionPlace> places;
+    for (std::size_t i = 0; i < sphere.triangles.size(); ++i) {
+        const auto corners = round.corners(0, static_cast<std::uint32_t>(i));
+        const glm::dvec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        if (glm::length(cross) < 1e-9) continue;
+        for (const glm::dvec3& weights :
+             {glm::dvec3(0.98, 0.01, 0.01), glm::dvec3(0.3, 0.3, 0.4), glm::dvec3(0, 0.5, 0.5)}) {
+            const glm::dvec3 point =
+                weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2];
+            places.push_back({point, glm::normalize(point), glm::normalize(cross), i, 0});
+        }
+    }
+    for (const double share : Occlusion(rays(64), 1).open_shares(round, places, report))
+        EXPECT_EQ(share, 1.0);
+    const Mesh square = make_quad(3);
+    const RayScene twice({ray_mesh(square), ray_mesh(square)});
+    for (const double share : Occlusion(rays(64), 1).open_shares(twice, from_origin(50), report))
+        EXPECT_EQ(share, 1.0);
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(Occlusion, AboutATriangleWhereTheNormalIsOfNoUse) {
+    const Mesh mesh = disc(1.0F);
+    const RayScene scene({ray_mesh(mesh)});
+    std::vector<OcclusionPlace> places = from_origin(300);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        places[i].normal = i % 2 == 0 ? glm::dvec3(0, 0, -1) : glm::dvec3(1, 0, 0);
+    Report report;
+    const auto shares = Occlusion(rays(64), 1).open_shares(scene, places, report);
+    EXPECT_EQ(report.count("normal along its triangle or behind it"), 300U);
+    EXPECT_NEAR(error_of(shares, 0.5).mean, 0.0, 0.01);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory large maps take: a program of its own, whose peak says it for everything
-// together, libraries and all.
+// The peak memory for large maps. The program is separate, because its peak includes libraries and
+// all threads.
 #include <gtest/gtest.h>
 
 #include "relief/mesh/bake.h"
@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-/// Bakes a square whose chart is a small part of a map: what takes memory is the map.
+/// Bakes a square whose chart is a small part of a map, so that the map determines the memory.
 std::size_t texels_of(BakeOptions options, float chart) {
     Mesh low = make_quad();
     for (glm::vec2& texcoord : low.texcoords)
@@ -39,16 +39,16 @@ TEST(BakeMemory, DoesNotGrowWithSamplesNorWithTheMap) {
     options.padding = 16;
     EXPECT_EQ(texels_of(options, 0.02F), 8192U * 1024U);
     const double large = test::peak_megabytes();
-    // All its samples' owners would take 2.1 GB; sanitizers keep 256 MB of what is freed.
+    // The owners of all samples would take 2.1 GB. Sanitizers keep 256 MB of freed memory.
     EXPECT_LT(large, small + 600.0);
-    // Eight times as high, 760 MB more of it: the same memory.
+    // A map of eight times the height, with 760 MB more pixels, takes the same memory.
     options.samples = 4;
     options.height = 8192;
     EXPECT_EQ(texels_of(options, 0.02F), 8192U * 8192U);
     EXPECT_LT(test::peak_megabytes(), large + 100.0);
 }
 
-/// 15 bytes a texel are in the file: 250 MB.
+/// The file has 15 bytes per texel: 250 MB.
 TEST(BakeMemory, OfMapsFilledToTheBorderIsTheirFiles) {
     const test::TemporaryDirectory folder;
     set_thread_limit(2);

@@ -45,7 +45,7 @@ inline BakedImage bake(const std::vector<Mesh>& high, const Mesh& low, const Bak
     return image;
 }
 
-/// A map of so many texels, with heights; all else as usual.
+/// Options for a map of this size with heights and otherwise default values.
 inline BakeOptions sized(int width, int height) {
     BakeOptions options;
     options.width = width;

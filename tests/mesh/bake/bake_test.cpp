@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole bakes: flat onto itself, heights and states of stacks, padding, cages, samples, threads.
-#include "relief/mesh/bake.h"
-
+// Whole bakes: a flat result for equal meshes, heights, texel states, padding, cages, samples and
+// threads; a bumpy sphere against a brute-force search.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "mesh/bake/bake_support.h"
+#include "relief/mesh/bake.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/normals.h"
 #include "relief/mesh/shapes.h"
 #include "relief/mesh/threads.h"
 #include "support/message_of.h"
@@ -25,7 +28,7 @@ using test::sized;
 
 const glm::dvec3 straight_up(0, 0, 1);
 
-/// A square with waves, over the one of make_quad().
+/// A square with waves above that of make_quad().
 Mesh gentle_waves(int cells) {
     Mesh mesh = make_quad(cells);
     mesh.normals.clear();
@@ -97,7 +100,7 @@ TEST(Bake, IsTheSameForAnyNumberOfThreadsAndOrderOfHighTriangles) {
 }
 
 TEST(Bake, TexelsThatMeetNothingAreCountedAndFilledFromTheNearest) {
-    // A high mesh over the left half alone, tilted.
+    // A tilted high mesh above the left half only.
     Mesh high = make_quad();
     high.normals.assign(high.positions.size(), glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
     for (glm::vec3& position : high.positions)
@@ -142,7 +145,7 @@ TEST(Bake, OddSizesAreBakedToo) {
 }
 
 TEST(Bake, MirroredChartsThatOverlapHaveOneOwnerEach) {
-    // Two squares side by side with the same image, one mirrored: the other one owns it.
+    // Two adjacent squares with the same image, one of them mirrored. The other one owns it.
     Mesh low = make_quad();
     Mesh other = moved(make_quad(), 1.0F, {3, 0, 0});
     for (glm::vec2& texcoord : other.texcoords)
@@ -153,7 +156,7 @@ TEST(Bake, MirroredChartsThatOverlapHaveOneOwnerEach) {
     low.texcoords.insert(low.texcoords.end(), other.texcoords.begin(), other.texcoords.end());
     for (const glm::uvec3& triangle : other.triangles)
         low.triangles.push_back(triangle + first);
-    // Slopes differ, so that it shows whose are baked.
+    // The slopes differ, so that the result identifies the mesh.
     Mesh high = make_quad();
     high.normals.assign(high.positions.size(), glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
     Mesh wrong = moved(make_quad(), 1.0F, {3, 0, 0});
@@ -165,10 +168,10 @@ TEST(Bake, MirroredChartsThatOverlapHaveOneOwnerEach) {
 }
 
 TEST(Bake, RaysRunFromACageToTheLowMesh) {
-    // The cage leans: rays come from the right, and meet a floor 0.5 below 0.25 further left.
+    // The cage is shifted: rays come from the right and hit a floor 0.5 below at 0.25 further left.
     const Mesh cage = moved(make_quad(), 1.0F, {0.5F, 0, 1.0F});
     Mesh floor = moved(make_quad(), 4.0F, {0, 0, -0.5F});
-    // Which place is hit shows in the normal.
+    // The normal shows the hit point.
     floor.normals.clear();
     for (const glm::vec3& position : floor.positions)
         floor.normals.push_back(glm::vec3(position.x, position.y, 10));
@@ -192,7 +195,7 @@ TEST(Bake, RaysRunFromACageToTheLowMesh) {
 }
 
 TEST(Bake, HardDirectionsLeaveGapsAndAveragedOnesNone) {
-    // A cube baked from a larger one: averaged rays fan out to all of it, hard ones stay in front.
+    // A cube baked from a larger one: averaged rays spread over all of it, hard ones stay in front.
     const Mesh low = make_cube();
     const Mesh high = moved(make_cube(), 1.2F, glm::vec3(0));
     BakeOptions options = sized(64, 64);
@@ -209,7 +212,7 @@ TEST(Bake, HardDirectionsLeaveGapsAndAveragedOnesNone) {
     EXPECT_NEAR(heights(RayDirections::face, 0.0), 0.2F, 1e-6F);
     EXPECT_NEAR(heights(RayDirections::shading, 0.0), 0.2F, 1e-6F);
     EXPECT_NEAR(heights(RayDirections::averaged, 1.0), 0.2F, 1e-6F);
-    // Along the diagonal at the corners, and in between in between.
+    // The rays are diagonal at the corners, and between the diagonal and the normal elsewhere.
     EXPECT_NEAR(heights(RayDirections::averaged, 0.0), 0.2F * std::sqrt(3.0F), 0.005F);
     const float half = heights(RayDirections::averaged, 0.5);
     EXPECT_GT(half, 0.2F);
@@ -235,17 +238,17 @@ TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
     const BakedImage some = bake({high}, make_quad(), options);
     EXPECT_GT(some.result.samples, 5U * 256U);
     EXPECT_LT(some.result.samples, 15U * 256U);
-    // 256 means of the surface's normals over 16 x 16 texels each: the truth.
+    // The reference is the mean of the normals of 16 x 16 texels of a map of 256 x 256.
     options = sized(256, 256);
     const BakedImage fine = bake({high}, make_quad(), options);
     const auto error = [&](const BakedImage& image) {
         double sum = 0.0;
         for (std::size_t texel = 0; texel < 256; ++texel) {
-            glm::dvec3 ground_truth(0.0);
+            glm::dvec3 reference(0.0);
             for (std::size_t i = 0; i < 256; ++i)
-                ground_truth +=
+                reference +=
                     fine.normal((texel / 16 * 16 + i / 16) * 256 + texel % 16 * 16 + i % 16);
-            sum += degrees_between(image.normal(texel), ground_truth);
+            sum += degrees_between(image.normal(texel), reference);
         }
         return sum / 256;
     };
@@ -267,6 +270,114 @@ TEST(Bake, SaysWhatIsWrong) {
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
               "an offset of -1 is negative or not finite");
     EXPECT_THROW(bake({make_quad()}, make_quad(), sized(0, 4)), InvalidInput);
+}
+
+constexpr int sphere_map_side = 128;
+
+Mesh bumpy_sphere(int stacks) {
+    Mesh mesh = make_sphere(2 * stacks, stacks);
+    mesh.texcoords.clear();
+    for (glm::vec3& position : mesh.positions) {
+        const double longitude = std::atan2(position.x, position.z);
+        const double polar = std::acos(std::clamp(double{position.y}, -1.0, 1.0));
+        position *=
+            static_cast<float>(1.0 + 0.02 * std::sin(12.0 * longitude) * std::sin(12.0 * polar));
+    }
+    Report report;
+    mesh.normals = vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, report);
+    return mesh;
+}
+
+/// Returns the interpolated normal of the high mesh at the outermost hit of a ray, by a search over
+/// all triangles.
+glm::dvec3 reference(const Mesh& high, const glm::dvec3& origin, const glm::dvec3& direction) {
+    double nearest = 1e30;
+    glm::dvec3 normal(0.0);
+    for (const glm::uvec3& t : high.triangles) {
+        const glm::dvec3 a(high.positions[t.x]), e(glm::dvec3(high.positions[t.y]) - a),
+            f(glm::dvec3(high.positions[t.z]) - a);
+        const glm::dvec3 p = glm::cross(direction, f);
+        const double determinant = glm::dot(e, p);
+        if (determinant == 0.0) continue;
+        const glm::dvec3 s = origin - a;
+        const double u = glm::dot(s, p) / determinant;
+        const glm::dvec3 q = glm::cross(s, e);
+        const double v = glm::dot(direction, q) / determinant;
+        const double distance = glm::dot(f, q) / determinant;
+        if (u < -1e-12 || v < -1e-12 || u + v > 1.0 + 1e-12 || distance < 0.0 || distance > nearest)
+            continue;
+        nearest = distance;
+        normal = (1.0 - u - v) * glm::dvec3(high.normals[t.x]) + u * glm::dvec3(high.normals[t.y]) +
+                 v * glm::dvec3(high.normals[t.z]);
+    }
+    return normal;
+}
+
+struct Errors {
+    double mean = 0.0;
+    double largest = 0.0;
+};
+
+/// Returns the errors of a map as a shader reads it, with decoded codes in the basis of the low
+/// mesh.
+Errors errors_of(const Mesh& high, const Mesh& low, const BakedImage& baked, int bits) {
+    Image normals = make_image(sphere_map_side, sphere_map_side, 3, 32, ColorSpace::data);
+    std::copy(baked.normals.begin(), baked.normals.end(), normals.as<float>().begin());
+    Report report;
+    const NormalMapFormat format{.bits = bits};
+    const Image decoded = decode_normal_map(encode_normal_map(normals, format, report),
+                                            format.green, format.flat, report);
+    const Image object = object_from_tangent(decoded, low, {}, report).normals;
+    const std::vector<glm::vec3> averaged =
+        vertex_normals(low.positions, low.triangles, NormalWeight::angle, report);
+    Errors errors;
+    std::size_t count = 0;
+    cover_texels(
+        low.texcoords, low.triangles, {.width = sphere_map_side, .height = sphere_map_side},
+        [&](int first_row, std::span<const CoveredTexel> texels) {
+            for (std::size_t i = 0; i < texels.size(); i += 37) {
+                if (!texels[i].is_covered()) continue;
+                const glm::uvec3 corners = low.triangles[texels[i].triangle];
+                glm::dvec3 point(0.0), outward(0.0);
+                for (int corner = 0; corner < 3; ++corner) {
+                    const double weight = texels[i].weights()[corner];
+                    point += weight * glm::dvec3(low.positions[corners[corner]]);
+                    outward += weight * glm::dvec3(averaged[corners[corner]]);
+                }
+                outward = glm::normalize(outward);
+                const std::size_t texel = static_cast<std::size_t>(first_row) * sphere_map_side + i;
+                const float* n = &object.as<float>()[3 * texel];
+                const double error = degrees_between(
+                    glm::dvec3(n[0], n[1], n[2]), reference(high, point + 0.1 * outward, -outward));
+                static std::mutex mutex;
+                const std::lock_guard lock(mutex);
+                errors.mean += error;
+                errors.largest = std::max(errors.largest, error);
+                ++count;
+            }
+        },
+        report);
+    EXPECT_GT(count, 400U);
+    errors.mean /= static_cast<double>(count);
+    return errors;
+}
+
+TEST(BakeSphere, IsTheHighMeshsNormalsWithinWhatCodesHold) {
+    const Mesh high = bumpy_sphere(100);
+    Report report;
+    const Mesh low =
+        with_frames(make_sphere(46, 23), {.tangents = TangentMode::mikktspace}, report).mesh;
+    const BakedImage baked = bake({high}, low, sized(sphere_map_side, sphere_map_side));
+    EXPECT_EQ(baked.result.texels_missed, 0U);
+    // The bumps have 2% of the radius, and the facets of the sphere lie up to 0.7% inside. The bake
+    // found all of it.
+    EXPECT_GT(baked.result.max_height, 0.02);
+    EXPECT_LT(baked.result.min_height, -0.015);
+    const Errors fine = errors_of(high, low, baked, 16);
+    EXPECT_LT(fine.mean, 0.005);
+    EXPECT_LT(fine.largest, 0.05);
+    const Errors coarse = errors_of(high, low, baked, 8);
+    EXPECT_LT(coarse.mean, 0.2);
 }
 
 }  // namespace

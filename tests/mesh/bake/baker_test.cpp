@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several maps of one bake: parts of the low mesh, tiles, high parts that only some see.
+// Several maps in one bake: parts of the low mesh, tiles and matched high parts. The result has
+// the same bytes on every instruction set, packet size and triangle order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <optional>
+#include <random>
+#include <string>
 
 #include "mesh/bake/bake_support.h"
+#include "relief/mesh/bake_layers.h"
 #include "relief/mesh/direction_error.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/shapes.h"
@@ -37,12 +44,13 @@ Mesh joined(Mesh mesh, const Mesh& more) {
     mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
     mesh.normals.insert(mesh.normals.end(), more.normals.begin(), more.normals.end());
     mesh.texcoords.insert(mesh.texcoords.end(), more.texcoords.begin(), more.texcoords.end());
+    mesh.colors.insert(mesh.colors.end(), more.colors.begin(), more.colors.end());
     for (const glm::uvec3& triangle : more.triangles)
         mesh.triangles.push_back(triangle + first);
     return mesh;
 }
 
-/// Two squares beside each other, the second one in the tile to the right.
+/// Two adjacent squares, the second one in the tile to the right.
 Mesh two_tiles() {
     Mesh right = leaning(make_quad(), {0, 0, 1}, {2, 0, 0});
     for (glm::vec2& texcoord : right.texcoords)
@@ -66,7 +74,8 @@ TEST(Baker, BakesAsManyMapsAsAreAskedForEachAsAlone) {
 }
 
 TEST(Baker, AMapOfSomeTrianglesHasTheirTexelsAsTheWholeMapHasThem) {
-    // A hard edge runs between the faces of a cube: rays of one must not know what is left out.
+    // A hard edge lies between the faces of a cube. The rays of one face must not depend on the
+    // omitted faces.
     const Mesh low = make_cube();
     const std::vector<Mesh> high = {make_sphere(64, 32)};
     Report report;
@@ -84,7 +93,7 @@ TEST(Baker, AMapOfSomeTrianglesHasTheirTexelsAsTheWholeMapHasThem) {
         }
         EXPECT_EQ(some.result.coverage.shared, 0U);
     }
-    // Those that lie in a face, and none that two of them touch, are the same.
+    // The parts agree at texels inside one face, except those that two faces touch.
     EXPECT_GE(texels, all.result.coverage.inside);
     const std::vector<std::uint32_t> none;
     BakeMapOptions map = sized(8, 8);
@@ -112,7 +121,7 @@ TEST(Baker, TilesOfOneMeshAreMapsOfTheirOwn) {
 }
 
 TEST(Baker, PartsDoNotCatchEachOthersRays) {
-    // A square with another one 0.04 above it; each has its own high square.
+    // A square with another one 0.04 above it. Each has its own high square.
     const Mesh low = two_tiles();
     const std::vector<Mesh> left = {leaning(make_quad(), {0.6F, 0, 0.8F}, {0, 0, 0.01F})};
     const std::vector<Mesh> right = {leaning(make_quad(), {0, 0.6F, 0.8F}, {2, 0, 0.01F}),
@@ -127,11 +136,11 @@ TEST(Baker, PartsDoNotCatchEachOthersRays) {
     EXPECT_EQ(image.count(TexelState::baked), 256U);
     for (std::size_t i = 0; i < 256; ++i)
         EXPECT_LT(degrees_between(image.normal(i), {0.6, 0, 0.8}), 1e-4);
-    // What is far from the other part does not lengthen its rays: 0.01 apart, not 2 or 0.04.
+    // The distance to the other part does not lengthen the rays: it is 0.01, not 2 or 0.04.
     EXPECT_NEAR(image.result.max_height, 0.01, 1e-7);
     const std::vector<Mesh> far = {leaning(make_quad(), {0, 0.6F, 0.8F}, {2, 0, 5})};
     const std::vector<BakePart> apart = {{left, {0, 1}}, {far, {2, 3}}};
-    // 5 apart are bridged only where that is asked for.
+    // A distance of 5 is accepted only with an explicit option.
     EXPECT_THROW(Baker(apart, low, sized(1, 1), report), BakeMismatch);
     BakeOptions longer = sized(1, 1);
     longer.max_distance = 6.0;
@@ -199,7 +208,7 @@ TEST(Baker, CountsATexelOfSeveralTrianglesOnceForAllItsSamples) {
     }
 }
 
-/// What a baker of these meshes throws.
+/// Returns the exception of a baker with these meshes.
 BakeMismatch mismatch_of(const std::vector<Mesh>& high, const Mesh& low,
                          const BakeOptions& options = sized(1, 1)) {
     Report report;
@@ -214,7 +223,7 @@ BakeMismatch mismatch_of(const std::vector<Mesh>& high, const Mesh& low,
 
 TEST(Baker, ComparesBoxesOfTrianglesAlone) {
     Mesh high = test::moved(make_quad(), 3.0F, {0, 0, 0.5F});
-    high.positions.emplace_back(100.0F, 0.0F, 0.0F);  // Of no triangle.
+    high.positions.emplace_back(100.0F, 0.0F, 0.0F);  // A vertex without triangle.
     high.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
     high.triangles.emplace_back(0, 1, 5);
     high.normals.clear();
@@ -228,7 +237,7 @@ TEST(Baker, ComparesBoxesOfTrianglesAlone) {
     EXPECT_DOUBLE_EQ(fit.gap, 0.5);
     EXPECT_DOUBLE_EQ(fit.size_ratio, std::sqrt(73.0 / 8.0));
     EXPECT_FALSE(fit.fits_rotated);
-    // Beside and above: the corners are apart.
+    // The mesh is beside and above, so the corners are apart.
     const std::vector<Mesh> corner = {test::moved(make_quad(), 1.0F, {5, 0, 4})};
     EXPECT_DOUBLE_EQ(compare_boxes(corner, make_quad()).gap, 5.0);
 }
@@ -262,7 +271,7 @@ TEST(Baker, RefusesMeshesThatRaysDoNotReach) {
     EXPECT_DOUBLE_EQ(mismatch_of(high, make_quad(), options).reach(), 1.25);
     options.offset = 1.75;
     EXPECT_EQ(bake(high, make_quad(), options).result.texels_baked, 64U);
-    // From a cage, rays are as long as it is away.
+    // With a cage, the length of rays is its distance.
     const Mesh cage = test::moved(make_quad(), 1.0F, {0, 0, 0.5F});
     BakeOptions caged = sized(8, 8);
     caged.cage = &cage;
@@ -292,7 +301,7 @@ TEST(Baker, ReportsBoxesThatFitOnlyWhenTurned) {
 }
 
 TEST(Baker, MeasuresTheRaysThatMissedTexelsNeed) {
-    // Steps 1/4 to 1 above the low square, two columns of texels each.
+    // Steps 1/4 to 1 above the low square, each of two columns of texels.
     Mesh stairs;
     for (int step = 0; step < 4; ++step) {
         const auto first = static_cast<std::uint32_t>(stairs.positions.size());
@@ -325,13 +334,13 @@ TEST(Baker, MeasuresTheRaysThatMissedTexelsNeed) {
         EXPECT_EQ(result.first_missed[6].y, 1);
         const glm::dvec2 place(result.first_missed[0].position);
         EXPECT_LT(glm::distance(place, {-0.375, 0.875}), 0.2);
-        // The length that is named hits all.
+        // The reported length hits everything.
         BakeOptions longer = options;
         longer.offset = 1.001 * result.clipped_outside.longest;
         EXPECT_EQ(bake({stairs}, make_quad(), longer).result.texels_missed, 0U);
     }
     options.samples = 1;
-    // The same below the low square; then with its faces turned round.
+    // The same below the low square, and then with reversed faces.
     Mesh below = stairs;
     for (glm::vec3& position : below.positions)
         position.z = -position.z;
@@ -348,6 +357,182 @@ TEST(Baker, MeasuresTheRaysThatMissedTexelsNeed) {
     EXPECT_EQ(behind.clipped_inside.texels, 0U);
     options.measures_missed = false;
     EXPECT_EQ(bake({below}, make_quad(), options).result.measuring_rays, 0U);
+}
+
+/// Sets an environment variable and restores it in the destructor.
+class Environment {
+  public:
+    Environment(const char* name, const std::string& value) : name_(name) {
+        if (const char* before = std::getenv(name)) before_ = before;
+        setenv(name, value.c_str(), 1);
+    }
+    ~Environment() {
+        if (before_)
+            setenv(name_, before_->c_str(), 1);
+        else
+            unsetenv(name_);
+    }
+    Environment(const Environment&) = delete;
+    Environment& operator=(const Environment&) = delete;
+
+  private:
+    const char* name_;
+    std::optional<std::string> before_;
+};
+
+std::vector<std::string> instruction_sets() {
+    __builtin_cpu_init();
+    std::vector<std::string> sets = {"sse2"};
+    if (__builtin_cpu_supports("sse4.2")) sets.emplace_back("sse4.2");
+    if (__builtin_cpu_supports("avx")) sets.emplace_back("avx");
+    if (__builtin_cpu_supports("avx2")) sets.emplace_back("avx2");
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
+        sets.emplace_back("avx512");
+    return sets;
+}
+
+/// Gives each triangle its own three vertices with its own normal and color.
+Mesh faceted(const Mesh& smooth, unsigned seed) {
+    std::mt19937 random(seed);
+    Mesh mesh;
+    for (const glm::uvec3& triangle : smooth.triangles) {
+        const glm::vec3& a = smooth.positions[triangle.x];
+        const glm::vec3& b = smooth.positions[triangle.y];
+        const glm::vec3& c = smooth.positions[triangle.z];
+        const glm::vec3 cross = glm::cross(b - a, c - a);
+        if (glm::length(cross) == 0.0F) continue;
+        const glm::vec4 color(static_cast<float>(random() % 256) / 255.0F,
+                              static_cast<float>(random() % 256) / 255.0F,
+                              static_cast<float>(random() % 256) / 255.0F, 1.0F);
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        for (const glm::vec3& corner : {a, b, c}) {
+            mesh.positions.push_back(corner);
+            mesh.normals.push_back(glm::normalize(cross));
+            mesh.colors.push_back(color);
+        }
+    }
+    return mesh;
+}
+
+/// Returns the same triangles in another order.
+Mesh shuffled(Mesh mesh, unsigned seed) {
+    std::mt19937 random(seed);
+    for (std::size_t i = mesh.triangles.size(); i > 1; --i)
+        std::swap(mesh.triangles[i - 1], mesh.triangles[random() % i]);
+    return mesh;
+}
+
+/// Columns of different heights with vertical walls, `cells` along each side of the square from -1
+/// to 1.
+Mesh steps(int cells) {
+    Mesh mesh;
+    const auto quad = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+                          const glm::vec3& d) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {a, b, c, d});
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        mesh.triangles.emplace_back(first, first + 2, first + 3);
+    };
+    const auto at = [&](int i) {
+        return 2.0F * static_cast<float>(i) / static_cast<float>(cells) - 1.0F;
+    };
+    const auto height = [&](int x, int y) {
+        if (x < 0 || y < 0 || x >= cells || y >= cells) return -0.25F;
+        return static_cast<float>((x * 5 + y * 3) % 4) / 30.0F;
+    };
+    for (int y = 0; y < cells; ++y) {
+        for (int x = 0; x < cells; ++x) {
+            const float z = height(x, y);
+            const float l = at(x), r = at(x + 1), b = at(y), t = at(y + 1);
+            quad({l, b, z}, {r, b, z}, {r, t, z}, {l, t, z});
+            const float right = height(x + 1, y), left = height(x - 1, y);
+            const float above = height(x, y + 1), below = height(x, y - 1);
+            if (right < z) quad({r, b, z}, {r, b, right}, {r, t, right}, {r, t, z});
+            if (left < z) quad({l, t, z}, {l, t, left}, {l, b, left}, {l, b, z});
+            if (above < z) quad({r, t, z}, {r, t, above}, {l, t, above}, {l, t, z});
+            if (below < z) quad({l, b, z}, {l, b, below}, {r, b, below}, {r, b, z});
+        }
+    }
+    return mesh;
+}
+
+struct Model {
+    const char* name;
+    Mesh high, low;
+    int side;
+};
+
+/// In most models, rows and columns of texel centers lie on edges, and some on vertices.
+std::vector<Model> models() {
+    std::vector<Model> all;
+    all.push_back({"cube", faceted(make_cube(), 1), make_cube(), 24});
+    all.push_back({"steps", faceted(steps(8), 2), make_quad(), 36});
+    all.push_back({"steps whose corners are rounded", faceted(steps(6), 3), make_quad(), 30});
+    all.push_back({"sphere", faceted(make_sphere(12, 6), 4), make_sphere(12, 6), 36});
+    all.push_back(
+        {"sphere in a finer one", faceted(make_sphere(16, 8), 5), make_sphere(24, 12), 40});
+    const Mesh twice = joined(faceted(steps(4), 6), faceted(steps(4), 7));
+    all.push_back({"steps, each triangle twice in other colors", twice, make_quad(), 20});
+    Mesh turned = faceted(make_quad(4), 8);
+    for (glm::uvec3& triangle : turned.triangles)
+        std::swap(triangle.x, triangle.y);
+    for (glm::vec3& normal : turned.normals)
+        normal = -normal;
+    all.push_back(
+        {"sheet with two faces", joined(faceted(make_quad(4), 9), turned), make_quad(), 20});
+    return all;
+}
+
+BakedImage baked(const Mesh& high, const Model& model, std::size_t map_count = 1) {
+    BakeOptions options = sized(model.side, model.side);
+    options.samples = 4;
+    options.layers.occlusion = OcclusionOptions{.rays = 16, .distance = {}};
+    options.layers.curvature = true;
+    options.layers.positions = true;
+    options.layers.colors = true;
+    options.padding = 2;
+    options.map_count = map_count;
+    return bake({high}, model.low, options);
+}
+
+/// Returns the names of the layers in which two bakes differ.
+std::string differences(const BakedImage& a, const BakedImage& b) {
+    std::string all;
+    if (a.normals != b.normals) all += " normals";
+    if (a.heights != b.heights) all += " heights";
+    if (a.occlusion != b.occlusion) all += " occlusion";
+    if (a.curvature != b.curvature) all += " curvature";
+    if (a.positions != b.positions) all += " positions";
+    if (a.colors != b.colors) all += " colors";
+    if (a.states != b.states) all += " states";
+    return all;
+}
+
+TEST(BakeProcessors, EveryInstructionSetPacketAndOrderGivesTheSameBytes) {
+    for (const Model& model : models()) {
+        const BakedImage expected = baked(model.high, model);
+        EXPECT_GT(expected.count(TexelState::baked), 100U) << model.name;
+        for (const std::string& isa : instruction_sets()) {
+            const Environment device("RELIEF_EMBREE", "isa=" + isa);
+            for (const char* rays : {"1", "4", "8", "16"}) {
+                const Environment packet("RELIEF_RAY_PACKET", rays);
+                EXPECT_EQ(differences(baked(model.high, model), expected), "")
+                    << model.name << ", " << isa << ", packets of " << rays;
+            }
+        }
+    }
+}
+
+TEST(BakeProcessors, TheOrderOfTrianglesAndTheBuildOfTheSceneChangeNoByte) {
+    for (const Model& model : models()) {
+        const BakedImage expected = baked(model.high, model);
+        for (const unsigned seed : {11U, 12U, 13U}) {
+            EXPECT_EQ(differences(baked(shuffled(model.high, seed), model), expected), "")
+                << model.name << ", " << seed;
+        }
+        EXPECT_EQ(differences(baked(model.high, model, 1'000'000), expected), "") << model.name;
+    }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures and normal maps of high meshes, looked up by hand and through whole bakes.
+// Textures and normal maps of high meshes, with hand-computed lookups and in whole bakes.
 #include "relief/mesh/high_materials.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(SurfaceTexture, LiesBetweenTexelCentresAndGoesOnBeyondItsBorder) {
     EXPECT_DOUBLE_EQ(red(0.125), 0.0);
     EXPECT_DOUBLE_EQ(red(0.25), 0.125);
     EXPECT_DOUBLE_EQ(red(0.75), 0.75);
-    // Halfway from the last to the first.
+    // The middle between the last texel and the first.
     EXPECT_DOUBLE_EQ(red(1.0), 0.5);
     EXPECT_DOUBLE_EQ(red(-3.0), 0.5);
     EXPECT_DOUBLE_EQ(red(1.375), 0.25);
@@ -83,7 +83,8 @@ TEST(HighMaterials, ColorIsFactorTimesTextureTimesVertex) {
     options.layers.colors = true;
     options.details = std::span(&detail, 1);
     const auto colors = [&] {
-        return bake({}, make_quad(), options).colors;  // Nothing high, nothing there.
+        return bake({}, make_quad(), options).colors;  // There is no high mesh, so the detail has
+                                                       // no effect.
     };
     EXPECT_EQ(colors(), std::vector<float>(12, 0.0F));
     const std::vector<Mesh> meshes = {high};
@@ -91,7 +92,7 @@ TEST(HighMaterials, ColorIsFactorTimesTextureTimesVertex) {
     std::vector<float> found = bake(meshes, make_quad(), options).colors;
     EXPECT_EQ(found, (std::vector<float>{0.125F, 0.03125F, 0.0625F, 0.375F, 0.09375F, 0.1875F,
                                          0.125F, 0.03125F, 0.0625F, 0.375F, 0.09375F, 0.1875F}));
-    // Texture coordinates of its own: all of it the right half.
+    // The detail has its own texture coordinates, all in the right half.
     detail.color_texcoords.assign(4, {0.9F, 0.5F});
     found = bake(meshes, make_quad(), options).colors;
     EXPECT_EQ(found[0], 0.375F);
@@ -121,7 +122,7 @@ TEST(HighMaterials, MaterialsAreByTriangle) {
               "a high mesh names material 2, but there are only 2");
 }
 
-/// A map of so many texels with smooth slopes.
+/// A map of this size with smooth slopes.
 Image slopes(int width, int height) {
     Image normals = make_image(width, height, 3, 32, ColorSpace::data);
     for (int y = 0; y < height; ++y) {
@@ -144,7 +145,7 @@ TEST(HighMaterials, NormalMapsComeThroughOntoTheSameMesh) {
             format.flat = flat;
             format.green = green;
             const Image map = encode_normal_map(slopes(64, 48), format, report);
-            const Image ground_truth = decode_normal_map(map, green, flat, report);
+            const Image reference = decode_normal_map(map, green, flat, report);
             for (const Mesh& mesh : {make_quad(), make_torus()}) {
                 const std::vector<Mesh> high = {mesh};
                 HighMaterials detail{high.data(), std::vector<HighMaterial>(1), {}};
@@ -155,12 +156,12 @@ TEST(HighMaterials, NormalMapsComeThroughOntoTheSameMesh) {
                 const BakedImage image = bake(high, mesh, options);
                 double worst = 0.0;
                 for (std::size_t i = 0; i < image.states.size(); ++i) {
-                    const std::span<const float> n = ground_truth.as<float>();
+                    const std::span<const float> n = reference.as<float>();
                     worst = std::max(
                         worst,
                         degrees_between(image.normal(i), {n[3 * i], n[3 * i + 1], n[3 * i + 2]}));
                 }
-                // A bilinear lookup next to a texel's centre.
+                // The error of a bilinear lookup near a texel center.
                 EXPECT_LT(worst, 0.01);
             }
         }
@@ -183,11 +184,11 @@ TEST(HighMaterials, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
     normal_map.scale = 0.0F;
     EXPECT_LT(degrees_between(baked(), {0, 0, 1}), 1e-5);
     normal_map.scale = 1.0F;
-    // The image turns clockwise by a quarter: what rose to the right rises downwards.
+    // The image rotates clockwise by 90 degrees: a slope to the right becomes a slope downwards.
     normal_map.texture.transform.rotation = std::numbers::pi_v<float> / 2.0F;
     EXPECT_LT(degrees_between(baked(), {0, -0.6, 0.8}), 1e-4);
     normal_map.texture.transform = {};
-    // Without normals wanted nobody looks.
+    // Without a layer of normals, nothing reads the map.
     options.layers.normals = false;
     EXPECT_TRUE(bake(high, make_quad(), options).report.empty());
     options.layers.normals = true;

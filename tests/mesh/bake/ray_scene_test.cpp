@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays at the places that go wrong: edges, vertices, grazing, coplanar, at every scale.
-#include "bake/ray_scene.h"
-
+// Rays of the baker at edges, vertices, grazing angles and every scale, and the choice of a hit in
+// a stack of sheets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,12 +8,14 @@
 #include <numeric>
 #include <random>
 
+#include "bake/projection.h"
+#include "bake/ray_scene.h"
 #include "relief/mesh/shapes.h"
 
 namespace relief {
 namespace {
 
-/// Within -1 to 1.
+/// Returns a number from -1 to 1.
 double number(std::mt19937& random) {
     return static_cast<double>(random()) / 2147483648.0 - 1.0;
 }
@@ -28,7 +29,7 @@ glm::dvec3 place_of(const RayScene& scene, const RayHit& hit) {
     return hit.weights.x * corners[0] + hit.weights.y * corners[1] + hit.weights.z * corners[2];
 }
 
-/// Moved and scaled, each position rounded once.
+/// Returns the mesh after scale and translation, with one rounding per position.
 Mesh placed_at(Mesh mesh, double scale, const glm::dvec3& by) {
     for (glm::vec3& position : mesh.positions)
         position = glm::vec3(glm::dvec3(position) * scale + by);
@@ -50,7 +51,7 @@ TEST(RayScene, HitsAPlaneWhereTheRayMeetsItAtEveryScale) {
                 ASSERT_TRUE(hit.is_hit()) << scale << " " << x << " " << y;
                 EXPECT_NEAR(hit.distance / scale, 0.25, 1e-12);
                 EXPECT_TRUE(hit.faces_origin);
-                // In double, from where the ray really is: no float is in between.
+                // The comparison is in double, from the exact origin of the ray, without floats.
                 EXPECT_LT(glm::distance(place_of(scene, hit),
                                         ray.origin - 0.25 * scale * glm::dvec3(0, 0, 1)) /
                               scale,
@@ -61,7 +62,8 @@ TEST(RayScene, HitsAPlaneWhereTheRayMeetsItAtEveryScale) {
 }
 
 TEST(RayScene, OnAnEdgeOrAVertexThereIsOneHitWhateverTheOrder) {
-    // 8 x 8 cells: rays down their edges, diagonals and vertices, and one in the other order.
+    // 8 x 8 cells: rays along their edges, diagonals and vertices, and one in the opposite
+    // direction.
     const Mesh quad = make_quad(8);
     Mesh turned = quad;
     std::reverse(turned.triangles.begin(), turned.triangles.end());
@@ -85,7 +87,7 @@ TEST(RayScene, NoRayPassesBetweenTheTrianglesOfAClosedSurface) {
     const RayScene scene = scene_of(sphere);
     for (const glm::vec3& vertex : sphere.positions) {
         for (const double share : {0.0, 0.5}) {
-            // Through vertices, and through the middle of edges along rows.
+            // Rays go through vertices, and through the middle of edges along rows.
             const std::size_t next =
                 static_cast<std::size_t>(&vertex - sphere.positions.data()) + 1;
             if (next >= sphere.positions.size()) continue;
@@ -102,7 +104,7 @@ TEST(RayScene, NoRayPassesBetweenTheTrianglesOfAClosedSurface) {
 }
 
 TEST(RayScene, SkinnyTrianglesSeenEdgeOnAreNotHit) {
-    // A needle 1e-6 wide in the xz plane; rays pass along it, 1e-4 beside.
+    // A needle of width 1e-6 in the xz plane. Rays pass along it at a distance of 1e-4.
     Mesh needle;
     needle.positions = {{-1, 0, 0}, {1, 0, 0}, {1, 0, 1e-6F}};
     needle.triangles = {{0, 1, 2}};
@@ -111,7 +113,7 @@ TEST(RayScene, SkinnyTrianglesSeenEdgeOnAreNotHit) {
         EXPECT_FALSE(scene.nearest({{-2, y, 0}, {1, 0, 0}, 0.0, 4.0}).is_hit());
         EXPECT_FALSE(scene.nearest({{0, y, 1e-3}, {0, 0, -1}, 0.0, 4.0}).is_hit());
     }
-    // One through it is a hit, and its place is on it.
+    // A ray through it is a hit, and the hit point is on it.
     const RayHit hit = scene.nearest({{0.9, 1.0, 4e-7}, {0, -1, 0}, 0.0, 4.0});
     ASSERT_TRUE(hit.is_hit());
     EXPECT_NEAR(hit.distance, 1.0, 1e-12);
@@ -139,7 +141,8 @@ TEST(RayScene, NumbersThatAreNoneAndTrianglesWithoutAreaAreNotHit) {
 }
 
 TEST(RayScene, RaysFromFarAwayHitTheSamePlace) {
-    const Mesh quad = placed_at(make_quad(8), 1.0, {3.0, 0.0, 0.0});  // The scene looks into it.
+    const Mesh quad = placed_at(make_quad(8), 1.0, {3.0, 0.0, 0.0});  // The scene uses it, so it
+                                                                      // must stay alive.
     const RayScene scene = scene_of(quad);
     const glm::dvec3 place(3.3, -0.4, 0.0);
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.5, 0.25, -1.0));
@@ -154,7 +157,7 @@ TEST(RayScene, RaysFromFarAwayHitTheSamePlace) {
         EXPECT_FALSE(scene.nearest({ray.origin, direction, 1.01 * away, 2.0 * away}).is_hit());
         EXPECT_FALSE(scene.nearest({ray.origin + 3.0, direction, 0.0, 2.0 * away}).is_hit());
     }
-    // Where doubles say no more, or end, nothing is met; and nothing else happens.
+    // Where doubles lose precision or overflow, rays hit nothing, and no error occurs.
     for (const double away : {1e11, 1e19, 1e30, 1e300, std::numeric_limits<double>::infinity()}) {
         const Ray ray{place - away * direction, direction, 0.0, 2.0 * away};
         EXPECT_FALSE(scene.nearest(ray).is_hit()) << away;
@@ -183,7 +186,7 @@ TEST(RayScene, KnowsMeshesApartAndHowFarTheyAre) {
     EXPECT_NEAR(scene.distance_from({0, 0, 0.75}), 0.25, 1e-6);
     EXPECT_NEAR(scene.distance_from({4, 5, 0.5}), 5.0, 1e-5);
     EXPECT_NEAR(scene.distance_from({0.2, -0.4, 0.1}), 0.1, 1e-6);
-    // Nothing is as near as that, so it is exact; else no more is promised.
+    // No surface is within this limit, so the distance is exact. Otherwise it is only a bound.
     EXPECT_EQ(scene.distance_from({0.2, 3.0, 0.1}, 1.5), scene.distance_from({0.2, 3.0, 0.1}));
     EXPECT_LE(scene.distance_from({0.2, 3.0, 0.1}, 4.0), 4.0);
 }
@@ -196,7 +199,7 @@ TEST(RayScene, ASceneForFewRaysHasTheSameHits) {
     std::size_t hits = 0;
     for (std::size_t i = 0; i < 4000; ++i) {
         const glm::dvec3 origin(number(random), number(random), 2.0);
-        // Every other one to a vertex, but for those that it would graze.
+        // Every other ray goes to a vertex, except at grazing angles.
         const glm::dvec3 vertex(sphere.positions[i % sphere.positions.size()]);
         const bool is_to_vertex = i % 2 == 0 && vertex.z > 0.7;
         const glm::dvec3 target = is_to_vertex ? vertex : glm::dvec3(origin.x, origin.y, 0.0);
@@ -238,6 +241,98 @@ TEST(RayScene, ARayHitsTheSameInAnyPacket) {
             EXPECT_EQ(together.weights, alone.weights);
         }
     }
+}
+
+struct Sheet {
+    float height;
+    bool faces_up;
+};
+
+/// Squares from -1 to 1 across the z axis.
+Mesh stack(const std::vector<Sheet>& sheets) {
+    Mesh mesh;
+    for (const Sheet& sheet : sheets) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const glm::vec2 corner : {glm::vec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+            mesh.positions.emplace_back(corner, sheet.height);
+        const glm::uvec3 up(first, first + 1, first + 2), other(first, first + 2, first + 3);
+        for (const glm::uvec3& triangle : {up, other}) {
+            mesh.triangles.push_back(
+                sheet.faces_up ? triangle : glm::uvec3(triangle.x, triangle.z, triangle.y));
+        }
+    }
+    return mesh;
+}
+
+/// Returns the height of the surface that belongs to the origin, seen from +z, within 1; -100 if
+/// there is none.
+double found(const std::vector<Sheet>& sheets, BackFaces back_faces = BackFaces::skip) {
+    const Mesh mesh = stack(sheets);
+    const RayScene scene({{mesh.positions, mesh.triangles}});
+    const ProjectionLine line{{0.1, 0.2, 0.0}, {0, 0, 1}, 1.0, 1.0};
+    ProjectedPoint point;
+    Projection(scene, back_faces).find({&line, 1}, {&point, 1});
+    return point.hit.is_hit() ? point.height : -100.0;
+}
+
+TEST(Projection, OneSheetIsFoundOnEitherSideOfThePoint) {
+    for (const float height : {0.5F, 0.01F, 0.0F, -0.01F, -0.5F})
+        EXPECT_NEAR(found({{height, true}}), height, 1e-12);
+    EXPECT_EQ(found({}), -100.0);
+    EXPECT_EQ(found({{1.5F, true}}), -100.0);
+    EXPECT_EQ(found({{-1.5F, true}}), -100.0);
+}
+
+TEST(Projection, OfTwoParallelSheetsTheOuterOneIsFound) {
+    EXPECT_NEAR(found({{0.1F, true}, {-0.1F, true}}), 0.1F, 1e-12);
+    EXPECT_NEAR(found({{0.1F, true}, {0.3F, true}}), 0.3F, 1e-12);
+    EXPECT_NEAR(found({{-0.3F, true}, {-0.1F, true}}), -0.1F, 1e-12);
+}
+
+TEST(Projection, TheOtherSideOfAThinWallIsNot) {
+    // The surface of the point, slightly inside or outside, and a wall that faces it.
+    for (const float own : {-0.02F, 0.0F, 0.02F})
+        EXPECT_NEAR(found({{own, true}, {0.2F, false}, {0.22F, true}}), own, 1e-12) << own;
+    // The line begins within the wall.
+    EXPECT_NEAR(found({{-0.02F, true}, {0.2F, false}}), -0.02F, 1e-12);
+    EXPECT_NEAR(found({{0.02F, true}, {0.2F, false}, {1.2F, true}}), 0.02F, 1e-12);
+    // The wall whose side is the surface itself: it is thinner than the distance of the surfaces.
+    EXPECT_NEAR(found({{0.3F, true}, {0.28F, false}}), 0.3F, 1e-12);
+    EXPECT_NEAR(found({{-0.3F, true}, {-0.32F, false}}), -0.3F, 1e-12);
+}
+
+TEST(Projection, OfSolidsThatPassThroughEachOtherTheOutermostSideIsFound) {
+    // A plate with a bolt whose foot is above the point.
+    EXPECT_NEAR(found({{-0.5F, false}, {0.1F, true}, {0.05F, false}, {0.4F, true}}), 0.4F, 1e-12);
+    // The same with a wall behind.
+    EXPECT_NEAR(found({{-0.5F, false},
+                       {0.1F, true},
+                       {0.05F, false},
+                       {0.4F, true},
+                       {0.6F, false},
+                       {0.7F, true}}),
+                0.4F, 1e-12);
+}
+
+TEST(Projection, BackFacesArePassedOrTakenAsTold) {
+    EXPECT_EQ(found({{0.2F, false}}), -100.0);
+    EXPECT_NEAR(found({{0.2F, false}}, BackFaces::take), 0.2F, 1e-12);
+    EXPECT_NEAR(found({{-0.2F, false}, {-0.4F, true}}), -0.4F, 1e-12);
+    EXPECT_NEAR(found({{-0.2F, false}, {-0.4F, true}}, BackFaces::take), -0.2F, 1e-12);
+}
+
+TEST(Projection, CountsItsRays) {
+    const Mesh mesh = stack({{-0.1F, true}});
+    const RayScene scene({{mesh.positions, mesh.triangles}});
+    std::vector<ProjectionLine> lines(40, {{0.1, 0.2, 0.0}, {0, 0, 1}, 1.0, 1.0});
+    std::vector<ProjectedPoint> points(lines.size());
+    const Projection projection(scene, BackFaces::skip);
+    EXPECT_EQ(projection.find(lines, points), 40U);
+    // The surfaces are also found in the outward direction of the point, with nothing in between.
+    for (ProjectionLine& line : lines)
+        line.point.z = -0.2;
+    EXPECT_EQ(projection.find(lines, points), 40U);
+    EXPECT_NEAR(points.back().height, 0.1, 1e-7);
 }
 
 }  // namespace

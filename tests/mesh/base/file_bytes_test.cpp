@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading files as a whole and in parts, and the errors of missing and unreadable files.
+// Whole files and parts of files in memory, their replacement by a new file, and large pages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "file_bytes.h"
+#include "file_replacement.h"
+#include "large_memory.h"
 #include "relief/mesh/error.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
@@ -70,6 +75,75 @@ TEST(RandomAccessFile, MissingFilesAndFoldersAreSaidToBeSo) {
                 testing::HasSubstr("is not a file"));
 }
 
-}  // namespace
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
 
+std::size_t file_count(const std::filesystem::path& folder) {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(FileReplacement, AnAbandonedFileLeavesTheOldOneAndNothingElse) {
+    const test::TemporaryDirectory folder;
+    std::ofstream(folder / "a.txt") << "old";
+    {
+        const FileReplacement replacement(folder / "a.txt");
+        EXPECT_EQ(replacement.temporary().extension(), ".txt");
+        std::ofstream(replacement.temporary()) << "half";
+        EXPECT_EQ(file_count(folder.path()), 2U);
+    }
+    EXPECT_EQ(text_of(folder / "a.txt"), "old");
+    EXPECT_EQ(file_count(folder.path()), 1U);
+}
+
+TEST(FileReplacement, CommitReplaces) {
+    const test::TemporaryDirectory folder;
+    std::ofstream(folder / "a.txt") << "old";
+    const std::string text = "new";
+    replace_file(folder / "a.txt", std::as_bytes(std::span(text)));
+    EXPECT_EQ(text_of(folder / "a.txt"), "new");
+    EXPECT_EQ(file_count(folder.path()), 1U);
+}
+
+TEST(FileReplacement, AMissingFolderAndAFolderInTheWayAreFileErrors) {
+    const test::TemporaryDirectory folder;
+    EXPECT_THROW(FileReplacement(folder / "none/a.txt"), FileError);
+    EXPECT_THROW(FileReplacement(folder.path()), FileError);
+}
+
+TEST(FileReplacement, ADeviceOrPipeIsAFileErrorAndStays) {
+    // The test makes its own pipe, because a user who may rename in /dev would lose a device on
+    // failure.
+    const test::TemporaryDirectory folder;
+    const std::filesystem::path pipe = folder / "pipe.txt";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::string text = "new";
+    EXPECT_THROW(replace_file(pipe, std::as_bytes(std::span(text))), FileError);
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+    std::filesystem::create_symlink(pipe, folder / "link.txt");
+    EXPECT_THROW(FileReplacement(folder / "link.txt"), FileError);
+    EXPECT_EQ(file_count(folder.path()), 2U);
+}
+
+TEST(LargeMemory, AdviceLeavesWhatIsThere) {
+    std::vector<std::uint8_t> bytes(std::size_t{9} << 20);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        bytes[i] = static_cast<std::uint8_t>(i % 251);
+    expect_filling(bytes.data() + 1, bytes.size() - 2);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        ASSERT_EQ(bytes[i], i % 251);
+}
+
+TEST(LargeMemory, AnySizeMayBeReserved) {
+    for (const std::size_t count : {std::size_t{0}, std::size_t{7}, std::size_t{3} << 20}) {
+        std::vector<int> values;
+        reserve_to_fill(values, count);
+        EXPECT_GE(values.capacity(), count);
+        EXPECT_TRUE(values.empty());
+    }
+    expect_filling(nullptr, 0);
+}
+
+}  // namespace
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far work is, that it ends when somebody requests so, and which files it read.
+// Progress reports, cancellation, and the list of files that were read.
 #include "relief/mesh/progress.h"
 
 #include <gmock/gmock.h>
@@ -82,7 +82,7 @@ TEST(Progress, LoopsThatAreSharedOutCountAndStop) {
                                   progress.cancel();
                               }),
                  Cancelled);
-    // One piece of a 256th for each thread that had begun.
+    // Each running thread finishes at most one piece of a 256th.
     EXPECT_LE(visited, thread_count() * (count / 256 + 100));
     EXPECT_THROW(parallel_for(1, 100, [](std::size_t, std::size_t) { FAIL(); }), Cancelled)
         << "a wish stays";
@@ -123,7 +123,7 @@ TEST(Progress, FilesThatWereReadOrMissedAreKnown) {
         EXPECT_EQ(FileContents(folder / "." / "there.txt").text(), "four");
         EXPECT_THROW(read_file(folder / "missing.txt"), FileError);
     }
-    read_file(there);  // Nobody waits.
+    read_file(there);  // No progress object exists.
     const auto files = progress.files();
     ASSERT_EQ(files.size(), 2U);
     EXPECT_EQ(files.at(there).size, 4U);

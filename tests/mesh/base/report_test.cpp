@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counting findings: counts, the smallest indices, and one line for people.
-#include "relief/mesh/report.h"
-
+// Reports count findings, and errors suggest the nearest known name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "near_names.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {
 
 using testing::ElementsAre;
+using testing::IsEmpty;
 
 TEST(Report, IsEmptyUntilSomethingIsAdded) {
     Report report;
@@ -78,6 +80,31 @@ TEST(Report, SaysAFindingInOneLine) {
     EXPECT_EQ(to_string(report.findings()[0]),
               "12 x degenerate triangle (triangle 3, 17, 100, 101, 102, 103, 104, 105, ...): has "
               "no say");
+}
+
+const std::vector<std::string> materials = {"black plastic", "bronze",     "cyan plastic",
+                                            "emerald",       "gold",       "green plastic",
+                                            "polished gold", "red plastic"};
+
+TEST(NearNames, AreThoseOfFewSlips) {
+    EXPECT_THAT(near_names("gild", materials), ElementsAre("gold"));
+    EXPECT_THAT(near_names("Emereld", materials), ElementsAre("emerald"));
+    EXPECT_THAT(near_names("redplastic", materials), ElementsAre("red plastic"));
+    EXPECT_THAT(near_names("zzz", materials), IsEmpty());
+    EXPECT_THAT(near_names("", materials), IsEmpty());
+}
+
+TEST(NearNames, AreThoseThatContainTheWord) {
+    EXPECT_THAT(near_names("plastic", materials),
+                ElementsAre("red plastic", "cyan plastic", "black plastic"));
+    EXPECT_THAT(near_names("gold", materials), ElementsAre("gold", "polished gold"));
+}
+
+TEST(DidYouMean, IsAQuestionOrNothing) {
+    const std::vector<std::string> known = {"diffuse", "specular"};
+    EXPECT_EQ(did_you_mean("difuse", known), "; did you mean 'diffuse'?");
+    EXPECT_EQ(did_you_mean("shine", known), "");
+    EXPECT_EQ(did_you_mean("gold", materials), "; did you mean 'gold' or 'polished gold'?");
 }
 
 }  // namespace

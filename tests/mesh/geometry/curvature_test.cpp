@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean curvature against surfaces that have it in closed form, and what has none.
+// Mean curvature against surfaces in closed form, and vertices without curvature.
 #include "relief/mesh/curvature.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::vector<float> curvatures(const Mesh& mesh, Report& report) {
 std::vector<float> curvatures(const Mesh& mesh) {
     Report report;
     std::vector<float> values = curvatures(mesh, report);
-    // But for the collapsed triangles at a sphere's poles.
+    // The degenerate triangles at the poles of a sphere are excluded.
     EXPECT_EQ(report.count("vertex on an open or non-manifold edge"), 0U);
     EXPECT_EQ(report.count("vertex without a curvature"), 0U);
     return values;
@@ -34,25 +34,24 @@ struct CurvatureError {
 };
 
 CurvatureError error_of(const Mesh& mesh,
-                        const std::function<double(const glm::dvec3&)>& ground_truth) {
+                        const std::function<double(const glm::dvec3&)>& reference) {
     const std::vector<float> values = curvatures(mesh);
     CurvatureError error;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double off =
-            std::abs(static_cast<double>(values[i]) - ground_truth(glm::dvec3(mesh.positions[i])));
+            std::abs(static_cast<double>(values[i]) - reference(glm::dvec3(mesh.positions[i])));
         error.mean += off / static_cast<double>(values.size());
         error.largest = std::max(error.largest, off);
     }
     return error;
 }
 
-/// Halving triangles must make the mean error at most a third: second order.
+/// When edges are halved, the mean error must fall to a third or less: second order.
 void expect_second_order(const std::function<Mesh(int)>& mesh_of,
-                         const std::function<double(const glm::dvec3&)>& ground_truth,
-                         double finest) {
+                         const std::function<double(const glm::dvec3&)>& reference, double finest) {
     double before = std::numeric_limits<double>::infinity();
     for (const int cells : {16, 32, 64}) {
-        const CurvatureError error = error_of(mesh_of(cells), ground_truth);
+        const CurvatureError error = error_of(mesh_of(cells), reference);
         EXPECT_LT(error.mean, before / 3.0) << cells;
         before = error.mean;
     }
@@ -66,7 +65,7 @@ TEST(Curvature, OfASphereIsOneOverItsRadius) {
             position *= radius;
         const double r = radius;
         EXPECT_LT(error_of(mesh, [&](const glm::dvec3&) { return 1.0 / r; }).largest, 0.002 / r);
-        // Seen from inside it is hollow.
+        // From inside, the surface is concave.
         for (glm::uvec3& triangle : mesh.triangles)
             std::swap(triangle.y, triangle.z);
         EXPECT_LT(error_of(mesh, [&](const glm::dvec3&) { return -1.0 / r; }).largest, 0.002 / r);
@@ -77,12 +76,12 @@ TEST(Curvature, OfASphereIsOneOverItsRadius) {
 
 TEST(Curvature, OfATorusIsThatOfItsClosedForm) {
     constexpr double tube = 0.4;
-    // H = (R + 2 r cos t) / (2 r (R + r cos t)), where the axis is R + r cos t away.
-    const auto ground_truth = [&](const glm::dvec3& place) {
+    // H = (R + 2 r cos t) / (2 r (R + r cos t)); the distance to the axis is R + r cos t.
+    const auto reference = [&](const glm::dvec3& place) {
         const double away = std::hypot(place.x, place.z);
         return (2.0 * away - 1.0) / (2.0 * tube * away);
     };
-    expect_second_order([](int cells) { return make_torus(0.4F, 2 * cells, cells); }, ground_truth,
+    expect_second_order([](int cells) { return make_torus(0.4F, 2 * cells, cells); }, reference,
                         2e-3);
 }
 
@@ -90,7 +89,7 @@ TEST(Curvature, OfACylinderIsHalfOfThatOfItsCircle) {
     const Mesh mesh = make_cylinder(128);
     Mesh side;
     side.positions = mesh.positions;
-    // Without its ends, and cut across, so that there are vertices around which it goes on.
+    // The mesh has no ends and is cut across, so that vertices have several fans.
     for (int row = 0; row <= 8; ++row) {
         for (int i = 0; i < 128; ++i) {
             const double angle = i * 6.283185307179586 / 128;
@@ -112,7 +111,7 @@ TEST(Curvature, OfACylinderIsHalfOfThatOfItsCircle) {
     Report report;
     const std::vector<float> values = curvatures(side, report);
     EXPECT_EQ(report.count("vertex on an open or non-manifold edge"), 256U);
-    // The open rims have it from the next row.
+    // Open rims take the value of the next row.
     for (const float value : values)
         EXPECT_NEAR(value, 0.25, 2e-4);
 }
@@ -121,7 +120,8 @@ TEST(Curvature, OfAPlaneIsNoneAndOfAnEdgeItsAngleOverItsWidth) {
     Report report;
     for (const float value : curvatures(make_quad(8), report))
         EXPECT_EQ(value, 0.0F);
-    // A roof of slope 1 both ways over a ridge: it turns by 90 degrees over cells of sqrt(2).
+    // A roof of slope 1 on both sides of a ridge: it bends by 90 degrees over cells of width
+    // sqrt(2).
     Mesh roof = make_quad(4);
     for (glm::vec3& position : roof.positions)
         position.z = 0.5F - std::abs(position.x);
@@ -130,7 +130,7 @@ TEST(Curvature, OfAPlaneIsNoneAndOfAnEdgeItsAngleOverItsWidth) {
     for (std::size_t i = 0; i < values.size(); ++i) {
         const glm::vec3& place = roof.positions[i];
         if (std::abs(place.y) > 0.9F || std::abs(place.x) > 0.6F) continue;
-        // The chord of that angle: 2 sin(45 degrees), halved, over the width.
+        // The chord of that angle, 2 sin(45 degrees), halved, divided by the width.
         const double expected = place.x == 0.0F ? std::sqrt(0.5) / width : 0.0;
         EXPECT_NEAR(values[i], expected, 1e-6) << place.x << " " << place.y;
     }
@@ -146,7 +146,7 @@ TEST(Curvature, IsTheSameForAnyOrderOfTrianglesNumberOfThreadsAndSplitVertices) 
     for (glm::uvec3& triangle : mesh.triangles)
         triangle = {triangle.y, triangle.z, triangle.x};
     EXPECT_EQ(curvatures(mesh), usual);
-    // Every corner a vertex of its own.
+    // Every corner has its own vertex.
     Mesh soup;
     for (const glm::uvec3& triangle : mesh.triangles) {
         const auto first = static_cast<std::uint32_t>(soup.positions.size());
@@ -157,7 +157,7 @@ TEST(Curvature, IsTheSameForAnyOrderOfTrianglesNumberOfThreadsAndSplitVertices) 
     const std::vector<float> split = curvatures(soup);
     for (std::size_t i = 0; i < soup.positions.size(); ++i) {
         const float whole = usual[mesh.triangles[i / 3][static_cast<int>(i % 3)]];
-        // Neighbours come in another order.
+        // Neighbors have another order.
         ASSERT_NEAR(split[i], whole, 1e-5F);
     }
 }
@@ -169,7 +169,7 @@ TEST(Curvature, CountsWhatHasNone) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     mesh.positions.insert(mesh.positions.end(),
                           {{5, 0, 0}, {6, 0, 0}, {7, 0, 0}, {nan, 0, 0}, {9, 0, 0}});
-    // A line, one that comes back to its first corner, and one that is nowhere.
+    // A degenerate triangle, one that returns to its first corner, and a non-finite one.
     mesh.triangles.insert(
         mesh.triangles.end(),
         {{count, count + 1, count + 2}, {40, 41, 40}, {count, count + 1, count + 3}});

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions that give the same bits everywhere: held to the C library's in long steps, and to what
-// they gave once, bit for bit.
-#include "geometry/portable_math.h"
-
+// Mathematical functions with the same bits on every machine, corner angles and double-double
+// arithmetic, against the C library and higher precision.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -11,12 +9,16 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/corner_angle.h"
+#include "geometry/double_double.h"
+#include "geometry/portable_math.h"
+
 namespace relief {
 namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
-/// Numbers from `first` to `last` that are not round.
+/// Visits irregular numbers from `first` to `last`.
 template <typename Each>
 void each_between(double first, double last, const Each& each) {
     for (int i = 0; i <= 4000; ++i)
@@ -25,7 +27,7 @@ void each_between(double first, double last, const Each& each) {
 
 TEST(PortableMath, IsWithinAFewUnitsOfTheLastPlace) {
     each_between(-30.0, 30.0, [](double x) {
-        // Near their zeros, to the rounding of the reduced angle.
+        // Near zeros, the error is that of the reduced angle.
         EXPECT_NEAR(portable::sin(x), std::sin(x), 2.0 * ulp * std::abs(std::sin(x)) + 1e-19) << x;
         EXPECT_NEAR(portable::cos(x), std::cos(x), 2.0 * ulp * std::abs(std::cos(x)) + 1e-19) << x;
     });
@@ -89,6 +91,103 @@ TEST(PortableMath, GivesTheSameBitsEverywhere) {
         add(portable::pow(std::abs(x), 1.0 / 2.4));
     });
     EXPECT_EQ(hash, 0xf53b6d875ceb64cU);
+}
+
+/// Returns the largest error over directions in the upper half plane, in units of the last place.
+template <typename Real>
+double worst_error() {
+    double worst = 0.0;
+    const int steps = 100003;
+    for (int i = 0; i <= steps; ++i) {
+        const double angle = std::numbers::pi * i / steps;
+        for (const double length : {1e-12, 1.0, 3.7, 1e12}) {
+            const auto x = static_cast<Real>(length * std::cos(angle));
+            const auto y = std::abs(static_cast<Real>(length * std::sin(angle)));
+            const long double exact =
+                std::atan2(static_cast<long double>(y), static_cast<long double>(x));
+            const auto error = static_cast<double>(std::abs(upper_angle(y, x) - exact));
+            const double unit = static_cast<double>(std::numeric_limits<Real>::epsilon()) *
+                                std::exp2(std::floor(std::log2(static_cast<double>(exact))));
+            if (exact > 0) worst = std::max(worst, error / unit);
+        }
+    }
+    return worst;
+}
+
+TEST(UpperAngle, IsWithinThreeUnitsOfTheLastPlace) {
+    EXPECT_LE(worst_error<double>(), 3.0);
+    EXPECT_LE(worst_error<float>(), 3.0);
+    EXPECT_GT(worst_error<double>(), 0.0);
+}
+
+TEST(UpperAngle, IsExactWhereItCanBe) {
+    EXPECT_EQ(upper_angle(0.0, 1.0), 0.0);
+    EXPECT_EQ(upper_angle(0.0, -1.0), std::numbers::pi);
+    EXPECT_EQ(upper_angle(2.0, 0.0), std::numbers::pi / 2);
+    EXPECT_EQ(upper_angle(3.0, 3.0), std::numbers::pi / 4);
+    EXPECT_EQ(upper_angle(3.0, -3.0), 3 * (std::numbers::pi / 4));
+}
+
+TEST(UpperAngle, KeepsItsDigitsWhereArcCosinesLoseThem) {
+    // For an angle of 1e-6, acos of a float cosine would be 0.
+    EXPECT_NEAR(upper_angle(1e-6F, 1.0F), 1e-6F, 1e-13F);
+    EXPECT_NEAR(upper_angle(1e-300, 1e-294), 1e-6, 1e-18);
+}
+
+// 2^-104: sums, products and quotients lose at most a few units of the last of 106 bits.
+constexpr double unit = 0x1p-104;
+
+double distance(const DoubleDouble& a, const DoubleDouble& b) {
+    const DoubleDouble difference = a - b;
+    return std::abs(difference.high + difference.low);
+}
+
+TEST(DoubleDouble, AddsWithoutError) {
+    const DoubleDouble sum = DoubleDouble::exact_sum(1.0, 0x1p-80);
+    EXPECT_EQ(sum.high, 1.0);
+    EXPECT_EQ(sum.low, 0x1p-80);
+    EXPECT_EQ(DoubleDouble::exact_sum(0x1p-80, 1.0), sum);
+    EXPECT_EQ(sum - 1.0, DoubleDouble(0x1p-80));
+}
+
+TEST(DoubleDouble, MultipliesWithoutError) {
+    const DoubleDouble product = DoubleDouble::exact_product(1.0 + 0x1p-40, 1.0 + 0x1p-40);
+    EXPECT_EQ(product.high, 1.0 + 0x1p-39);
+    EXPECT_EQ(product.low, 0x1p-80);
+}
+
+TEST(DoubleDouble, DividesAndTakesRoots) {
+    const DoubleDouble third = DoubleDouble(1.0) / 3.0;
+    EXPECT_LT(distance(third * 3.0, 1.0), unit);
+    EXPECT_NE(third.low, 0.0);
+    const DoubleDouble root = sqrt(DoubleDouble(2.0));
+    EXPECT_LT(distance(root * root, 2.0), 4.0 * unit);
+    EXPECT_EQ(sqrt(DoubleDouble(0.0)), DoubleDouble(0.0));
+    EXPECT_TRUE(std::isnan(sqrt(DoubleDouble(-1.0)).high));
+}
+
+TEST(DoubleDouble, ComparesTheLowPart) {
+    EXPECT_LT(DoubleDouble(1.0), DoubleDouble(1.0, 0x1p-80));
+    EXPECT_GT(DoubleDouble(1.0), DoubleDouble(1.0, -0x1p-80));
+}
+
+DoubleDouble angle(double y, double x) {
+    return upper_angle(DoubleDouble(y), DoubleDouble(x));
+}
+
+// The polynomial of the arc tangent has an error of 5e-18.
+TEST(DoubleDouble, FindsAnglesInAllOctants) {
+    const DoubleDouble pi(std::numbers::pi, 1.2246467991473532e-16);
+    constexpr double tolerance = 2e-17;
+    EXPECT_LT(distance(angle(0.0, 1.0), 0.0), tolerance);
+    EXPECT_LT(distance(angle(1.0, 1.0) * 4.0, pi), 4.0 * tolerance);
+    EXPECT_LT(distance(angle(1.0, 0.0) * 2.0, pi), 2.0 * tolerance);
+    EXPECT_LT(distance(angle(1.0, -1.0) * 4.0, pi * 3.0), 4.0 * tolerance);
+    EXPECT_LT(distance(angle(0.0, -1.0), pi), tolerance);
+    // atan(1/2) + atan(1/3) = pi / 4.
+    EXPECT_LT(distance((angle(1.0, 2.0) + angle(1.0, 3.0)) * 4.0, pi), 8.0 * tolerance);
+    EXPECT_LT(distance(angle(2.0, 1.0) + angle(1.0, 2.0), pi * 0.5), 2.0 * tolerance);
+    EXPECT_TRUE(std::isnan(angle(0.0, 0.0).high));
 }
 
 }  // namespace

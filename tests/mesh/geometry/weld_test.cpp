@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which vertices count as one.
-#include "geometry/weld.h"
-
+// Vertices that count as one: equal positions, and positions within a distance.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 
-#include "support/no_numbers.h"
+#include "geometry/weld.h"
+#include "support/hard_meshes.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -65,6 +65,76 @@ TEST(Weld, TheSphereClosesAtItsSeamAndPoles) {
     for (std::size_t i = 0; i < classes.size(); ++i)
         different += classes[i] == i ? 1 : 0;
     EXPECT_EQ(different, static_cast<std::size_t>(slices * (stacks - 1) + 2));
+}
+
+/// Compares every pair until nothing changes.
+std::vector<std::uint32_t> by_all_pairs(const std::vector<glm::vec3>& positions, double tolerance) {
+    std::vector<std::uint32_t> smallest(positions.size());
+    for (std::size_t i = 0; i < smallest.size(); ++i)
+        smallest[i] = static_cast<std::uint32_t>(i);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            for (std::size_t j = 0; j < positions.size(); ++j) {
+                const bool near =
+                    glm::distance(glm::dvec3(positions[i]), glm::dvec3(positions[j])) <= tolerance;
+                if (!near || smallest[j] >= smallest[i]) continue;
+                smallest[i] = smallest[j];
+                changed = true;
+            }
+        }
+    }
+    return smallest;
+}
+
+TEST(WeldNear, AgreesWithComparingEveryPair) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> number(-1.0F, 1.0F);
+    std::vector<glm::vec3> positions;
+    for (int i = 0; i < 300; ++i)
+        positions.emplace_back(number(random), number(random), number(random));
+    for (const double tolerance : {0.01, 0.05, 0.1, 0.15, 0.2, 3.0}) {
+        const auto joined = weld_near_positions(positions, tolerance);
+        EXPECT_EQ(joined, by_all_pairs(positions, tolerance)) << tolerance;
+    }
+}
+
+TEST(WeldNear, ExactlyTheToleranceIsNear) {
+    const std::vector<glm::vec3> positions = {{0, 0, 0}, {0.25F, 0, 0}, {0.75F, 0, 0}};
+    EXPECT_THAT(weld_near_positions(positions, 0.25), ElementsAre(0, 0, 2));
+    EXPECT_THAT(weld_near_positions(positions, 0.5), ElementsAre(0, 0, 0));
+}
+
+TEST(WeldNear, AChainIsAllOne) {
+    std::vector<glm::vec3> positions;
+    for (int i = 0; i < 100; ++i)
+        positions.emplace_back(static_cast<float>(i * 37 % 100), 0.0F, 0.0F);
+    EXPECT_THAT(weld_near_positions(positions, 1.0), testing::Each(0U));
+    EXPECT_EQ(weld_near_positions(positions, 0.99)[99], 99U);
+}
+
+TEST(WeldNear, WhatIsNotFiniteIsAlone) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::vector<glm::vec3> positions = {{nan, 0, 0},      {nan, 0, 0}, {infinity, 0, 0},
+                                              {infinity, 0, 0}, {0, 0, 0},   {-0.0F, 0, 0}};
+    EXPECT_THAT(weld_near_positions(positions, 1.0), ElementsAre(0, 1, 2, 3, 4, 4));
+}
+
+TEST(WeldNear, HugeCoordinatesAndTinyTolerancesDoNotOverflow) {
+    const std::vector<glm::vec3> positions = {
+        {3e38F, -3e38F, 3e38F}, {3e38F, -3e38F, 3e38F}, {1e-38F, 0, 0}, {2e-38F, 0, 0}};
+    EXPECT_THAT(weld_near_positions(positions, 1e-30), ElementsAre(0, 0, 2, 2));
+    EXPECT_THAT(weld_near_positions(positions, 1e-39), ElementsAre(0, 0, 2, 3));
+}
+
+TEST(Groups, AreThoseOfTwoAndMore) {
+    const std::vector<std::uint32_t> representatives = {0, 1, 0, 3, 1, 1, 6};
+    const Groups groups = groups_of(representatives);
+    ASSERT_EQ(groups.count(), 2U);
+    EXPECT_THAT(groups.at(0), ElementsAre(0, 2));
+    EXPECT_THAT(groups.at(1), ElementsAre(1, 4, 5));
+    EXPECT_EQ(groups_of(std::vector<std::uint32_t>{0, 1, 2}).count(), 0U);
 }
 
 }  // namespace

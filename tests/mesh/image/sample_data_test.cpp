@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples in data/: made again byte for byte, tiling, without seams, closed and unstretched.
+// The samples in data/ are reproducible byte for byte, tile without seams, and are closed and
+// undistorted.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,11 +22,6 @@ namespace {
 
 const std::filesystem::path data = test::source_directory() / "data";
 
-std::string bytes_of(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 TEST(SampleData, TheProgramWritesTheSameFilesAgain) {
     const test::TemporaryDirectory folder;
     const std::string command = fmt::format("{} {}", RELIEF_MAKE_DATA, folder.path().string());
@@ -34,13 +30,13 @@ TEST(SampleData, TheProgramWritesTheSameFilesAgain) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
         if (!entry.is_regular_file()) continue;
         const std::filesystem::path name = entry.path().lexically_relative(folder.path());
-        EXPECT_TRUE(bytes_of(entry.path()) == bytes_of(data / name)) << name;
+        EXPECT_TRUE(test::read_bytes(entry.path()) == test::read_bytes(data / name)) << name;
         ++compared;
     }
     EXPECT_EQ(compared, 15U);
 }
 
-/// Mean step between neighbouring columns (rows, if turned): across the seam, and the largest
+/// Returns the mean difference of adjacent columns (or rows): across the seam, and the largest one
 /// inside.
 std::pair<double, double> steps(const Image& image, bool turned) {
     const Image heights = to_float(image);
@@ -89,11 +85,9 @@ TEST(SampleData, TheHeightsAre16BitGreyAndUseTheirRange) {
     EXPECT_GT(*high, 60000);
 }
 
-// ---------------------------------------------------------------------------------------------
-
 struct FacePoint {
     int face;
-    double s, t;  ///< -1 to 1, right and down.
+    double s, t;  ///< From -1 to 1, right and down.
 };
 
 glm::dvec3 direction_of(FacePoint p) {
@@ -102,7 +96,7 @@ glm::dvec3 direction_of(FacePoint p) {
     return directions[p.face];
 }
 
-/// OpenGL's table: the major axis chooses the face, the other two give s and t.
+/// The table of OpenGL: the major axis selects the face, and the other two give s and t.
 FacePoint point_of(glm::dvec3 d) {
     const glm::dvec3 a = glm::abs(d);
     if (a.x >= a.y && a.x >= a.z)
@@ -139,15 +133,13 @@ TEST(SampleData, TheFacesOfTheSkyMeetWithoutASeam) {
             seam += glm::length(color(face, at, 0) - across(face, at, -1));
             seam += glm::length(color(face, at, size - 1) - across(face, at, size));
         }
-        // Neighbours differ by 1 to 3 codes, JPEG's blocks by as much again; a face turned or
-        // mirrored would differ by more than 20.
+        // Neighbors differ by 1 to 3 codes, and the blocks of JPEG by as much again. A rotated or
+        // mirrored face would differ by more than 20.
         EXPECT_LT(seam / (4.0 * size), 6.0) << face;
     }
 }
 
-// ---------------------------------------------------------------------------------------------
-
-/// Every edge has two triangles, which run along it in opposite directions. \return the volume
+/// Checks that every edge has two triangles with opposite directions. \return the volume
 double enclosed(const Mesh& mesh) {
     using Point = std::tuple<float, float, float>;
     std::map<std::pair<Point, Point>, int> directed;
@@ -179,7 +171,7 @@ TEST(SampleData, TheVaseIsClosedAndConsistentlyWound) {
     EXPECT_TRUE(report.empty());
     EXPECT_GT(mesh.triangles.size(), 3000U);
     EXPECT_LT(mesh.triangles.size(), 8000U);
-    // Counter-clockwise from outside: the enclosed volume is positive.
+    // The triangles are counter-clockwise from outside: the enclosed volume is positive.
     EXPECT_GT(enclosed(mesh), 0.05);
 }
 
@@ -190,7 +182,8 @@ TEST(SampleData, TheUrnsAreClosedAndOneShape) {
     EXPECT_TRUE(report.empty());
     EXPECT_EQ(high.triangles.size(), 26800U);
     EXPECT_EQ(low.triangles.size(), 720U);
-    // Carvings of at most 0.03 on a body of radius 0.5 add a few hundredths; facets take some away.
+    // Carvings of at most 0.03 on a body of radius 0.5 add a few hundredths, and facets remove
+    // some.
     const double plain = enclosed(low);
     EXPECT_GT(plain, 0.4);
     EXPECT_GT(enclosed(high), plain);
@@ -225,9 +218,9 @@ TEST(SampleData, TheVaseNeverStretchesNorMirrorsItsTexture) {
         const glm::dmat2 texture(mesh.texcoords[t.y] - mesh.texcoords[t.x],
                                  mesh.texcoords[t.z] - mesh.texcoords[t.x]);
         const glm::dmat2 mapping = texture * glm::inverse(surface);
-        // v grows downwards, so that an unmirrored texture has a negative determinant.
+        // v grows downwards, so an unmirrored texture has a negative determinant.
         EXPECT_LT(glm::determinant(mapping), 0.0);
-        // The two singular values are equal where (p, q) below vanishes.
+        // The two singular values are equal if (p, q) below is zero.
         const double p = mapping[0][0] + mapping[1][1];
         const double q = mapping[0][1] - mapping[1][0];
         const double r = mapping[0][0] - mapping[1][1];

@@ -1,23 +1,162 @@
 // SPDX-License-Identifier: Apache-2.0
-// FLIP: against its definition, against the authors' program, and what must hold for any metric.
+// FLIP against a direct implementation of its definition [Andersson et al. 2020], against the
+// authors' program, and against properties of any metric.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/glm.hpp>
 #include <limits>
+#include <numbers>
+#include <vector>
 
-#include "flip_brute_force.h"
 #include "relief/mesh/error.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/threads.h"
 #include "relief/shade/image_compare.h"
 
-namespace relief {
+namespace relief::test {
 namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Computed from the primaries and the white point of the standard, as integers.
+const glm::dmat3 xyz_from_rgb = glm::transpose(
+    glm::dmat3(10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0,  //
+               2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0,    //
+               1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0));
+const glm::dvec3 white = xyz_from_rgb * glm::dvec3(1.0);
+
+struct Plane {
+    int width = 0;
+    int height = 0;
+    std::vector<glm::dvec3> pixels;
+
+    [[nodiscard]] const glm::dvec3& at(int x, int y) const {
+        const int column = std::clamp(x, 0, width - 1);
+        const int row = std::clamp(y, 0, height - 1);
+        return pixels[static_cast<std::size_t>(row * width + column)];
+    }
+};
+
+Plane ycxcz(const Image& image) {
+    const Image linear = to_linear(image);
+    const auto samples = linear.as<float>();
+    Plane plane{image.width, image.height, {}};
+    for (std::size_t i = 0; i < samples.size(); i += 3) {
+        const glm::dvec3 xyz =
+            xyz_from_rgb * glm::dvec3(samples[i], samples[i + 1], samples[i + 2]) / white;
+        plane.pixels.emplace_back(116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y),
+                                  200.0 * (xyz.y - xyz.z));
+    }
+    return plane;
+}
+
+/// A square filter of (2 radius + 1)^2 weights.
+struct Square {
+    int radius = 0;
+    std::vector<double> weights;
+
+    Square(int r, const std::function<double(int, int)>& weight) : radius(r) {
+        for (int y = -r; y <= r; ++y) {
+            for (int x = -r; x <= r; ++x)
+                weights.push_back(weight(x, y));
+        }
+        double positive = 0.0;
+        double negative = 0.0;
+        for (const double w : weights)
+            (w > 0.0 ? positive : negative) += std::abs(w);
+        for (double& w : weights)
+            w /= w > 0.0 ? positive : negative;
+    }
+
+    [[nodiscard]] double apply(const Plane& plane, int channel, int x, int y) const {
+        double sum = 0.0;
+        std::size_t i = 0;
+        for (int dy = -radius; dy <= radius; ++dy) {
+            for (int dx = -radius; dx <= radius; ++dx)
+                sum += weights[i++] * plane.at(x + dx, y + dy)[channel];
+        }
+        return sum;
+    }
+};
+
+double sensitivity(double a, double b, double squared_degrees) {
+    return a * std::sqrt(pi / b) * std::exp(-pi * pi * squared_degrees / b);
+}
+
+glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
+    const glm::dvec3 t = xyz_from_rgb * rgb / white;
+    const auto f = [](double v) {
+        return v > std::pow(6.0 / 29.0, 3.0) ? std::cbrt(v) : v * 841.0 / 108.0 + 4.0 / 29.0;
+    };
+    const double lightness = 116.0 * f(t.y) - 16.0;
+    return {lightness, 0.01 * lightness * 500.0 * (f(t.x) - f(t.y)),
+            0.01 * lightness * 200.0 * (f(t.y) - f(t.z))};
+}
+
+glm::dvec3 lab_of_opponent(const glm::dvec3& c) {
+    const double y = (c.x + 16.0) / 116.0;
+    const glm::dvec3 xyz = glm::dvec3(y + c.y / 500.0, y, y - c.z / 200.0) * white;
+    return hunt_lab(glm::clamp(glm::inverse(xyz_from_rgb) * xyz, 0.0, 1.0));
+}
+
+double hyab(const glm::dvec3& a, const glm::dvec3& b) {
+    return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
+}
+
+double color_error(const glm::dvec3& a, const glm::dvec3& b) {
+    const double most = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7);
+    const double error = std::pow(hyab(lab_of_opponent(a), lab_of_opponent(b)), 0.7);
+    if (error < 0.4 * most) return 0.95 * error / (0.4 * most);
+    return 0.95 + 0.05 * (error - 0.4 * most) / (0.6 * most);
+}
+
+std::vector<double> flip_brute_force(const Image& reference, const Image& test, double ppd) {
+    const std::array<Plane, 2> planes{ycxcz(reference), ycxcz(test)};
+    const int r = static_cast<int>(std::ceil(3.0 * std::sqrt(0.04 / (2.0 * pi * pi)) * ppd));
+    const auto degrees = [&](int x, int y) { return (x * x + y * y) / (ppd * ppd); };
+    const Square y_filter(r, [&](int x, int y) { return sensitivity(1, 0.0047, degrees(x, y)); });
+    const Square cx_filter(r, [&](int x, int y) { return sensitivity(1, 0.0053, degrees(x, y)); });
+    const Square cz_filter(r, [&](int x, int y) {
+        return sensitivity(34.1, 0.04, degrees(x, y)) + sensitivity(13.5, 0.025, degrees(x, y));
+    });
+    const double s = 0.5 * 0.082 * ppd;
+    const int fr = static_cast<int>(std::ceil(3.0 * s));
+    const auto bell = [&](int x, int y) { return std::exp(-(x * x + y * y) / (2.0 * s * s)); };
+    const auto second = [&](int x) { return x * x / (s * s) - 1.0; };
+    const Square edge_x(fr, [&](int x, int y) { return -x * bell(x, y); });
+    const Square edge_y(fr, [&](int x, int y) { return -y * bell(x, y); });
+    const Square point_x(fr, [&](int x, int y) { return second(x) * bell(x, y); });
+    const Square point_y(fr, [&](int x, int y) { return second(y) * bell(x, y); });
+
+    std::vector<double> map;
+    for (int y = 0; y < reference.height; ++y) {
+        for (int x = 0; x < reference.width; ++x) {
+            std::array<glm::dvec3, 2> seen{};
+            std::array<double, 2> edge{};
+            std::array<double, 2> point{};
+            for (std::size_t i = 0; i < 2; ++i) {
+                const Plane& p = planes.at(i);
+                seen.at(i) = {y_filter.apply(p, 0, x, y), cx_filter.apply(p, 1, x, y),
+                              cz_filter.apply(p, 2, x, y)};
+                edge.at(i) = std::hypot(edge_x.apply(p, 0, x, y), edge_y.apply(p, 0, x, y)) / 116.0;
+                point.at(i) =
+                    std::hypot(point_x.apply(p, 0, x, y), point_y.apply(p, 0, x, y)) / 116.0;
+            }
+            const double feature =
+                std::sqrt(std::max(std::abs(edge[0] - edge[1]), std::abs(point[0] - point[1])) /
+                          std::numbers::sqrt2);
+            map.push_back(std::pow(color_error(seen[0], seen[1]), 1.0 - feature));
+        }
+    }
+    return map;
+}
 
 using Codes = std::function<unsigned(unsigned x, unsigned y, unsigned channel)>;
 
-/// 0 to 255, as a fixed hash of the place.
+/// Returns a fixed hash of the position, from 0 to 255.
 unsigned noise(unsigned x, unsigned y, unsigned channel, unsigned seed) {
     std::uint32_t hash =
         x * 374761393U + y * 668265263U + channel * 2246822519U + seed * 3266489917U;
@@ -53,7 +192,7 @@ Image picture(int width, int height, const Codes& codes) {
     return image;
 }
 
-/// A linear float picture of one colour; as many channels as values.
+/// A linear float image of one color with one channel for each value.
 Image plain(std::vector<float> color, int width = 12, int height = 9) {
     Image image = make_image(width, height, static_cast<int>(color.size()), 32, ColorSpace::linear);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
@@ -66,8 +205,9 @@ float map_at(const FlipDifference& difference, std::size_t x, std::size_t y) {
 }
 
 TEST(Flip, GivesTheNumbersOfItsAuthorsProgram) {
-    // Printed by version 1.7 of the authors' C++ program for these pictures of 96 x 80 pixels. It
-    // works in float with 4e-7 of rounding in each lightness, which the exponents raise.
+    // Output of version 1.7 of the authors' C++ program for these images of 96 x 80 pixels. The
+    // program works in float with a rounding error of 4e-7 in each lightness, which the exponents
+    // increase.
     constexpr double rounding = 2e-5;
     const auto expect = [](const Codes& reference, const Codes& test, double pixels_per_degree,
                            double mean, double max, double middle, double corner) {
@@ -87,7 +227,7 @@ TEST(Flip, GivesTheNumbersOfItsAuthorsProgram) {
 }
 
 TEST(Flip, FiltersInPassesGiveWhatFiltersAsSquaresGive) {
-    // Taller than a band of rows, so that a wrong halo would show.
+    // The image is taller than a band of rows, so that a wrong halo shows.
     const Image a = picture(23, 57, noise_of(3));
     const Image b = picture(23, 57, noise_of(4));
     for (const double pixels_per_degree : {12.0, 40.0, default_pixels_per_degree}) {
@@ -98,8 +238,8 @@ TEST(Flip, FiltersInPassesGiveWhatFiltersAsSquaresGive) {
             worst = std::max(
                 worst, std::abs(expected[i] - static_cast<double>(difference.map.as<float>()[i])));
         }
-        // Float against double: where features hardly differ, the square root of their difference
-        // turns 1e-8 of rounding into 1e-4.
+        // Float against double: if features hardly differ, the square root of their difference
+        // turns a rounding error of 1e-8 into 1e-4.
         EXPECT_LT(worst, 1e-4) << pixels_per_degree;
     }
 }
@@ -127,8 +267,9 @@ TEST(Flip, IsTheSameBothWaysRoundBitForBit) {
 }
 
 TEST(Flip, BlackAgainstWhiteIsWhatTheFormulaSaysAndGreenAgainstBlueIsOne) {
-    // One colour each: filters change nothing, there are no features, and the lightness differs by
-    // 100. Of the largest distance 203.3 (between green and blue), to the power of 0.7:
+    // Both images have one color, so filters change nothing, there are no features, and the
+    // lightness differs by 100. The largest distance is 203.3 (between green and blue), and the
+    // exponent is 0.7:
     const double bent = std::pow(100.0 / 203.3, 0.7);
     const double expected = 0.95 + 0.05 * (bent - 0.4) / 0.6;
     const FlipDifference extreme = flip_difference(plain({0, 0, 0}), plain({1, 1, 1}));
@@ -145,7 +286,7 @@ TEST(Flip, StaysWithinItsRangeAndGrowsWithContrast) {
         EXPECT_GT(error, before);
         before = error;
     }
-    // Hard edges in all directions against their negative: the strongest features there are.
+    // Hard edges in all directions against their negative give the strongest features.
     const Codes checks = [](unsigned x, unsigned y, unsigned) {
         return (x / 9 + y / 9) % 2 == 0 ? 255U : 0U;
     };
@@ -230,7 +371,7 @@ TEST(Flip, NoNumberAgainstANumberIsTheLargestErrorInItsPixel) {
 }
 
 TEST(Flip, CoverageCountsOverBlackAndOverWhite) {
-    // Black that covers and nothing at all are the same over black, and opposites over white.
+    // Opaque black and a transparent pixel are equal over black, and opposite over white.
     const double extreme = flip_difference(plain({0, 0, 0}), plain({1, 1, 1})).mean;
     EXPECT_NEAR(flip_difference(plain({0, 0, 0, 1}), plain({0, 0, 0, 0})).mean, extreme, 1e-6);
     EXPECT_NEAR(flip_difference(plain({1, 1}), plain({1, 0})).mean, extreme, 1e-6);
@@ -264,4 +405,4 @@ TEST(Flip, WhatCannotBeComparedIsRefused) {
 }
 
 }  // namespace
-}  // namespace relief
+}  // namespace relief::test

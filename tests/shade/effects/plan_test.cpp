@@ -1,43 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The planner's decisions and their reasons, by hand, without OpenGL.
+// The planner's decisions and their reasons on single scenes, without OpenGL.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
-#include <set>
-#include <string_view>
-#include <type_traits>
 
 #include "relief/shade/effects.h"
+#include "shade/effects/feature_sets.h"
 #include "support/shapes.h"
 
 namespace relief {
 namespace {
 
-Material gray(const char* name = "body") {
-    Material material;
-    material.name = name;
-    return material;
-}
-
-/// One grid under one directional light.
-Scene lit_scene(const Material& material) {
-    Scene scene;
-    scene.meshes = {test::grid(1)};
-    scene.meshes[0].edit().name = "plane";
-    scene.meshes[0].edit().material_ranges = {{0, 2, 0}};
-    scene.materials = {material};
-    scene.instances = {{0, glm::mat4(1), "node"}};
-    scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
-    return scene;
-}
-
-const EffectReason& reason(const std::vector<EffectReason>& reasons, const char* effect) {
-    const auto found = std::find_if(reasons.begin(), reasons.end(),
-                                    [&](const EffectReason& r) { return r.effect == effect; });
-    if (found == reasons.end()) throw std::runtime_error(std::string("no reason for ") + effect);
-    return *found;
-}
+using test::gray;
+using test::lit_scene;
+using test::reason;
 
 Features features(const Scene& scene) {
     return plan_effects(scene, {.samples = 1}).draws.at(0).features;
@@ -196,7 +172,7 @@ TEST(EffectPlan, HasOneDrawForEachRangeOfEachInstance) {
 
 TEST(EffectPlan, SaysForEveryEffectWhetherItIsOnAndWhy) {
     const FramePlan plan = plan_effects(lit_scene(gray()), {.samples = 1});
-    // Every effect, and whether tangents are computed.
+    // There is a reason for every effect, and one for computed tangents.
     EXPECT_EQ(plan.draws[0].reasons.size(), effects().size() + 1);
     for (const Effect& effect : effects())
         EXPECT_NO_THROW((void)reason(plan.draws[0].reasons, effect.name));
@@ -204,7 +180,7 @@ TEST(EffectPlan, SaysForEveryEffectWhetherItIsOnAndWhy) {
         EXPECT_FALSE(r.reason.empty()) << r.effect;
     const auto on = std::count_if(plan.draws[0].reasons.begin(), plan.draws[0].reasons.end(),
                                   [](const EffectReason& r) { return r.on; });
-    EXPECT_EQ(on, 2);  // Directional lights and diffuse.
+    EXPECT_EQ(on, 2);  // Directional lights and diffuse reflection.
 }
 
 Material metallic() {
@@ -241,7 +217,7 @@ TEST(EffectPlan, OfAMirrorBlursNothing) {
     scene.materials[0].reflection_roughness = 0.3F;
     plan = plan_effects(scene, {.samples = 1});
     EXPECT_TRUE(plan.prefiltered_map);
-    EXPECT_FALSE(plan.environment_brdf);  // Phong's surfaces have Fresnel's factor instead.
+    EXPECT_FALSE(plan.environment_brdf);  // Phong surfaces use Fresnel's factor instead.
 }
 
 TEST(EffectPlan, HasNoFresnelWhereReflectivityIsTheSameAtEveryAngle) {
@@ -258,7 +234,7 @@ TEST(EffectPlan, HasNoFresnelWhereReflectivityIsTheSameAtEveryAngle) {
     scene.materials[0].transmission = 0.5F;
     EXPECT_TRUE(features(scene).refraction);
     scene.materials[0].reflectivity = glm::vec3(0.0F);
-    EXPECT_TRUE(features(scene).refraction);  // What mirrors nothing may be clear all the same.
+    EXPECT_TRUE(features(scene).refraction);  // A surface without reflection can be transparent.
     EXPECT_EQ(features(scene).reflection, ReflectionTerm::none);
     scene.environment.reset();
     EXPECT_FALSE(features(scene).refraction);
@@ -290,7 +266,8 @@ TEST(EffectPlan, ComputesNoTangentsForFramesFromDerivativesOrObjectSpaceMaps) {
     scene.materials[0].normal_map = NormalMap{};
     scene.materials[0].normal_map->space = NormalSpace::object;
     EXPECT_EQ(features(scene).detail, NormalDetail::object_normal_map);
-    EXPECT_EQ(features(scene).frame, TangentFrame::stored);  // There is none to choose.
+    EXPECT_EQ(features(scene).frame, TangentFrame::stored);  // There is no image whose frame could
+                                                             // be chosen.
     EXPECT_FALSE(plan_effects(scene, {.samples = 1}).draws[0].needs_tangents);
 }
 
@@ -311,7 +288,7 @@ TEST(EffectPlan, LooksAtAlphaOnlyWhereSomethingIsNotOpaque) {
     EXPECT_EQ(features(scene).alpha, AlphaMode::opaque);
     scene.meshes[0].edit().colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
     EXPECT_EQ(features(scene).alpha, AlphaMode::mask);
-    EXPECT_TRUE(features(scene).vertex_colors);  // White, but their alpha counts now.
+    EXPECT_TRUE(features(scene).vertex_colors);  // They are white, but their alpha matters now.
 }
 
 TEST(EffectPlan, KnowsHowLampsFallOffAndWhatTheirHighlightsLookLike) {
@@ -325,7 +302,8 @@ TEST(EffectPlan, KnowsHowLampsFallOffAndWhatTheirHighlightsLookLike) {
     scene.point_lights.erase(scene.point_lights.begin());
     EXPECT_EQ(features(scene).falloff, FalloffTerm::inverse_square);
     EXPECT_FALSE(features(scene).highlight_colors);
-    scene.point_lights[0].highlight_intensity = glm::vec3(1.0F);  // The same as its light.
+    scene.point_lights[0].highlight_intensity = glm::vec3(1.0F);  // Equal to the color of the
+                                                                  // light.
     EXPECT_FALSE(features(scene).highlight_colors);
     scene.point_lights[0].highlight_intensity = glm::vec3(1, 0, 0);
     EXPECT_TRUE(features(scene).highlight_colors);
@@ -338,578 +316,13 @@ TEST(EffectPlan, FinishesWhereSamplesAreAveraged) {
     FramePlan plan = plan_effects(scene, {.samples = 4});
     EXPECT_TRUE(plan.finishing_pass);
     EXPECT_EQ(plan.draws[0].features.output, OutputCoding::half);
-    EXPECT_FALSE(plan.draws[0].features.exposure);  // The finishing pass exposes.
+    EXPECT_FALSE(plan.draws[0].features.exposure);  // The finishing pass applies the exposure.
     plan = plan_effects(scene, {.samples = 1});
     EXPECT_FALSE(plan.finishing_pass);
     EXPECT_TRUE(plan.draws[0].features.exposure);
     EXPECT_EQ(plan.draws[0].features.tone_mapping, ToneMapping::aces);
     plan = plan_effects(scene, {.samples = 4, .output = OutputCoding::linear});
     EXPECT_EQ(plan.draws[0].features.output, OutputCoding::linear);
-}
-
-/// Scenes on both sides of each part of every effect's condition.
-namespace boundaries {
-
-/// A scene with one draw, and how its frame is drawn.
-struct Frame {
-    Scene scene = lit_scene(gray());
-    FrameSettings settings{.samples = 1};
-
-    Material& material() { return scene.materials[0]; }
-    Mesh& mesh() { return scene.meshes[0].edit(); }
-};
-
-using Change = std::function<void(Frame&)>;
-using Sun = DirectionalLight;
-using Lamp = PointLight;
-
-template <typename T>
-Change with(T Material::*member, std::type_identity_t<T> value) {
-    return [=](Frame& f) { f.material().*member = value; };
-}
-template <typename T>
-Change with(T Scene::*member, std::type_identity_t<T> value) {
-    return [=](Frame& f) { f.scene.*member = value; };
-}
-template <typename T>
-Change with(T FrameSettings::*member, std::type_identity_t<T> value) {
-    return [=](Frame& f) { f.settings.*member = value; };
-}
-template <typename T>
-Change with_sun(T Sun::*member, std::type_identity_t<T> value) {
-    return [=](Frame& f) { f.scene.directional_lights[0].*member = value; };
-}
-template <typename T>
-Change with_lamp(T Lamp::*member, std::type_identity_t<T> value) {
-    return [=](Frame& f) { f.scene.point_lights[0].*member = value; };
-}
-template <typename T>
-Change with_spot(T Lamp::*member, std::type_identity_t<T> value) {
-    return [=](Frame& f) { f.scene.spot_lights[0].point.*member = value; };
-}
-Change with_suns(std::size_t count) {
-    return [=](Frame& f) { f.scene.directional_lights.resize(count); };
-}
-Change with_colors(const glm::vec4& color) {
-    return [=](Frame& f) { f.mesh().colors.assign(4, color); };
-}
-Change with_last_color(const glm::vec4& color) {
-    return [=](Frame& f) { f.mesh().colors.back() = color; };
-}
-
-const glm::vec3 black{0.0F};
-const glm::vec3 faint{0, 0, 0.001F};
-
-const Change unlit = with(&Material::unlit, true);
-const Change physical = with(&Material::metallic_roughness, MetallicRoughness{});
-const Change physical_texture = [](Frame& f) {
-    f.material().metallic_roughness->texture = Texture{};
-};
-const Change gouraud = with(&Material::interpolation, Interpolation::gouraud);
-const Change flat = with(&Material::interpolation, Interpolation::flat);
-const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
-const Change scattering = with(&Material::diffuse, faint);
-const Change shiny = with(&Material::specular, faint);
-const Change phong = with(&Material::specular_model, SpecularModel::phong);
-const Change emissive = with(&Material::emission, faint);
-const Change mirror = with(&Material::reflectivity, faint);
-const Change rough = with(&Material::reflection_roughness, 0.001F);
-const Change dielectric = with(&Material::fresnel, FresnelModel::dielectric);
-const Change conductor = with(&Material::fresnel, FresnelModel::conductor);
-const Change transmitting = with(&Material::transmission, 0.001F);
-const Change translucent = with(&Material::opacity, 0.999F);
-const Change masked = with(&Material::alpha_mode, AlphaMode::mask);
-const Change blended = with(&Material::alpha_mode, AlphaMode::blend);
-const Change double_sided = with(&Material::double_sided, true);
-const Change antialiased = with(&Material::specular_antialiasing, true);
-const Change derivative_frames = with(&Material::tangent_frame, TangentFrame::derivatives);
-const Change diffuse_texture = with(&Material::diffuse_texture, Texture{});
-const Change specular_texture = with(&Material::specular_texture, Texture{});
-const Change emission_texture = with(&Material::emission_texture, Texture{});
-const Change occlusion_texture = with(&Material::occlusion_texture, Texture{});
-const Change opacity_texture = with(&Material::opacity_texture, Texture{});
-const Change normal_map = with(&Material::normal_map, NormalMap{});
-const Change object_map = [](Frame& f) {
-    f.material().normal_map = NormalMap{};
-    f.material().normal_map->space = NormalSpace::object;
-};
-const Change bump_map = with(&Material::bump_map, BumpMap{});
-
-const Change no_texcoords = [](Frame& f) { f.mesh().texcoords.clear(); };
-const Change stored_tangents = [](Frame& f) { f.mesh().tangents.assign(4, {1, 0, 0, 1}); };
-
-const Change ambient = with(&Scene::ambient, faint);
-const Change no_suns = with(&Scene::directional_lights, {});
-const Change point_light = [](Frame& f) { f.scene.point_lights.push_back({{0, 0, 1}, faint}); };
-const Change constant_light = [](Frame& f) {
-    f.scene.point_lights.push_back({{0, 0, 1}, faint, std::nullopt, Falloff::none});
-};
-const Change black_point_light = with_lamp(&Lamp::intensity, black);
-const Change black_second_light = [](Frame& f) { f.scene.point_lights[1].intensity = black; };
-const Change spot_light = [](Frame& f) { f.scene.spot_lights.push_back({{{0, 0, 1}, faint}}); };
-/// An environment that is neither seen itself nor scattered.
-const Change environment =
-    with(&Scene::environment, Environment{Equirectangular{}, 1.0F, false, false});
-const Change skybox = [](Frame& f) { f.scene.environment->skybox = true; };
-const Change scattered = [](Frame& f) { f.scene.environment->lights = true; };
-
-const Change exposed = with(&Scene::exposure, 0.999F);
-const Change reinhard = with(&Scene::tone_mapping, ToneMapping::reinhard);
-const Change aces = with(&Scene::tone_mapping, ToneMapping::aces);
-const Change linear_output = with(&FrameSettings::output, OutputCoding::linear);
-const Change two_samples = with(&FrameSettings::samples, 2);
-const Change view_of_data = with(&FrameSettings::view, DebugView::shading_normal);
-
-/// A part of an effect's condition: two scenes that differ in this part alone, of which only the
-/// second calls for the effect.
-struct Boundary {
-    const char* effect;
-    const char* condition;
-    std::vector<Change> both;
-    std::vector<Change> off;
-    std::vector<Change> on;
-};
-
-const std::vector<Boundary> color_boundaries = {
-    {"unlit", "asked for", {}, {}, {unlit}},
-    {"metallic-roughness", "its model", {}, {}, {physical}},
-    {"metallic-roughness", "light", {no_suns}, {physical}, {physical, ambient}},
-    {"metallic-roughness", "lit", {physical}, {unlit}, {}},
-    {"metallic-roughness texture", "has one", {physical}, {}, {physical_texture}},
-    {"metallic-roughness texture",
-     "texture coordinates",
-     {physical, physical_texture},
-     {no_texcoords},
-     {}},
-    {"Gouraud", "asked for", {}, {}, {gouraud}},
-    {"Gouraud", "lights", {gouraud}, {no_suns}, {}},
-    {"Gouraud", "Phong's model", {gouraud}, {physical}, {}},
-    {"flat", "asked for", {}, {}, {flat}},
-    {"flat", "lights", {flat}, {no_suns}, {}},
-    {"flat",
-     "an environment that is scattered",
-     {flat, no_suns},
-     {environment},
-     {environment, scattered}},
-    {"flat", "an environment that is mirrored", {flat, no_suns, environment}, {}, {mirror}},
-    {"diffuse texture", "has one", {}, {}, {diffuse_texture}},
-    {"diffuse texture", "texture coordinates", {diffuse_texture}, {no_texcoords}, {}},
-    {"diffuse texture", "scattered light", {diffuse_texture, black_surface}, {}, {scattering}},
-    {"diffuse texture",
-     "alpha that counts on a black surface",
-     {diffuse_texture, black_surface},
-     {},
-     {masked}},
-    {"vertex colours",
-     "red",
-     {with_colors({1, 1, 1, 1})},
-     {},
-     {with_last_color({0.999F, 1, 1, 1})}},
-    {"vertex colours",
-     "green",
-     {with_colors({1, 1, 1, 1})},
-     {},
-     {with_last_color({1, 0.999F, 1, 1})}},
-    {"vertex colours",
-     "blue",
-     {with_colors({1, 1, 1, 1})},
-     {},
-     {with_last_color({1, 1, 0.999F, 1})}},
-    {"vertex colours", "alpha that counts", {with_colors({1, 1, 1, 0.5F})}, {}, {blended}},
-    {"vertex colours",
-     "scattered light",
-     {with_colors({0.5F, 1, 1, 1}), black_surface},
-     {},
-     {scattering}},
-    {"alpha mask", "opacity", {masked}, {}, {translucent}},
-    {"alpha mask",
-     "a cutoff above 1",
-     {masked},
-     {with(&Material::alpha_cutoff, 1.0F)},
-     {with(&Material::alpha_cutoff, 1.001F)}},
-    {"alpha mask", "its mode", {translucent}, {}, {masked}},
-    {"alpha mask", "a diffuse texture that shows", {masked, diffuse_texture}, {no_texcoords}, {}},
-    {"alpha mask", "an opacity texture that shows", {masked, opacity_texture}, {no_texcoords}, {}},
-    {"alpha mask",
-     "the alpha of vertex colors",
-     {masked, with_colors({1, 1, 1, 1})},
-     {},
-     {with_last_color({1, 1, 1, 0.999F})}},
-    {"alpha blending", "opacity", {blended}, {}, {translucent}},
-    {"alpha blending",
-     "no cutoff",
-     {blended, with(&Material::alpha_cutoff, 2.0F)},
-     {},
-     {translucent}},
-    {"alpha blending", "its mode", {translucent}, {}, {blended}},
-    {"alpha blending",
-     "an opacity texture that shows",
-     {blended, opacity_texture},
-     {no_texcoords},
-     {}},
-    {"opacity texture", "has one", {masked}, {}, {opacity_texture}},
-    {"opacity texture", "not opaque", {opacity_texture}, {}, {blended}},
-    {"opacity texture",
-     "texture coordinates",
-     {masked, translucent, opacity_texture},
-     {no_texcoords},
-     {}},
-    {"diffuse texture", "unlit", {unlit}, {}, {diffuse_texture}},
-    {"vertex colours", "unlit", {unlit}, {}, {with_colors({1, 0.999F, 1, 1})}},
-    {"alpha mask", "unlit", {unlit, translucent}, {}, {masked}},
-    {"opacity texture", "unlit", {unlit, masked}, {}, {opacity_texture}},
-    {"opacity texture", "unlit and opaque", {unlit, opacity_texture}, {}, {masked}},
-};
-
-const std::vector<Boundary> normal_boundaries = {
-    {"normal map", "has one", {}, {}, {normal_map}},
-    {"normal map", "tangent space", {}, {object_map}, {normal_map}},
-    {"normal map", "texture coordinates", {normal_map}, {no_texcoords}, {}},
-    {"normal map", "lights", {normal_map}, {no_suns}, {}},
-    {"normal map",
-     "an environment that is scattered",
-     {normal_map, no_suns},
-     {environment},
-     {environment, scattered}},
-    {"normal map",
-     "an environment that is mirrored",
-     {normal_map, no_suns, environment},
-     {},
-     {mirror}},
-    {"normal map", "refraction", {normal_map, no_suns, environment}, {}, {transmitting}},
-    {"normal map", "not Gouraud", {normal_map}, {gouraud}, {}},
-    {"normal map", "not flat", {normal_map}, {flat}, {}},
-    {"object-space normal map", "has one", {}, {}, {object_map}},
-    {"object-space normal map", "object space", {}, {normal_map}, {object_map}},
-    {"object-space normal map", "texture coordinates", {object_map}, {no_texcoords}, {}},
-    {"object-space normal map", "lights", {object_map}, {no_suns}, {}},
-    {"bump map", "has one", {}, {}, {bump_map}},
-    {"bump map", "texture coordinates", {bump_map}, {no_texcoords}, {}},
-    {"bump map", "lights", {bump_map}, {no_suns}, {}},
-    {"derivative frames", "asked for", {normal_map}, {}, {derivative_frames}},
-    {"derivative frames", "a map", {derivative_frames}, {}, {bump_map}},
-    {"derivative frames", "tangent space", {derivative_frames}, {object_map}, {normal_map}},
-    {"computed tangents", "a map", {}, {}, {normal_map}},
-    {"computed tangents", "a height map", {}, {}, {bump_map}},
-    {"computed tangents", "tangent space", {}, {object_map}, {normal_map}},
-    {"computed tangents", "none stored", {normal_map}, {stored_tangents}, {}},
-    {"computed tangents", "stored frames", {bump_map}, {derivative_frames}, {}},
-    {"computed tangents", "lights", {normal_map}, {no_suns}, {}},
-    {"specular antialiasing", "asked for", {shiny, normal_map}, {}, {antialiased}},
-    {"specular antialiasing", "highlights", {normal_map, antialiased}, {}, {shiny}},
-    {"specular antialiasing", "a normal map", {shiny, antialiased}, {bump_map}, {normal_map}},
-    {"specular antialiasing", "an object-space normal map", {shiny, antialiased}, {}, {object_map}},
-    {"specular antialiasing",
-     "a mirrored environment without lights",
-     {physical, no_suns, normal_map, antialiased},
-     {},
-     {environment}},
-    {"specular antialiasing",
-     "metallic-roughness under a light",
-     {normal_map, antialiased},
-     {},
-     {physical}},
-    {"double-sided normals", "asked for", {}, {}, {double_sided}},
-    {"double-sided normals", "lights", {double_sided}, {no_suns}, {}},
-    {"double-sided normals", "lights at vertices", {double_sided, gouraud}, {no_suns}, {}},
-    {"double-sided normals",
-     "a scattered environment",
-     {double_sided, no_suns},
-     {environment},
-     {environment, scattered}},
-    {"double-sided normals", "not flat", {double_sided}, {flat}, {}},
-};
-
-const std::vector<Boundary> light_boundaries = {
-    {"ambient", "red of the scene", {}, {}, {with(&Scene::ambient, {0.001F, 0, 0})}},
-    {"ambient",
-     "a channel of both",
-     {with(&Scene::ambient, {0, 1, 0})},
-     {with(&Material::ambient, {1, 0, 1})},
-     {with(&Material::ambient, {0, 0.001F, 0})}},
-    {"ambient",
-     "metallic-roughness has no ambient color",
-     {ambient, black_surface},
-     {},
-     {physical}},
-    {"ambient", "metallic-roughness in ambient light", {physical}, {}, {ambient}},
-    {"directional lights", "has one", {}, {no_suns}, {}},
-    {"directional lights",
-     "not black",
-     {},
-     {with_sun(&Sun::irradiance, black)},
-     {with_sun(&Sun::irradiance, faint)}},
-    {"directional lights",
-     "highlights that are not black",
-     {with_sun(&Sun::irradiance, black), shiny},
-     {with_sun(&Sun::highlight_irradiance, black)},
-     {with_sun(&Sun::highlight_irradiance, glm::vec3(0.001F, 0, 0))}},
-    {"directional lights", "a surface that scatters", {black_surface}, {}, {scattering}},
-    {"directional lights", "a surface with highlights", {black_surface}, {}, {shiny}},
-    {"point lights", "has one", {}, {}, {point_light}},
-    {"point lights", "not black", {point_light}, {black_point_light}, {}},
-    {"spot lights", "has one", {}, {}, {spot_light}},
-    {"spot lights", "not black", {spot_light}, {with_spot(&Lamp::intensity, black)}, {}},
-    {"no falloff", "has one", {}, {}, {constant_light}},
-    {"no falloff", "its law", {}, {point_light}, {constant_light}},
-    {"no falloff", "every light's law", {constant_light}, {spot_light}, {constant_light}},
-    {"no falloff",
-     "not black",
-     {constant_light, point_light},
-     {black_point_light},
-     {black_second_light}},
-    {"mixed falloff", "one that does not fall off", {point_light}, {point_light}, {constant_light}},
-    {"mixed falloff", "one that falls off", {constant_light}, {constant_light}, {point_light}},
-    {"mixed falloff", "a spot light that falls off", {constant_light}, {}, {spot_light}},
-    {"mixed falloff", "not black", {constant_light, point_light}, {black_point_light}, {}},
-    {"light ranges", "a point light's", {point_light}, {}, {with_lamp(&Lamp::range, 5.0F)}},
-    {"light ranges", "a spot light's", {spot_light}, {}, {with_spot(&Lamp::range, 5.0F)}},
-    {"light ranges",
-     "not black",
-     {point_light, with_lamp(&Lamp::range, 5.0F), spot_light},
-     {black_point_light},
-     {}},
-    {"highlight colours",
-     "another than a directional light's",
-     {shiny},
-     {with_sun(&Sun::highlight_irradiance, glm::vec3(1.0F))},
-     {with_sun(&Sun::highlight_irradiance, glm::vec3(1, 1, 0.999F))}},
-    {"highlight colours",
-     "another than a point light's",
-     {shiny, point_light},
-     {with_lamp(&Lamp::highlight_intensity, faint)},
-     {with_lamp(&Lamp::highlight_intensity, glm::vec3(0, 0, 0.002F))}},
-    {"highlight colours",
-     "another than a spot light's",
-     {shiny, spot_light},
-     {with_spot(&Lamp::highlight_intensity, faint)},
-     {with_spot(&Lamp::highlight_intensity, glm::vec3(0, 0.001F, 0.001F))}},
-    {"highlight colours", "highlights", {with_sun(&Sun::highlight_irradiance, faint)}, {}, {shiny}},
-    {"light buffer", "more than a block holds", {}, {with_suns(512)}, {with_suns(513)}},
-    {"light buffer",
-     "rows of highlights",
-     {shiny, with_sun(&Sun::highlight_irradiance, faint)},
-     {with_suns(341)},
-     {with_suns(342)}},
-    {"light buffer", "a surface that scatters", {with_suns(513)}, {black_surface}, {}},
-    {"environment light", "an environment", {}, {}, {environment, scattered}},
-    {"environment light",
-     "an environment that is scattered",
-     {},
-     {environment},
-     {environment, scattered}},
-    {"environment light",
-     "a surface that scatters",
-     {black_surface, environment, scattered},
-     {},
-     {scattering}},
-    {"environment light",
-     "metallic-roughness has no diffuse color",
-     {black_surface, environment, scattered},
-     {},
-     {physical}},
-    {"environment light", "lit", {environment, scattered}, {unlit}, {}},
-    {"occlusion texture", "has one", {ambient}, {}, {occlusion_texture}},
-    {"occlusion texture",
-     "its strength",
-     {ambient, occlusion_texture},
-     {with(&Material::occlusion_strength, 0.0F)},
-     {with(&Material::occlusion_strength, 0.001F)}},
-    {"occlusion texture", "texture coordinates", {ambient, occlusion_texture}, {no_texcoords}, {}},
-    {"occlusion texture", "ambient light", {occlusion_texture}, {}, {ambient}},
-    {"occlusion texture",
-     "a scattered environment",
-     {occlusion_texture},
-     {environment},
-     {environment, scattered}},
-    {"occlusion texture",
-     "an environment mirrored by metallic-roughness",
-     {mirror, environment, occlusion_texture},
-     {},
-     {physical}},
-    {"diffuse", "a surface that scatters", {black_surface}, {}, {scattering}},
-    {"diffuse", "metallic-roughness has no diffuse color", {black_surface}, {}, {physical}},
-    {"diffuse", "lights", {}, {no_suns}, {}},
-};
-
-const std::vector<Boundary> highlight_boundaries = {
-    {"Phong highlights", "a specular color", {phong}, {}, {shiny}},
-    {"Phong highlights", "its model", {shiny}, {}, {phong}},
-    {"Phong highlights", "not metallic-roughness", {shiny, phong}, {physical}, {}},
-    {"Phong highlights", "lights", {shiny, phong}, {no_suns}, {}},
-    {"Blinn-Phong highlights", "a specular color", {}, {}, {shiny}},
-    {"Blinn-Phong highlights",
-     "its model",
-     {shiny},
-     {phong},
-     {with(&Material::specular_model, SpecularModel::blinn_phong_normalized)}},
-    {"Blinn-Phong highlights", "not metallic-roughness", {shiny}, {physical}, {}},
-    {"Blinn-Phong highlights", "lights", {shiny}, {no_suns}, {}},
-    {"specular texture", "has one", {shiny}, {}, {specular_texture}},
-    {"specular texture", "a specular color", {specular_texture}, {}, {shiny}},
-    {"specular texture", "texture coordinates", {shiny, specular_texture}, {no_texcoords}, {}},
-    {"specular texture", "lights", {shiny, specular_texture}, {no_suns}, {}},
-    {"emission", "a channel", {}, {}, {emissive}},
-    {"emission texture", "has one", {emissive}, {}, {emission_texture}},
-    {"emission texture", "emission", {emission_texture}, {}, {emissive}},
-    {"emission texture", "texture coordinates", {emissive, emission_texture}, {no_texcoords}, {}},
-    {"mirror reflection", "reflectivity", {environment}, {}, {mirror}},
-    {"mirror reflection", "an environment", {mirror}, {}, {environment}},
-    {"mirror reflection", "not rough", {mirror, environment}, {rough}, {}},
-    {"mirror reflection", "not metallic-roughness", {mirror, environment}, {physical}, {}},
-    {"glossy reflection", "reflectivity", {environment, rough}, {}, {mirror}},
-    {"glossy reflection", "rough", {mirror, environment}, {}, {rough}},
-    {"glossy reflection", "an environment", {physical}, {}, {environment}},
-    {"glossy reflection", "metallic-roughness", {environment}, {}, {physical}},
-    {"Schlick's Fresnel",
-     "two reflectivities",
-     {mirror, environment},
-     {with(&Material::grazing_reflectivity, faint)},
-     {with(&Material::grazing_reflectivity, {0, 0.001F, 0.001F})}},
-    {"Schlick's Fresnel", "its form", {mirror, environment}, {dielectric}, {}},
-    {"Schlick's Fresnel", "an environment", {mirror}, {}, {environment}},
-    {"Schlick's Fresnel", "not metallic-roughness", {mirror, environment}, {physical}, {}},
-    {"dielectric Fresnel", "asked for", {mirror, environment}, {}, {dielectric}},
-    {"dielectric Fresnel", "reflectivity", {environment, dielectric}, {}, {mirror}},
-    {"conductor Fresnel", "asked for", {mirror, environment}, {}, {conductor}},
-    {"conductor Fresnel", "an environment", {mirror, conductor}, {}, {environment}},
-    {"refraction", "transmission", {environment}, {}, {transmitting}},
-    {"refraction", "an environment", {transmitting}, {}, {environment}},
-    {"refraction", "not metallic-roughness", {environment, transmitting}, {physical}, {}},
-};
-
-const std::vector<Boundary> frame_boundaries = {
-    {"exposure", "not 1", {}, {}, {exposed}},
-    {"exposure", "sRGB codes", {exposed}, {linear_output}, {}},
-    {"exposure", "no finishing pass", {exposed}, {two_samples}, {}},
-    {"exposure", "unlit", {unlit}, {}, {exposed}},
-    {"exposure", "unlit in sRGB codes", {unlit, exposed}, {linear_output}, {}},
-    {"ACES tone mapping", "unlit", {unlit}, {}, {aces}},
-    {"Reinhard tone mapping", "its curve", {}, {aces}, {reinhard}},
-    {"Reinhard tone mapping", "sRGB codes", {reinhard}, {linear_output}, {}},
-    {"ACES tone mapping", "its curve", {}, {reinhard}, {aces}},
-    {"ACES tone mapping", "asked for", {}, {}, {aces}},
-    {"skybox", "an environment", {}, {}, {environment, skybox}},
-    {"skybox", "asked for", {environment}, {}, {skybox}},
-    {"skybox", "not a debug view", {environment, skybox}, {view_of_data}, {}},
-    {"prefiltered environment", "rough", {mirror, environment}, {}, {rough}},
-    {"prefiltered environment", "lit", {physical, environment}, {unlit}, {}},
-    {"environment BRDF table", "metallic-roughness", {mirror, environment, rough}, {}, {physical}},
-    {"environment BRDF table", "an environment", {physical}, {}, {environment}},
-    {"environment irradiance",
-     "an environment that is scattered",
-     {},
-     {environment},
-     {environment, scattered}},
-    {"environment irradiance",
-     "a surface that scatters",
-     {black_surface, environment, scattered},
-     {},
-     {scattering}},
-    {"environment map", "seen itself", {environment}, {}, {skybox}},
-    {"environment map", "mirrored", {environment}, {}, {mirror}},
-    {"environment map", "refracted", {environment}, {}, {transmitting}},
-    {"environment map", "scattered", {environment}, {}, {scattered}},
-    {"environment map", "blurred", {environment}, {}, {physical}},
-    {"sorted blending", "not a mask", {translucent}, {masked}, {blended}},
-    {"sorted blending", "opacity", {blended}, {}, {translucent}},
-    {"finishing pass", "samples", {}, {}, {two_samples}},
-    {"finishing pass", "blending", {translucent}, {}, {blended}},
-    {"finishing pass", "not data", {two_samples}, {view_of_data}, {}},
-};
-
-/// Whether the effect is planned on one side of its boundary.
-bool is_planned(const Boundary& boundary, const std::vector<Change>& side) {
-    Frame frame;
-    for (const Change& change : boundary.both)
-        change(frame);
-    for (const Change& change : side)
-        change(frame);
-    const FramePlan plan = plan_effects(frame.scene, frame.settings);
-    const DrawPlan& draw = plan.draws.at(0);
-    const auto effect =
-        std::find_if(effects().begin(), effects().end(), [&](const Effect& candidate) {
-            return std::string_view(candidate.name) == boundary.effect;
-        });
-    if (effect != effects().end()) {
-        const bool is_on = effect->on(draw.features);
-        // A finishing pass exposes and maps tones instead of the draw.
-        if (!plan.finishing_pass) {
-            EXPECT_EQ(reason(draw.reasons, boundary.effect).on, is_on);
-        }
-        return is_on;
-    }
-    if (std::string_view(boundary.effect) == "computed tangents") return draw.needs_tangents;
-    return reason(plan.reasons, boundary.effect).on;
-}
-
-}  // namespace boundaries
-
-TEST(EffectPlan, HasEachEffectOnOneSideOfEachPartOfItsCondition) {
-    using namespace boundaries;
-    std::set<std::string> tested;
-    for (const auto* table : {&color_boundaries, &normal_boundaries, &light_boundaries,
-                              &highlight_boundaries, &frame_boundaries}) {
-        for (const Boundary& boundary : *table) {
-            SCOPED_TRACE(std::string(boundary.effect) + ": " + boundary.condition);
-            EXPECT_FALSE(is_planned(boundary, boundary.off));
-            EXPECT_TRUE(is_planned(boundary, boundary.on));
-            tested.insert(boundary.effect);
-        }
-    }
-    const FramePlan plan = plan_effects(lit_scene(gray()), {.samples = 1});
-    for (const auto& reasons : {plan.draws.at(0).reasons, plan.reasons}) {
-        for (const EffectReason& entry : reasons)
-            EXPECT_TRUE(tested.count(entry.effect)) << entry.effect;
-    }
-}
-
-TEST(EffectPlan, NamesWhatDecided) {
-    using namespace boundaries;
-    struct Decision {
-        const char* effect;
-        std::vector<Change> changes;
-        const char* reason;
-    };
-    const std::vector<Decision> decisions = {
-        {"alpha mask", {}, "material 'body' is opaque"},
-        {"alpha mask", {masked}, "material 'body' is covered everywhere"},
-        {"alpha mask",
-         {masked, translucent},
-         "material 'body' has holes where alpha is below its cutoff"},
-        {"alpha blending", {blended}, "material 'body' is covered everywhere"},
-        {"alpha blending",
-         {blended, translucent},
-         "material 'body' lets through what is behind it"},
-        {"no falloff", {constant_light}, "no light falls off with distance"},
-        {"no falloff", {point_light}, "every light falls off with the squared distance"},
-        {"no falloff", {point_light, constant_light}, "some lights fall off with distance"},
-        {"mixed falloff", {point_light}, "all lights follow one law"},
-        {"mixed falloff", {constant_light}, "all lights follow one law"},
-        {"mixed falloff",
-         {point_light, constant_light},
-         "some lights fall off with distance and some do not"},
-        {"ambient", {}, "the scene has no ambient light"},
-        {"ambient", {ambient}, "material 'body' scatters ambient light"},
-        {"ambient", {ambient, black_surface}, "material 'body' scatters none"},
-        {"ambient", {ambient, black_surface, physical}, "material 'body' scatters ambient light"},
-        {"environment light", {}, "the scene has no environment"},
-        {"environment light", {environment}, "the environment is not to light surfaces"},
-        {"environment light", {environment, scattered, black_surface}, "material 'body' is black"},
-        {"refraction", {}, "material 'body' lets nothing through"},
-        {"refraction", {transmitting}, "the scene has no environment"},
-        {"mirror reflection", {}, "material 'body' reflects nothing"},
-        {"mirror reflection", {mirror}, "the scene has no environment"},
-        {"ACES tone mapping", {}, "radiance above 1 is shown as 1"},
-        {"ACES tone mapping", {reinhard}, "the scene asks for another curve"},
-    };
-    for (const Decision& decision : decisions) {
-        Frame frame;
-        for (const Change& change : decision.changes)
-            change(frame);
-        const FramePlan plan = plan_effects(frame.scene, frame.settings);
-        EXPECT_EQ(reason(plan.draws.at(0).reasons, decision.effect).reason, decision.reason);
-    }
 }
 
 TEST(FeaturesOf, AgreeWithThePlan) {

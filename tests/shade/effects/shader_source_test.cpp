@@ -1,22 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Includes and parts: order, once only, cycles, missing ones, overrides, and the origin of a line.
-#include "effects/shader_source.h"
-
+// Shader sources: includes and overrides, the parts of each set of effects, listings of programs,
+// and lights as uniform values.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <set>
 
+#include "effects/light_rows.h"
+#include "effects/shader_source.h"
+#include "effects/surface_program.h"
 #include "relief/shade/error.h"
+#include "relief/shade/shader_listing.h"
+#include "shade/effects/feature_sets.h"
 #include "support/gl_environment.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
+using testing::Contains;
+using testing::ElementsAre;
 using ::testing::HasSubstr;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
-/// A folder of shader files that goes before the embedded ones.
+/// A folder of shader files that override the embedded ones.
 class ShaderFolder : public ::testing::Test {
   protected:
     void write(const std::string& name, const std::string& text) const {
@@ -52,7 +63,7 @@ TEST_F(ShaderFolder, KnowsWhereEachLineCameFrom) {
     write("main.glsl", "first\n#include \"a.glsl\"\nlast\n");
     write("a.glsl", "one\ntwo\n");
     const ShaderSource source = assemble("main.glsl", {}, {});
-    // 1: version, 2: main.glsl:1, 3: a.glsl:1, 4: a.glsl:2, 5: main.glsl:3.
+    // Lines of the source: 1: version, 2: main.glsl:1, 3: a.glsl:1, 4: a.glsl:2, 5: main.glsl:3.
     EXPECT_EQ(with_file_names("0:4(7): error: what\n0:5(1): error: that", source),
               "a.glsl:2(7): error: what\nmain.glsl:3(1): error: that");
     EXPECT_EQ(with_file_names("0(3) : error C1008", source), "a.glsl:1 : error C1008");
@@ -134,6 +145,215 @@ TEST(EmbeddedShaders, AreTheFilesOfTheProject) {
         EXPECT_EQ(shader.text, text) << shader.name;
         EXPECT_THAT(text, ::testing::StartsWith("// SPDX-License-Identifier: Apache-2.0\n//"));
     }
+}
+
+TEST(ShaderListings, HoldEachProgramOnceWithItsDraws) {
+    FramePlan plan;
+    plan.draws.resize(3);
+    plan.draws[1].features.emission = true;
+    const std::vector<ShaderListing> listings = shader_listings(plan);
+    ASSERT_EQ(listings.size(), 2U);
+    EXPECT_THAT(listings[0].draws, ElementsAre(0, 2));
+    EXPECT_THAT(listings[1].draws, ElementsAre(1));
+    EXPECT_THAT(listings[0].vertex, StartsWith("#version 330 core\n"));
+    EXPECT_THAT(listings[0].fragment, Not(HasSubstr("emission_color")));
+    EXPECT_THAT(listings[1].fragment, HasSubstr("uniform vec3 emission_color;"));
+    EXPECT_THAT(listings[1].files, Contains("emission.glsl#color"));
+    EXPECT_THAT(listings[1].files, Contains("surface.vert.glsl"));
+    EXPECT_TRUE(std::is_sorted(listings[1].files.begin(), listings[1].files.end()));
+}
+
+TEST(ShaderListings, OfNoDrawsAreNone) {
+    EXPECT_TRUE(shader_listings({}).empty());
+}
+
+TEST(SurfaceProgram, ComesTogetherForEveryCanonicalSet) {
+    test::for_random_features(5000, [](const Features& f) {
+        ASSERT_NO_THROW((void)surface_program(canonical(f))) << describe(f);
+    });
+}
+
+/// Returns the parts that the steps of a stage name and its source does not contain. Neutral code
+/// is not a part.
+std::vector<std::string> unused_parts(const ShaderSteps& steps, const ShaderSource& source) {
+    const std::set<std::string> parts(source.parts.begin(), source.parts.end());
+    std::vector<std::string> unused;
+    for (const auto& [step, code] : steps) {
+        if (!code.part.empty() && !parts.contains(std::string(code.part)))
+            unused.emplace_back(code.part);
+    }
+    return unused;
+}
+
+TEST(SurfaceProgram, ChoosesNoPartThatItDoesNotUse) {
+    // These parts implement a step in every program, even if it is unused. They have no inputs.
+    const std::set<std::string> idle = {"inputs.glsl#position", "color.glsl#tint",
+                                        "metallic_roughness.glsl#factors",
+                                        "metallic_roughness.glsl#tint"};
+    for (const Features& f : test::covering_features()) {
+        const SurfaceProgram program = surface_program(f);
+        const ChosenSteps steps = chosen_steps(f);
+        for (const auto& [chosen, source] : {std::pair(steps.vertex, program.vertex),
+                                             std::pair(steps.fragment, program.fragment)}) {
+            for (const std::string& part : unused_parts(chosen, source)) {
+                EXPECT_TRUE(idle.contains(part)) << describe(f) << " chooses " << part;
+            }
+        }
+    }
+}
+
+TEST(SurfaceProgram, OfADiffuseSurfaceHasNoCodeForAnythingElse) {
+    Features f;
+    f.directional_lights = 1;
+    f.diffuse = true;
+    const SurfaceProgram program = surface_program(f);
+    for (const char* absent : {"texture(", "sampler", "tangent", "eye_world", "exp(", "pow_",
+                               "shininess", "reflect(", "emission_color", "position_world"}) {
+        EXPECT_EQ(program.fragment.text.find(absent), std::string::npos) << absent;
+        EXPECT_EQ(program.vertex.text.find(absent), std::string::npos) << absent;
+    }
+}
+
+TEST(SurfaceProgram, HasNeutralCodeForAnAbsentEffect) {
+    Features f;
+    f.ambient = true;
+    EXPECT_EQ(chosen_steps(f).fragment.at("occlusion"),
+              (StepCode{.neutral = "float occlusion() { return 1.0; }"}));
+    f.occlusion_texture = true;
+    EXPECT_EQ(chosen_steps(f).fragment.at("occlusion"),
+              (StepCode{.part = "ambient.glsl#occlusion"}));
+}
+
+TEST(PlannedInterface, IsKnownByHandForANormalMappedSurface) {
+    Features f;
+    f.directional_lights = 2;
+    f.diffuse = true;
+    f.detail = NormalDetail::normal_map;
+    const PlannedInterface planned = planned_interface(f);
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(planned.attributes,
+              (Names{"normal_object", "position_object", "tangent_object", "texcoord"}));
+    EXPECT_EQ(planned.uniforms,
+              (Names{"clip_from_object", "diffuse_color", "handedness", "normal_map_bias",
+                     "normal_map_scale", "world_from_object_normal", "world_from_object_tangent"}));
+    EXPECT_EQ(planned.samplers, (Names{"normal_texture"}));
+    EXPECT_EQ(planned.uniform_blocks, (Names{"Lights"}));
+}
+
+TEST(PlannedInterface, OfNothingIsThePositionAlone) {
+    const PlannedInterface planned = planned_interface(Features{});
+    EXPECT_EQ(planned.attributes, (std::vector<std::string>{"position_object"}));
+    EXPECT_EQ(planned.uniforms, (std::vector<std::string>{"clip_from_object"}));
+    EXPECT_TRUE(planned.samplers.empty());
+    EXPECT_TRUE(planned.uniform_blocks.empty());
+}
+
+TEST(CoveringFeatures, MeetEveryPairThatCanMeet) {
+    const std::vector<Features> covering = test::covering_features();
+    EXPECT_GE(covering.size(), 16U);  // Two fields with four values each.
+    EXPECT_LE(covering.size(), 200U);
+    const auto met = [&](const auto& condition) {
+        return std::any_of(covering.begin(), covering.end(), condition);
+    };
+    // Pairs that a careless choice would miss.
+    EXPECT_TRUE(met(
+        [](const Features& f) { return f.lights_in_buffer && f.specular == SpecularTerm::phong; }));
+    EXPECT_TRUE(met([](const Features& f) {
+        return f.interpolation == Interpolation::gouraud && f.fresnel == FresnelTerm::conductor;
+    }));
+    EXPECT_TRUE(met([](const Features& f) {
+        return f.metallic_roughness && f.frame == TangentFrame::derivatives;
+    }));
+    EXPECT_TRUE(met([](const Features& f) {
+        return f.alpha == AlphaMode::mask && f.detail == NormalDetail::bump_map;
+    }));
+}
+
+Features counts(std::uint32_t directional, std::uint32_t point, std::uint32_t spot) {
+    Features f;
+    f.directional_lights = directional;
+    f.point_lights = point;
+    f.spot_lights = spot;
+    return f;
+}
+
+TEST(LightRows, HoldEveryKindInOrder) {
+    Scene scene;
+    scene.directional_lights = {{{0, -2, 0}, {1, 2, 3}}};
+    scene.point_lights = {{{4, 5, 6}, {7, 8, 9}, std::nullopt}, {{1, 1, 1}, {2, 2, 2}, 4.0F}};
+    const std::vector<glm::vec4> rows = light_rows(scene, counts(1, 2, 0));
+    ASSERT_EQ(rows.size(), 6U);
+    EXPECT_EQ(rows[0], glm::vec4(0, 1, 0, 0));  // The unit vector to the light.
+    EXPECT_EQ(rows[1], glm::vec4(1, 2, 3, 0));
+    EXPECT_EQ(rows[2], glm::vec4(4, 5, 6, 0));
+    EXPECT_EQ(rows[3], glm::vec4(7, 8, 9, 1));  // The inverse square law.
+    EXPECT_EQ(rows[4], glm::vec4(1, 1, 1, 0.25F));
+    const LightRowLayout layout = light_row_layout(counts(1, 2, 0));
+    EXPECT_EQ(layout.first_point, 2U);
+    EXPECT_EQ(layout.first_spot, 6U);
+    EXPECT_EQ(layout.count, 6U);
+}
+
+TEST(LightRows, OfASpotFadeFromTheInnerToTheOuterCone) {
+    Scene scene;
+    SpotLight spot;
+    spot.direction_world = {0, 0, -3};
+    spot.inner_cone = 0.25F;
+    spot.outer_cone = 0.5F;
+    scene.spot_lights = {spot};
+    const std::vector<glm::vec4> rows = light_rows(scene, counts(0, 0, 1));
+    ASSERT_EQ(rows.size(), 3U);
+    const auto share = [&](float angle) { return std::cos(angle) * -rows[2].z + rows[2].w; };
+    // Cosines near 1 in float, times a scale of 11, have an error of about 1e-6.
+    EXPECT_NEAR(share(0.25F), 1.0F, 1e-5F);
+    EXPECT_NEAR(share(0.5F), 0.0F, 1e-5F);
+    EXPECT_EQ(glm::vec2(rows[2]), glm::vec2(0, 0));
+}
+
+TEST(LightRows, LeaveBlackLightsOut) {
+    Scene scene;
+    scene.directional_lights = {{{0, -1, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 1, 1}}};
+    const std::vector<glm::vec4> rows = light_rows(scene, counts(1, 0, 0));
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0], glm::vec4(-1, 0, 0, 0));
+}
+
+TEST(LightRows, OfForcedLightsAreBlack) {
+    const std::vector<glm::vec4> rows = light_rows(Scene{}, counts(1, 1, 1));
+    ASSERT_EQ(rows.size(), 7U);
+    for (const glm::vec4& row : rows)
+        EXPECT_EQ(row, glm::vec4(0));
+}
+
+TEST(LightRows, SayWhichLampsDoNotFallOff) {
+    Scene scene;
+    scene.point_lights = {{{4, 5, 6}, {7, 8, 9}, std::nullopt, Falloff::none}};
+    EXPECT_EQ(light_rows(scene, counts(0, 1, 0))[1], glm::vec4(7, 8, 9, 0));
+}
+
+TEST(LightRows, HoldTheColoursOfHighlightsWhereTheyDiffer) {
+    Scene scene;
+    scene.directional_lights = {{{0, -1, 0}, {1, 1, 1}, glm::vec3(0.5F)}};
+    scene.point_lights = {{{4, 5, 6}, {7, 8, 9}}};
+    scene.spot_lights = {SpotLight{{{1, 2, 3}, {0, 0, 0}}}};
+    // This light has only a highlight.
+    scene.spot_lights[0].point.highlight_intensity = glm::vec3(3.0F);
+    Features f = counts(1, 1, 1);
+    f.highlight_colors = true;
+    const std::vector<glm::vec4> rows = light_rows(scene, f);
+    ASSERT_EQ(rows.size(), 10U);
+    EXPECT_EQ(rows[2], glm::vec4(0.5F, 0.5F, 0.5F, 0));
+    EXPECT_EQ(rows[5], glm::vec4(7, 8, 9, 0));
+    EXPECT_EQ(rows[9], glm::vec4(3, 3, 3, 0));
+    EXPECT_EQ(light_row_layout(f).first_spot, 6U);
+}
+
+TEST(LightRows, MakeDirectionsOfAnyLengthUnit) {
+    Scene scene;
+    scene.directional_lights = {{{0, -1e-30F, 0}, {1, 1, 1}}, {{3e38F, 0, 0}, {1, 1, 1}}};
+    const std::vector<glm::vec4> rows = light_rows(scene, counts(2, 0, 0));
+    EXPECT_EQ(rows[0], glm::vec4(0, 1, 0, 0));
+    EXPECT_EQ(rows[2], glm::vec4(-1, 0, 0, 0));
 }
 
 }  // namespace

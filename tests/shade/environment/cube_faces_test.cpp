@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Six images around a point: directions, solid angles, crosses and turned hands.
-#include "environment/environment_images.h"
-
+// Environment images: cube faces, crosses and light probes, with the direction and solid angle of
+// each texel.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "environment/environment_images.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Six faces whose texels hold what they show: the direction of their middle.
+/// Six faces whose texels hold the direction of their center.
 std::vector<Image> faces_of_directions(int size) {
     std::vector<Image> faces;
     for (std::size_t face = 0; face < 6; ++face) {
@@ -42,7 +42,7 @@ glm::vec3 texel(const Image& image, int x, int y) {
     return {samples[start], samples[start + 1], samples[start + 2]};
 }
 
-/// Lays a face into a cross, turned by 180 degrees if asked.
+/// Copies a face into a cross, optionally rotated by 180 degrees.
 void lay(Image& cross, const Image& face, int column, int row, bool turned = false) {
     const int size = face.width;
     for (int y = 0; y < size; ++y) {
@@ -113,7 +113,8 @@ TEST(CubeFaces, SolidAnglesAddUpToTheSphere) {
         }
     }
     EXPECT_NEAR(sum, 4.0 * pi / 6.0, 1e-14);
-    // A small one in the middle is its area; at a corner, 3 sqrt(3) times smaller.
+    // The solid angle of a small square in the middle equals its area. At a corner it is 3 sqrt(3)
+    // times smaller.
     EXPECT_NEAR(solid_angle({0, 0}, {1e-4, 1e-4}) / 1e-8, 1.0, 1e-6);
     EXPECT_NEAR(solid_angle({1 - 1e-4, 1 - 1e-4}, {1, 1}) / 1e-8, 1.0 / std::sqrt(27.0), 1e-4);
 }
@@ -128,7 +129,7 @@ TEST(CubeFaces, ACrossOfEitherShapeFallsApartIntoItsFaces) {
     }
 }
 
-/// The largest step between neighbours in a cross, where both belong to faces.
+/// Returns the largest difference between adjacent texels of a cross if both belong to faces.
 float largest_step(const Image& cross) {
     float largest = 0.0F;
     const auto step = [&](int x0, int y0, int x1, int y1) {
@@ -148,15 +149,15 @@ float largest_step(const Image& cross) {
 
 TEST(CubeFaces, NeighboursInACrossAreNeighboursOnTheCube) {
     const std::vector<Image> faces = faces_of_directions(8);
-    // Directions to texels side by side are 2/8 apart on a face, and sqrt(2)/8 round an edge; any
-    // face laid wrongly would be 1 apart somewhere.
+    // The directions of adjacent texels differ by 2/8 on a face and by sqrt(2)/8 across an edge. A
+    // wrong face would give a difference of 1 somewhere.
     EXPECT_LE(largest_step(horizontal_cross(faces)), 0.2501F);
     EXPECT_LE(largest_step(vertical_cross(faces)), 0.2501F);
 }
 
 TEST(CubeFaces, ACrossKeepsItsCodes) {
     Image cross = make_image(12, 9, 4, 8, ColorSpace::srgb);
-    cross.as<std::uint8_t>()[4 * (12 * 3 + 6) + 3] = 77;  // Upper left texel of +x.
+    cross.as<std::uint8_t>()[4 * (12 * 3 + 6) + 3] = 77;  // The upper left texel of +x.
     const std::vector<Image> faces = faces_of_cross(cross, "codes");
     EXPECT_EQ(faces[0].bits(), 8);
     EXPECT_EQ(faces[0].color_space, ColorSpace::srgb);
@@ -189,7 +190,7 @@ TEST(CubeFaces, TheOtherHandTurnsXRound) {
     for (std::size_t face = 0; face < 6; ++face) {
         for (int y = 0; y < 6; ++y) {
             for (int x = 0; x < 6; ++x) {
-                // In the direction (x, y, z) stands what stood in (-x, y, z).
+                // The direction (x, y, z) has the texel that was at (-x, y, z).
                 EXPECT_EQ(texel(turned[face], x, y),
                           texel(faces[face], x, y) * glm::vec3(-1, 1, 1));
             }
@@ -205,7 +206,7 @@ TEST(CubeFaces, ARealSetContinuesFromFaceToFaceInBothCrosses) {
     std::vector<Image> faces;
     for (const char* name : {"posx", "negx", "posy", "negy", "posz", "negz"})
         faces.push_back(read_image(folder / (std::string(name) + ".hdr"), ImageUse::color));
-    // The seam between -y and the turned -z, against as many rows within -y: no rougher than those.
+    // The seam between -y and the rotated -z is no rougher than the same number of rows within -y.
     const Image cross = vertical_cross(faces);
     const auto roughness = [&](int row) {
         double sum = 0.0;
@@ -216,6 +217,67 @@ TEST(CubeFaces, ARealSetContinuesFromFaceToFaceInBothCrosses) {
     };
     EXPECT_LT(roughness(767), 2.0 * roughness(760));
     EXPECT_LT(roughness(511), 2.0 * roughness(504)) << "+z to -y";
+}
+
+constexpr int wide = 1 << 20;  // In an image of this width, the part that the rim omits is
+                               // negligible.
+
+void expect_place(const glm::dvec3& direction, double u, double v) {
+    const glm::dvec2 place = angular_map_place(direction, wide);
+    EXPECT_NEAR(place.x, u, 1e-5);
+    EXPECT_NEAR(place.y, v, 1e-5);
+}
+
+TEST(AngularMap, TheMiddleIsMinusZAndHalfwayToTheRimAreTheOtherAxes) {
+    expect_place({0, 0, -3}, 0.5, 0.5);
+    expect_place({1, 0, 0}, 0.75, 0.5);
+    expect_place({-2, 0, 0}, 0.25, 0.5);
+    expect_place({0, 1, 0}, 0.5, 0.25);
+    expect_place({0, -1, 0}, 0.5, 0.75);
+    // A direction of 45 degrees to the right of -z lies at a quarter of the distance to the rim.
+    expect_place({1, 0, -1}, 0.625, 0.5);
+    expect_place({1, 0, 1}, 0.875, 0.5);
+}
+
+TEST(AngularMap, BehindIsTheRimOnTheSideThatTheDirectionLeansTo) {
+    expect_place({1e-9, 0, 1}, 1.0, 0.5);
+    expect_place({0, 1e-9, 1}, 0.5, 0.0);
+    expect_place({0, 0, 1}, 1.0, 0.5);
+}
+
+TEST(AngularMap, LookupsReachNoTexelThatTheRimCuts) {
+    for (const int width : {8, 32, 511, 512}) {
+        for (int i = 0; i < 400; ++i) {
+            const double turn = 0.0157 * i;
+            const glm::dvec2 place =
+                angular_map_place({1e-3 * std::cos(turn), 1e-3 * std::sin(turn), 1}, width);
+            // The four texels of a bilinear lookup, relative to their outermost corner.
+            const glm::dvec2 from = glm::floor(place * static_cast<double>(width) - 0.5);
+            for (const glm::dvec2 corner :
+                 {from, from + glm::dvec2(2, 0), from + glm::dvec2(0, 2), from + 2.0}) {
+                EXPECT_LE(glm::distance(corner, glm::dvec2(0.5 * width)), 0.5 * width + 1e-9);
+            }
+        }
+    }
+}
+
+TEST(AngularMap, AMapOfFewTexelsShowsItsMiddle) {
+    EXPECT_EQ(angular_map_reach(1), 0.0);
+    EXPECT_EQ(angular_map_reach(4), 0.0);
+    EXPECT_EQ(angular_map_place({1, 2, 3}, 1), glm::dvec2(0.5));
+    EXPECT_NEAR(angular_map_reach(512), 0.9917, 1e-4);
+}
+
+TEST(AngularMap, MustBeSquare) {
+    EXPECT_NO_THROW(check_angular_map(make_image(3, 3, 3, 8, ColorSpace::srgb), "ball"));
+    try {
+        check_angular_map(make_image(512, 256, 3, 32, ColorSpace::linear), "ball.hdr");
+        FAIL() << "was accepted";
+    } catch (const InvalidInput& error) {
+        EXPECT_STREQ(error.what(),
+                     "angular map 'ball.hdr' has 512 x 256 texels, but must be square");
+    }
+    EXPECT_THROW(check_angular_map(Image{}, "nothing"), InvalidInput);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Surroundings for tests: faces from a formula, and integrals over the sphere of faces by brute
-/// force.
+/// Test environments: faces from a formula, and integrals over the sphere of faces by brute force.
 #pragma once
 
 #include <functional>
@@ -13,7 +12,7 @@
 
 namespace relief::test {
 
-/// Six faces of float radiance; each texel holds what stands in the direction of its middle.
+/// Six faces of float radiance. Each texel holds the radiance in the direction of its center.
 inline std::vector<Image> faces_of(int size,
                                    const std::function<glm::dvec3(glm::dvec3)>& radiance) {
     std::vector<Image> faces;
@@ -54,7 +53,7 @@ inline void for_each_texel(
     }
 }
 
-/// Unit directions spread evenly over the sphere (Fibonacci's spiral).
+/// Unit directions with a uniform distribution over the sphere (Fibonacci spiral).
 inline std::vector<glm::dvec3> spread_directions(int count) {
     std::vector<glm::dvec3> directions;
     for (int i = 0; i < count; ++i) {

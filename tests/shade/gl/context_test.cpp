@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts: which library serves, what is said where none can, and that several get along.
-#include "relief/shade/context.h"
-
+// Contexts: the choice of the library and of the EGL device, error messages, several contexts at
+// once, and equal pictures for every number of threads. EGL devices are staged (staged_egl.cpp);
+// pictures come from separate processes (fingerprint.cpp), because Mesa reads its environment
+// once.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "gl/resources.h"
+#include "relief/shade/context.h"
 #include "relief/shade/error.h"
 #include "support/gl_environment.h"
 
@@ -34,7 +41,7 @@ std::string error_of(Backend backend) {
     }
 }
 
-/// Clears a 2 x 2 picture to this level, and whether it reads back as that in every sample.
+/// Clears a 2 x 2 image to this level and returns whether every sample reads back as that level.
 ::testing::AssertionResult clears_to(const gl::Api& api, int level) {
     const gl::RenderTarget target(api, 2, 2, gl::ColorFormat::rgba8, 1);
     const float value = static_cast<float>(level) / 255.0F;
@@ -76,7 +83,7 @@ TEST_P(ContextOnEach, SaysWhatItIs) {
 }
 
 TEST_P(ContextOnEach, HasTheLimitsOfOpenGl33) {
-    // The least values that the specification allows; 8192 etc. are what any driver has.
+    // The minimum values of the specification. Every driver supports 8192 and so on.
     const gl::Limits& limits = api().limits();
     EXPECT_GE(limits.texture_size, 1024);
     EXPECT_GE(limits.cube_size, 1024);
@@ -118,7 +125,7 @@ TEST_P(ContextOnEach, ASecondInTheSameThreadIsRefusedAndTheFirstLivesOn) {
 }
 
 TEST_P(ContextOnEach, DrawsInEveryOneOfASequence) {
-    // The fixture's own context takes the place of the first.
+    // The context of the fixture replaces the first one.
     EXPECT_TRUE(clears_to(api(), 10));
     std::thread([&] {
         for (int level = 20; level < 200; level += 30) {
@@ -227,6 +234,121 @@ TEST(Context, AFailureLeavesTheThreadFreeForAnother) {
         EXPECT_THROW(Context{Backend::osmesa}, GpuError);
     }
     EXPECT_TRUE(clears_to(Context(Backend::osmesa).api(), 200));
+}
+
+class EglDevices : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const auto real = test::context_if_installed(Backend::egl);
+        if (!real || !real->api().is_software()) GTEST_SKIP() << "needs software EGL";
+    }
+
+    /// Returns "BACKEND: RENDERER" of the context created with these devices, or the error.
+    static std::string outcome(const char* devices, Backend backend = Backend::egl) {
+        const ScopedVariable library("RELIEF_EGL_LIBRARY", RELIEF_STAGED_EGL);
+        const ScopedVariable staged("STAGED_EGL_DEVICES", devices);
+        try {
+            const Context context(backend);
+            return context.backend_name() + ": " + context.api().renderer();
+        } catch (const GpuError& error) {
+            return error.what();
+        }
+    }
+};
+
+TEST_F(EglDevices, AGpuIsTakenBeforeAnythingElse) {
+    EXPECT_EQ(outcome("gpu"), "EGL (hardware): Staged GPU");
+    EXPECT_EQ(outcome("software gpu"), "EGL (hardware): Staged GPU");
+    EXPECT_EQ(outcome("software gpu", Backend::automatic), "EGL (hardware): Staged GPU");
+}
+
+TEST_F(EglDevices, AGpuThatDoesNotServeGivesWayToTheNext) {
+    EXPECT_EQ(outcome("broken windowed old es gpu"), "EGL (hardware): Staged GPU");
+}
+
+TEST_F(EglDevices, AnAdapterWithoutADriverIsNotTakenForHardware) {
+    EXPECT_EQ(outcome("adapter gpu"), "EGL (hardware): Staged GPU");
+    EXPECT_THAT(outcome("adapter software"), HasSubstr("EGL (software): llvmpipe"));
+}
+
+TEST_F(EglDevices, WithoutHardwareAutomaticTakesOsmesa) {
+    if (!test::is_installed(Backend::osmesa)) GTEST_SKIP() << "needs OSMesa";
+    EXPECT_THAT(outcome("broken adapter software", Backend::automatic), HasSubstr("OSMesa: "));
+}
+
+TEST_F(EglDevices, WithoutAListOfDevicesTheSurfacelessPlatformServes) {
+    EXPECT_THAT(outcome(""), HasSubstr("EGL (software): llvmpipe"));
+}
+
+TEST_F(EglDevices, EveryOneThatFailedIsNamedWithItsReason) {
+    const ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", "libabsent-osmesa.so");
+    EXPECT_EQ(outcome("alone broken windowed old es", Backend::automatic),
+              "no OpenGL 3.3 context could be made: "
+              "EGL (hardware): device 0: eglInitialize: EGL_NOT_INITIALIZED; "
+              "EGL (hardware): device 1: it lacks EGL_KHR_surfaceless_context; "
+              "EGL (hardware): device 2: it gives no OpenGL 3.3 core context: EGL_BAD_MATCH; "
+              "EGL (hardware): device 3: it has no OpenGL, only OpenGL ES; "
+              "OSMesa: libabsent-osmesa.so: cannot open shared object file: No such file or "
+              "directory (RELIEF_OSMESA_LIBRARY is set); "
+              "EGL (software): there is no such device");
+}
+
+TEST_F(EglDevices, TheReasonForRefusingAnAdapterNamesItsRasteriser) {
+    // Under its correct name, software, it would be accepted. As hardware it is refused.
+    EXPECT_THAT(outcome("alone adapter"), HasSubstr("device 0: it is drawn by llvmpipe"));
+}
+
+/// Returns the output of gl_fingerprint under this environment: "A=1 B=2".
+std::string fingerprint(const std::string& environment, const std::string& backend) {
+    const std::string command = fmt::format("env MESA_SHADER_CACHE_DISABLE=true {} '{}' {}",
+                                            environment, RELIEF_GL_FINGERPRINT, backend);
+    const auto close = [](std::FILE* stream) { pclose(stream); };
+    const std::unique_ptr<std::FILE, decltype(close)> stream(popen(command.c_str(), "r"), close);
+    std::string output;
+    std::array<char, 256> piece{};
+    while (std::fgets(piece.data(), piece.size(), stream.get()) != nullptr)
+        output += piece.data();
+    return output;
+}
+
+/// Removes the line about loaded libraries.
+std::string hashes(const std::string& output) {
+    return output.substr(0, output.find("loaded:"));
+}
+
+TEST(Determinism, TheNumberOfThreadsChangesNoBit) {
+    for (const char* backend : {"osmesa", "egl"}) {
+        const bool is_osmesa = std::string(backend) == "osmesa";
+        if (!test::is_installed(is_osmesa ? Backend::osmesa : Backend::egl)) continue;
+        const std::string one = hashes(fingerprint("LP_NUM_THREADS=0", backend));
+        EXPECT_THAT(one, HasSubstr("32 bits, 4 samples: "));
+        EXPECT_EQ(hashes(fingerprint("LP_NUM_THREADS=1", backend)), one);
+        EXPECT_EQ(hashes(fingerprint("LP_NUM_THREADS=4", backend)), one);
+        EXPECT_EQ(hashes(fingerprint("", backend)), one);
+    }
+}
+
+TEST(Determinism, OsmesaAndSoftwareEglDrawTheSameBits) {
+    {
+        const auto egl = test::context_if_installed(Backend::egl);
+        if (!egl || !egl->api().is_software()) GTEST_SKIP() << "needs software EGL";
+    }
+    const std::string osmesa = fingerprint("", "osmesa");
+    if (osmesa.find("cannot open shared object") != std::string::npos) {
+        GTEST_SKIP() << "needs OSMesa";
+    }
+    EXPECT_EQ(hashes(fingerprint("", "egl")), hashes(osmesa));
+}
+
+TEST(Determinism, NeitherLibraryIsLoadedForTheOther) {
+    for (const auto& [backend, expected] :
+         {std::pair{"osmesa", "loaded: OSMesa\n"}, std::pair{"egl", "loaded: EGL\n"}}) {
+        const std::string output = fingerprint("", backend);
+        const bool is_absent = output.find("cannot open shared object") != std::string::npos;
+        if (!is_absent) {
+            EXPECT_THAT(output, HasSubstr(expected));
+        }
+    }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // gl_fingerprint BACKEND: draws textured, filtered and multisampled pictures and prints one hash
-// line for each, then which of the libraries got loaded. For determinism_test.cpp.
+// line for each, then the loaded libraries. context_test.cpp runs it.
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using namespace relief;
 
-/// A smooth panorama with a bright spot, and a noisy picture.
+/// A smooth panorama with a bright spot, and a noisy image.
 Image panorama() {
     Image image = make_image(64, 32, 3, 32, ColorSpace::linear);
     const auto samples = image.as<float>();

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blurred levels of a cube map, on every backend: what they hold, for which surroundings.
-#include "gl/cube_map.h"
-
+// The blurred levels of a cube map on every backend.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "../environment/test_environments.h"
 #include "environment/convolution.h"
+#include "gl/cube_map.h"
 #include "gl/resources.h"
 #include "relief/shade/image_compare.h"
+#include "shade/environment/test_environments.h"
 #include "support/gl_environment.h"
 
 namespace relief::gl {
@@ -45,7 +44,7 @@ TEST_P(Prefilter, HasLevelsDownToEightTexels) {
             for (const Image& face : faces) {
                 for (std::size_t i = 0; i < face.sample_count(); ++i) {
                     const double expected = std::array{0.5, 2.0, 8.0}.at(i % 3);
-                    // Rounding of half floats.
+                    // The rounding error of half floats.
                     ASSERT_NEAR(static_cast<double>(face.as<float>()[i]) / expected, 1.0, 1e-3);
                 }
             }
@@ -61,7 +60,7 @@ TEST_P(Prefilter, LevelZeroIsTheMirrorPicture) {
         const CubeMap cube = make_prefiltered(api(), environment);
         for (std::size_t face = 0; face < 6; ++face) {
             const Image stored = read_faces(api(), environment, 0)[face];
-            // Lookups at texel centres; drivers keep 8 bits of a place between texels.
+            // Lookups at texel centers. Drivers keep 8 bits of a position between texels.
             EXPECT_LT(compare(read_faces(api(), cube, 0)[face], stored).mean, 0.02);
         }
     }
@@ -116,7 +115,7 @@ TEST_P(Prefilter, LookupsBetweenFacesAndLevelsHaveNoSeam) {
         return picture.as<float>()[0];
     };
     for (const float level : {1.0F, 2.5F, 4.0F}) {
-        // Across the edge of +x and +y, and past the last level.
+        // Lookups across the edge of +x and +y, and beyond the last level.
         EXPECT_NEAR(look_up({1, 0.9999F, -0.5F}, level), look_up({0.9999F, 1, -0.5F}, level),
                     2e-3F);
     }

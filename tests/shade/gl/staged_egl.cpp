@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A libEGL with the devices that STAGED_EGL_DEVICES names, for egl_devices_test.cpp: it shows what
-// relief does on machines with other devices than this one. Behind every device that works stands
-// the real library's surfaceless platform. Devices:
+// A libEGL with the devices that STAGED_EGL_DEVICES names. With it, context_test.cpp tests machines
+// with other devices. Working devices use the surfaceless platform of the real library. Devices:
 //   gpu       works, and its renderer is called "Staged GPU"
-//   adapter   calls itself hardware, but is rasterised on the processor
-//   broken    cannot be initialised (no permission, no driver)
+//   adapter   reports hardware, but rasterizes on the processor
+//   broken    cannot be initialized (no permission, no driver)
 //   windowed  can only be made current with a surface
 //   old       has no OpenGL 3.3
 //   es        has OpenGL ES only
-//   software  calls itself software, as Mesa's rasteriser does
-//   alone     is none, but takes the surfaceless platform away
-// With the variable empty, devices cannot be listed at all.
+//   software  reports software, like the rasterizer of Mesa
+//   alone     is not a device, but removes the surfaceless platform
+// If the variable is empty, devices cannot be listed at all.
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -43,14 +42,14 @@ Function real_extension(const char* name) {
 
 thread_local EGLint last_error = EGL_SUCCESS;
 thread_local const Device* current = nullptr;
-thread_local const Device* bound = nullptr;  ///< Whose initialisation was the last.
+thread_local const Device* bound = nullptr;  ///< The device that was initialized last.
 
 EGLBoolean fail(EGLint error) {
     last_error = error;
     return EGL_FALSE;
 }
 
-/// The devices asked for. They are never destroyed, as EGL's are not.
+/// The requested devices. They are never destroyed, like those of EGL.
 std::vector<Device*> staged_devices() {
     static auto* const known = new std::map<std::string, Device>;
     const char* names = std::getenv("STAGED_EGL_DEVICES");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole pictures of the reference: composition, what is drawn at all, hard cases, determinism.
+// Whole pictures of the CPU reference: composition, hard inputs, determinism, and the conversion
+// of radiance to codes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,12 +8,13 @@
 #include <filesystem>
 #include <limits>
 
-#include "../render/unreadable_textures.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
 #include "relief/shade/image_compare.h"
+#include "relief/shade/reference.h"
+#include "shade/reference/traced.h"
+#include "shade/render/draw_support.h"
 #include "support/shapes.h"
-#include "traced.h"
 
 namespace relief {
 namespace {
@@ -21,7 +23,7 @@ using test::pixel;
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-/// Squares of unlit colours, one behind the other, the first nearest: at z = 0, -0.5, -1, ...
+/// Unlit squares at z = 0, -0.5, -1, ..., the first one nearest.
 Scene stacked(const std::vector<Material>& materials) {
     Scene scene = test::scene_of(test::facing_square(), Material{});
     scene.materials = materials;
@@ -74,7 +76,7 @@ TEST(Reference, LeavesBlendedSurfacesTheirShareOfTheBackground) {
 }
 
 TEST(Reference, BlendsTheEdgeBetweenTwoTrianglesOnce) {
-    // 16 pixels: the diagonal passes through the centres of 16 of them.
+    // The diagonal passes through the centers of 16 pixels.
     const Scene scene = stacked({unlit({1, 1, 1}, AlphaMode::blend, 0.5F)});
     const Image image = test::traced(scene, 16).radiance;
     for (int i = 0; i < 16; ++i)
@@ -155,7 +157,7 @@ TEST(Reference, HoldsNoNumbersThatAreNone) {
     EXPECT_EQ(report.count("vertex that is not finite"), 1U);
     for (const float sample : reference.radiance.as<float>())
         EXPECT_TRUE(std::isfinite(sample) && sample >= 0.0F);
-    // Corner 0, the upper left, belongs to both triangles: black everywhere.
+    // Corner 0, the upper left, belongs to both triangles, so the whole square is black.
     EXPECT_EQ(pixel(reference.radiance, 2, 2), glm::dvec4(0, 0, 0, 1));
 }
 
@@ -164,7 +166,7 @@ TEST(Reference, IsBlackWhereAColourIsNotANumberAndTheLargestWhereItIsInfinite) {
     image.samples = std::vector<float>{not_a_number, std::numeric_limits<float>::infinity(), -1.0F};
     Material material = unlit({1, 1, 1});
     material.diffuse_texture = Texture{0};
-    // Between texels infinity times no weight is not a number.
+    // Between texels, infinity times a weight of 0 is NaN.
     material.diffuse_texture->filter = TextureFilter::nearest;
     Scene scene = stacked({material});
     scene.images = {{"texture", image}};
@@ -241,6 +243,75 @@ TEST(Reference, RefusesWhatItCannotDraw) {
         FAIL() << "a scene without a camera was drawn";
     } catch (const InvalidInput& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("camera"));
+    }
+}
+
+/// Returns the output of one gray pixel.
+glm::dvec4 shown(float light, const Scene& scene, OutputCoding output, float alpha = 1.0F) {
+    Image radiance = make_image(1, 1, 4, 32, ColorSpace::linear);
+    radiance.samples = std::vector<float>{light, light, light, alpha};
+    return test::pixel(reference_picture(radiance, scene, output), 0, 0);
+}
+
+/// Returns the light of an sRGB output.
+double shown_light(float light, const Scene& scene, float alpha = 1.0F) {
+    return static_cast<double>(
+        linear_from_srgb(static_cast<float>(shown(light, scene, OutputCoding::srgb, alpha).r)));
+}
+
+TEST(ReferencePicture, IsExposedAndThenToneMapped) {
+    Scene scene;
+    scene.exposure = 0.5F;
+    EXPECT_NEAR(shown_light(1.5F, scene), 0.75, 1e-6);
+    EXPECT_NEAR(shown_light(3.0F, scene), 1.0, 1e-6);
+    scene.tone_mapping = ToneMapping::reinhard;
+    EXPECT_NEAR(shown_light(6.0F, scene), 0.75, 1e-6);
+    scene.tone_mapping = ToneMapping::aces;
+    // With x = 1: (2.51 + 0.03) / (2.43 + 0.59 + 0.14).
+    EXPECT_NEAR(shown_light(2.0F, scene), 2.54 / 3.16, 1e-6);
+    EXPECT_NEAR(shown_light(1e30F, scene), 1.0, 1e-6);
+}
+
+TEST(ReferencePicture, OfLinearLightIsNeitherExposedNorToneMapped) {
+    Scene scene;
+    scene.exposure = 0.5F;
+    scene.tone_mapping = ToneMapping::aces;
+    EXPECT_EQ(shown(3.0F, scene, OutputCoding::linear).r, 3.0);
+    EXPECT_EQ(shown(3.0F, scene, OutputCoding::clamped).r, 1.0);
+    EXPECT_EQ(shown(0.5F, scene, OutputCoding::clamped).r, 0.5);
+    EXPECT_THROW((void)shown(0.5F, scene, OutputCoding::half), InvalidInput);
+}
+
+TEST(ReferencePicture, IsCodedByTheStandardsCurve) {
+    const Scene scene;
+    EXPECT_NEAR(shown(0.5F, scene, OutputCoding::srgb).r, 0.7353569830, 1e-7);
+    EXPECT_NEAR(shown(0.001F, scene, OutputCoding::srgb).r, 0.01292, 1e-9);
+    EXPECT_EQ(shown(1.0F, scene, OutputCoding::srgb), glm::dvec4(1.0));
+}
+
+TEST(ReferencePicture, LiesOverABackgroundThatIsNeitherExposedNorToneMapped) {
+    Scene scene;
+    scene.exposure = 2.0F;
+    scene.tone_mapping = ToneMapping::reinhard;
+    scene.background = {0.25F, 0.25F, 0.25F, 1.0F};
+    EXPECT_NEAR(shown_light(0.0F, scene, 0.0F), 0.25, 1e-6);
+    // A surface of radiance 1.5 with a coverage of one half; the curve maps it to 0.75.
+    EXPECT_NEAR(shown_light(1.5F, scene, 0.5F), 0.5, 1e-6);
+    // Over a half-opaque background: (0.75 * 0.5 + 0.25 * 0.25) / 0.75, and alpha 0.75.
+    scene.background.a = 0.5F;
+    EXPECT_NEAR(shown_light(1.5F, scene, 0.5F), 0.4375 / 0.75, 1e-6);
+    EXPECT_NEAR(shown(1.5F, scene, OutputCoding::srgb, 0.5F).a, 0.75, 1e-7);
+}
+
+TEST(ReferencePicture, HoldsNothingThatIsNotANumber) {
+    Scene scene;
+    for (const ToneMapping mapping :
+         {ToneMapping::none, ToneMapping::reinhard, ToneMapping::aces}) {
+        scene.tone_mapping = mapping;
+        EXPECT_EQ(shown(std::numeric_limits<float>::quiet_NaN(), scene, OutputCoding::srgb).r, 0.0);
+        EXPECT_EQ(shown(-1.0F, scene, OutputCoding::srgb).r, 0.0);
+        EXPECT_NEAR(shown(std::numeric_limits<float>::infinity(), scene, OutputCoding::srgb).r, 1.0,
+                    1e-12);
     }
 }
 

@@ -1,25 +1,97 @@
 // SPDX-License-Identifier: Apache-2.0
-// Material's formula term by term, against numbers worked out by hand: on the facing square, at
-// the origin seen from straight in front (the middle pixel of 3 x 3), and at (1, 1, 0), from where
-// the eye is at (-1, -1, 3) / sqrt(11) (the upper right pixel of 2 x 2).
+// The shading formulas of the CPU reference, term by term, against hand-computed values and a
+// second form of GGX in long double: [Walter et al. 2007], equation 33, and Lambda [Heitz 2014],
+// equations 72 and 99.
+// The tests shade a facing square: at the origin, seen from the front (the middle pixel of 3 x 3),
+// and at (1, 1, 0), where the eye is in the direction (-1, -1, 3) / sqrt(11) (the upper right
+// pixel of 2 x 2).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "reference/lookups.h"
+#include "reference/shading.h"
+#include "shade/reference/traced.h"
 #include "support/shapes.h"
-#include "traced.h"
+
+namespace relief::reference {
+namespace {
+
+TEST(Fresnel, AtNormalIncidenceIsTheSquaredRatioOfDifferenceAndSum) {
+    EXPECT_NEAR(fresnel(1.5, 1.0), 0.04, 1e-15);
+    EXPECT_NEAR(fresnel(3.0, 1.0), 0.25, 1e-15);
+    // |n - 1 + ik|^2 / |n + 1 + ik|^2.
+    EXPECT_NEAR(fresnel({0.5, 2.0}, 1.0), (0.25 + 4.0) / (2.25 + 4.0), 1e-15);
+}
+
+TEST(Fresnel, AtGrazingIncidenceMirrorsEverything) {
+    EXPECT_EQ(fresnel(1.5, 0.0), 1.0);
+    EXPECT_EQ(fresnel({0.2, 3.0}, 0.0), 1.0);
+    EXPECT_NEAR(fresnel(1.5, 1e-6), 1.0, 1e-5);
+}
+
+TEST(Fresnel, AtBrewstersAngleMirrorsOnePolarisationOnly) {
+    // At tan = n, the surface transmits all light polarized in the plane and reflects
+    // ((n^2-1)/(n^2+1))^2 of the rest.
+    const double cosine = 1.0 / std::sqrt(1.0 + 1.5 * 1.5);
+    const double across = (1.5 * 1.5 - 1.0) / (1.5 * 1.5 + 1.0);
+    EXPECT_NEAR(fresnel(1.5, cosine), 0.5 * across * across, 1e-15);
+}
+
+TEST(Fresnel, WithoutABoundaryMirrorsNothing) {
+    for (const double cosine : {0.0, 0.3, 1.0})
+        EXPECT_EQ(fresnel(1.0, cosine), 0.0);
+}
+
+TEST(Fresnel, OfNoIndexMirrorsEverything) {
+    EXPECT_EQ(fresnel(0.0, 0.7), 1.0);
+}
+
+TEST(Fresnel, FactorFollowsTheMaterialsModel) {
+    Material material;
+    material.reflectivity = {0.25F, 0.5F, 1.0F};
+    material.grazing_reflectivity = {1.0F, 0.5F, 1.0F};
+    // (1 - 0.5)^5 = 1/32.
+    EXPECT_EQ(fresnel_factor(material, 0.5), glm::dvec3(0.25 + 0.75 / 32, 0.5, 1.0));
+    material.fresnel = FresnelModel::dielectric;
+    material.refractive_index = 3.0F;
+    EXPECT_NEAR(fresnel_factor(material, 1.0).g, 0.5 * 0.25, 1e-15);
+    material.fresnel = FresnelModel::conductor;
+    material.conductor_index = {0.5F, 3.0F, 0.5F};
+    material.conductor_absorption = {2.0F, 0.0F, 0.0F};
+    const glm::dvec3 metal = fresnel_factor(material, 1.0);
+    EXPECT_NEAR(metal.r, 0.25 * 4.25 / 6.25, 1e-15);
+    EXPECT_NEAR(metal.g, 0.5 * 0.25, 1e-15);
+    EXPECT_NEAR(metal.b, 1.0 / 9.0, 1e-15);
+}
+
+TEST(Fresnel, FactorOutsideItsAnglesIsTheNearerEnds) {
+    Material material;
+    material.reflectivity = glm::vec3(0.25F);
+    EXPECT_EQ(fresnel_factor(material, -0.5), glm::dvec3(1.0));
+    EXPECT_EQ(fresnel_factor(material, 1.5), glm::dvec3(0.25));
+}
+
+TEST(Fresnel, FactorOfASurfaceThatMirrorsNothingIsZeroAtEveryAngle) {
+    Material material;
+    for (const FresnelModel model :
+         {FresnelModel::schlick, FresnelModel::dielectric, FresnelModel::conductor}) {
+        material.fresnel = model;
+        EXPECT_EQ(fresnel_factor(material, 0.0), glm::dvec3(0.0));
+    }
+}
+
+}  // namespace
+}  // namespace relief::reference
 
 namespace relief {
 namespace {
 
 using std::numbers::pi;
 using test::storage_rounding;
-
-Scene square(const Material& material) {
-    return test::scene_of(test::facing_square(), material);
-}
 
 glm::dvec3 in_the_middle(const Scene& scene) {
     return test::radiance_at(scene, 3, 1, 1);
@@ -43,7 +115,7 @@ TEST(ReferenceShading, OfAmbientLightIsItsShareTimesTintAndOcclusion) {
     material.ambient = {0.5F, 0.25F, 1.0F};
     material.occlusion_texture = Texture{0};
     material.occlusion_strength = 0.5F;
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.images = {{"occlusion", texel({0.25F, 1, 1, 1})}};
     scene.ambient = {2.0F, 2.0F, 0.5F};
     scene.meshes[0].edit().colors.assign(4, {0.5F, 1.0F, 1.0F, 1.0F});
@@ -54,8 +126,9 @@ TEST(ReferenceShading, OfAmbientLightIsItsShareTimesTintAndOcclusion) {
 TEST(ReferenceShading, OfDiffuseLightIsTheCosine) {
     Material material = test::black_material();
     material.diffuse = {1.0F, 0.5F, 0.25F};
-    material.occlusion_texture = Texture{0};  // Of the surroundings only: lamps are not occluded.
-    Scene scene = square(material);
+    material.occlusion_texture = Texture{0};  // Occlusion affects only the environment, not the
+                                              // lights.
+    Scene scene = test::square_scene(material);
     scene.images = {{"occlusion", texel({0.25F, 1, 1, 1})}};
     scene.directional_lights = {{{-3, 0, -4}, {1, 1, 2}}, {{0, 0, 1}, {9, 9, 9}}};
     expect_near(in_the_middle(scene), {0.8, 0.4, 0.4});
@@ -64,7 +137,7 @@ TEST(ReferenceShading, OfDiffuseLightIsTheCosine) {
 TEST(ReferenceShading, OfPointLightsFallsOffAsAsked) {
     Material material = test::black_material();
     material.diffuse = glm::vec3(1.0F);
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     PointLight lamp{{0, 3, 4}, {50, 50, 50}};
     const auto lit = [&] {
         scene.point_lights = {lamp};
@@ -84,8 +157,8 @@ TEST(ReferenceShading, OfPointLightsFallsOffAsAsked) {
 TEST(ReferenceShading, OfASpotLightFadesBetweenItsCones) {
     Material material = test::black_material();
     material.diffuse = glm::vec3(1.0F);
-    Scene scene = square(material);
-    // The axis misses the origin by acos(0.8).
+    Scene scene = test::square_scene(material);
+    // The angle between the axis and the direction to the origin is acos(0.8).
     SpotLight spot{{{0, 3, 4}, {25, 25, 25}}, {0, 0, -1}, 0.0F, 1.0F};
     const double outer = std::cos(1.0);
     const double share = (0.8 - outer) / (1.0 - outer);
@@ -103,7 +176,7 @@ TEST(ReferenceShading, OfASpotLightFadesBetweenItsCones) {
 TEST(ReferenceShading, OfALampThatTouchesOrNearlyIsFinite) {
     Material material = test::black_material();
     material.diffuse = glm::vec3(1.0F);
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.point_lights = {{{0, 0, 0}, {1, 1, 1}}};
     EXPECT_EQ(in_the_middle(scene).r, 0.0);
     scene.point_lights = {{{0, 0, 1e-12F}, {1, 1, 1}}};
@@ -114,8 +187,9 @@ TEST(ReferenceShading, OfHighlightsFollowsEachModel) {
     Material material = test::black_material();
     material.specular = {1.0F, 0.5F, 0.25F};
     material.shininess = 6.0F;
-    Scene scene = square(material);
-    // The lamp 60 degrees off the normal and the eye: r.v is 1/2, n.h the cosine of 30 degrees.
+    Scene scene = test::square_scene(material);
+    // The light is 60 degrees from the normal and the eye: r.v is 1/2, n.h the cosine of 30
+    // degrees.
     scene.directional_lights = {{{-std::sqrt(3.0F), 0, -1}, {2, 2, 2}}};
     const glm::dvec3 by_channel(2.0, 1.0, 0.5);
     material.specular_model = SpecularModel::phong;
@@ -138,9 +212,10 @@ TEST(ReferenceShading, OfHighlightsHasItsOwnTextureAndLampColour) {
     material.diffuse = glm::vec3(1.0F);
     material.shininess = 0.0F;
     material.specular_texture = Texture{0};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.images = {{"specular", texel({0.5F, 1.0F, 0.25F, 1})}};
-    scene.meshes[0].edit().colors.assign(4, {0.5F, 0.5F, 0.5F, 1.0F});  // No say in highlights.
+    // Vertex colors do not affect highlights.
+    scene.meshes[0].edit().colors.assign(4, {0.5F, 0.5F, 0.5F, 1.0F});
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}, glm::vec3(4, 0, 8)}};
     expect_near(in_the_middle(scene), glm::dvec3(0.5) + glm::dvec3(2, 0, 2));
     scene.directional_lights.clear();
@@ -155,7 +230,7 @@ TEST(ReferenceShading, OfAnExponentOfZeroShinesWhereverALampIsInFront) {
     material.shininess = 0.0F;
     for (const SpecularModel model : {SpecularModel::phong, SpecularModel::blinn_phong}) {
         material.specular_model = model;
-        Scene scene = square(material);
+        Scene scene = test::square_scene(material);
         scene.directional_lights = {{{-100, 0, -1}, {1, 1, 1}}, {{0, 0, 1}, {1, 1, 1}}};
         expect_near(in_the_middle(scene), glm::dvec3(1.0));
     }
@@ -166,22 +241,24 @@ TEST(ReferenceShading, OfAReflectionTakesFromWhatIsScattered) {
     material.ambient = glm::vec3(1.0F);
     material.reflectivity = {0.04F, 0.5F, 1.0F};
     material.grazing_reflectivity = {1.0F, 0.5F, 1.0F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.ambient = glm::vec3(0.5F);
-    expect_near(in_the_corner(scene), glm::dvec3(0.5));  // No environment: F is 0.
+    expect_near(in_the_corner(scene), glm::dvec3(0.5));  // There is no environment, so F is 0.
     scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
     const double m = std::pow(1.0 - 3.0 / std::sqrt(11.0), 5.0);
     const glm::dvec3 f(0.04 + 0.96 * m, 0.5, 1.0);
     expect_near(in_the_corner(scene), (1.0 - f) * 0.5 + f * 2.0);
-    scene.materials[0].reflection_roughness = 0.5F;  // Of a constant environment, the same.
+    scene.materials[0].reflection_roughness = 0.5F;  // A constant environment gives the same
+                                                     // result.
     expect_near(in_the_corner(scene), (1.0 - f) * 0.5 + f * 2.0);
 }
 
-/// Six faces of one colour each: +x 1, -x 2, +y 3, -y 4, +z 5, -z 6.
+/// Six faces with one color each: +x 1, -x 2, +y 3, -y 4, +z 5, -z 6.
 Environment numbered_faces() {
     CubeFaces faces;
     for (std::size_t i = 0; i < 6; ++i) {
-        // Finer than the tests' directions are to edges, across which faces mix.
+        // A texel is smaller than the distance of the tested directions to edges, where lookups mix
+        // faces.
         Image face = make_image(32, 32, 1, 32, ColorSpace::linear);
         face.samples = std::vector<float>(32UL * 32UL, static_cast<float>(i + 1));
         faces.faces[i] = {"face", face};
@@ -194,10 +271,11 @@ Environment numbered_faces() {
 TEST(ReferenceShading, OfAReflectionLooksWhereALightWouldHaveToBe) {
     Material material = test::black_material();
     material.reflectivity = material.grazing_reflectivity = glm::vec3(1.0F);
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.environment = numbered_faces();
     expect_near(in_the_middle(scene), glm::dvec3(5));
-    // Leaning right by 60 degrees, the normal mirrors what is right and a little behind.
+    // The normal is tilted to the right by 60 degrees, so the mirror shows the right side, slightly
+    // behind.
     scene.meshes[0].edit().normals.assign(4, {std::sqrt(0.75F), 0, 0.5F});
     expect_near(in_the_middle(scene), glm::dvec3(1));
 }
@@ -206,17 +284,20 @@ TEST(ReferenceShading, OfATransparentSurfaceBendsTheViewByItsIndex) {
     Material material = test::black_material();
     material.ambient = glm::vec3(1.0F);
     material.transmission = 0.75F;
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.ambient = glm::vec3(1.0F);
-    expect_near(in_the_middle(scene), glm::dvec3(1.0));  // Without an environment nothing is there.
+    expect_near(in_the_middle(scene), glm::dvec3(1.0));  // Without an environment there is nothing
+                                                         // to show.
     scene.environment = numbered_faces();
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 6));
-    // Leaning left by 60 degrees: straight through, -z; bent by 2, asin(sin(60)/2) = 25.66 degrees
-    // from the normal's back, 34.3 degrees off -z; and without reflection nothing else.
+    // The normal is tilted to the left by 60 degrees. The straight direction is -z. With index 2,
+    // the refracted one is asin(sin(60)/2) = 25.66 degrees from the reversed normal, 34.3 degrees
+    // from -z. Without reflection there is no other light.
     scene.meshes[0].edit().normals.assign(4, {-std::sqrt(0.75F), 0, 0.5F});
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 6));
     scene.meshes[0].edit().normals.assign(4, {-std::sin(1.4F), 0, std::cos(1.4F)});
-    scene.materials[0].refractive_index = 3.0F;  // 80.2 degrees, bent to 19.2: 61 off -z, to +x.
+    scene.materials[0].refractive_index = 3.0F;  // 80.2 degrees become 19.2: 61 degrees from -z
+                                                 // towards +x.
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 1));
     scene.materials[0].refractive_index = 1.0F;
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 6));
@@ -225,7 +306,7 @@ TEST(ReferenceShading, OfATransparentSurfaceBendsTheViewByItsIndex) {
 TEST(ReferenceShading, OfTheEnvironmentsLightIsScatteredWhereItLights) {
     Material material = test::black_material();
     material.diffuse = {1.0F, 0.5F, 0.25F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
     expect_near(in_the_middle(scene), glm::dvec3(0.0));
     scene.environment->lights = true;
@@ -236,7 +317,7 @@ TEST(ReferenceShading, OfEmissionAndUnlitIsTheColourTimesItsTexture) {
     Material material = test::black_material();
     material.emission = {1.0F, 2.0F, 4.0F};
     material.emission_texture = Texture{0};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.images = {{"emission", texel({0.5F, 0.25F, 0.125F, 1})}};
     expect_near(in_the_middle(scene), glm::dvec3(0.5));
     scene.materials[0].unlit = true;
@@ -248,17 +329,17 @@ TEST(ReferenceShading, OfEmissionAndUnlitIsTheColourTimesItsTexture) {
     expect_near(in_the_middle(scene), {0.5, 0.25, 0.0625});
 }
 
-/// Everything at 45 degrees or less: the lamp in (1, 0, 1) / sqrt(2), the eye in z.
+/// All angles are 45 degrees or less: the light is in (1, 0, 1) / sqrt(2), the eye in z.
 TEST(ReferenceShading, OfMetallicRoughnessIsAppendixB) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
-    const double a2 = 0.25 * 0.25;  // alpha squared: roughness to the fourth.
+    const double a2 = 0.25 * 0.25;  // alpha squared is the fourth power of the roughness.
     const double n_dot_l = std::sqrt(0.5);
     const double n_dot_h = std::cos(pi / 8);
     const double d = a2 / (pi * std::pow(n_dot_h * n_dot_h * (a2 - 1.0) + 1.0, 2.0));
-    // Heights correlated: with n.v = 1 its root is 1.
+    // Height-correlated masking; with n.v = 1 its root is 1.
     const double v = 0.5 / (n_dot_l * 1.0 + std::sqrt(0.5 + 0.5 * a2));
     const glm::dvec3 b(0.5, 0.25, 1.0);
     const glm::dvec3 f0 = 0.75 * 0.04 + 0.25 * b;
@@ -271,7 +352,7 @@ TEST(ReferenceShading, OfMetallicRoughnessIsAppendixB) {
 TEST(ReferenceShading, OfMetallicRoughnessTakesNegativeCosinesAsZero) {
     Material material;
     material.metallic_roughness = MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, {}};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.meshes[0].edit().normals.assign(4, glm::vec3(0.8F, 0.0F, -0.6F));
     scene.directional_lights = {{{0.28F, 0.0F, 0.96F}, glm::vec3(1.0F)}};
     // n.l pi D V f with pi D = alpha^2, V = 1 / (2 n.l alpha), f = 1 and alpha = 0.5^2.
@@ -281,13 +362,13 @@ TEST(ReferenceShading, OfMetallicRoughnessTakesNegativeCosinesAsZero) {
 TEST(ReferenceShading, OfMetallicRoughnessReadsGreenAndBlue) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.5F, 1.0F, Texture{0}};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.images = {{"maps", texel({0.0F, 0.5F, 0.5F, 1})}};
     scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
     const glm::dvec3 textured = in_the_middle(scene);
     scene.materials[0].metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     expect_near(textured, in_the_middle(scene));
-    scene.materials[0].metallic_roughness->roughness = 0.0F;  // No less than 0.045.
+    scene.materials[0].metallic_roughness->roughness = 0.0F;  // The smallest roughness is 0.045.
     const glm::dvec3 smooth = in_the_middle(scene);
     scene.materials[0].metallic_roughness->roughness = 0.045F;
     expect_near(smooth, in_the_middle(scene));
@@ -297,7 +378,7 @@ TEST(ReferenceShading, OfMetallicRoughnessInSurroundings) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     material.occlusion_texture = Texture{0};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.images = {{"occlusion", texel({0.5F, 1, 1, 1})}};
     scene.ambient = glm::vec3(3.0F);
     scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
@@ -313,7 +394,7 @@ TEST(ReferenceShading, OfMetallicRoughnessInSurroundings) {
 TEST(ReferenceShading, OfTheEyesOppositeLampHasNoHalfVector) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, -1));
     scene.directional_lights = {{{0, 0, 1}, {1, 1, 1}}};
     expect_near(in_the_middle(scene), glm::dvec3(0.0));
@@ -327,8 +408,8 @@ TEST(ReferenceShading, ByGouraudIsLinearBetweenVertices) {
     material.specular = glm::vec3(1.0F);
     material.shininess = 3.0F;
     material.interpolation = Interpolation::gouraud;
-    Scene scene = square(material);
-    // A lamp above the upper right corner: only lamp and corner matter there.
+    Scene scene = test::square_scene(material);
+    // The light is above the upper right corner, so only this light and corner matter.
     scene.point_lights = {{{2, 2, 1}, {1, 1, 1}}};
     const auto at_corner = [&](double x, double y) {
         const glm::dvec3 way(2 - x, 2 - y, 1);
@@ -337,9 +418,9 @@ TEST(ReferenceShading, ByGouraudIsLinearBetweenVertices) {
         const double n_dot_h = glm::normalize(light + view).z;
         return (light.z + std::pow(n_dot_h, 3.0)) / glm::dot(way, way);
     };
-    // The pixel (1, 0) of 2 x 2, at (1, 1), is three quarters of the way along the edge between
-    // the halves of the square, or just beside it: its diagonal goes from upper left to lower
-    // right. In the triangle of the corners (-2, 2), (2, -2), (2, 2) its weights are 1/4, 1/4, 1/2.
+    // The pixel (1, 0) of 2 x 2, at (1, 1), is at three quarters of the edge between the halves of
+    // the square, or just beside it, since the diagonal goes from upper left to lower right. In the
+    // triangle of the corners (-2, 2), (2, -2), (2, 2), its weights are 1/4, 1/4, 1/2.
     const double expected =
         0.25 * at_corner(-2, 2) + 0.25 * at_corner(2, -2) + 0.5 * at_corner(2, 2);
     expect_near(in_the_corner(scene), glm::dvec3(expected));
@@ -352,12 +433,143 @@ TEST(ReferenceShading, ByGouraudShowsBackFacesTheirOwnLight) {
     material.diffuse = glm::vec3(1.0F);
     material.interpolation = Interpolation::gouraud;
     material.double_sided = true;
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, 1));
     for (glm::uvec3& triangle : scene.meshes[0].edit().triangles)
-        std::swap(triangle.y, triangle.z);  // Seen from behind: the normal counts as -z.
+        std::swap(triangle.y, triangle.z);  // Seen from behind, the normal is -z.
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}, {{0, 3, 4}, {2, 2, 2}}};
     expect_near(in_the_middle(scene), glm::dvec3(1.6));
+}
+
+using LongReal = long double;
+using LongVector = glm::vec<3, LongReal>;
+constexpr LongReal long_pi = std::numbers::pi_v<LongReal>;
+
+LongReal angle_between(const LongVector& a, const LongVector& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+/// Returns the unit vector at an angle of `lean` degrees to +z, in the azimuth of `around` degrees
+/// from +x to +y.
+glm::vec3 leaning(double lean, double around) {
+    const double a = glm::radians(lean);
+    const double b = glm::radians(around);
+    return glm::vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
+}
+
+/// D as a function of the angle between facet and normal.
+LongReal facets_at(LongReal angle, LongReal alpha) {
+    const LongReal tangent = std::tan(angle);
+    const LongReal cosine = std::cos(angle);
+    const LongReal sum = alpha * alpha + tangent * tangent;
+    return alpha * alpha / (long_pi * cosine * cosine * cosine * cosine * sum * sum);
+}
+
+/// Lambda: the area of masked facets for each visible one.
+LongReal masked_at(LongReal angle, LongReal alpha) {
+    const LongReal slope = alpha * std::tan(angle);
+    return (std::sqrt(1 + slope * slope) - 1) / 2;
+}
+
+/// G: the share of facets that both the eye and the light reach.
+LongReal seen_and_lit(LongReal of_eye, LongReal of_light, LongReal alpha) {
+    return 1 / (1 + masked_at(of_eye, alpha) + masked_at(of_light, alpha));
+}
+
+/// Returns the radiance of one channel under a light of irradiance 1, computed from angles only.
+LongReal radiance_of(const MetallicRoughness& model, int channel, const glm::vec3& normal,
+                     const glm::vec3& light) {
+    const LongVector n = glm::normalize(LongVector(normal));
+    const LongVector l = glm::normalize(LongVector(light));
+    const LongVector v(0, 0, 1);
+    const LongVector half = glm::normalize(l + v);
+    const LongReal alpha = static_cast<LongReal>(model.roughness) * model.roughness;
+    const LongReal base = model.base_color[channel];
+    const LongReal metallic = model.metallic;
+    const LongReal f0 = 0.04L * (1 - metallic) + base * metallic;
+    const LongReal of_light = angle_between(n, l);
+    const LongReal of_eye = angle_between(n, v);
+    const LongReal mirrored =
+        f0 + (1 - f0) * std::pow(1 - std::cos(angle_between(half, v)), LongReal(5));
+    // The term is D G / (4 cos cos), and incoming light has the factor cos: the cosine of the light
+    // cancels.
+    const LongReal highlight = facets_at(angle_between(half, n), alpha) *
+                               seen_and_lit(of_eye, of_light, alpha) / (4 * std::cos(of_eye));
+    const LongReal scattered = (1 - mirrored) * base * (1 - metallic) * std::cos(of_light);
+    return scattered + long_pi * mirrored * highlight;
+}
+
+double brightest_channel(const glm::dvec3& color) {
+    return std::max({color.r, color.g, color.b});
+}
+
+TEST(MetallicRoughness, IsTheClosedFormInAnglesAtManyOfThem) {
+    Scene scene = test::scene_of(test::facing_square(), {});
+    std::size_t compared = 0;
+    double brightest = 0.0;
+    for (const float roughness : {0.2F, 0.4F, 0.6F, 1.0F}) {
+        for (const float metallic : {1.0F, 0.25F}) {
+            const MetallicRoughness model{{0.3F, 0.6F, 0.95F}, metallic, roughness, {}};
+            scene.materials[0].metallic_roughness = model;
+            for (const double lean : {0.0, 35.0, 70.0, 85.0}) {
+                const glm::vec3 normal = leaning(lean, 20.0);
+                scene.meshes[0].edit().normals.assign(4, normal);
+                // The directions include grazing ones and a light behind the square.
+                for (const glm::vec3& light : {leaning(30.0, 20.0), leaning(2.0 * lean, 20.0),
+                                               leaning(60.0, 110.0), leaning(100.0, 10.0)}) {
+                    if (glm::dot(normal, light) < 0.01F) continue;
+                    scene.directional_lights = {{-light, glm::vec3(1.0F)}};
+                    const glm::dvec3 found = test::radiance_at(scene, 3, 1, 1);
+                    for (int channel = 0; channel < 3; ++channel) {
+                        const auto expected =
+                            static_cast<double>(radiance_of(model, channel, normal, light));
+                        EXPECT_NEAR(found[channel], expected,
+                                    test::storage_rounding * std::max(expected, 1.0))
+                            << roughness << " " << metallic << " " << lean;
+                    }
+                    brightest = std::max(brightest, brightest_channel(found));
+                    ++compared;
+                }
+            }
+        }
+    }
+    EXPECT_GE(compared, 80U);
+    EXPECT_GT(brightest, 100.0) << "a smooth metal's highlight is among them";
+}
+
+/// Returns lights whose positions and intensities give each facet, in a vertical view, a weight
+/// equal to its projected area: their sum is the integral of D cos. Facets with an angle above 45
+/// degrees reflect no light from above the square.
+std::vector<DirectionalLight> lamps_that_count_facets(LongReal alpha) {
+    constexpr int steps = 2000;
+    const LongReal step = long_pi / 4 / steps;
+    std::vector<DirectionalLight> lamps;
+    for (int i = 0; i < steps; ++i) {
+        const LongReal facet = (static_cast<LongReal>(i) + 0.5L) * step;
+        const LongReal of_light = 2 * facet;
+        const LongReal area = 2 * long_pi * std::sin(facet) * std::cos(facet) * step;
+        const LongReal visibility = seen_and_lit(0, of_light, alpha) / 4;  // V times both cosines.
+        const glm::vec3 light =
+            leaning(static_cast<double>(of_light * 180 / long_pi), 137.5 * static_cast<double>(i));
+        lamps.push_back({-light, glm::vec3(static_cast<float>(area / (long_pi * visibility)))});
+    }
+    return lamps;
+}
+
+TEST(MetallicRoughness, HasAsManyFacetsAsCoverTheSurface) {
+    Scene scene = test::scene_of(test::facing_square(), {});
+    for (const float roughness : {0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 1.0F}) {
+        // The material reflects all light.
+        scene.materials[0].metallic_roughness = {glm::vec3(1.0F), 1.0F, roughness, {}};
+        const LongReal alpha = static_cast<LongReal>(roughness) * roughness;
+        scene.directional_lights = lamps_that_count_facets(alpha);
+        // Facets up to an angle have a share of tan^2 / (alpha^2 + tan^2) of the area; tan is 1 at
+        // 45 degrees.
+        const auto expected = static_cast<double>(1 / (1 + alpha * alpha));
+        // The error of the midpoint rule is the square of a 50th of the width of the sharpest peak,
+        // divided by 24. Also, lights are rounded to float.
+        EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, expected, 1e-5) << roughness;
+    }
 }
 
 }  // namespace

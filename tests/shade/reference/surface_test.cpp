@@ -1,22 +1,231 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shading normal: interpolated, flat, mapped, bumped, on both sides and under every matrix. It
-// is read off the light of three lamps that shine along the axes.
+// Visible surfaces of the CPU reference: intersections of rays with triangles, edges in the
+// picture, and shading normals, which the test reads from the light of three lights along the
+// axes.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "reference/visibility.h"
+#include "shade/reference/traced.h"
 #include "support/angle.h"
 #include "support/shapes.h"
-#include "traced.h"
+
+namespace relief::reference {
+namespace {
+
+/// A mesh at a position in view space.
+struct Placed {
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::uvec3> triangles;
+
+    [[nodiscard]] ViewMesh view() const { return {positions, triangles}; }
+};
+
+Placed placed(const Mesh& mesh, const glm::dvec3& at, double scale = 1.0) {
+    Placed result;
+    for (const glm::vec3& position : mesh.positions)
+        result.positions.push_back((glm::dvec3(position) + at) * scale);
+    result.triangles = mesh.triangles;
+    return result;
+}
+
+/// A grid of 4 x 4 cells with vertices, edges and diagonals on rays of simple numbers.
+Placed wall() {
+    return placed(test::grid(4), {-0.5, -0.5, -1.0});
+}
+
+TEST(Visibility, MeetsSharedEdgesAndVerticesOnceInside) {
+    const Placed mesh = wall();
+    const Visibility visibility({mesh.view()}, 0.1, 10.0);
+    for (int y = -30; y <= 30; ++y) {
+        for (int x = -30; x <= 30; ++x) {
+            const auto hits = visibility.hits(x / 64.0, y / 64.0);
+            // Six triangles meet at a vertex. Two of them that share no edge may both count.
+            const bool at_vertex = x % 16 == 0 && y % 16 == 0;
+            EXPECT_GE(hits.size(), 1U) << x << ", " << y;
+            EXPECT_LE(hits.size(), at_vertex ? 3U : 1U) << x << ", " << y;
+        }
+    }
+    EXPECT_TRUE(visibility.hits(0.51, 0.0).empty());
+}
+
+TEST(Visibility, KnowsWhereATriangleIsMet) {
+    Placed mesh;
+    mesh.positions = {{-1, -1, -2}, {3, -1, -4}, {-1, 3, -2}};
+    mesh.triangles = {{0, 1, 2}};
+    const Visibility visibility({mesh.view()}, 0.1, 10.0);
+    // The point (0.5, 0, -2.75) has the weights 3/8, 3/8, 1/4.
+    const auto hits = visibility.hits(0.5 / 2.75, 0.0);
+    ASSERT_EQ(hits.size(), 1U);
+    EXPECT_NEAR(hits[0].barycentric.x, 0.375, 1e-14);
+    EXPECT_NEAR(hits[0].barycentric.y, 0.375, 1e-14);
+    EXPECT_NEAR(hits[0].barycentric.z, 0.25, 1e-14);
+    EXPECT_NEAR(hits[0].depth, 2.75, 1e-14);
+    EXPECT_TRUE(hits[0].counter_clockwise);
+}
+
+TEST(Visibility, FindsEveryHitNearestFirst) {
+    const Placed back = placed(test::grid(1), {-0.5, -0.5, -3.0});
+    const Placed front = placed(test::grid(1), {-0.5, -0.5, -2.0});
+    const Placed ball = placed(test::sphere(24, 12), {0.0, 0.0, -5.0});
+    const Visibility visibility({back.view(), front.view(), ball.view()}, 0.1, 10.0);
+    const auto hits = visibility.hits(0.01, 0.02);
+    ASSERT_EQ(hits.size(), 4U);
+    EXPECT_EQ(hits[0].instance, 1U);
+    EXPECT_EQ(hits[1].instance, 0U);
+    EXPECT_EQ(hits[2].instance, 2U);
+    EXPECT_TRUE(hits[2].counter_clockwise);
+    EXPECT_EQ(hits[3].instance, 2U);
+    EXPECT_FALSE(hits[3].counter_clockwise) << "the far side, from within";
+}
+
+TEST(Visibility, EndsAtTheCamerasNearAndFar) {
+    const Placed mesh = wall();  // The wall is at depth 1.
+    EXPECT_EQ(Visibility({mesh.view()}, 1.0, 10.0).hits(0.01, 0.02).size(), 1U);
+    EXPECT_EQ(Visibility({mesh.view()}, 1.0000001, 10.0).hits(0.01, 0.02).size(), 0U);
+    EXPECT_EQ(Visibility({mesh.view()}, 0.1, 1.0).hits(0.01, 0.02).size(), 1U);
+    EXPECT_EQ(Visibility({mesh.view()}, 0.1, 0.9999999).hits(0.01, 0.02).size(), 0U);
+}
+
+TEST(Visibility, DoesNotDependOnScale) {
+    for (const double scale : {1e-30, 1e-12, 1e12, 1e30}) {
+        SCOPED_TRACE(scale);
+        const Placed ball = placed(test::sphere(24, 12), {0.0, 0.0, -5.0}, scale);
+        const Visibility visibility({ball.view()}, 0.1 * scale, 10.0 * scale);
+        const auto hits = visibility.hits(0.03, -0.05);
+        ASSERT_EQ(hits.size(), 2U);
+        // The ray hits the exact sphere at 4.0279. Its facets lie up to a hundredth inside.
+        EXPECT_NEAR(hits[0].depth / scale, 4.0279, 0.02);
+    }
+}
+
+TEST(Visibility, HasNoHolesInAFineMesh) {
+    // With 131,072 triangles, edges are everywhere, and Embree's floats differ from exact values.
+    const Placed ball = placed(test::sphere(256, 256), {0.0, 0.0, -3.0});
+    const Visibility visibility({ball.view()}, 0.1, 10.0);
+    std::size_t odd = 0;
+    for (int y = 0; y < 200; ++y) {
+        for (int x = 0; x < 200; ++x) {
+            const auto hits = visibility.hits((x - 99.5) / 400.0, (y - 99.5) / 400.0);
+            if (hits.size() != 2U) ++odd;
+        }
+    }
+    EXPECT_EQ(odd, 0U) << "every ray goes in once and comes out once";
+}
+
+TEST(Visibility, MeetsNothingWithoutAreaOrPlace) {
+    Placed mesh;
+    mesh.positions = {{-1, -1, -2}, {1, 1, -2}, {0, 0, -2}, {1, 0, -2}};
+    mesh.positions.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0, -2);
+    mesh.positions.emplace_back(std::numeric_limits<double>::infinity(), 0, -2);
+    mesh.triangles = {{0, 1, 2}, {0, 0, 0}, {0, 1, 4}, {0, 1, 5}};
+    EXPECT_TRUE(Visibility({mesh.view()}, 0.1, 10.0).hits(0.01, 0.01).empty());
+    EXPECT_TRUE(Visibility({}, 0.1, 10.0).hits(0.0, 0.0).empty());
+}
+
+}  // namespace
+}  // namespace relief::reference
 
 namespace relief {
 namespace {
 
+using test::pixel;
+
+std::size_t edge_count(const Scene& scene, int size) {
+    const Reference reference = test::traced(scene, size);
+    std::size_t count = 0;
+    for (const std::uint8_t edge : reference.edges.as<std::uint8_t>())
+        count += edge != 0 ? 1U : 0U;
+    return count;
+}
+
+TEST(ReferenceEdges, AreNotWithinASmoothSurface) {
+    // The square fills the picture, and its diagonal passes through pixels.
+    EXPECT_EQ(edge_count(test::scene_of(test::facing_square(), Material{}), 16), 0U);
+}
+
+TEST(ReferenceEdges, AreAtSilhouettesOnly) {
+    // 16 pixels cover 4 units: centers lie at 0.125, 0.375, ..., 1.125.
+    const auto edges_of_a_square = [](float half_side) {
+        Scene scene = test::scene_of(test::facing_square(), Material{});
+        scene.instances[0].world_from_object = glm::mat4(0.5F * half_side);
+        scene.instances[0].world_from_object[3] = {0, 0, 0, 1};
+        return edge_count(scene, 16);
+    };
+    EXPECT_EQ(edges_of_a_square(1.0F), 0U) << "half-way between centres";
+    const float pixel_width = 0.25F;
+    // The outermost of the 10 x 10 pixels that the square covers, or almost covers.
+    EXPECT_EQ(edges_of_a_square(1.125F + pixel_width / 64), 36U);
+    EXPECT_EQ(edges_of_a_square(1.125F - pixel_width / 64), 36U);
+    EXPECT_EQ(edges_of_a_square(1.125F + pixel_width / 16), 0U) << "beyond the margin";
+}
+
+TEST(ReferenceEdges, AreWhereFlatTrianglesMeet) {
+    Material material;
+    material.interpolation = Interpolation::flat;
+    // The diagonal of the square passes through the centers of 16 pixels.
+    EXPECT_EQ(edge_count(test::scene_of(test::facing_square(), material), 16), 16U);
+}
+
+/// The square is twice as large as the picture, so its border is far away.
+Scene large_square(const Material& material) {
+    Scene scene = test::scene_of(test::facing_square(), material);
+    scene.instances[0].world_from_object = glm::mat4(2.0F);
+    scene.instances[0].world_from_object[3] = {0, 0, 0, 1};
+    return scene;
+}
+
+TEST(ReferenceEdges, AreWhereNearestTexelsMeet) {
+    Material material;
+    Texture texture;
+    texture.filter = TextureFilter::nearest;
+    material.diffuse_texture = texture;
+    Scene scene = large_square(material);
+    scene.images = {{"texture", test::constant_image({1, 1, 1, 1}, 3, 8, ColorSpace::srgb)}};
+    // Two texels along a side: they meet between pixels if the picture has 16, and at the center of
+    // pixels if it has 17.
+    EXPECT_EQ(edge_count(scene, 16), 0U);
+    EXPECT_EQ(edge_count(scene, 17), 33U);
+    material.diffuse_texture->filter = TextureFilter::linear;
+    scene.materials = {material};
+    EXPECT_EQ(edge_count(scene, 17), 0U);
+}
+
+TEST(ReferenceEdges, AreWhereATextureIsMinified) {
+    Material material;
+    material.diffuse_texture = Texture{0};
+    Scene scene = large_square(material);
+    for (const int size : {8, 64}) {
+        scene.images = {{"texture", make_image(size, size, 3, 8, ColorSpace::srgb)}};
+        EXPECT_EQ(edge_count(scene, 16), size > 16 ? 256U : 0U);
+    }
+}
+
+TEST(ReferenceEdges, AreNotLookedForWithoutAMargin) {
+    Material material;
+    material.interpolation = Interpolation::flat;
+    const Scene scene = test::scene_of(test::facing_square(), material);
+    Report report;
+    ReferenceSettings settings{16, 16, 0.0};
+    const Reference reference = render_reference(scene, settings, report);
+    for (const std::uint8_t edge : reference.edges.as<std::uint8_t>())
+        EXPECT_EQ(edge, 0);
+}
+
+TEST(ReferenceEdges, AreWhereTwoSurfacesAreTooCloseToTellApart) {
+    Scene scene = test::scene_of(test::facing_square(), Material{});
+    scene.instances.push_back(scene.instances[0]);
+    EXPECT_EQ(edge_count(scene, 16), 256U);
+    scene.instances[1].world_from_object[3].z = -0.01F;
+    EXPECT_EQ(edge_count(scene, 16), 0U);
+}
+
 using test::storage_rounding;
 
-/// A white surface under red, green and blue light from +x, +y and +z: its radiance is its normal,
-/// where that is not negative.
+/// A white surface under red, green and blue light from +x, +y and +z. Its radiance is the positive
+/// part of its normal.
 Scene measured(Mesh mesh, Material material = {}) {
     material.ambient = glm::vec3(0.0F);
     material.diffuse = glm::vec3(1.0F);
@@ -26,11 +235,12 @@ Scene measured(Mesh mesh, Material material = {}) {
     return scene;
 }
 
-/// The normal at a pixel, both signs: the lamps turned round show the rest.
+/// Returns the signed normal at a pixel. A second picture with reversed lights gives the negative
+/// part.
 glm::dvec3 normal_at(Scene scene, int size, int x, int y) {
     const glm::dvec3 positive = test::radiance_at(scene, size, x, y);
-    for (DirectionalLight& lamp : scene.directional_lights)
-        lamp.direction_world = -lamp.direction_world;
+    for (DirectionalLight& light : scene.directional_lights)
+        light.direction_world = -light.direction_world;
     return positive - test::radiance_at(scene, size, x, y);
 }
 
@@ -45,7 +255,7 @@ TEST(ReferenceSurface, InterpolatesNormalsAndMakesThemUnit) {
     Mesh mesh = test::facing_square();
     for (std::size_t i = 0; i < 4; ++i)
         mesh.normals[i] = mesh.positions[i].x < 0 ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
-    // At (1, 1, 0): a quarter to three quarters.
+    // The weights at (1, 1, 0) are one quarter and three quarters.
     const glm::dvec3 found = normal_at(measured(mesh), 2, 1, 0);
     const glm::dvec3 expected = glm::normalize(glm::dvec3(0.75, 0, 0.25));
     for (int i = 0; i < 3; ++i)
@@ -53,7 +263,8 @@ TEST(ReferenceSurface, InterpolatesNormalsAndMakesThemUnit) {
 }
 
 TEST(ReferenceSurface, InterpolatesWithPerspective) {
-    // Tilted about y: the left edge at depth 2, the right one at depth 4, 4 wide in x.
+    // The square is rotated about y: its left edge is at depth 2, its right one at depth 4, and its
+    // width in x is 4.
     Mesh mesh = test::facing_square();
     for (std::size_t i = 0; i < 4; ++i) {
         mesh.positions[i].z = mesh.positions[i].x < 0 ? 1.0F : -1.0F;
@@ -63,11 +274,11 @@ TEST(ReferenceSurface, InterpolatesWithPerspective) {
     material.unlit = true;
     material.diffuse = glm::vec3(1.0F);
     Scene scene = test::scene_of(mesh, material);
-    // The middle ray meets x = 0, half-way in space; on screen the edges are at -3 and 1.5.
+    // The middle ray meets x = 0, the middle in space. On the screen, the edges are at -3 and 1.5.
     EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, 0.5, storage_rounding);
-    // The pixel of 4 at x = 1/3 of depth... by similar triangles: x = 0.5 z / 1.5.. solved: 3/7.
-    const double slope = (-2.0 + 4.0 * 2.5 / 4.0) / 3.0;  // x over depth.
-    const double x = 3.0 * slope / (1.0 - slope * 0.5);   // depth = 3 + x / 2.
+    // The ray of the pixel has the slope x / depth, and the surface has depth = 3 + x / 2.
+    const double slope = (-2.0 + 4.0 * 2.5 / 4.0) / 3.0;  // x divided by depth.
+    const double x = 3.0 * slope / (1.0 - slope * 0.5);   // Solved for x.
     EXPECT_NEAR(test::radiance_at(scene, 4, 2, 1).r, (x + 2.0) / 4.0, storage_rounding);
 }
 
@@ -109,10 +320,10 @@ TEST(ReferenceSurface, BringsNormalsToTheWorldByCofactors) {
     place[0].x = 4.0F;
     place[3] = {0, 0, 0, 1};
     expect_normal(scene, {0.125, 0.125, 0.5});
-    place[0].x = -4.0F;  // Mirrored: x turned round, front still front.
+    place[0].x = -4.0F;  // Mirrored: x is reversed, and the front stays the front.
     expect_normal(scene, {-0.125, 0.125, 0.5});
     place[0].x = 4.0F;
-    place[2].z = 0.0F;  // Flattened onto its own plane.
+    place[2].z = 0.0F;  // The mesh is flattened onto its own plane.
     expect_normal(scene, {0, 0, 1});
 }
 
@@ -125,7 +336,7 @@ TEST(ReferenceSurface, WithoutDirectionIsTheZAxis) {
     }
 }
 
-/// A one-texel map of codes, under FlatCode::middle.
+/// A map with one texel of these codes, under FlatCode::middle.
 Scene mapped(Mesh mesh, int x, int y, int z, Material material = {}) {
     if (!material.normal_map) material.normal_map = NormalMap{Texture{0}};
     material.normal_map->flat = FlatCode::middle;
@@ -146,7 +357,7 @@ TEST(ReferenceSurface, LeansByItsNormalMapsCodes) {
     Scene halves = mapped(test::facing_square(), 60, -30, 112);
     halves.materials[0].normal_map->flat = FlatCode::half;
     expect_normal(halves, {60.5, -29.5, 112.5});
-    // Sixteen bits: the middle is 32768.
+    // In 16 bits, the middle is 32768.
     Image fine = make_image(1, 1, 3, 16, ColorSpace::data);
     fine.samples = std::vector<std::uint16_t>{32768 + 6000, 32768 - 3000, 32768 + 20000};
     Scene sixteen = mapped(test::facing_square(), 0, 0, 0);
@@ -163,8 +374,8 @@ TEST(ReferenceSurface, WithNothingInItsMapIsTheInterpolatedNormal) {
 TEST(ReferenceSurface, UsesTheStoredBasisAsInterpolated) {
     Mesh mesh = test::facing_square();
     mesh.tangents.assign(4, glm::vec4(1, 0, 0, 1));
-    // Normals lean apart: at the origin, half-way, (0, 0, cos 0.9) is left, and the bitangent w
-    // cross(n, t) is as short.
+    // The normals diverge. At the origin, their mean is (0, 0, cos 0.9), and the bitangent w
+    // cross(n, t) has the same length.
     for (std::size_t i = 0; i < 4; ++i) {
         const float side = mesh.positions[i].y > 0 ? 1.0F : -1.0F;
         mesh.normals[i] = {0, side * std::sin(0.9F), std::cos(0.9F)};
@@ -187,7 +398,7 @@ TEST(ReferenceSurface, DerivedFramesAgreeWithStoredOnesOnAPlane) {
         for (const bool mirrored_place : {false, true}) {
             SCOPED_TRACE(testing::Message() << mirrored_texture << mirrored_place);
             Mesh mesh = test::facing_square();
-            // A texture that is turned and sheared: u along (2, 1), v along (-1, 3).
+            // The texture is rotated and sheared: u runs along (2, 1), v along (-1, 3).
             for (std::size_t i = 0; i < 4; ++i) {
                 const glm::vec3& p = mesh.positions[i];
                 mesh.texcoords[i] = {2.0F * p.x + p.y, -p.x + 3.0F * p.y};
@@ -198,7 +409,7 @@ TEST(ReferenceSurface, DerivedFramesAgreeWithStoredOnesOnAPlane) {
             material.tangent_frame = TangentFrame::derivatives;
             Scene scene = mapped(mesh, 60, 40, 112, material);
             if (mirrored_place) scene.instances[0].world_from_object[0].x = -1.0F;
-            // dP/du is along (3, 1), where v does not change; v grows upwards unless mirrored.
+            // dP/du is along (3, 1), where v is constant. v grows upwards unless it is mirrored.
             const double up = mirrored_texture ? 1.0 : -1.0;
             const glm::dvec3 tangent = glm::normalize(glm::dvec3(3, 1, 0));
             const glm::dvec3 bitangent = up * glm::dvec3(-tangent.y, tangent.x, 0);
@@ -215,7 +426,7 @@ TEST(ReferenceSurface, WithoutATextureGradientIsTheInterpolatedNormal) {
     Material material;
     material.normal_map = NormalMap{Texture{0}};
     material.tangent_frame = TangentFrame::derivatives;
-    // The map leans, but there is no way to lean to: only its z is left.
+    // The map has a tilt, but no tangent exists, so only its z remains.
     expect_normal(mapped(mesh, 60, 40, 112, material), {0, 0, 1});
 }
 
@@ -230,7 +441,7 @@ TEST(ReferenceSurface, ReadsObjectSpaceMapsThroughTheMatrix) {
     expect_normal(scene, {-30, 30, 112});
 }
 
-/// A bump map whose heights rise by one step a texel, over 64 texels a side.
+/// A bump map of 64 texels per side whose heights increase by these steps per texel.
 Scene bumped(float right, float down, float strength) {
     Material material;
     material.bump_map = BumpMap{Texture{0, TextureWrap::clamp, TextureWrap::clamp}, strength};
@@ -245,7 +456,7 @@ Scene bumped(float right, float down, float strength) {
 
 TEST(ReferenceSurface, LeansAwayFromWhereItsBumpsRise) {
     expect_normal(bumped(0.25F, 0, 2.0F), {-0.5, 0, 1});
-    // Rising downwards in the image is falling upwards: the normal leans up.
+    // Heights that increase downwards in the image decrease upwards, so the normal is tilted up.
     expect_normal(bumped(0, 0.25F, 2.0F), {0, 0.5, 1});
     expect_normal(bumped(0.125F, -0.25F, -2.0F), {0.25, 0.5, 1});
 }

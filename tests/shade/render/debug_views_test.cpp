@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Debug views as pictures, against values computed here: squares and spheres by closed form,
-// normals and terms of light by the CPU reference.
+// Debug views as pictures against reference values: squares and spheres in closed form, normals and
+// light terms from the CPU reference.
 #include "relief/shade/debug_views.h"
 
 #include <gtest/gtest.h>
@@ -10,13 +10,13 @@
 #include <set>
 #include <string>
 
-#include "../effects/all_features.h"
-#include "draw_test.h"
 #include "effects/surface_program.h"
-#include "random_scene.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/reference.h"
 #include "render/program_cache.h"
+#include "shade/effects/feature_sets.h"
+#include "shade/render/draw_support.h"
+#include "shade/render/random_scene.h"
 
 #include "support/shapes.h"
 
@@ -26,7 +26,7 @@ namespace {
 using test::pixel;
 
 constexpr int view_size = 32;
-/// Of what a float shader computes.
+/// The tolerance for float shaders.
 constexpr double float_tolerance = 1e-5;
 
 FrameSettings floats(DebugView view) {
@@ -64,7 +64,7 @@ void expect_color(const Image& image, int x, int y, const glm::dvec4& color,
     }
 }
 
-/// The square with texture, lit by nothing.
+/// The textured square without lights.
 Scene square() {
     return test::scene_of(test::facing_square(), test::black_material());
 }
@@ -92,7 +92,7 @@ TEST_F(DebugViewPictures, AreStoredAsCodesWithoutToneOrSrgb) {
 
 TEST_F(DebugViewPictures, TurnWithTheInstanceAndMirror) {
     Scene scene = square();
-    // x -> -x: seen from behind in texture space; the front stays the front.
+    // The mirror x -> -x shows the texture from behind. The front stays the front.
     scene.instances[0].world_from_object[0][0] = -1.0F;
     expect_color(view(scene, DebugView::geometric_normal), 3, 5, coded({0, 0, 1}));
     expect_color(view(scene, DebugView::tangent), 3, 5, coded({-1, 0, 0}));
@@ -125,7 +125,7 @@ TEST_F(DebugViewPictures, OfTextureCoordinatesHaveAChecker) {
     const Image image = view(scene, DebugView::texcoords);
     for (const int y : {0, 7, 30}) {
         for (int x = 0; x < view_size; ++x) {
-            // The camera sees all of the square.
+            // The camera sees the whole square.
             const double u = (x + 0.5) / view_size * 1.5 - 0.25;
             const double v = (y + 0.5) / view_size * 1.5 - 0.25;
             const bool odd = static_cast<long>(std::floor(8 * u) + std::floor(8 * v)) % 2 != 0;
@@ -148,10 +148,10 @@ TEST_F(DebugViewPictures, OfASphereAreItsNormals) {
                                           (1.0 - (y + 0.5) / view_size * 2.0) * reach, -1.0));
             const double along = 3.0 * -ray.z;
             const double inside = along * along - 8.0;
-            if (inside < 0.05) continue;  // Beside it, or at the rim.
+            if (inside < 0.05) continue;  // This pixel is outside or at the rim.
             const glm::dvec3 n = glm::dvec3(0, 0, 3) + ray * (along - std::sqrt(inside));
             expect_color(shading, x, y, coded(n), 2e-3);
-            expect_color(geometric, x, y, coded(n), 0.03);  // Facets of 2.8 degrees.
+            expect_color(geometric, x, y, coded(n), 0.03);  // Facets have an angle of 2.8 degrees.
             const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), n));
             if (std::abs(n.y) < 0.9) expect_color(tangents, x, y, coded(east), 0.02);
             ++compared;
@@ -167,9 +167,10 @@ TEST_F(DebugViewPictures, OfMapsAreTheirTexels) {
         {"heights", test::constant_image({0.3F, 0, 0, 1}, 1, 32, ColorSpace::linear)}};
     Material& material = scene.materials[0];
     material.normal_map = NormalMap{.texture = {0}, .green = Green::down, .flat = FlatCode::half};
-    const glm::dvec3 stored = glm::normalize(glm::dvec3(0.6, 0.2, 0.2));  // Green down: -(-0.2).
+    // Green points down: -(-0.2).
+    const glm::dvec3 stored = glm::normalize(glm::dvec3(0.6, 0.2, 0.2));
     expect_color(view(scene, DebugView::normal_map), 8, 8, coded(stored), 1e-4);
-    // No light in the scene: the map bends the normal all the same.
+    // The scene has no light, but the map changes the normal.
     expect_color(view(scene, DebugView::shading_normal), 8, 8, coded(stored), 1e-4);
     material.normal_map->space = NormalSpace::object;
     expect_color(view(scene, DebugView::normal_map), 8, 8, coded(stored), 1e-4);
@@ -184,13 +185,13 @@ TEST_F(DebugViewPictures, HatchWhatHasNothingToShow) {
     Mesh plain = scene.meshes[0];
     plain.texcoords.clear();
     scene.meshes.emplace_back(plain);
-    // The upper half without texture coordinates, in front.
+    // The upper half, in front, has no texture coordinates.
     scene.instances.push_back({1, glm::mat4(1.0F), "plain"});
     scene.instances[1].world_from_object[3] = {0.0F, 2.0F, 0.01F, 1.0F};
     const Image image = render(scene, codes(DebugView::texcoords)).image;
     int dark = 0;
     for (int x = 0; x < view_size; ++x) {
-        // Rows count from below in gl_FragCoord.
+        // gl_FragCoord counts rows from the bottom.
         const double stripe = std::fmod(x + 0.5 + (view_size - 1 - 2 + 0.5), 16.0);
         const double gray = stripe < 8.0 ? 51.0 : 77.0;
         EXPECT_EQ(pixel(image, x, 2), glm::dvec4(gray, gray, gray, 255));
@@ -207,12 +208,12 @@ TEST_F(DebugViewPictures, OfOverdrawCountFragments) {
         const Image image = render(scene, codes(DebugView::overdraw)).image;
         EXPECT_EQ(pixel(image, 4, 4),
                   glm::dvec4(std::min(64 * layers, 255), 16 * layers, 4 * layers, 255));
-        // Behind the others, whatever the depth.
+        // Another instance behind the others; depth has no effect.
         Instance behind = scene.instances[0];
         behind.world_from_object[3].z = -0.1F * static_cast<float>(layers);
         scene.instances.push_back(behind);
     }
-    // Beside the surfaces: none, on black.
+    // Beside the surfaces there is none, on black.
     for (Instance& instance : scene.instances)
         instance.world_from_object[3].x = 3.0F;
     EXPECT_EQ(pixel(render(scene, codes(DebugView::overdraw)).image, 1, 4),
@@ -244,7 +245,8 @@ TEST_F(DebugViewPictures, LeaveThePictureAsItWas) {
 }
 
 TEST_F(DebugViewPictures, OfShadingNormalsAgreeWithTheReference) {
-    // White under a light for each axis: radiance is the normal, as far as it is lit.
+    // A white surface under a light along each axis: its radiance is the positive part of the
+    // normal.
     const glm::vec3 towards[] = {{0.8F, 0.0F, 0.6F}, {-0.4F, 0.7F, 0.6F}, {-0.4F, -0.7F, 0.6F}};
     test::Dice dice(5);
     Material material = test::black_material();
@@ -278,7 +280,7 @@ TEST_F(DebugViewPictures, OfShadingNormalsAgreeWithTheReference) {
     EXPECT_GT(compared, 100);
 }
 
-/// Without the alpha that would hide a sum.
+/// A random scene without the alpha that would hide a sum.
 Scene opaque_scene(std::uint64_t seed) {
     Scene scene = test::random_scene(seed);
     for (Material& material : scene.materials) {
@@ -349,7 +351,7 @@ TEST_F(DebugViewPictures, OfDiffuseLightAgreeWithTheReferenceOfAMatteScene) {
     }
 }
 
-/// Programs of views take nothing that the plan does not name.
+/// The programs of views have only the inputs that the plan lists.
 TEST_F(DebugViewPictures, LinkForACoveringSetAndTakeWhatIsPlanned) {
     ProgramCache cache(context().api());
     std::set<Features> tried;

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers that shaders take: matrices, normal-map codes, cameras, by hand. And every planned
-// uniform has a value.
-#include "render/draw_values.h"
-
+// Input of the GPU: matrices, codes of normal maps, the inputs that a plan lists, sorted triangles
+// and lines of vertex frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
-#include "../effects/all_features.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/planned_inputs.h"
+#include "render/draw_values.h"
+#include "render/gpu_mesh.h"
+#include "render/overlays.h"
 #include "render/program_cache.h"
+#include "shade/effects/feature_sets.h"
 #include "support/angle.h"
 #include "support/gl_environment.h"
 
@@ -27,7 +30,7 @@ glm::mat4 scaling(float x, float y, float z) {
 TEST(DrawValues, TurnNormalsByTheInverseTranspose) {
     DrawValues values;
     glm::mat4 matrix = scaling(2, -3, 0.5F);
-    matrix[1].x = 1.0F;  // A shear on top.
+    matrix[1].x = 1.0F;  // Adds a shear.
     matrix[3] = glm::vec4(7, 8, 9, 1);
     set_place(values, matrix);
     const glm::dmat3 expected = glm::transpose(glm::inverse(glm::dmat3(matrix)));
@@ -57,7 +60,7 @@ TEST(DrawValues, OfAFlatteningMatrixPointOutOfThePlane) {
     EXPECT_EQ(values.world_from_object_normal, glm::mat3(0.0F));
 }
 
-/// The numbers of a map of this many bits.
+/// Returns the values for a map with this number of bits.
 DrawValues numbers(int bits, FlatCode flat, Green green = Green::up, float scale = 1.0F) {
     DrawValues values;
     set_normal_map(values, NormalMap{{}, scale, green}, bits, flat);
@@ -69,7 +72,7 @@ TEST(NormalMapNumbers, DecodeTheCodesOfBothConventions) {
         return texel * static_cast<double>(n.normal_map_scale.x) +
                static_cast<double>(n.normal_map_bias.x);
     };
-    // A float's rounding of numbers near 1.
+    // The float rounding of numbers near 1.
     constexpr double rounding = 2e-7;
     const DrawValues middle = numbers(8, FlatCode::middle);
     EXPECT_NEAR(decode(middle, 128.0 / 255), 0.0, rounding);
@@ -109,7 +112,7 @@ TEST(ClipFromWorld, PutsNearAndFarAtTheEndsOfDepth) {
     };
     EXPECT_NEAR(seen({0, 0, 4}).z, -1.0, 1e-6);
     EXPECT_NEAR(seen({0, 0, -4}).z, 1.0, 1e-6);
-    // At distance 5 the upper edge is 2.5 up and the right edge 5 to the right.
+    // At distance 5, the upper edge is 2.5 above and the right edge 5 to the right of the center.
     EXPECT_NEAR(seen({0, 2.5, 0}).y, 1.0, 1e-6);
     EXPECT_NEAR(seen({5, 0, 0}).x, 1.0, 1e-6);
 }
@@ -128,6 +131,166 @@ TEST_P(DrawUniforms, HaveAValueForEveryPlannedName) {
         }
         EXPECT_FALSE(set_uniform(program.linked, "nothing", values));
     }
+}
+
+test::CallingScene normal_mapped() {
+    Features f;
+    f.directional_lights = 1;
+    f.diffuse = true;
+    f.detail = NormalDetail::normal_map;
+    return test::scene_calling_for(f);
+}
+
+TEST(PlannedInputs, NameStreamsAndImagesWithTheirReasons) {
+    const test::CallingScene calling = normal_mapped();
+    const FramePlan plan = plan_effects(calling.scene, calling.settings);
+    const DrawInputs inputs = planned_inputs(calling.scene, plan.draws[0]);
+    ASSERT_EQ(inputs.attributes.size(), 4U);
+    EXPECT_EQ(inputs.attributes[1].name, "normal_object");
+    EXPECT_TRUE(inputs.attributes[1].stored);
+    EXPECT_EQ(inputs.attributes[2].name, "tangent_object");
+    EXPECT_FALSE(inputs.attributes[2].stored) << "computed";
+    EXPECT_EQ(inputs.attributes[2].reason, "a map lies in the mesh's tangent frame");
+    ASSERT_EQ(inputs.textures.size(), 1U);
+    EXPECT_EQ(inputs.textures[0].sampler, "normal_texture");
+    EXPECT_EQ(inputs.textures[0].image, "normal");
+    EXPECT_TRUE(inputs.textures[0].mip_chain);
+    EXPECT_EQ(inputs.textures[0].reason, "material 'm' has it");
+}
+
+TEST(PlannedInputs, AreThoseOfTheProgramForEveryPairOfEffects) {
+    for (const Features& features : test::covering_features()) {
+        const test::CallingScene calling = test::scene_calling_for(features);
+        const FramePlan plan = plan_effects(calling.scene, calling.settings);
+        const DrawPlan& draw = plan.draws[0];
+        const PlannedInterface planned = planned_interface(draw.features);
+        const DrawInputs inputs = planned_inputs(calling.scene, draw);
+        EXPECT_EQ(inputs.attributes.size(), planned.attributes.size());
+        EXPECT_EQ(inputs.textures.size(), planned.samplers.size());
+        for (const PlannedTexture& texture : inputs.textures)
+            EXPECT_NE(texture.reason, "") << texture.sampler;
+    }
+}
+
+TEST(PlannedPasses, AreInTheOrderInWhichTheyAreDrawn) {
+    test::CallingScene calling = normal_mapped();
+    calling.scene.environment = Environment{};
+    FrameSettings settings = calling.settings;
+    settings.samples = 4;
+    const std::vector<PlannedPass> passes = planned_passes(plan_effects(calling.scene, settings));
+    ASSERT_EQ(passes.size(), 3U);
+    EXPECT_EQ(passes[0].name, "surfaces");
+    EXPECT_EQ(passes[1].name, "skybox");
+    EXPECT_EQ(passes[2].name, "finishing");
+    EXPECT_EQ(passes[2].reason, "4 samples a pixel are averaged in linear light");
+    EXPECT_EQ(planned_passes(plan_effects(normal_mapped().scene, calling.settings)).size(), 1U);
+}
+
+/// Small triangles at these depths along z.
+Mesh stack(const std::vector<float>& depths) {
+    Mesh mesh;
+    for (const float z : depths) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {{0, 0, z}, {1, 0, z}, {0, 1, z}});
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return mesh;
+}
+
+std::vector<std::uint32_t> order(SortedTriangles& triangles, const glm::vec3& farther) {
+    std::vector<std::uint32_t> result;
+    for (const glm::uvec3& triangle : triangles.sort(farther))
+        result.push_back(triangle.x / 3);
+    return result;
+}
+
+using Order = std::vector<std::uint32_t>;
+
+TEST(SortedTriangles, StandFarthestFirst) {
+    const Mesh mesh = stack({0, 3, -2, 1});
+    SortedTriangles triangles(mesh, {0, 4, std::nullopt});
+    EXPECT_EQ(order(triangles, {0, 0, 1}), (Order{1, 3, 0, 2}));
+    EXPECT_EQ(order(triangles, {0, 0, -5}), (Order{2, 0, 3, 1}));
+    EXPECT_EQ(triangles.center().z, 0.5F);
+}
+
+TEST(SortedTriangles, KeepTheMeshsOrderWhereTheyAreEquallyFar) {
+    const Mesh mesh = stack({1, 0, 1, 0});
+    SortedTriangles triangles(mesh, {0, 4, std::nullopt});
+    EXPECT_EQ(order(triangles, {0, 0, 1}), (Order{0, 2, 1, 3}));
+    EXPECT_EQ(order(triangles, {1, 0, 0}), (Order{0, 1, 2, 3}));
+}
+
+TEST(SortedTriangles, OfARangeAreItsOwn) {
+    const Mesh mesh = stack({0, 3, -2, 1});
+    SortedTriangles triangles(mesh, {1, 2, std::nullopt});
+    EXPECT_EQ(order(triangles, {0, 0, 1}), (Order{1, 2}));
+}
+
+TEST(SortedTriangles, WithoutAPlaceComeLast) {
+    const Mesh mesh = stack(
+        {0, std::numeric_limits<float>::quiet_NaN(), 2, std::numeric_limits<float>::infinity()});
+    SortedTriangles triangles(mesh, {0, 4, std::nullopt});
+    EXPECT_EQ(order(triangles, {0, 0, 1}), (Order{2, 0, 1, 3}));
+    // Two of four vertices count.
+    EXPECT_EQ(triangles.center().x, glm::vec3(1.0F / 3.0F).x * 0.5F);
+}
+
+Mesh one_vertex() {
+    Mesh mesh;
+    mesh.positions = {{1, 2, 3}};
+    mesh.normals = {{0, 0, 1}};
+    mesh.tangents = {{1, 0, 0, 1}};
+    return mesh;
+}
+
+VertexFrameLines lines_of(const Mesh& mesh, const glm::mat4& place, const glm::dvec3& center = {}) {
+    VertexFrameLines lines;
+    add_vertex_frames(mesh, place, center, 0.5, lines);
+    return lines;
+}
+
+using Line = std::vector<glm::vec3>;
+
+TEST(VertexFrames, StartAtTheVertexAndHaveTheLength) {
+    const VertexFrameLines lines = lines_of(one_vertex(), glm::mat4(1.0F), {1, 1, 1});
+    EXPECT_EQ(lines.tangents, (Line{{0, 1, 2}, {0.5F, 1, 2}}));
+    EXPECT_EQ(lines.bitangents, (Line{{0, 1, 2}, {0, 1.5F, 2}}));
+    EXPECT_EQ(lines.normals, (Line{{0, 1, 2}, {0, 1, 2.5F}}));
+}
+
+TEST(VertexFrames, KeepTheirLengthUnderScaleAndTurnRoundUnderMirrors) {
+    glm::mat4 place(1.0F);
+    place[0][0] = -4.0F;
+    const VertexFrameLines lines = lines_of(one_vertex(), place);
+    EXPECT_EQ(lines.tangents, (Line{{-4, 2, 3}, {-4.5F, 2, 3}}));
+    EXPECT_EQ(lines.bitangents, (Line{{-4, 2, 3}, {-4, 2.5F, 3}})) << "still up in the image";
+    EXPECT_EQ(lines.normals, (Line{{-4, 2, 3}, {-4, 2, 3.5F}}));
+}
+
+TEST(VertexFrames, StayPreciseFarFromTheOrigin) {
+    Mesh mesh = one_vertex();
+    mesh.positions = {{0.125F, 0, 0}};
+    glm::mat4 place(1.0F);
+    place[3] = {1e8F, 0, 0, 1};
+    const VertexFrameLines lines = lines_of(mesh, place, {1e8, 0, 0});
+    EXPECT_EQ(lines.tangents, (Line{{0.125F, 0, 0}, {0.625F, 0, 0}}));
+}
+
+TEST(VertexFrames, LeaveOutWhatIsNowhereOrHasNoDirection) {
+    Mesh mesh = one_vertex();
+    mesh.positions.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
+    mesh.normals.push_back({0, 0, 1});
+    mesh.tangents.push_back({1, 0, 0, 1});
+    mesh.positions.push_back({0, 0, 0});
+    mesh.normals.push_back({0, 0, 0});
+    mesh.tangents.push_back({1, 0, 0, 1});
+    const VertexFrameLines lines = lines_of(mesh, glm::mat4(1.0F));
+    EXPECT_EQ(lines.normals.size(), 2U);
+    EXPECT_EQ(lines.tangents.size(), 4U);
+    EXPECT_EQ(lines.bitangents.size(), 2U);
+    mesh.tangents.clear();
+    EXPECT_TRUE(lines_of(mesh, glm::mat4(1.0F)).tangents.empty());
 }
 
 }  // namespace

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments from real files: six faces and the panorama they were made from look alike, and
-// what does not fit is refused by name.
+// Environments from real files: six faces look like the panorama from which they were made, and the
+// error message for invalid files names them.
 #include "render/environment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../environment/test_environments.h"
-#include "draw_test.h"
 #include "environment/convolution.h"
 #include "environment/environment_images.h"
 #include "environment/ggx.h"
 #include "relief/mesh/error.h"
 #include "relief/shade/image_compare.h"
+#include "shade/environment/test_environments.h"
+#include "shade/render/draw_support.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -47,7 +47,8 @@ TEST_F(Environments, LookAlikeAsSixFacesAndAsAPanorama) {
     const Environment round{Equirectangular{{panorama.string(), panorama}}, 1.0F, true};
     const Image equirect = render(mirror_ball(round), settings).image;
     const ImageDifference difference = compare(faces, equirect);
-    // The faces were made with mantissas rounded down: half a percent darker, a code or two.
+    // The mantissas of the faces are rounded down, so they are half a percent darker: one or two
+    // codes.
     EXPECT_LE(difference.mean, 1.5);
     Environment turned = round;
     std::get<Equirectangular>(turned.source).image.source =
@@ -55,7 +56,7 @@ TEST_F(Environments, LookAlikeAsSixFacesAndAsAPanorama) {
     EXPECT_GT(compare(faces, render(mirror_ball(turned), settings).image).mean, 20.0);
 }
 
-/// Six faces, each of its own colour in its left half and another in its right.
+/// Six faces with one color in the left half and another in the right half.
 std::vector<Image> two_colored_faces() {
     std::vector<Image> faces;
     for (std::size_t face = 0; face < 6; ++face) {
@@ -89,7 +90,7 @@ TEST_F(Environments, LookAlikeAsSixFacesAndAsACross) {
         render(mirror_ball({CubeCross{{"cross", cross}}, 1.0F, true}), settings).image;
     EXPECT_EQ(compare(as_faces, as_cross).max, 0.0);
 
-    // The other hand: the picture of a set that was turned by hand.
+    // The other handedness: the picture of a set that was reversed by hand.
     faces.left_handed = true;
     const Image left = render(mirror_ball({faces, 1.0F, true}), settings).image;
     CubeFaces turned;
@@ -108,12 +109,13 @@ TEST_F(Environments, LookAlikeAsAPanoramaAndAsALightProbe) {
         render(mirror_ball({Equirectangular{{"panorama", panorama}}, 1.0F, true}), settings).image;
     const Image ball =
         render(mirror_ball({AngularMap{{"probe", probe}}, 1.0F, true}), settings).image;
-    // The probe has half the panorama's texels at its middle; the eye sees a slight blur.
+    // In its middle, the probe has half the texels of the panorama. The difference is a slight
+    // blur.
     EXPECT_LT(flip_difference(round, ball).mean, 0.06);
     EXPECT_LE(compare(round, ball).mean, 4.0);
 }
 
-/// Six faces whose texels hold what `radiance` says of their direction.
+/// Six faces whose texels hold the `radiance` of their direction.
 Environment computed(int size, const std::function<double(glm::dvec3)>& radiance) {
     CubeFaces faces;
     std::vector<Image> images =
@@ -148,7 +150,8 @@ TEST_F(Environments, ShowInEvenLightWhatFacetsReflectAtAll) {
     scene.environment = computed(16, [](glm::dvec3) { return 1.0; });
     for (const float roughness : {0.1F, 0.5F, 1.0F}) {
         scene.materials[0].metallic_roughness->roughness = roughness;
-        // Seen head on; f0 is 1. Half floats and the table's bilinear lookups.
+        // The view is along the normal and f0 is 1. The tolerance covers half floats and the
+        // bilinear lookups of the table.
         const glm::dvec2 albedo = environment_brdf(1.0, static_cast<double>(roughness));
         EXPECT_NEAR(test::pixel(radiance(scene, 65, 65), 32, 32).x, albedo.x + albedo.y, 4e-3)
             << roughness;
@@ -159,12 +162,12 @@ TEST_F(Environments, AreMirroredBlurredByRoughness) {
     Material rough = test::black_material();
     rough.reflectivity = rough.grazing_reflectivity = glm::vec3(1.0F);
     Scene scene = test::scene_of(test::facing_square(), rough);
-    const auto lamp = [](glm::dvec3 d) { return d.z > 0.9 ? 5.0 : 0.25; };
-    scene.environment = computed(128, lamp);
+    const auto light = [](glm::dvec3 d) { return d.z > 0.9 ? 5.0 : 0.25; };
+    scene.environment = computed(128, light);
     const std::vector<Image> faces =
-        test::faces_of(128, [&](glm::dvec3 d) { return glm::dvec3(lamp(d)); });
-    // At the levels of the blurred map; between them, the picture is a blend. The last one has 8
-    // texels a face, whose lookups flatten a peak by a percent.
+        test::faces_of(128, [&](glm::dvec3 d) { return glm::dvec3(light(d)); });
+    // These are levels of the blurred map; between them, the picture is a blend. The last level has
+    // 8 texels per face, whose lookups flatten a peak by a percent.
     for (const float roughness : {0.25F, 0.5F, 1.0F}) {
         scene.materials[0].reflection_roughness = roughness;
         const double expected =
@@ -174,7 +177,7 @@ TEST_F(Environments, AreMirroredBlurredByRoughness) {
     }
 }
 
-/// An image with a NaN, an infinity and a number that half floats cannot hold, in one texel each.
+/// An image with a NaN, an infinity and a number beyond half floats in one texel each.
 Image broken_image(int width, int height) {
     Image image = make_image(width, height, 3, 32, ColorSpace::linear);
     image.as<float>()[0] = std::numeric_limits<float>::quiet_NaN();
@@ -189,7 +192,7 @@ TEST_F(Environments, WithTexelsThatAreNotFiniteAreCountedAndTheirPictureIsFinite
     for (ImageSource& face : faces.faces)
         face = {"face", make_image(12, 12, 3, 32, ColorSpace::linear)};
     faces.faces[3].source = square;
-    // What the cross leaves empty is nobody's: its broken texels must lie in a face.
+    // Empty parts of a cross have no effect, so its broken texels must lie in a face.
     Image cross = make_image(16, 12, 3, 32, ColorSpace::linear);
     std::ranges::copy(std::span(square.as<float>()).first(9),
                       cross.as<float>().subspan(3 * 4).begin());
@@ -228,8 +231,8 @@ TEST_F(Environments, OfOneTexelAFaceAreAsAnyOther) {
     Scene scene = test::scene_of(test::facing_square(), white);
     scene.environment = Environment{.source = faces, .skybox = false, .lights = true};
     const double shed = test::pixel(radiance(scene, 8, 8), 4, 4).x;
-    // A quarter from everywhere and three quarters more from the face in front, whose light sheds
-    // 4 / (pi sqrt(2)) atan(1 / sqrt(2)) = 0.554 of all that a plane can get.
+    // A quarter comes from all directions, and three quarters more from the face in front, which
+    // gives 4 / (pi sqrt(2)) atan(1 / sqrt(2)) = 0.554 of the irradiance of a full hemisphere.
     EXPECT_NEAR(shed, 0.25 + 0.75 * 0.554, 0.02) << "order 2 leaves a little out";
 }
 

@@ -1,26 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forcing an effect on that the plan left out changes no pixel: not one bit, in sRGB codes and in
-// linear float, one by one and all together. So leaving it out was right. Which effects are choices
-// of the scene instead, effect_forcing.h says.
+// An effect that the plan left out changes no bit of the picture when it is forced on, alone or
+// with all others. Effect costs: the choice of effects to drop from given and from measured times.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
-#include "../effects/all_features.h"
-#include "../effects/scene_calling_for.h"
-#include "draw_test.h"
 #include "relief/mesh/error.h"
+#include "relief/shade/effect_costs.h"
 #include "relief/shade/effect_forcing.h"
 #include "relief/shade/framing.h"
 #include "relief/shade/scene_file.h"
+#include "shade/effects/feature_sets.h"
+#include "shade/render/draw_support.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
-/// A sphere of a few facets, so that interpolation matters, and single-sided.
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A single-sided sphere with few facets, so that interpolation matters.
 Scene base_scene() {
     Material material;
     material.name = "base";
@@ -55,7 +59,7 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     textured.materials[0].emission = {0.05F, 0.0F, 0.1F};
     all.emplace_back("normal-mapped and glowing", textured);
 
-    Scene bare = base_scene();  // No texture coordinates: textures that exist cannot show.
+    Scene bare = base_scene();  // Without texture coordinates, textures cannot show.
     bare.meshes[0].edit().texcoords.clear();
     bare.images = textured.images;
     bare.materials[0].normal_map = textured.materials[0].normal_map;
@@ -69,7 +73,7 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     return all;
 }
 
-/// What the neutral plan has and the other has not.
+/// Returns the effects of the neutral plan that the other plan does not have.
 std::vector<std::string> added_effects(const FramePlan& plan, const FramePlan& neutral) {
     const std::vector<std::string> before = effects_in(plan);
     std::vector<std::string> added;
@@ -87,8 +91,9 @@ class ForcedEffects : public test::DrawTest {
         return render(scene, force_effects(scene, settings, plan, requests), settings).image;
     }
 
-    /// Everything neutral at once; if that shows, one by one, to say which.
-    /// \return how many effects were forced on
+    /// Forces all neutral effects at once. If the picture changes, it forces them one by one to
+    /// find the cause.
+    /// \return the number of forced effects
     std::size_t expect_no_change(const Scene& scene, const FrameSettings& settings) const {
         const FramePlan plan = plan_effects(scene, settings);
         const EffectRequest all{EffectBase::all_neutral, {}};
@@ -109,7 +114,7 @@ class ForcedEffects : public test::DrawTest {
         return added.size();
     }
 
-    /// Each effect by itself, as far as any draw can have it.
+    /// Forces each effect alone, in every draw that can have it.
     std::set<std::string> expect_no_change_one_by_one(const Scene& scene,
                                                       const FrameSettings& settings) const {
         const FramePlan plan = plan_effects(scene, settings);
@@ -122,7 +127,8 @@ class ForcedEffects : public test::DrawTest {
                 EXPECT_TRUE(test::same_bits(forced(scene, settings, one), as_planned))
                     << effect.name;
                 shown.insert(effect.name);
-            } catch (const InvalidInput&) {  // A choice, or nothing here could show it.
+            } catch (const InvalidInput&) {  // The effect is a choice of the scene, or cannot apply
+                                             // here.
             }
         }
         return shown;
@@ -135,8 +141,8 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
         SCOPED_TRACE(name);
         forced.merge(expect_no_change_one_by_one(scene, {32, 32, 1, OutputCoding::linear}));
     }
-    // Every effect that is no choice of the scene and needs no other forced beside it; exposure
-    // belongs to sRGB.
+    // Every effect that is not a choice of the scene and can be forced alone. Exposure belongs to
+    // sRGB.
     for (const char* effect : {"diffuse texture",   "vertex colours",
                                "alpha mask",        "normal map",
                                "bump map",          "double-sided normals",
@@ -184,7 +190,7 @@ TEST_F(ForcedEffects, ChangeNoBitAllTogetherInScenesWhereEveryPairOfEffectsMeets
     EXPECT_GT(added, 8 * scenes) << "effects forced on in each";
 }
 
-/// Every model and scene file in data/; models under one light.
+/// Every model and scene file in data/. Models have one light.
 std::vector<std::pair<std::string, Scene>> scenes_in_data() {
     std::vector<std::pair<std::string, Scene>> all;
     for (const auto& entry :
@@ -202,7 +208,7 @@ std::vector<std::pair<std::string, Scene>> scenes_in_data() {
     return all;
 }
 
-/// The same with every other map that data/ has, in its sky.
+/// Returns the same scene with every other map of data/, in the sky of data/.
 Scene under_the_sky(Scene scene) {
     const std::filesystem::path data = test::source_directory() / "data";
     CubeFaces faces;
@@ -250,7 +256,7 @@ TEST_F(ForcedEffects, ThatAreTakenAwayDoChangeThePicture) {
 }
 
 TEST_F(ForcedEffects, VertexColoursAreExactlyWhiteBetweenWhiteVertices) {
-    // A mask that only full coverage passes, over a mesh with one transparent corner on the far
+    // A mask that accepts only full coverage, on a mesh with one transparent corner on the far
     // side.
     Scene scene = test::scene_of(test::sphere(24, 12), test::black_material());
     scene.materials[0].emission = glm::vec3(1.0F);
@@ -265,6 +271,134 @@ TEST_F(ForcedEffects, VertexColoursAreExactlyWhiteBetweenWhiteVertices) {
     mesh.colors[static_cast<std::size_t>(hidden - mesh.positions.begin())].a = 0.0F;
     EXPECT_TRUE(plan_effects(scene, {}).draws[0].features.vertex_colors);
     EXPECT_TRUE(test::same_bits(render(scene, {48, 48, 1, OutputCoding::srgb}).image, whole));
+}
+
+EffectCost cost(const char* effect, double milliseconds, double flip) {
+    return {effect, milliseconds, {0, 0, flip, 0}};
+}
+
+TEST(DropOrder, IsByWhatAnEyeSeesForTheTimeSaved) {
+    const std::vector<EffectCost> costs = {
+        cost("dear and plain", 4.0, 0.4),  // 0.1 per millisecond.
+        cost("cheap and faint", 1.0, 0.02), cost("invisible", 0.5, 0.0),
+        cost("dear and faint", 10.0, 0.1),  cost("free", 0.0, 0.0),
+        cost("noise", -0.3, 0.0),
+    };
+    EXPECT_THAT(drop_order(costs, 0.1),
+                ElementsAre("invisible", "dear and faint", "cheap and faint", "dear and plain"));
+    EXPECT_THAT(drop_order(costs, 2.0), ElementsAre("dear and faint", "dear and plain"));
+    EXPECT_THAT(drop_order({}, 0.0), IsEmpty());
+}
+
+TEST(DropOrder, KeepsTheGivenOrderWhereNothingTellsEffectsApart) {
+    const std::vector<EffectCost> costs = {cost("b", 1.0, 0.0), cost("a", 2.0, 0.0)};
+    EXPECT_THAT(drop_order(costs, 0.0), ElementsAre("b", "a"));
+}
+
+/// Returns the time of a frame of 20 ms without the share of each dropped effect.
+double table_time(const std::vector<std::string>& dropped) {
+    const std::map<std::string, double> shares = {{"a", 5.0}, {"b", 3.0}, {"c", 2.0}};
+    double time = 20.0;
+    for (const std::string& effect : dropped)
+        time -= shares.at(effect);
+    return time;
+}
+
+TEST(FitToBudget, DropsNoMoreThanItTakes) {
+    const BudgetChoice choice = fit_to_budget(12.0, {"a", "b", "c"}, table_time);
+    EXPECT_THAT(choice.dropped, ElementsAre("a", "b"));
+    EXPECT_EQ(choice.milliseconds, 12.0);
+    EXPECT_TRUE(choice.fits);
+    EXPECT_THAT(fit_to_budget(20.0, {"a", "b"}, table_time).dropped, IsEmpty());
+}
+
+TEST(FitToBudget, SaysWhereNothingMoreCanBeDropped) {
+    const BudgetChoice choice = fit_to_budget(9.0, {"a", "b", "c"}, table_time);
+    EXPECT_THAT(choice.dropped, ElementsAre("a", "b", "c"));
+    EXPECT_EQ(choice.milliseconds, 10.0);
+    EXPECT_FALSE(choice.fits);
+}
+
+class EffectCostsOf : public test::DrawTest {
+  protected:
+    EffectCostsOf() {
+        Material material;
+        material.name = "m";
+        material.specular = glm::vec3(0.4F);
+        scene_ = test::scene_of(test::sphere(24, 12), material);
+        scene_.directional_lights = {{{1, -1, -2}, {0.9F, 0.8F, 0.7F}}};
+    }
+
+    [[nodiscard]] MeasuredFrame frame() const {
+        return {context(), scene_, settings_, *scene_.camera, {.counted = 3, .warm_up = 1}};
+    }
+
+    Scene scene_;
+    FrameSettings settings_{48, 48, 1, OutputCoding::srgb};
+};
+
+TEST_F(EffectCostsOf, EachEffectThatIsOnAreMeasuredWithWhatThePictureLoses) {
+    const FramePlan plan = plan_effects(scene_, settings_);
+    const EffectCosts costs = measure_effects(frame(), plan);
+    ASSERT_EQ(costs.effects.size(), 3U);
+    EXPECT_EQ(costs.effects[0].effect, "directional lights");
+    EXPECT_EQ(costs.effects[1].effect, "diffuse");
+    EXPECT_EQ(costs.effects[2].effect, "Blinn-Phong highlights");
+    EXPECT_GT(costs.frame.median, 0.0);
+    EXPECT_EQ(costs.frame.count, 9U);
+    // Without the light, everything is black, so the brightest code of the picture changes.
+    EXPECT_GT(costs.effects[0].change.max, 150.0);
+    EXPECT_GT(costs.effects[0].change.flip_mean, costs.effects[2].change.flip_mean);
+    EXPECT_GT(costs.effects[2].change.flip_mean, 0.0);
+}
+
+TEST_F(EffectCostsOf, StepsLeaveRoomForOtherDrawings) {
+    const FramePlan plan = plan_effects(scene_, settings_);
+    RenderCache cache(context());
+    MeasuredFrame cached = frame();
+    cached.cache = &cache;
+    EffectCostMeasurement pricing(cached, plan);
+    EXPECT_EQ(pricing.count(), 3U);
+    EXPECT_THAT(pricing.costs().effects, IsEmpty());
+    Report report;
+    Scene other = scene_;
+    other.directional_lights.clear();
+    Renderer beside(context(), other, settings_, report);
+    std::size_t steps = 1;
+    for (; pricing.step(); ++steps)
+        beside.draw(*scene_.camera);
+    // The steps are preparation, two frames 3 + 1 times, and comparison.
+    EXPECT_EQ(steps, 3U * 6U);
+    const EffectCosts at_once = measure_effects(frame(), plan);
+    const EffectCosts costs = pricing.costs();
+    ASSERT_EQ(costs.effects.size(), at_once.effects.size());
+    for (std::size_t i = 0; i < costs.effects.size(); ++i) {
+        EXPECT_EQ(costs.effects[i].effect, at_once.effects[i].effect);
+        EXPECT_EQ(costs.effects[i].change.mean, at_once.effects[i].change.mean);
+    }
+    EXPECT_EQ(costs.frame.count, 9U);
+    EXPECT_FALSE(pricing.step());
+}
+
+TEST_F(EffectCostsOf, AForcedEffectThatIsNeutralIsNoChangeOfThePicture) {
+    FramePlan plan = force_effects(scene_, settings_, plan_effects(scene_, settings_),
+                                   {EffectBase::planned, {{"emission", true}}});
+    const EffectCosts costs = measure_effects(frame(), plan);
+    ASSERT_EQ(costs.effects.back().effect, "emission");
+    EXPECT_EQ(costs.effects.back().change.max, 0.0);
+    EXPECT_EQ(costs.effects.back().change.flip_max, 0.0);
+}
+
+TEST_F(EffectCostsOf, APlanWithinItsBudgetStaysWhole) {
+    const FramePlan plan = plan_effects(scene_, settings_);
+    const BudgetedPlan kept = plan_within_budget(frame(), plan, 1e6);
+    EXPECT_TRUE(kept.choice.fits);
+    EXPECT_THAT(kept.choice.dropped, IsEmpty());
+    EXPECT_EQ(kept.plan.draws[0].features, plan.draws[0].features);
+    EXPECT_EQ(kept.change.max, 0.0);
+    const BudgetedPlan impossible = plan_within_budget(frame(), plan, 1e-6);
+    EXPECT_FALSE(impossible.choice.fits);
+    EXPECT_GT(impossible.milliseconds_before, 0.0);
 }
 
 }  // namespace

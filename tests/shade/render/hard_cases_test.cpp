@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "draw_test.h"
 #include "relief/mesh/frames.h"
 #include "relief/shade/image_compare.h"
+#include "shade/render/draw_support.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -20,7 +20,7 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 
 class HardCases : public test::DrawTest {
   protected:
-    /// The linear picture, checked to be finite and not negative.
+    /// Returns the linear picture after a check that it is finite and not negative.
     [[nodiscard]] Image finite_radiance(const Scene& scene, int size = 16) const {
         Image image = radiance(scene, size, size);
         std::size_t offences = 0;
@@ -56,9 +56,9 @@ TEST_F(HardCases, NormalsThatCancelBetweenVerticesAreFinite) {
     auto& normals = scene.meshes[0].edit().normals;
     for (std::size_t i = 0; i < 4; ++i)
         normals[i] = {i % 2 == 0 ? 1.0F : -1.0F, 0, 0};
-    // 17 pixels across: a column of them is where the normals cancel.
+    // 17 pixels: the normals cancel at a column of pixels.
     EXPECT_NEAR(pixel(finite_radiance(scene, 17), 8, 8).r, 1.0,
-                1e-5);  // 0.5 scattered, 0.5 mirrored.
+                1e-5);  // 0.5 diffuse and 0.5 reflected.
 }
 
 TEST_F(HardCases, ANormalOfAnyLengthCountsAlike) {
@@ -76,7 +76,7 @@ TEST_F(HardCases, ANormalThatFacesAwayReflectsAtGrazingAngleAtMost) {
     scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, -1));
     scene.materials[0].reflectivity = {0.25F, 0.25F, 0.25F};
     scene.environment = test::constant_environment(glm::vec3(0.5F), false);
-    // n.v is -1, taken as 0: all is reflected.
+    // n.v is -1 and counts as 0, so all light is reflected.
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
 }
 
@@ -89,10 +89,10 @@ TEST_F(HardCases, ExponentsFromZeroToAMillionKeepTheirHighlight) {
             scene.materials[0].specular = glm::vec3(1.0F);
             scene.materials[0].specular_model = model;
             scene.materials[0].shininess = shininess;
-            // 17 pixels: the middle one looks straight down the normal, and so does the light.
+            // 17 pixels: at the middle one, the view and the light are along the normal.
             const Image image = finite_radiance(scene, 17);
             EXPECT_NEAR(pixel(image, 8, 8).r, 0.5, 1e-5);
-            const double next = pixel(image, 9, 8).r;  // 0.0782 radians from the middle one.
+            const double next = pixel(image, 9, 8).r;  // 0.0782 radians from the middle pixel.
             const double half = model == SpecularModel::phong ? 1.0 : 0.5;
             const double cosine = std::cos(half * std::atan2(4.0 / 17, 3.0));
             EXPECT_NEAR(next, 0.5 * std::pow(cosine, static_cast<double>(shininess)), 1e-5);
@@ -106,7 +106,7 @@ TEST_F(HardCases, AnExponentOfZeroShinesEvenAtRightAngles) {
     scene.materials[0].specular = glm::vec3(1.0F);
     scene.materials[0].specular_model = SpecularModel::phong;
     scene.materials[0].shininess = 0.0F;
-    // The mirrored light leaves at 80 degrees to the normal, away from most of the picture.
+    // The reflected light has an angle of 80 degrees to the normal, away from most of the picture.
     scene.directional_lights = {{{5.67F, 0, -1}, {0.5F, 0.5F, 0.5F}}};
     const Image image = finite_radiance(scene);
     for (int x = 0; x < 16; ++x)
@@ -116,7 +116,8 @@ TEST_F(HardCases, AnExponentOfZeroShinesEvenAtRightAngles) {
 TEST_F(HardCases, ALightThatTouchesTheSurfaceIsFiniteAndLightsTheRest) {
     Scene scene = lit_square();
     scene.directional_lights.clear();
-    // In the middle of 17 pixels, exactly on the surface and then ever closer above it.
+    // The light is at the middle of 17 pixels, exactly on the surface and then closer and closer
+    // above it.
     for (const float height : {0.0F, 1e-38F, 1e-20F, 1e-10F, 1e-3F}) {
         SCOPED_TRACE(height);
         scene.point_lights = {{{0, 0, height}, {1, 1, 1}, std::nullopt}};
@@ -135,7 +136,7 @@ TEST_F(HardCases, ALightThatTouchesTheSurfaceIsFiniteAndLightsTheRest) {
 }
 
 TEST_F(HardCases, ALightBehindTheEyeExactlyOppositeHasNoHalfVector) {
-    // The light comes from where the surface is seen to, l = -v: a normal that faces the light.
+    // The light comes from the direction l = -v, and the normal faces the light.
     Scene scene = lit_square();
     scene.materials[0] = test::black_material();
     scene.materials[0].specular = glm::vec3(1.0F);
@@ -153,15 +154,15 @@ TEST_F(HardCases, TheEyeOnTheSurfaceIsFinite) {
 }
 
 TEST_F(HardCases, SingularMatricesDrawWhatIsLeftOfTheGeometry) {
-    // Flattened onto z = 0: the sphere becomes a disc that faces both ways, and its normals those
-    // of the plane, by the sign of their z.
+    // Flattened onto z = 0, the sphere becomes a disc that faces both ways. Its normals are those
+    // of the plane, with the sign of their z.
     Material material;
     material.diffuse = glm::vec3(1.0F);
     Scene scene = test::scene_of(test::sphere(32, 16), material);
     scene.directional_lights = {{{0, 0, -1}, {0.5F, 0.5F, 0.5F}}};
     scene.instances[0].world_from_object[2].z = 0.0F;
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), fully_lit);
-    // Flattened onto a line, and onto a point: nothing is left.
+    // Flattened onto a line and onto a point, nothing remains.
     scene.instances[0].world_from_object[1].y = 0.0F;
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0));
     scene.instances[0].world_from_object = glm::mat4(0.0F);
@@ -185,7 +186,7 @@ TEST_F(HardCases, ScaleDoesNotMatter) {
 TEST_F(HardCases, FarFromTheOriginTheModelKeepsItsShape) {
     const Image expected = finite_radiance(lit_square());
     Scene scene = lit_square();
-    const glm::vec3 away(1048576.0F, -2097152.0F, 524288.0F);  // Powers of two: exact in float.
+    const glm::vec3 away(1048576.0F, -2097152.0F, 524288.0F);  // Powers of two are exact in float.
     scene.instances[0].world_from_object[3] = glm::vec4(away, 1);
     scene.camera->world_from_view[3] = glm::vec4(away + glm::vec3(0, 0, 3), 1);
     EXPECT_LE(compare(finite_radiance(scene), expected).max, 1e-6);
@@ -204,10 +205,10 @@ TEST_F(HardCases, NotANumberInVertexDataStaysWhereItIs) {
     add_triangle({not_a_number, 0, 1});
     add_triangle({0, infinite, 1});
     mesh.colors.assign(mesh.positions.size(), glm::vec4(1.0F));
-    mesh.colors[0] = glm::vec4(not_a_number);  // The square's upper left corner.
+    mesh.colors[0] = glm::vec4(not_a_number);  // The upper left corner of the square.
     mesh.material_ranges = {{0, 4, 0}};
     const Image image = finite_radiance(scene);
-    EXPECT_EQ(image.width, 16);  // What NaN reaches is black; the picture is whole.
+    EXPECT_EQ(image.width, 16);  // Pixels with NaN are black, and the picture is complete.
 }
 
 TEST_F(HardCases, NotANumberInATextureShowsBlackAndSpoilsNothingElse) {
@@ -221,12 +222,12 @@ TEST_F(HardCases, NotANumberInATextureShowsBlackAndSpoilsNothingElse) {
     scene.materials[0].diffuse_texture = use;
     const Image image = finite_radiance(scene);
     EXPECT_EQ(pixel(image, 4, 8).r, 0.0);   // NaN.
-    EXPECT_GT(pixel(image, 4, 8).g, 1e30);  // Infinity: the largest value.
+    EXPECT_GT(pixel(image, 4, 8).g, 1e30);  // Infinity becomes the largest value.
     EXPECT_EQ(pixel(image, 4, 8).b, 0.0);   // Negative.
     EXPECT_EQ(pixel(image, 12, 8).r, 0.25);
 }
 
-/// A square with a bump map that tilts everything, in a frame from derivatives.
+/// A square with a bump map of constant slope, in a frame from derivatives.
 Scene bumped_square() {
     Scene scene = lit_square();
     Image ramp = make_image(64, 64, 1, 32, ColorSpace::data);
@@ -236,7 +237,7 @@ Scene bumped_square() {
     scene.images = {{"ramp", ramp}};
     BumpMap map;
     map.texture.wrap_u = map.texture.wrap_v = TextureWrap::clamp;
-    map.strength = 64.0F;  // One texel up for one across: 45 degrees.
+    map.strength = 64.0F;  // One texel up per texel: 45 degrees.
     scene.materials[0].bump_map = map;
     scene.materials[0].tangent_frame = TangentFrame::derivatives;
     return scene;
@@ -270,7 +271,7 @@ TEST_F(HardCases, DerivativeFramesAndFlatShadingDoNotMindScale) {
             scene.camera->world_from_view[3] = glm::vec4(0, 0, 3.0F * scale, 1);
             scene.camera->near *= scale;
             scene.camera->far *= scale;
-            // Differences of neighbouring positions are worth some 1e-4 of themselves.
+            // Differences of adjacent positions have a relative error of about 1e-4.
             EXPECT_LE(compare(finite_radiance(scene), expected).max, 1e-3);
         }
     }
@@ -278,13 +279,13 @@ TEST_F(HardCases, DerivativeFramesAndFlatShadingDoNotMindScale) {
 
 TEST_F(HardCases, MirroredTexturesBendTheNormalTheOtherWay) {
     Scene scene = bumped_square();
-    scene.directional_lights = {{{1, 0, -1}, glm::vec3(0.5F)}};  // From the left.
+    scene.directional_lights = {{{1, 0, -1}, glm::vec3(0.5F)}};  // The light comes from the left.
     const double upright = pixel(finite_radiance(scene), 8, 8).r;
     for (glm::vec2& texcoord : scene.meshes[0].edit().texcoords)
         texcoord.x = 1.0F - texcoord.x;
     const double mirrored = pixel(finite_radiance(scene), 8, 8).r;
-    EXPECT_NEAR(upright, 0.5, 1e-4);   // Tilted towards the light.
-    EXPECT_NEAR(mirrored, 0.0, 1e-4);  // At right angles to it.
+    EXPECT_NEAR(upright, 0.5, 1e-4);   // The surface is tilted towards the light.
+    EXPECT_NEAR(mirrored, 0.0, 1e-4);  // The surface is perpendicular to the light.
 }
 
 TEST_F(HardCases, ANormalBentBehindTheSurfaceIsFiniteByEveryModel) {
@@ -313,8 +314,8 @@ TEST_F(HardCases, ANormalBentBehindTheSurfaceIsFiniteByEveryModel) {
     }
 }
 
-/// The normal is turned away from the eye, and further from the half vector: n.v = -0.6 and
-/// n.h = -0.88 count as 0. The square of n.h would give 1.6.
+/// The normal is turned away from the eye, and further from the half vector: n.v = -0.6 and n.h =
+/// -0.88 count as 0. The square of n.h would give 1.6.
 TEST_F(HardCases, AMetalTurnedAwayFromTheHalfVectorShowsNoHighlightOfTheOtherSide) {
     Scene scene = lit_square();
     scene.materials[0].metallic_roughness =
@@ -322,7 +323,7 @@ TEST_F(HardCases, AMetalTurnedAwayFromTheHalfVectorShowsNoHighlightOfTheOtherSid
     scene.meshes[0].edit().normals.assign(4, glm::vec3(0.8F, 0.0F, -0.6F));
     scene.directional_lights = {{{0.28F, 0.0F, 0.96F}, glm::vec3(1.0F)}};
     const double alpha = 0.5 * 0.5;
-    // n.l alpha^2 V with V = 1 / (2 n.l alpha): white metal mirrors all colors.
+    // n.l alpha^2 V with V = 1 / (2 n.l alpha): white metal reflects all colors.
     EXPECT_NEAR(pixel(finite_radiance(scene, 17), 8, 8).r, alpha / 2.0, 1e-5);
 }
 
@@ -332,10 +333,10 @@ TEST_F(HardCases, AMetalLitFromExactlyBehindTheEyesLineIsFinite) {
         MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.0F, std::nullopt};
     scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, -1));
     scene.directional_lights = {{{0, 0, 1}, glm::vec3(1.0F)}};
-    // No half vector, or after rounding one across the normal: facets of the least roughness,
-    // 0.045, mirror half of its square there.
+    // There is no half vector, or after rounding it is perpendicular to the normal. Facets of the
+    // smallest roughness, 0.045, reflect half of its square there.
     EXPECT_NEAR(pixel(finite_radiance(scene, 17), 8, 8).r, 0.0, 0.5 * 0.045 * 0.045 * 1.01);
-    // The brightest there is: a mirror that faces the lamp, and the lamp at its brightest.
+    // The brightest case: a mirror that faces the light, and the light at its maximum.
     scene.meshes[0].edit().normals.assign(4, glm::vec3(0, 0, 1));
     scene.directional_lights = {{{0, 0, -1}, glm::vec3(max_light)}};
     (void)finite_radiance(scene, 17);
@@ -358,12 +359,13 @@ TEST_F(HardCases, ExactFresnelFactorsAreFiniteFromHeadOnToGrazing) {
         material.conductor_index = glm::vec3(0.2F);
         material.conductor_absorption = glm::vec3(absorption);
         const double k = static_cast<double>(absorption);
-        const double expected = (0.64 + k * k) / (1.44 + k * k);  // ((n-1)^2 + k^2) / ((n+1)^2 ...
+        const double expected = (0.64 + k * k) / (1.44 + k * k);  // ((n-1)^2 + k^2) / ((n+1)^2 +
+                                                                  // k^2).
         EXPECT_NEAR(pixel(finite_radiance(scene, 65), 32, 32).r, 0.5 * expected, 2e-3)
             << absorption;
     }
     material.conductor_index = glm::vec3(0.0F);
-    material.conductor_absorption = glm::vec3(0.0F);  // Nothing: all of it is mirrored.
+    material.conductor_absorption = glm::vec3(0.0F);  // Total internal reflection.
     (void)finite_radiance(scene, 65);
 }
 
@@ -372,7 +374,7 @@ TEST_F(HardCases, AnEmptySceneIsItsBackground) {
     scene.camera = test::front_camera();
     scene.background = {0.25F, 0.5F, 0.75F, 1.0F};
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0.25, 0.5, 0.75, 1));
-    // A mesh without triangles, with a range of none, is nothing as well.
+    // A mesh without triangles, with an empty range, draws nothing.
     scene.meshes = {Mesh{}};
     scene.meshes[0].edit().material_ranges = {{0, 0, std::nullopt}};
     scene.instances = {{0, glm::mat4(1), "empty"}};
@@ -380,7 +382,7 @@ TEST_F(HardCases, AnEmptySceneIsItsBackground) {
     EXPECT_EQ(pixel(finite_radiance(scene), 8, 8), glm::dvec4(0.25, 0.5, 0.75, 1));
 }
 
-/// A sphere with tangents and a map that leans, lit from one side.
+/// A sphere with tangents and a tilted map, lit from one side.
 Scene leaning_sphere() {
     Material material;
     material.diffuse = glm::vec3(1.0F);
@@ -396,8 +398,8 @@ Scene leaning_sphere() {
     return scene;
 }
 
-/// The mesh where the matrix puts it: normals by the inverse transpose, tangents by the matrix,
-/// the other hand where it mirrors, and triangles turned so that they face outwards again.
+/// Returns the transformed mesh: normals by the inverse transpose, tangents by the matrix, the
+/// opposite handedness if it mirrors, and triangles reversed so that they face outwards again.
 Mesh placed(Mesh mesh, const glm::mat3& matrix) {
     const bool mirrors = glm::determinant(matrix) < 0.0F;
     const glm::mat3 of_normals = glm::transpose(glm::inverse(matrix));
@@ -423,11 +425,12 @@ TEST_F(HardCases, AnInstanceThatMirrorsShadesAsItsMirroredSurface) {
         Scene moved = original;
         moved.meshes[0] = placed(original.meshes[0], matrix);
         const Image image = finite_radiance(instanced, 48);
-        // Normals and tangents of unit length interpolate a little differently after a stretch.
+        // After a stretch, the interpolation of normals and tangents of unit length differs
+        // slightly.
         const bool is_uniform = scale * scale == glm::vec3(1.0F);
         const double tolerance = is_uniform ? 1e-4 : 0.03;
         EXPECT_LE(compare(image, finite_radiance(moved, 48)).max, tolerance) << scale.x;
-        // The map shows: without the hand turned, the picture is another.
+        // The map has an effect: without the reversed handedness, the picture differs.
         for (glm::vec4& tangent : moved.meshes[0].edit().tangents)
             tangent.w = -tangent.w;
         EXPECT_GT(compare(image, finite_radiance(moved, 48)).max, 0.1) << scale.x;

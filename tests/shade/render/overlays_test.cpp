@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wireframe, vertex frames and markers as pixels: where they are, in which colour, what hides them,
-// and that nothing else changes.
+// Wireframe, vertex frames and markers as pixels: their positions, colors and occlusion. Other
+// pixels do not change.
 #include "render/overlays.h"
 
 #include <gmock/gmock.h>
@@ -8,8 +8,8 @@
 
 #include <cmath>
 
-#include "draw_test.h"
 #include "relief/mesh/error.h"
+#include "shade/render/draw_support.h"
 #include "support/message_of.h"
 #include "support/shapes.h"
 
@@ -20,7 +20,7 @@ using test::pixel;
 
 constexpr int overlay_size = 64;
 
-/// A square of 2 x 2 seen face on: it covers pixels 16 to 47 of 64.
+/// A square of 2 x 2, seen from the front: it covers pixels 16 to 47 of 64.
 Scene small_square() {
     Scene scene = test::scene_of(test::facing_square(), test::black_material());
     scene.materials[0].emission = glm::vec3(0.25F);
@@ -75,7 +75,7 @@ TEST_F(Overlay, WireframeDrawsEdgesAndNothingElse) {
 
 TEST_F(Overlay, LinesAreHiddenByOpaqueSurfacesAlone) {
     Scene scene = small_square();
-    Instance cover = scene.instances[0];  // Larger, and nearer.
+    Instance cover = scene.instances[0];  // It is larger and nearer.
     cover.world_from_object = glm::mat4(1.0F);
     cover.world_from_object[3].z = 0.5F;
     scene.instances.push_back(cover);
@@ -97,9 +97,10 @@ TEST_F(Overlay, LinesAreHiddenByOpaqueSurfacesAlone) {
 TEST_F(Overlay, FramesPointAlongTheirDirections) {
     const Scene scene = small_square();
     FrameSettings settings = picture();
-    settings.overlays.vertex_frames = 0.25F;  // Of sqrt(8): 0.707 units, 11.3 pixels.
+    settings.overlays.vertex_frames = 0.25F;  // A quarter of sqrt(8): 0.707 units, 11.3 pixels.
     const Image image = render(scene, settings).image;
-    // From the lower left corner at pixel (16, 48): the tangent to the right, the bitangent up.
+    // From the lower left corner at pixel (16, 48), the tangent goes to the right and the bitangent
+    // up.
     EXPECT_TRUE(pixel(image, 22, 47) == code(tangent_color) ||
                 pixel(image, 22, 48) == code(tangent_color));
     EXPECT_TRUE(pixel(image, 15, 42) == code(bitangent_color) ||
@@ -112,7 +113,8 @@ TEST_F(Overlay, MarkersAreDiscsOnTopInTheirColour) {
     Scene scene = small_square();
     FrameSettings settings = picture();
     const glm::vec3 color(1.0F, 0.0F, 0.4F);
-    // Behind the surface, 0.5 units to the right of the middle once the instance is scaled.
+    // The marker is behind the surface, 0.5 units to the right of the middle after the scale of the
+    // instance.
     settings.overlays.markers =
         std::make_shared<std::vector<Marker>>(1, Marker{0, {1.0F, 0.0F, -0.001F}, color});
     Report report;
@@ -124,7 +126,7 @@ TEST_F(Overlay, MarkersAreDiscsOnTopInTheirColour) {
     }
     EXPECT_NE(pixel(image, 40 + 6, 32), code(color));
     EXPECT_NE(pixel(image, 40 + 4, 32 + 4), code(color)) << "a disc has no corners";
-    // It moves with its instance.
+    // The marker moves with its instance.
     scene.instances[0].world_from_object[3].x = -0.5F;
     renderer.move(scene);
     const Image moved = renderer.draw(*scene.camera).image;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random scenes. See random_scene.h.
-#include "random_scene.h"
+
+#include "shade/render/random_scene.h"
 
 #include <array>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <numbers>
 
-#include "draw_test.h"
 #include "environment/environment_images.h"
 #include "relief/mesh/shapes.h"
+#include "shade/render/draw_support.h"
 #include "support/shapes.h"
 
 namespace relief::test {
@@ -31,7 +31,7 @@ Texture random_texture(Dice& dice, std::size_t image) {
     return texture;
 }
 
-/// Adds an image to a scene, and a texture of it to a material.
+/// Adds an image to a scene and returns a texture of it for a material.
 Texture added(Scene& scene, Dice& dice, Image image) {
     scene.images.push_back({"image", std::move(image)});
     return random_texture(dice, scene.images.size() - 1);
@@ -109,40 +109,40 @@ Material random_material(Scene& scene, Dice& dice, bool physical) {
 }
 
 PointLight random_point_light(Dice& dice) {
-    PointLight lamp;
-    lamp.position_world = dice.direction() * dice.between(1.8F, 3.0F);
-    lamp.intensity = dice.color(0.0F, 3.0F);
-    if (dice.chance(0.3)) lamp.range = dice.between(2.0F, 6.0F);
+    PointLight light;
+    light.position_world = dice.direction() * dice.between(1.8F, 3.0F);
+    light.intensity = dice.color(0.0F, 3.0F);
+    if (dice.chance(0.3)) light.range = dice.between(2.0F, 6.0F);
     if (dice.chance(0.3)) {
-        lamp.falloff = Falloff::none;
-        lamp.intensity *= 0.2F;
+        light.falloff = Falloff::none;
+        light.intensity *= 0.2F;
     }
-    if (dice.chance(0.3)) lamp.highlight_intensity = dice.color(0.0F, 3.0F);
-    return lamp;
+    if (dice.chance(0.3)) light.highlight_intensity = dice.color(0.0F, 3.0F);
+    return light;
 }
 
-void add_lamps(Scene& scene, Dice& dice) {
+void add_lights(Scene& scene, Dice& dice) {
     if (dice.chance(0.7)) scene.ambient = dice.color(0.0F, 0.4F);
     for (std::size_t i = dice.below(3); i > 0; --i) {
-        DirectionalLight lamp;
-        lamp.direction_world = -dice.direction() * dice.between(0.1F, 10.0F);
-        lamp.irradiance = dice.color(0.0F, 0.8F);
-        if (dice.chance(0.3)) lamp.highlight_irradiance = dice.color();
-        scene.directional_lights.push_back(lamp);
+        DirectionalLight light;
+        light.direction_world = -dice.direction() * dice.between(0.1F, 10.0F);
+        light.irradiance = dice.color(0.0F, 0.8F);
+        if (dice.chance(0.3)) light.highlight_irradiance = dice.color();
+        scene.directional_lights.push_back(light);
     }
     for (std::size_t i = dice.below(3); i > 0; --i)
         scene.point_lights.push_back(random_point_light(dice));
     for (std::size_t i = dice.below(2); i > 0; --i) {
-        SpotLight lamp;
-        lamp.point = random_point_light(dice);
-        lamp.direction_world = -lamp.point.position_world;
-        lamp.outer_cone = dice.between(0.2F, 1.2F);
-        lamp.inner_cone = lamp.outer_cone * dice.between(0.0F, 0.9F);
-        scene.spot_lights.push_back(lamp);
+        SpotLight light;
+        light.point = random_point_light(dice);
+        light.direction_world = -light.point.position_world;
+        light.outer_cone = dice.between(0.2F, 1.2F);
+        light.inner_cone = light.outer_cone * dice.between(0.0F, 0.9F);
+        scene.spot_lights.push_back(light);
     }
 }
 
-/// Turned, stretched, perhaps mirrored, and moved.
+/// A random rotation, stretch and translation, possibly with a mirror.
 glm::mat4 random_place(Dice& dice) {
     const glm::vec3 offset(dice.between(-1.0F, 1.0F), dice.between(-1.0F, 1.0F),
                            dice.between(-1.0F, 0.5F));
@@ -168,8 +168,8 @@ Mesh random_mesh(Dice& dice) {
     return mesh;
 }
 
-/// Lets through what is behind: one side of one convex mesh, since those that overlap themselves or
-/// others need not have an order among whole triangles.
+/// Makes one side of a convex mesh transparent. Overlapping surfaces may have no order of whole
+/// triangles.
 void make_see_through(Mesh& mesh, Material& material, Dice& dice) {
     mesh = dice.chance(0.5) ? sphere(24, 16) : cube();
     material.alpha_mode = AlphaMode::blend;
@@ -248,9 +248,10 @@ Scene random_scene(std::uint64_t seed) {
     Dice dice(seed);
     Scene scene;
     scene.camera = front_camera();
-    add_lamps(scene, dice);
+    add_lights(scene, dice);
     if (dice.chance(0.4)) scene.environment = random_environment(dice);
-    // Surroundings are blurred for metallic-roughness, which OpenGL does less finely: not here.
+    // OpenGL blurs environments for metallic-roughness less finely, so the scene has no such
+    // material.
     const bool physical = !scene.environment;
     const std::size_t count = 1 + dice.below(3);
     for (std::size_t i = 0; i < count; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Random scenes for property-based tests: a few meshes under a few lamps, with materials that mix
-/// what a Material may have. The same seed gives the same scene on every machine.
+/// Random scenes for property-based tests: a few meshes under a few lights, with random
+/// combinations of the members of Material. The same seed gives the same scene on every machine.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace relief::test {
 
-/// Random numbers; not by the standard library's distributions, which differ between machines.
+/// Random numbers. The distributions of the standard library differ between machines.
 class Dice {
   public:
     explicit Dice(std::uint64_t seed) : engine_(seed) {}
@@ -35,18 +35,18 @@ class Dice {
     std::mt19937_64 engine_;
 };
 
-/// A smooth image of random colours: float samples, so that OpenGL filters it as finely as it
-/// stores it.
+/// A smooth image of random colors. It has float samples, so that OpenGL filters them at full
+/// precision.
 Image random_image(Dice& dice, int channels, ColorSpace space);
 
-/// A height field whose slopes are moderate at strength 1.
+/// A height field with moderate slopes at strength 1.
 Image random_heights(Dice& dice);
 
-/// Normals that lean up to 40 degrees off (0, 0, 1), as 16-bit codes.
+/// Normals with angles of up to 40 degrees to (0, 0, 1), as 16-bit codes.
 Image random_normals(Dice& dice);
 
-/// Six faces of a smooth random environment; by default so coarse that their mirror image in a
-/// sphere is magnified.
+/// Six faces of a smooth random environment. By default they are so coarse that their reflection in
+/// a sphere is magnified.
 Environment random_environment(Dice& dice, int face_size = 6);
 
 Scene random_scene(std::uint64_t seed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL's picture against the CPU reference: every effect on its own, and random combinations of
-// scene features, to within one code of 255 away from edges.
+// OpenGL's picture against the CPU reference: every effect alone, random combinations, and real
+// models, to within one code of 255 away from edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,11 +9,13 @@
 #include <functional>
 #include <string>
 
-#include "draw_test.h"
-#include "random_scene.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/reference.h"
+#include "relief/shade/scene_file.h"
+#include "shade/render/draw_support.h"
+#include "shade/render/random_scene.h"
 #include "support/shapes.h"
+#include "support/shared_data.h"
 
 namespace relief {
 namespace {
@@ -21,18 +23,18 @@ namespace {
 using test::pixel;
 
 constexpr int reference_size = 96;
-/// Codes: half of one by rounding, the rest for float arithmetic and vertices rounded to 1/256
-/// pixel.
+/// In codes: half a code of rounding, and the rest for float arithmetic and vertices rounded to
+/// 1/256 pixel.
 constexpr double agreement_tolerance = 1.0;
-/// Codes, where 8-bit textures are sampled: llvmpipe decodes sRGB by a polynomial that is up to
-/// half a percent off, which is half a code, and filters data by weights of 8 bits.
+/// In codes, for 8-bit textures: llvmpipe decodes sRGB with a polynomial whose error is up to half
+/// a percent, which is half a code, and filters data with weights of 8 bits.
 constexpr double coarse_tolerance = 2.0;
 
-/// Codes, where surroundings are blurred: OpenGL mixes two maps whose roughness is nearest, each
-/// within two percent of its own.
+/// In codes, for blurred environments: OpenGL mixes the two maps of the nearest roughness, each
+/// with an error of up to two percent.
 constexpr double blurred_tolerance = 3.5;
 
-/// Where two pictures are furthest apart.
+/// The largest difference between two pictures and its position.
 struct Worst {
     double codes = 0.0;
     int x = 0;
@@ -79,7 +81,7 @@ class AgainstReference : public test::DrawTest {
     }
 };
 
-/// A sphere under three lamps, turned so that neither poles nor seam are in front.
+/// A sphere under three lights, rotated so that neither poles nor seam are in front.
 Scene lit_sphere() {
     Scene scene = test::scene_of(test::sphere(32, 24), Material{});
     scene.ambient = {0.1F, 0.15F, 0.2F};
@@ -88,7 +90,7 @@ Scene lit_sphere() {
     return scene;
 }
 
-/// One thing that a scene may have.
+/// An optional part of a scene.
 struct AddedThing {
     const char* name;
     std::function<void(Scene&, test::Dice&)> add;
@@ -228,7 +230,7 @@ std::vector<AddedThing> texture_effects() {
     };
 }
 
-/// Everything that bends normals, by both kinds of frame, in place and mirrored.
+/// Returns all effects that change normals, with both kinds of frame, in place and mirrored.
 std::vector<AddedThing> detail_effects() {
     std::vector<AddedThing> effects;
     for (const bool mirrored : {false, true}) {
@@ -280,7 +282,7 @@ std::vector<AddedThing> environment_effects() {
                            s.environment = test::random_environment(d);
                            s.materials[0].transmission = 0.7F;
                        }});
-    // Gouraud's normals are those of vertices, with lamps and without.
+    // Gouraud shading uses vertex normals, with and without lights.
     effects.push_back({"Gouraud mirror", [](Scene& s, test::Dice& d) {
                            s.environment = test::random_environment(d);
                            s.materials[0].interpolation = Interpolation::gouraud;
@@ -355,7 +357,7 @@ TEST_F(AgainstReference, AgreesWithEightBitTexturesAlmostAsWell) {
     }
 }
 
-/// A ball that mirrors blurred surroundings, by Phong's model or, with a metallic share, by
+/// A ball that reflects a blurred environment, with Phong's model or, with a metallic share, with
 /// glTF's.
 Scene glossy_sphere(float roughness, std::optional<float> metallic) {
     test::Dice dice(7);
@@ -394,7 +396,7 @@ TEST_F(AgainstReference, AgreesInRandomScenes) {
     }
 }
 
-/// Slow. RELIEF_RANDOM_SCENES asks for another number of scenes.
+/// This test is slow. RELIEF_RANDOM_SCENES sets another number of scenes.
 TEST_F(AgainstReference, AgreesInManyRandomScenes) {
     const char* asked = std::getenv("RELIEF_RANDOM_SCENES");
     const std::uint64_t count = asked == nullptr ? 300 : std::strtoull(asked, nullptr, 10);
@@ -403,6 +405,79 @@ TEST_F(AgainstReference, AgreesInManyRandomScenes) {
         expect_agreement(test::random_scene(seed));
     }
 }
+
+struct Model {
+    const char* file;
+    bool normal_map;
+    std::size_t textures;  ///< The number of distinct images that the plan uploads.
+};
+
+class RealModels : public test::DrawTest, public ::testing::WithParamInterface<Model> {};
+
+/// The bounding box of the covered pixels as shares of the picture, and their number.
+struct Coverage {
+    double share = 0.0;
+    int left = 1000000, right = -1, top = 1000000, bottom = -1;
+};
+
+Coverage coverage(const Image& image) {
+    Coverage result;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            if (test::pixel(image, x, y).a == 0.0) continue;
+            result.share += 1.0 / (image.width * image.height);
+            result.left = std::min(result.left, x);
+            result.right = std::max(result.right, x);
+            result.top = std::min(result.top, y);
+            result.bottom = std::max(result.bottom, y);
+        }
+    }
+    return result;
+}
+
+TEST_P(RealModels, AreFramedWholeAndShadedAsTheirFilesSay) {
+    RELIEF_NEEDS_SHARED(file, std::string("data/models/") + GetParam().file);
+    Report report;
+    Scene scene = load_scene(file, report);
+    scene.directional_lights = {{{-0.5F, -1.0F, -0.8F}, glm::vec3(0.8F)}};
+    scene.ambient = glm::vec3(0.1F);
+    scene.camera = framed(world_bounds(scene), 0.5F, 0.3F, 0.6F, 1.0F);
+    Renderer renderer(context(), scene, {160, 160, 1, OutputCoding::srgb}, report);
+    const Frame frame = renderer.draw(*scene.camera);
+    bool normal_map = false;
+    for (const DrawPlan& draw : renderer.plan().draws)
+        normal_map |= draw.features.detail == NormalDetail::normal_map;
+    EXPECT_EQ(normal_map, GetParam().normal_map);
+    EXPECT_EQ(frame.textures, GetParam().textures);
+
+    const Coverage covered = coverage(frame.image);
+    EXPECT_GT(covered.share, 0.05);
+    EXPECT_GT(covered.left, 0);
+    EXPECT_GT(covered.top, 0);
+    EXPECT_LT(covered.right, 159);
+    EXPECT_LT(covered.bottom, 159);
+    double brightest = 0.0;
+    for (int y = 0; y < 160; ++y) {
+        for (int x = 0; x < 160; ++x)
+            brightest = std::max(brightest, test::pixel(frame.image, x, y).g);
+    }
+    EXPECT_GT(brightest, 60.0);
+}
+
+std::string model_name(const ::testing::TestParamInfo<Model>& model) {
+    return std::filesystem::path(model.param.file).stem().string();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, RealModels,
+    ::testing::Values(Model{"gltf/WaterBottle/glTF/WaterBottle.gltf", true, 4},
+                      Model{"gltf/BoomBox/glTF/BoomBox.gltf", true, 4},
+                      Model{"gltf/Avocado/glTF/Avocado.gltf", true, 3},
+                      Model{"gltf/NegativeScaleTest/glTF-Binary/NegativeScaleTest.glb", false, 2},
+                      Model{"obj/spot/spot_triangulated.obj", false, 0},
+                      Model{"obj/scorpion.obj", false, 0}, Model{"obj/fuze/fuze.obj", false, 1},
+                      Model{"ply/lego.ply", false, 0}),
+    model_name);
 
 }  // namespace
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renderers that take over what those before them left: the same pixels, and nothing made twice.
-#include "relief/shade/render_cache.h"
-
+// Programs and resources that renderers share: every pair of effects links with exactly the
+// planned inputs, and cached or handed-over results are the same pixels.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -11,14 +11,79 @@
 #include <optional>
 #include <string>
 
-#include "draw_test.h"
-#include "random_scene.h"
+#include "effects/surface_program.h"
+#include "gl/api.h"
 #include "relief/mesh/image_file.h"
+#include "relief/shade/error.h"
+#include "relief/shade/picture_exchange.h"
+#include "relief/shade/render_cache.h"
+#include "render/program_cache.h"
+#include "shade/effects/feature_sets.h"
+#include "shade/render/draw_support.h"
+#include "shade/render/random_scene.h"
+#include "support/gl_environment.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
+
+class RendererPrograms : public test::GlTest {};
+RELIEF_ON_DEFAULT_BACKEND(RendererPrograms);
+
+std::vector<std::string> names(const std::vector<gl::ActiveVariable>& variables) {
+    std::vector<std::string> result;
+    for (const gl::ActiveVariable& variable : variables)
+        result.push_back(variable.name);
+    return result;
+}
+
+TEST_P(RendererPrograms, OfACoveringSetTakeExactlyWhatIsPlanned) {
+    for (const Features& f : test::covering_features()) {
+        SCOPED_TRACE(describe(f));
+        ProgramCache cache(api());
+        const DrawProgram& program = *cache.get(f);
+        const gl::ProgramInterface& actual = program.linked.interface();
+        const PlannedInterface active{names(actual.attributes), names(actual.uniforms),
+                                      actual.uniform_blocks, names(actual.samplers)};
+        EXPECT_EQ(active.attributes, program.planned.attributes);
+        EXPECT_EQ(active.uniforms, program.planned.uniforms);
+        EXPECT_EQ(active.uniform_blocks, program.planned.uniform_blocks);
+        EXPECT_EQ(active.samplers, program.planned.samplers);
+    }
+}
+
+TEST_P(RendererPrograms, AreSharedByEqualFeatures) {
+    ProgramCache cache(api());
+    Features f;
+    f.directional_lights = 1;
+    f.diffuse = true;
+    const auto first = cache.get(f);
+    EXPECT_EQ(first, cache.get(Features(f)));
+    f.directional_lights = 2;
+    EXPECT_NE(first, cache.get(f));
+    EXPECT_EQ(cache.size(), 2U);
+}
+
+TEST_P(RendererPrograms, NameTheFileAndLineOfAnError) {
+    const test::TemporaryDirectory folder;
+    const test::ScopedVariable variable("RELIEF_SHADER_DIR", folder.path().c_str());
+    std::ofstream(folder / "phong.glsl")
+        << "// One part replaces the embedded one.\n#part lambert\nuniform vec3 diffuse_color;\n"
+           "vec3 diffuse_scattering(float n_dot_l) { return diffuse_colour * n_dot_l; }\n";
+    Features f;
+    f.directional_lights = 1;
+    f.diffuse = true;
+    ProgramCache cache(api());
+    try {
+        (void)cache.get(f);
+        FAIL() << "a broken shader was accepted";
+    } catch (const GpuError& error) {
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("phong.glsl:4"));
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("diffuse_colour"));
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("1 directional light, diffuse"));
+    }
+}
 
 class Cached : public test::DrawTest {
   protected:
@@ -31,7 +96,7 @@ class Cached : public test::DrawTest {
         test::DrawTest::TearDown();
     }
 
-    /// A renderer of its own for every picture, as an editor makes one for every edit.
+    /// Renders every picture with a new renderer, as an editor does for every edit.
     Frame draw(const Scene& scene, const FrameSettings& settings, Report& report) {
         Renderer renderer(*cache_, context(), scene, plan_effects(scene, settings), settings,
                           report);
@@ -53,7 +118,7 @@ TEST_F(Cached, DrawsTheSamePixelsAsWithout) {
         const Scene scene = test::random_scene(seed);
         const FrameSettings settings{48, 32, seed % 3 == 0 ? 4 : 1};
         EXPECT_TRUE(test::same_bits(draw(scene, settings).image, render(scene, settings).image));
-        // Once more, with everything there; every seventh time from scratch.
+        // Renders again with a full cache, and every seventh time with an empty one.
         EXPECT_TRUE(test::same_bits(draw(scene, settings).image, render(scene, settings).image));
         if (seed % 7 == 0) cache().drop_unused();
     }
@@ -81,7 +146,7 @@ TEST_F(Cached, AnEditedColourUploadsNothing) {
     EXPECT_EQ(before.targets, 1U);
     scene.materials[0].diffuse = {0.25F, 1, 1};
     const Frame frame = draw(scene);
-    EXPECT_EQ(test::pixel(frame.image, 20, 15).r, 137);  // sRGB's code of 0.25.
+    EXPECT_EQ(test::pixel(frame.image, 20, 15).r, 137);  // The sRGB code of 0.25.
     const RenderCache::Contents after = cache().contents();
     EXPECT_EQ(after.programs, before.programs);
     EXPECT_EQ(after.meshes, 1U);
@@ -93,7 +158,7 @@ TEST_F(Cached, AnEditedMeshOrAnotherImageIsUploadedAndTheOldOneDropped) {
     Scene scene = textured_scene();
     EXPECT_EQ(test::pixel(draw(scene).image, 20, 15), glm::dvec4(255, 0, 0, 255));
     for (glm::vec3& position : scene.meshes[0].edit().positions)
-        position.x += 100.0F;  // Out of sight.
+        position.x += 100.0F;  // The mesh is out of sight.
     EXPECT_EQ(test::pixel(draw(scene).image, 20, 15).r, 0);
     EXPECT_EQ(cache().contents().meshes, 2U);
     for (glm::vec3& position : scene.meshes[0].edit().positions)
@@ -121,7 +186,7 @@ TEST_F(Cached, AFileThatChangedIsReadAgain) {
     scene.images[0].source = file;
     EXPECT_EQ(test::pixel(draw(scene).image, 20, 15), glm::dvec4(255, 0, 0, 255));
     write_image(file, test::constant_image({0, 0, 1, 1}, 3, 8, ColorSpace::srgb));
-    // Of the same size, and perhaps in the same tick of the clock.
+    // The new file has the same size, and possibly the same time stamp.
     std::filesystem::last_write_time(
         file, std::filesystem::last_write_time(file) + std::chrono::seconds(1));
     EXPECT_EQ(test::pixel(draw(scene).image, 20, 15), glm::dvec4(0, 0, 255, 255));
@@ -176,7 +241,8 @@ TEST_F(Cached, RenderersThatLiveSideBySideDoNotDrawIntoEachOther) {
 TEST_F(Cached, FindingsAreReportedEveryTime) {
     Scene scene = textured_scene();
     scene.meshes[0].edit().normals.clear();
-    scene.meshes[0].edit().positions.push_back({0, 0, 0});  // Isolated: its normal is a fallback.
+    scene.meshes[0].edit().positions.push_back({0, 0, 0});  // The vertex is isolated, so its normal
+                                                            // is a fallback.
     scene.meshes[0].edit().texcoords.push_back({0, 0});
     scene.materials[0].unlit = false;
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
@@ -199,6 +265,100 @@ TEST_F(Cached, TheSameSurroundingsAreUploadedOnceWhateverTheirIntensity) {
     scene.environment->intensity = 0.5F;
     EXPECT_NEAR(test::pixel(draw(scene, settings).image, 8, 8).r, 0.5 * once, 1e-6);
     EXPECT_EQ(cache().contents().environments, 1U);
+}
+
+class Handing : public test::DrawTest {
+  protected:
+    /// Hands over a picture of one color and this size.
+    void put(PictureExchange& handover, const glm::vec3& color, int width, int height) {
+        Material material = test::black_material();
+        material.unlit = true;
+        material.diffuse = color;
+        const Scene scene = test::scene_of(test::facing_square(), material);
+        const FrameSettings settings{width, height, 1};
+        Report report;
+        Renderer renderer(context(), scene, plan_effects(scene, settings), settings, report);
+        renderer.draw_only(*scene.camera);
+        handover.put(renderer);
+    }
+
+    /// Returns the color in the middle of a texture.
+    glm::ivec3 color_of(unsigned texture, int width, int height) {
+        const gl::Api& api = context().api();
+        std::vector<std::uint8_t> texels(static_cast<std::size_t>(4 * width * height));
+        api->BindTexture(GL_TEXTURE_2D, texture);
+        api->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+        api->BindTexture(GL_TEXTURE_2D, 0);
+        const auto at = static_cast<std::size_t>(4 * (height / 2 * width + width / 2));
+        return {texels[at], texels[at + 1], texels[at + 2]};
+    }
+};
+
+TEST_F(Handing, NothingIsShownBeforeAnythingIsDrawn) {
+    PictureExchange handover(context());
+    EXPECT_EQ(handover.get().texture, 0U);
+}
+
+TEST_F(Handing, TheNewestIsShownInItsSize) {
+    PictureExchange handover(context());
+    put(handover, {1, 0, 0}, 20, 10);
+    put(handover, {0, 1, 0}, 30, 10);
+    const PictureExchange::Shown shown = handover.get();
+    EXPECT_EQ(shown.width, 30);
+    EXPECT_EQ(shown.height, 10);
+    EXPECT_EQ(color_of(shown.texture, 30, 10), glm::ivec3(0, 255, 0));
+}
+
+TEST_F(Handing, WhatIsShownStaysAsItIsHoweverManyComeAfter) {
+    PictureExchange handover(context());
+    put(handover, {1, 0, 0}, 8, 8);
+    const PictureExchange::Shown shown = handover.get();
+    for (int i = 0; i < 5; ++i) {
+        put(handover, {0, 0, 1}, 8, 8);
+        EXPECT_EQ(color_of(shown.texture, 8, 8), glm::ivec3(255, 0, 0)) << i;
+    }
+    EXPECT_NE(handover.get().texture, shown.texture);
+    EXPECT_EQ(color_of(handover.get().texture, 8, 8), glm::ivec3(0, 0, 255));
+}
+
+TEST_F(Handing, TwoPicturesComeTogetherAndTheSecondGoesWithoutOne) {
+    PictureExchange handover(context());
+    Report report;
+    const FrameSettings settings{8, 4, 1};
+    const auto renderer_of = [&](const glm::vec3& color) {
+        Material material = test::black_material();
+        material.unlit = true;
+        material.diffuse = color;
+        const Scene scene = test::scene_of(test::facing_square(), material);
+        auto renderer = std::make_unique<Renderer>(context(), scene, settings, report);
+        renderer->draw_only(*scene.camera);
+        return renderer;
+    };
+    const std::unique_ptr<Renderer> red = renderer_of({1, 0, 0});
+    const std::unique_ptr<Renderer> blue = renderer_of({0, 0, 1});
+    handover.put(*red, blue.get());
+    const PictureExchange::Shown both = handover.get();
+    EXPECT_EQ(color_of(both.texture, 8, 4), glm::ivec3(255, 0, 0));
+    ASSERT_NE(both.beside, 0U);
+    EXPECT_EQ(color_of(both.beside, 8, 4), glm::ivec3(0, 0, 255));
+    handover.put(*blue);
+    EXPECT_EQ(handover.get().beside, 0U);
+}
+
+TEST_F(Handing, APictureFromElsewhereStandsUpright) {
+    PictureExchange handover(context());
+    Image picture = make_image(3, 2, 3, 8, ColorSpace::srgb);
+    auto& codes = std::get<std::vector<std::uint8_t>>(picture.samples);
+    for (std::size_t i = 0; i < codes.size(); ++i)
+        codes[i] = static_cast<std::uint8_t>(10 * i);
+    handover.put(picture);
+    const PictureExchange::Shown shown = handover.get();
+    std::vector<std::uint8_t> texels(4 * 3 * 2);
+    context().api()->BindTexture(GL_TEXTURE_2D, shown.texture);
+    context().api()->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    EXPECT_EQ(texels[0], codes[9]) << "the lower row begins";
+    EXPECT_EQ(texels[3], 255);
+    EXPECT_EQ(texels[12 + 4 + 2], codes[5]);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The renderer as a whole: which way is up, places and mirrors, culling, what is decoded and
-// uploaded, background, samples, and what it refuses.
+// The renderer as a whole: orientation, transforms and mirrors, culling, decoding and upload,
+// background, samples, and invalid input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,14 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "draw_test.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
+#include "shade/render/draw_support.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
-#include "unreadable_textures.h"
 
 namespace relief {
 namespace {
@@ -58,7 +57,8 @@ TEST_F(Rendering, ShowsTexturesUpright) {
 TEST_F(Rendering, PutsRowZeroOnTopAndXToTheRight) {
     Material material = test::black_material();
     material.emission = {1, 1, 1};
-    Scene scene = test::scene_of(test::grid(1), material);  // [0,1]^2: up and right of the centre.
+    Scene scene = test::scene_of(test::grid(1), material);  // [0,1]^2 is up and to the right of the
+                                                            // center.
     const Image image = render(scene, {40, 40, 1, OutputCoding::srgb}).image;
     EXPECT_EQ(pixel(image, 25, 15).r, 255);
     EXPECT_EQ(pixel(image, 15, 15).r, 0);
@@ -71,7 +71,7 @@ TEST_F(Rendering, DrawsBackFacesOnlyOfDoubleSidedMaterials) {
     Scene scene = test::scene_of(test::facing_square(), material);
     scene.directional_lights = {{{0, 0, -1}, {0.5F, 0.5F, 0.5F}}};
     scene.instances[0].world_from_object[0].x =
-        -1.0F;  // Turned about y: the back faces the camera.
+        -1.0F;  // Rotated about y, so that the back faces the camera.
     scene.instances[0].world_from_object[2].z = -1.0F;
     EXPECT_EQ(pixel(radiance(scene, 16, 16), 8, 8), glm::dvec4(0));
     scene.materials[0].double_sided = true;
@@ -123,7 +123,7 @@ TEST_F(Rendering, ShadesAMirroredInstanceAsTheMirroredGeometry) {
     const FrameSettings settings{96, 96, 1, OutputCoding::srgb};
     const ImageDifference difference =
         compare(render(by_matrix, settings).image, render(by_geometry, settings).image);
-    // The same numbers by another order of roundings: a code here and there.
+    // The order of roundings differs, so a few codes may differ by one.
     EXPECT_LE(difference.max, 1.0);
     EXPECT_LE(difference.mean, 0.01);
     const ImageDifference unlike =
@@ -132,7 +132,7 @@ TEST_F(Rendering, ShadesAMirroredInstanceAsTheMirroredGeometry) {
 }
 
 TEST_F(Rendering, TurnsNormalsByTheInverseTranspose) {
-    // A sphere squashed to a quarter in z, against the ellipsoid's own normals.
+    // A sphere with a scale of a quarter in z, against the normals of the ellipsoid.
     Material material;
     Scene squashed = test::scene_of(test::sphere(64, 32), material);
     squashed.directional_lights = {{{1, -0.5F, -1}, {0.8F, 0.8F, 0.8F}}};
@@ -164,18 +164,18 @@ TEST_F(Rendering, ReflectsInWorldSpace) {
     mirror.reflectivity = mirror.grazing_reflectivity = {1, 1, 1};
     Scene scene = test::scene_of(test::facing_square(), mirror);
     scene.environment = six_colors();
-    // A mirror that faces the camera shows what is behind the camera: +z.
+    // A mirror that faces the camera shows +z, which is behind the camera.
     EXPECT_EQ(pixel(radiance(scene, 16, 16), 8, 8), glm::dvec4(0, 0, 0.5, 1));
-    // Turned by 45 degrees about y, to the right: it shows +x, and the environment stays.
+    // Rotated by 45 degrees about y, to the right, it shows +x. The environment stays.
     const float s = std::sqrt(0.5F);
     scene.instances[0].world_from_object = glm::mat4(glm::vec4(s, 0, -s, 0), glm::vec4(0, 1, 0, 0),
                                                      glm::vec4(s, 0, s, 0), glm::vec4(0, 0, 0, 1));
     EXPECT_EQ(pixel(radiance(scene, 16, 16), 8, 8), glm::dvec4(0.5, 0, 0, 1));
-    // Turned upwards about x: +y.
+    // Rotated upwards about x, it shows +y.
     scene.instances[0].world_from_object = glm::mat4(glm::vec4(1, 0, 0, 0), glm::vec4(0, s, -s, 0),
                                                      glm::vec4(0, s, s, 0), glm::vec4(0, 0, 0, 1));
     EXPECT_EQ(pixel(radiance(scene, 16, 16), 8, 8), glm::dvec4(0, 0.5, 0, 1));
-    // The camera moved round to +x, looking down -x, with the mirror facing it: +x again.
+    // The camera is at +x and looks along -x, and the mirror faces it. It shows +x.
     scene.instances[0].world_from_object = glm::mat4(glm::vec4(0, 0, -1, 0), glm::vec4(0, 1, 0, 0),
                                                      glm::vec4(1, 0, 0, 0), glm::vec4(0, 0, 0, 1));
     scene.camera->world_from_view = glm::mat4(glm::vec4(0, 0, -1, 0), glm::vec4(0, 1, 0, 0),
@@ -193,7 +193,8 @@ TEST_F(Rendering, ShowsTheSkyboxBehindTheModel) {
     const Image image = radiance(scene, 40, 40);
     EXPECT_EQ(pixel(image, 25, 15), glm::dvec4(0.25, 0.25, 0.25, 1));  // The model.
     EXPECT_EQ(pixel(image, 15, 25), glm::dvec4(0.25, 0.25, 0, 1));     // -z, half as bright.
-    scene.camera->vertical_fov = 2.6F;  // Wide enough to see +x at the right and +y on top.
+    scene.camera->vertical_fov = 2.6F;  // The view is wide enough to see +x on the right and +y at
+                                        // the top.
     const Image wide = radiance(scene, 40, 40);
     EXPECT_EQ(pixel(wide, 39, 20), glm::dvec4(0.25, 0, 0, 1));
     EXPECT_EQ(pixel(wide, 0, 20), glm::dvec4(0, 0.25, 0.25, 1));
@@ -209,10 +210,10 @@ TEST_F(Rendering, DecodesOnlyWhatIsPlanned) {
     scene.images = {{"first", std::filesystem::path("/nowhere/first.png")},
                     {"second", std::filesystem::path("/nowhere/second.png")}};
     scene.environment = Environment{Equirectangular{{"third", "/nowhere/third.hdr"}}, 1.0F, false};
-    // Nothing lights the surface, nothing reflects: nothing is read, and nothing is missing.
+    // The surface has no light and no reflection, so no texture is read, and none is missing.
     const Frame frame = render(scene, {16, 16, 1, OutputCoding::srgb});
     EXPECT_EQ(frame.textures, 0U);
-    scene.ambient = {1, 1, 1};  // Shows the diffuse texture, but no normal.
+    scene.ambient = {1, 1, 1};  // The diffuse texture shows, but the normal does not.
     Report report;
     const Renderer renderer(context(), scene, {16, 16, 1, OutputCoding::srgb}, report);
     ASSERT_EQ(report.findings().size(), 1U);
@@ -258,7 +259,7 @@ TEST_F(Rendering, LeavesUnreadableTexturesOutOfForcedPlansAndViewsToo) {
     scene.materials[0].normal_map = NormalMap{Texture{0}};
     scene.images = {{"bumps", std::filesystem::path("/nowhere/bumps.png")}};
     FramePlan plan = plan_effects(scene, settings);
-    plan.draws[0].features.double_sided = true;  // A forced plan.
+    plan.draws[0].features.double_sided = true;  // The plan is forced.
     EXPECT_TRUE(test::same_bits(render(scene, plan, settings).image, expected));
     FrameSettings view = settings;
     view.view = DebugView::diffuse;
@@ -278,7 +279,7 @@ TEST_F(Rendering, RefusesRequiredImagesThatCannotBeRead) {
     }
 }
 
-/// Decoding is a loop over images, and each image is read in loops of its own.
+/// Decoding is a loop over images, and reading each image contains loops, too.
 TEST_F(Rendering, AMissingTextureEndsNoDecodingOfOthers) {
     const test::TemporaryDirectory folder;
     Scene scene = test::scene_for_unreadable_textures();
@@ -311,7 +312,7 @@ TEST_F(Rendering, ComputesMissingFrames) {
     EXPECT_TRUE(
         test::same_bits(render(with_tangents, settings).image, render(without, settings).image));
     without.meshes[0].edit().normals.clear();
-    // Angle-weighted normals of a fine sphere are nearly its own.
+    // The angle-weighted normals of a fine sphere are almost exact.
     EXPECT_LE(compare(render(with_tangents, settings).image, render(without, settings).image).mean,
               0.5);
 }
@@ -346,8 +347,8 @@ TEST_F(Rendering, FillsWithTheBackground) {
 
 TEST_F(Rendering, AveragesSamplesInLinearLight) {
     Material material = test::black_material();
-    material.emission = {100, 100, 100};  // Far brighter than white.
-    Mesh half = test::facing_square();    // Its right edge goes through pixel centres.
+    material.emission = {100, 100, 100};  // The radiance is far above white.
+    Mesh half = test::facing_square();    // Its right edge goes through pixel centers.
     for (glm::vec3& p : half.positions)
         p.x = p.x < 0.0F ? -2.0F : 0.125F;
     Scene scene = test::scene_of(half, material);
@@ -355,10 +356,10 @@ TEST_F(Rendering, AveragesSamplesInLinearLight) {
     const Image image = render(scene, {16, 16, 4, OutputCoding::srgb}).image;
     EXPECT_EQ(pixel(image, 4, 8), glm::dvec4(255, 255, 255, 255));
     EXPECT_EQ(pixel(image, 12, 8), glm::dvec4(0, 0, 0, 255));
-    // Two of four samples are white: half of the light, sRGB code 188, not 128.
+    // Two of four samples are white: half of the light has the sRGB code 188, not 128.
     EXPECT_EQ(pixel(image, 8, 8), glm::dvec4(188, 188, 188, 255));
     scene.background = {0, 0, 0, 0};
-    // What is covered is white, whatever its share.
+    // Covered parts are white at any coverage.
     const Image clear = render(scene, {16, 16, 4, OutputCoding::srgb}).image;
     EXPECT_EQ(pixel(clear, 8, 8), glm::dvec4(255, 255, 255, 128));
     EXPECT_EQ(pixel(clear, 12, 8), glm::dvec4(0, 0, 0, 0));
@@ -370,7 +371,7 @@ TEST_F(Rendering, WithOneOrFourSamplesAgreesAwayFromEdges) {
     const Image four = render(scene, {64, 64, 4, OutputCoding::srgb}).image;
     for (int y = 24; y < 40; ++y) {
         for (int x = 24; x < 40; ++x) {
-            // Half floats and the last rounding: a code.
+            // Half floats and the final rounding give an error of one code.
             EXPECT_NEAR(pixel(one, x, y).g, pixel(four, x, y).g, 1.0);
         }
     }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rendered pictures against the CPU reference in double precision, effect by effect: on a square
-// that faces the camera, and on a sphere.
+// Rendered shading against the CPU reference, effect by effect, and the conversion of radiance to
+// a picture: exposure, tone curves, alpha, blending and masks.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
-#include "draw_test.h"
+#include "relief/mesh/error.h"
 #include "relief/shade/reference.h"
+#include "shade/render/draw_support.h"
 #include "support/angle.h"
 #include "support/shapes.h"
 
@@ -16,7 +18,7 @@ namespace {
 using test::pixel;
 
 constexpr int shaded_size = 64;
-/// Codes: half a code of rounding, and what float and llvmpipe's pow and exp lose.
+/// In codes: half a code of rounding, and the errors of float and of pow and exp in llvmpipe.
 constexpr double shading_tolerance = 1.0;
 /// Relative, in linear float.
 constexpr double radiance_tolerance = 2e-4;
@@ -57,17 +59,13 @@ class Shading : public test::DrawTest {
     }
 };
 
-Scene square(const Material& material) {
-    return test::scene_of(test::facing_square(), material);
-}
-
 /// A material with highlights under three lights of different kinds.
 Scene shiny_square(SpecularModel model, float shininess) {
     Material material = test::black_material();
     material.specular = {0.9F, 0.5F, 0.2F};
     material.shininess = shininess;
     material.specular_model = model;
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.directional_lights = {{{0.3F, -0.2F, -1.0F}, {0.8F, 0.8F, 0.8F}}};
     scene.point_lights = {{{-1, 1, 1.5F}, {1, 1, 2}, std::nullopt}};
     return scene;
@@ -76,7 +74,7 @@ Scene shiny_square(SpecularModel model, float shininess) {
 TEST_F(Shading, OfAmbientLightFollowsTheFormula) {
     Material material = test::black_material();
     material.ambient = {0.9F, 0.4F, 0.1F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.ambient = {0.5F, 0.6F, 0.7F};
     expect_formula(scene);
 }
@@ -84,7 +82,7 @@ TEST_F(Shading, OfAmbientLightFollowsTheFormula) {
 TEST_F(Shading, OfDiffuseLightFollowsTheFormula) {
     Material material = test::black_material();
     material.diffuse = {0.9F, 0.4F, 0.1F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.directional_lights = {{{1, -2, -3}, {0.9F, 1.0F, 0.5F}}, {{0, 0, 1}, {1, 1, 1}}};
     expect_formula(scene);
 }
@@ -92,28 +90,29 @@ TEST_F(Shading, OfDiffuseLightFollowsTheFormula) {
 TEST_F(Shading, OfAPointLightFallsOffWithTheSquaredDistance) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.point_lights = {{{1, 0.5F, 0.7F}, {0.6F, 0.5F, 0.4F}, std::nullopt},
-                          {{-1, -1, -0.5F}, {5, 5, 5}, std::nullopt}};  // Behind: nothing.
+                          // This light is behind the square and has no effect.
+                          {{-1, -1, -0.5F}, {5, 5, 5}, std::nullopt}};
     expect_formula(scene);
 }
 
 TEST_F(Shading, OfALightWithARangeEndsThere) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.point_lights = {{{0, 0, 0.7F}, {0.6F, 0.6F, 0.6F}, 1.5F},
                           {{1, 1, 1}, {0.3F, 0.2F, 0.1F}, std::nullopt}};
     expect_formula(scene);
     scene.point_lights.pop_back();
-    // The corner is 2.8 away: beyond the range, exactly nothing.
+    // The corner is at a distance of 2.8, beyond the range, so its light is exactly zero.
     EXPECT_EQ(pixel(radiance(scene, shaded_size, shaded_size), 0, 0), glm::dvec4(0, 0, 0, 1));
 }
 
 TEST_F(Shading, OfASpotLightKeepsToItsCone) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     SpotLight spot;
     spot.point = {{0.5F, 0, 2}, {3, 3, 3}, std::nullopt};
     spot.direction_world = {-0.2F, 0, -2};
@@ -141,14 +140,14 @@ TEST_F(Shading, OfBlinnAndPhongsHighlightFollowsTheFormula) {
 TEST_F(Shading, OfEmissionFollowsTheFormula) {
     Material material = test::black_material();
     material.emission = {0.7F, 0.2F, 0.05F};
-    expect_formula(square(material));
+    expect_formula(test::square_scene(material));
 }
 
 TEST_F(Shading, OfAnUnlitSurfaceIsItsColour) {
     Material material = test::black_material();
     material.diffuse = {0.7F, 0.2F, 0.05F};
     material.unlit = true;
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.ambient = {1, 1, 1};
     scene.directional_lights = {{}};
     expect_formula(scene);
@@ -158,12 +157,13 @@ TEST_F(Shading, OfAReflectionFollowsSchlick) {
     Material material = test::black_material();
     material.ambient = {0.5F, 0.5F, 0.5F};
     material.reflectivity = {0.04F, 0.3F, 0.9F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.ambient = {1, 1, 1};
-    const glm::vec3 surroundings(0.25F, 0.5F, 0.75F);  // Exact in half floats.
+    const glm::vec3 surroundings(0.25F, 0.5F, 0.75F);  // The values are exact in half floats.
     scene.environment = test::constant_environment(surroundings, false);
     expect_formula(scene);
-    scene.materials[0].grazing_reflectivity = scene.materials[0].reflectivity;  // No Fresnel.
+    // There is no Fresnel effect.
+    scene.materials[0].grazing_reflectivity = scene.materials[0].reflectivity;
     expect_formula(scene);
     scene.environment->intensity = 0.5F;
     expect_formula(scene);
@@ -177,14 +177,14 @@ TEST_F(Shading, OfTexturesTintsWhatIsScattered) {
     material.emission = {0.1F, 0.1F, 0.1F};
     material.diffuse_texture = Texture{0};
     material.emission_texture = Texture{1};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.ambient = {1, 1, 1};
     scene.directional_lights = {{{0.3F, 0, -1}, {1, 1, 1}}};
     scene.images = {
         {"diffuse", test::constant_image({0.8F, 0.2F, 0.4F, 1}, 3, 8, ColorSpace::srgb)},
         {"emission", test::constant_image({0.4F, 1.0F, 0.6F, 1}, 3, 8, ColorSpace::srgb)}};
     scene.meshes[0].edit().colors.assign(4, glm::vec4(0.5F, 0.75F, 1.0F, 0.1F));
-    // llvmpipe decodes sRGB texels by a polynomial that is up to half a percent off.
+    // llvmpipe decodes sRGB texels with a polynomial whose error is up to half a percent.
     expect_formula(scene, 6e-3);
 }
 
@@ -195,7 +195,7 @@ TEST_F(Shading, OfEverythingTogetherFollowsTheFormula) {
     material.shininess = 20;
     material.emission = {0.01F, 0.0F, 0.02F};
     material.reflectivity = {0.1F, 0.1F, 0.1F};
-    Scene scene = square(material);
+    Scene scene = test::square_scene(material);
     scene.ambient = {0.3F, 0.3F, 0.3F};
     scene.directional_lights = {{{1, -1, -1}, {0.3F, 0.2F, 0.1F}}};
     scene.point_lights = {{{1, 1, 2}, {0.5F, 0.5F, 0.5F}, 8.0F}};
@@ -216,8 +216,8 @@ TEST_F(Shading, OfASphereFollowsItsNormals) {
 TEST_F(Shading, OfManyLightsIsTheSumOfAll) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
-    Scene scene = square(material);
-    for (int i = 0; i < 700; ++i) {  // 1400 rows: more than a uniform block is given.
+    Scene scene = test::square_scene(material);
+    for (int i = 0; i < 700; ++i) {  // 1400 rows exceed a uniform block.
         const float angle = 0.1F * static_cast<float>(i);
         scene.point_lights.push_back(
             {{2 * std::cos(angle), 2 * std::sin(angle), 1.0F + 0.001F * static_cast<float>(i)},
@@ -226,6 +226,189 @@ TEST_F(Shading, OfManyLightsIsTheSumOfAll) {
     }
     EXPECT_TRUE(plan_effects(scene, {.samples = 1}).draws[0].features.lights_in_buffer);
     expect_formula(scene);
+}
+
+class FinishedPicture : public test::DrawTest {};
+
+/// The sRGB code of a linear value up to 1.
+double code(double linear) {
+    return 255.0 *
+           (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055);
+}
+
+double aces(double x) {
+    return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+}
+
+/// A square that emits this radiance.
+Scene glowing(float radiance) {
+    Material material = test::black_material();
+    material.emission = glm::vec3(radiance);
+    Scene scene = test::scene_of(test::facing_square(), material);
+    scene.background = {0, 0, 0, 1};
+    return scene;
+}
+
+/// In codes: half a code of rounding, and another half for half floats and pow in llvmpipe.
+constexpr double finished_tolerance = 1.0;
+
+TEST_F(FinishedPicture, IsExposedAndToneMapped) {
+    for (const int samples : {1, 4}) {
+        for (const float radiance : {0.01F, 0.25F, 1.0F, 4.0F, 1000.0F}) {
+            SCOPED_TRACE(radiance);
+            Scene scene = glowing(radiance);
+            const FrameSettings settings{8, 8, samples, OutputCoding::srgb};
+            const double light = 0.5 * static_cast<double>(radiance);
+            scene.exposure = 0.5F;
+            EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r, code(std::min(light, 1.0)),
+                        finished_tolerance);
+            scene.tone_mapping = ToneMapping::reinhard;
+            EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r, code(light / (1.0 + light)),
+                        finished_tolerance);
+            scene.tone_mapping = ToneMapping::aces;
+            EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r,
+                        code(std::min(aces(light), 1.0)), finished_tolerance);
+        }
+    }
+}
+
+TEST_F(FinishedPicture, OfInfiniteLightIsWhiteByEveryCurve) {
+    for (const ToneMapping curve : {ToneMapping::none, ToneMapping::reinhard, ToneMapping::aces}) {
+        for (const int samples : {1, 4}) {
+            Scene scene = glowing(max_reflectance);
+            scene.exposure = max_reflectance;
+            scene.tone_mapping = curve;
+            const Image image = render(scene, {8, 8, samples, OutputCoding::srgb}).image;
+            EXPECT_EQ(pixel(image, 4, 4), glm::dvec4(255, 255, 255, 255));
+        }
+    }
+}
+
+TEST_F(FinishedPicture, HoldsRadianceWhereItIsLinear) {
+    Scene scene = glowing(3.0F);
+    scene.exposure = 0.1F;
+    scene.tone_mapping = ToneMapping::aces;
+    for (const int samples : {1, 4}) {
+        const Image image = render(scene, {8, 8, samples, OutputCoding::linear}).image;
+        EXPECT_EQ(pixel(image, 4, 4).r, 3.0);  // Linear output has neither exposure nor tone
+                                               // mapping.
+    }
+}
+
+TEST_F(FinishedPicture, LeavesItsBackgroundAsItIs) {
+    for (const int samples : {1, 4}) {
+        Scene scene = glowing(1.0F);
+        scene.background = {0.5F, 0.5F, 0.5F, 1};
+        scene.exposure = 4.0F;
+        scene.tone_mapping = ToneMapping::reinhard;
+        scene.instances[0].world_from_object[3].x = 2.0F;  // The left half is empty.
+        const Image image = render(scene, {8, 8, samples, OutputCoding::srgb}).image;
+        EXPECT_EQ(pixel(image, 1, 4).r, 188.0);  // 0.5.
+    }
+}
+
+TEST_F(FinishedPicture, ToneMapsEverySampleOfAnEdge) {
+    Scene scene = glowing(1000.0F);
+    scene.background = {0, 0, 0, 1};
+    for (glm::vec3& p : scene.meshes[0].edit().positions)
+        p.x = p.x < 0.0F ? -2.0F : 0.125F;  // Half of pixel 8 of 16.
+    scene.tone_mapping = ToneMapping::reinhard;
+    const Image image = render(scene, {16, 16, 4, OutputCoding::srgb}).image;
+    // The result is half of white. The mean of radiance before tone mapping would give 500 / 501,
+    // almost white.
+    EXPECT_NEAR(pixel(image, 8, 8).r, code(0.5), finished_tolerance);
+}
+
+/// Two squares, one behind the other, with these colors and opacities.
+Scene layered(const glm::vec4& near, const glm::vec4& far) {
+    Scene scene = test::scene_of(test::facing_square(), test::black_material());
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].edit().material_ranges[0].material = 1;
+    scene.materials.push_back(scene.materials[0]);
+    const std::array<glm::vec4, 2> layers{near, far};
+    for (std::size_t i = 0; i < 2; ++i) {
+        scene.materials[i].emission = glm::vec3(layers[i]);
+        scene.materials[i].opacity = layers[i].a;
+        scene.materials[i].alpha_mode = AlphaMode::blend;
+    }
+    scene.instances.push_back({1, glm::mat4(1.0F), "far"});
+    scene.instances[1].world_from_object[3].z = -0.5F;
+    return scene;
+}
+
+TEST_F(FinishedPicture, BlendsLayersInLinearLightFarthestFirst) {
+    for (const int samples : {1, 4}) {
+        for (const bool swapped : {false, true}) {
+            Scene scene = layered({1, 0, 0, 0.5F}, {0, 1, 0, 0.25F});
+            if (swapped) std::swap(scene.instances[0], scene.instances[1]);
+            scene.background = {0, 0, 1, 1};
+            const glm::dvec4 color =
+                pixel(render(scene, {8, 8, samples, OutputCoding::srgb}).image, 4, 4);
+            EXPECT_NEAR(color.r, code(0.5), finished_tolerance);
+            EXPECT_NEAR(color.g, code(0.5 * 0.25), finished_tolerance);
+            EXPECT_NEAR(color.b, code(0.5 * 0.75), finished_tolerance);
+            EXPECT_EQ(color.a, 255.0);
+        }
+    }
+}
+
+TEST_F(FinishedPicture, BlendedOverNothingKeepsItsColourAndItsShare) {
+    const Scene scene = layered({1, 0.5F, 0, 0.5F}, {0, 0, 0, 0});
+    for (const int samples : {1, 4}) {
+        const glm::dvec4 color =
+            pixel(render(scene, {8, 8, samples, OutputCoding::srgb}).image, 4, 4);
+        EXPECT_NEAR(color.r, 255.0, finished_tolerance);
+        EXPECT_NEAR(color.g, code(0.5), finished_tolerance);
+        EXPECT_NEAR(color.a, 127.5, finished_tolerance);
+    }
+}
+
+TEST_F(FinishedPicture, OfWhatIsOpaqueAllOverHasNoBlending) {
+    const Scene scene = layered({1, 0, 0, 1}, {0, 1, 0, 1});
+    const FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_FALSE(plan.sorted_blending);
+    EXPECT_FALSE(plan.finishing_pass);
+    EXPECT_EQ(pixel(render(scene, {8, 8, 1, OutputCoding::srgb}).image, 4, 4),
+              glm::dvec4(255, 0, 0, 255));
+}
+
+TEST_F(FinishedPicture, HasHolesWhereAMaskIsBelowItsCutoff) {
+    Scene scene = glowing(1.0F);
+    Image opacity = make_image(2, 1, 1, 8, ColorSpace::data);
+    opacity.samples = std::vector<std::uint8_t>{127, 128};
+    scene.images = {{"opacity", opacity}};
+    Texture use;
+    use.filter = TextureFilter::nearest;
+    use.wrap_u = use.wrap_v = TextureWrap::clamp;
+    Material& material = scene.materials[0];
+    material.opacity_texture = use;
+    material.alpha_mode = AlphaMode::mask;
+    material.alpha_cutoff = 0.5F;
+    scene.background = {0, 0, 0, 0};
+    const Image image = render(scene, {8, 8, 1, OutputCoding::srgb}).image;
+    EXPECT_EQ(pixel(image, 2, 4), glm::dvec4(0, 0, 0, 0));
+    EXPECT_EQ(pixel(image, 6, 4), glm::dvec4(255, 255, 255, 255));
+    material.alpha_cutoff = 1.5F;  // No alpha reaches this value.
+    EXPECT_EQ(pixel(render(scene, {8, 8, 1, OutputCoding::srgb}).image, 6, 4),
+              glm::dvec4(0, 0, 0, 0));
+}
+
+TEST_F(FinishedPicture, FollowsWhatMoves) {
+    Scene scene = glowing(0.0F);
+    scene.materials[0].diffuse = glm::vec3(1.0F);
+    scene.directional_lights = {{{0, 0, -1}, glm::vec3(1.0F)}};
+    Report report;
+    Renderer renderer(context(), scene, {8, 8, 1, OutputCoding::srgb}, report);
+    EXPECT_EQ(pixel(renderer.draw(*scene.camera).image, 1, 4).r, 255.0);
+    scene.instances[0].world_from_object[3].x = 2.0F;
+    scene.directional_lights[0].irradiance = glm::vec3(0.5F);
+    renderer.move(scene);
+    const Image moved = renderer.draw(*scene.camera).image;
+    EXPECT_EQ(pixel(moved, 1, 4).r, 0.0);
+    EXPECT_EQ(pixel(moved, 6, 4).r, 188.0);
+    EXPECT_TRUE(test::same_bits(moved, render(scene, {8, 8, 1, OutputCoding::srgb}).image));
+    scene.instances.pop_back();
+    EXPECT_THROW(renderer.move(scene), InvalidInput);
 }
 
 }  // namespace

@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes from files: OBJ with MTL written here, and real models where they are at hand.
-#include "relief/shade/scene_file.h"
-
+// Scenes from model files, environment folders, image sources and the means of textures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <vector>
 
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/shapes.h"
+#include "relief/shade/environment_files.h"
+#include "relief/shade/image_source.h"
+#include "relief/shade/scene.h"
+#include "relief/shade/scene_file.h"
+#include "relief/shade/shared.h"
+#include "scene/scene_import.h"
+#include "support/shapes.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -45,19 +54,19 @@ TEST(LoadScene, ReadsObjWithItsMaterials) {
     EXPECT_EQ(paint.diffuse, glm::vec3(0.5F, 0.6F, 0.7F));
     EXPECT_EQ(paint.shininess, 40.0F);
     ASSERT_TRUE(paint.diffuse_texture && paint.normal_map);
-    // Missing images are nobody's trouble until something shows them.
+    // A missing image has no effect until it is needed.
     EXPECT_EQ(std::get<std::filesystem::path>(scene.images[paint.diffuse_texture->image].source),
               folder / "missing.png");
     EXPECT_EQ(paint.normal_map->green, Green::up);
     const Material& glow = scene.materials[1];
-    EXPECT_EQ(glow.emission, glm::vec3(1.0F));  // The map as it is.
-    EXPECT_EQ(glow.specular, glm::vec3(1.0F));  // Likewise.
+    EXPECT_EQ(glow.emission, glm::vec3(1.0F));  // The map is used unchanged.
+    EXPECT_EQ(glow.specular, glm::vec3(1.0F));  // The map is used unchanged.
     EXPECT_EQ(glow.alpha_mode, AlphaMode::blend);
     EXPECT_EQ(glow.opacity, 0.5F);
     ASSERT_TRUE(glow.bump_map && glow.specular_texture && glow.opacity_texture);
     EXPECT_EQ(glow.bump_map->strength, 8.0F);  // Half of 16 texels.
     EXPECT_EQ(scene.images[glow.opacity_texture->image].name, (folder / "holes.png").string());
-    EXPECT_FALSE(glow.unlit);  // No illum statement: model 2.
+    EXPECT_FALSE(glow.unlit);  // Without an illum statement, the model is 2.
     EXPECT_EQ(paint.alpha_mode, AlphaMode::opaque);
     EXPECT_EQ(report.count("map_Ns in MTL"), 1U);
     EXPECT_EQ(report.findings().size(), 1U);
@@ -79,7 +88,7 @@ TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {
     EXPECT_EQ(scene.materials[0].alpha_mode, AlphaMode::blend);
     EXPECT_TRUE(scene.materials[0].diffuse_texture);
     EXPECT_FALSE(scene.materials[0].opacity_texture);
-    // One normal, so one of the two maps.
+    // The model supports one normal, so it uses one of both maps.
     EXPECT_TRUE(scene.materials[1].normal_map);
     EXPECT_FALSE(scene.materials[1].bump_map);
     EXPECT_EQ(report.count("bump map beside a normal map"), 1U);
@@ -98,7 +107,7 @@ TEST(LoadScene, GivesSurfacesWithoutMaterialBothSides) {
     EXPECT_EQ(scene.meshes[0]->normals[0], glm::vec3(0, 0, 1));
 }
 
-/// One triangle with lights, a camera under a scaled node, and a material with everything.
+/// One triangle with lights, a camera below a scaled node, and a material with all members.
 std::string lit_triangle() {
     return R"({
   "asset": {"version": "2.0"},
@@ -146,17 +155,17 @@ TEST(LoadScene, PlacesWhatAGltfFileHolds) {
     write_text(folder / "lit.gltf", lit_triangle());
     Report report;
     const Scene scene = load_scene(folder / "lit.gltf", report);
-    ASSERT_EQ(scene.meshes.size(), 1U);  // Read once, though it stands twice.
+    ASSERT_EQ(scene.meshes.size(), 1U);  // Two nodes use the mesh, and it is read once.
     ASSERT_EQ(scene.instances.size(), 2U);
     EXPECT_EQ(scene.instances[0].name, "first");
     EXPECT_EQ(scene.instances[0].world_from_object[3], glm::vec4(2, 0, 0, 1));
     EXPECT_EQ(scene.instances[1].world_from_object[0].x, -1.0F);
-    EXPECT_EQ(scene.meshes[0]->normals[0], glm::vec3(0, 0, 1));  // Flat, as glTF asks.
+    EXPECT_EQ(scene.meshes[0]->normals[0], glm::vec3(0, 0, 1));  // Flat normals, as glTF requires.
 
     ASSERT_EQ(scene.directional_lights.size(), 1U);
     const DirectionalLight& sun = scene.directional_lights[0];
-    EXPECT_NEAR(sun.direction_world.y, -1.0F, 1e-6F);  // Its node is turned to look down.
-    EXPECT_NEAR(sun.irradiance.x, 1.0F, 1e-6F);        // pi lux over pi.
+    EXPECT_NEAR(sun.direction_world.y, -1.0F, 1e-6F);  // Its node is rotated and looks down.
+    EXPECT_NEAR(sun.irradiance.x, 1.0F, 1e-6F);        // pi lux divided by pi.
     EXPECT_NEAR(sun.irradiance.y, 0.5F, 1e-6F);
     ASSERT_EQ(scene.point_lights.size(), 1U);
     EXPECT_EQ(scene.point_lights[0].position_world, glm::vec3(1, 2, 3));
@@ -167,16 +176,18 @@ TEST(LoadScene, PlacesWhatAGltfFileHolds) {
     EXPECT_NEAR(scene.spot_lights[0].outer_cone, 0.4F, 1e-6F);
 
     ASSERT_TRUE(scene.camera);
-    EXPECT_EQ(scene.camera->world_from_view[1], glm::vec4(0, 1, 0, 0));  // Scale is no view.
+    // The scale does not change the view.
+    EXPECT_EQ(scene.camera->world_from_view[1], glm::vec4(0, 1, 0, 0));
     EXPECT_EQ(scene.camera->world_from_view[3], glm::vec4(0, 0, 7, 1));
     EXPECT_EQ(scene.camera->near, 0.25F);
-    EXPECT_GT(scene.camera->far, 7.0F);  // None in the file: to the end of the scene.
+    EXPECT_GT(scene.camera->far, 7.0F);  // The file has no far distance, so it is that of the
+                                         // scene.
     EXPECT_LT(scene.camera->far, 10.0F);
 }
 
 TEST(LoadScene, TurnsStoredTangentsWithTheTexture) {
-    // A square whose tangents, along x, belong to the coordinates as stored; the transform turns
-    // the image clockwise by a quarter and mirrors it.
+    // A square whose tangents, along x, belong to the stored coordinates. The transform rotates the
+    // image clockwise by 90 degrees and mirrors it.
     MeshFile square;
     square.mesh = make_quad();
     square.mesh.tangents.assign(4, glm::vec4(1, 0, 0, 1));
@@ -199,7 +210,8 @@ TEST(LoadScene, TurnsStoredTangentsWithTheTexture) {
     const Scene scene = load_scene(folder / "square.gltf", report);
     ASSERT_EQ(scene.meshes[0]->tangents.size(), 4U);
     for (const glm::vec4& tangent : scene.meshes[0]->tangents) {
-        // The image's u now grows along the old bitangent, its v upwards along -w * cross(n, y).
+        // The u of the image now grows along the old bitangent, and its v upwards along -w *
+        // cross(n, y).
         EXPECT_NEAR(tangent.x, 0.0F, 1e-6F);
         EXPECT_NEAR(tangent.y, 1.0F, 1e-6F);
         EXPECT_EQ(tangent.w, -1.0F);
@@ -221,10 +233,11 @@ TEST(LoadScene, GivesGltfsMaterialsAsTheirAuthorsMeant) {
     EXPECT_EQ(glass.opacity, 0.75F);
     EXPECT_TRUE(glass.double_sided);
     EXPECT_EQ(glass.occlusion_strength, 0.25F);
-    // The set that the base colour uses, by its transform: (x, y) to (2 x + 0.5, 3 y).
+    // The coordinates of the set that the base color uses, after its transform: (x, y) to (2 x +
+    // 0.5, 3 y).
     EXPECT_EQ(scene.meshes[0]->texcoords,
               (std::vector<glm::vec2>{{0.5F, 0.0F}, {0.5F, 3.0F}, {0.5F, 0.0F}}));
-    // What Phong would make of the factors stays at hand.
+    // The Phong parameters of the factors remain available.
     EXPECT_NEAR(glass.shininess, 30.0F, 1e-4F);
     EXPECT_NEAR(glass.diffuse.x, 0.5F, 1e-6F);
 }
@@ -247,7 +260,7 @@ TEST(LoadScene, TranslatesGltfsMaterialsToPhongByChoice) {
     EXPECT_EQ(glass.diffuse, glm::vec3(0.5F, 0.25F, 1.0F));
     EXPECT_EQ(glass.alpha_mode, AlphaMode::blend);
     EXPECT_TRUE(glass.diffuse_texture);
-    // The image is missing, and only Phong's means need to look into it.
+    // The image is missing. Only the means for Phong need it.
     EXPECT_EQ(unreadable_textures_in(report), 1U);
 }
 
@@ -258,13 +271,13 @@ TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
     const Scene scene = load_scene(folder / "lit.gltf", report);
     const Material& material = scene.materials.at(0);
     EXPECT_TRUE(material.double_sided);
-    EXPECT_FALSE(material.occlusion_texture);  // On another set than the base colour.
+    EXPECT_FALSE(material.occlusion_texture);  // It uses another set than the base color.
     EXPECT_TRUE(material.emission_texture);
     ASSERT_TRUE(material.normal_map);
     EXPECT_EQ(material.normal_map->scale, 0.5F);
     EXPECT_EQ(material.normal_map->green, Green::up);
-    EXPECT_EQ(report.count("texture transform of its own"), 1U);                 // emission
-    EXPECT_EQ(report.count("texture on a further texture coordinate set"), 1U);  // occlusion
+    EXPECT_EQ(report.count("texture transform of its own"), 1U);                 // Emission.
+    EXPECT_EQ(report.count("texture on a further texture coordinate set"), 1U);  // Occlusion.
     EXPECT_EQ(report.count("missing image"), 1U);
     EXPECT_EQ(report.findings().size(), 3U);
 }
@@ -277,8 +290,8 @@ TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
     const Scene scene = load_scene(bottle, phong, report);
     EXPECT_TRUE(report.empty());
     const Material& material = scene.materials.at(0);
-    EXPECT_GT(material.shininess, 0.5F);   // Factor 1 alone would give 0.
-    EXPECT_LT(material.diffuse.x, 0.99F);  // Partly metal.
+    EXPECT_GT(material.shininess, 0.5F);   // The factor 1 alone would give 0.
+    EXPECT_LT(material.diffuse.x, 0.99F);  // The surface is partly metallic.
     EXPECT_TRUE(material.normal_map && material.diffuse_texture && material.emission_texture);
 
     std::filesystem::path file;
@@ -287,7 +300,8 @@ TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
     }
     ASSERT_FALSE(file.empty());
     EXPECT_NO_THROW((void)load_scene(file, report));
-    EXPECT_EQ(unreadable_textures_in(report), 0U);  // As authored, nothing is looked into.
+    EXPECT_EQ(unreadable_textures_in(report), 0U);  // With the authored materials, no image is
+                                                    // read.
     EXPECT_NO_THROW((void)load_scene(file, phong, report));
     EXPECT_GT(unreadable_textures_in(report), 0U);
 }
@@ -302,6 +316,138 @@ TEST(LoadScene, NamesTheFileOfWhatItCannotRead) {
             EXPECT_THAT(error.what(), HasSubstr(file));
         }
     }
+}
+
+std::string error_of(const std::filesystem::path& folder) {
+    try {
+        (void)cube_faces_in(folder);
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(CubeFaces, AreFoundInAFolderByTheEndsOfTheirNames) {
+    const test::TemporaryDirectory folder;
+    const std::vector<std::string> ends = {"posx", "negx", "posy", "negy", "posz", "negz"};
+    for (const std::string& end : ends)
+        std::ofstream(folder / ("xmas_" + end + ".png")) << "";
+    std::ofstream(folder / "readme.txt") << "";
+    const CubeFaces faces = cube_faces_in(folder.path());
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(std::get<std::filesystem::path>(faces.faces[i].source),
+                  folder / ("xmas_" + ends[i] + ".png"));
+    }
+    std::ofstream(folder / "other_negy.jpg") << "";
+    EXPECT_THAT(error_of(folder.path()),
+                HasSubstr("both other_negy.jpg and xmas_negy.png end in negy"));
+    std::filesystem::remove(folder / "other_negy.jpg");
+    std::filesystem::remove(folder / "xmas_posz.png");
+    EXPECT_THAT(error_of(folder.path()), HasSubstr("no file whose name ends in posz"));
+    EXPECT_THAT(error_of(folder / "nowhere"), HasSubstr("cannot be read as a folder"));
+}
+
+Image small_picture() {
+    Image image = make_image(2, 1, 3, 8, ColorSpace::srgb);
+    image.samples = std::vector<std::uint8_t>{1, 2, 3, 250, 251, 252};
+    return image;
+}
+
+TEST(ImageSource, GivesTheSameFromFileBytesAndMemory) {
+    const test::TemporaryDirectory folder;
+    const std::filesystem::path file = folder / "picture.png";
+    write_image(file, small_picture());
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+    const std::vector<std::byte> bytes(begin, begin + text.size());
+    for (const ImageSource& source :
+         {ImageSource{"file", file}, {"bytes", bytes}, {"memory", small_picture()}}) {
+        SCOPED_TRACE(source.name);
+        const Image color = decode(source, ImageUse::color);
+        EXPECT_EQ(color.samples, small_picture().samples);
+        EXPECT_EQ(color.color_space, ColorSpace::srgb);
+        const Image data = decode(source, ImageUse::data);
+        EXPECT_EQ(data.samples, small_picture().samples);
+        EXPECT_EQ(data.color_space, ColorSpace::data);
+    }
+}
+
+TEST(ImageSource, ThatIsMissingOrBrokenThrows) {
+    EXPECT_THROW((void)decode({"a", std::filesystem::path("/nowhere.png")}, ImageUse::color),
+                 FileError);
+    EXPECT_THROW((void)decode({"b", std::vector<std::byte>(7)}, ImageUse::color), FileError);
+}
+
+TEST(MeanColor, OfDataIsTheMeanOfTheNumbers) {
+    Image image = make_image(2, 1, 3, 8, ColorSpace::data);
+    image.samples = std::vector<std::uint8_t>{0, 255, 51, 255, 255, 102};
+    const glm::vec3 mean = mean_color(image);
+    EXPECT_FLOAT_EQ(mean.x, 0.5F);
+    EXPECT_FLOAT_EQ(mean.y, 1.0F);
+    EXPECT_FLOAT_EQ(mean.z, 0.3F);
+}
+
+TEST(MeanColor, OfColoursIsTakenInLinearLight) {
+    Image image = make_image(2, 1, 3, 16, ColorSpace::srgb);
+    image.samples = std::vector<std::uint16_t>{0, 0, 0, 65535, 65535, 65535};
+    EXPECT_FLOAT_EQ(mean_color(image).x, 0.5F);  // Black and white give half of the light.
+    image.samples = std::vector<std::uint16_t>(6, 32768);
+    EXPECT_NEAR(mean_color(image).x, linear_from_srgb(32768.0F / 65535), 1e-6F);
+}
+
+TEST(MeanColor, OfGreyIsGrey) {
+    Image image = make_image(1, 2, 2, 8, ColorSpace::data);
+    image.samples = std::vector<std::uint8_t>{51, 0, 153, 255};
+    EXPECT_FLOAT_EQ(mean_color(image).x, 0.4F);
+    EXPECT_FLOAT_EQ(mean_color(image).z, 0.4F);
+}
+
+TEST(MeanColor, LeavesOutWhatIsNotFinite) {
+    Image image = make_image(2, 1, 3, 32, ColorSpace::linear);
+    image.samples = std::vector<float>{std::nanf(""), 2, INFINITY, 0.25F, 4, -INFINITY};
+    EXPECT_EQ(mean_color(image), glm::vec3(0.25F, 3, 1));
+    EXPECT_EQ(mean_color(Image{}), glm::vec3(1.0F));
+}
+
+TEST(Shared, CopiesAreOneValueUntilOneIsEdited) {
+    Shared<std::vector<int>> first = std::vector<int>{1, 2, 3};
+    Shared<std::vector<int>> second = first;
+    EXPECT_EQ(first->data(), second->data());
+    const auto identity = first.identity();
+    EXPECT_TRUE(identity.is(second));
+    second.edit()[0] = 7;
+    EXPECT_EQ(first->at(0), 1);
+    EXPECT_EQ(second->at(0), 7);
+    EXPECT_TRUE(identity.is(first));
+    EXPECT_FALSE(identity.is(second));
+}
+
+TEST(Shared, AloneIsEditedInPlace) {
+    Shared<std::vector<int>> alone = std::vector<int>{1, 2, 3};
+    const auto identity = alone.identity();
+    const int* before = alone->data();
+    alone.edit()[2] = 5;
+    EXPECT_EQ(alone->data(), before);
+    EXPECT_FALSE(identity.is(alone));
+    EXPECT_EQ(*alone, (std::vector<int>{1, 2, 5}));
+}
+
+TEST(Shared, AnIdentityIsNotTakenForThatOfALaterValue) {
+    auto first = std::make_unique<Shared<int>>(1);
+    const auto identity = first->identity();
+    first.reset();
+    for (int i = 0; i < 100; ++i)
+        EXPECT_FALSE(identity.is(Shared<int>(1)));
+}
+
+TEST(Shared, ACopiedSceneHasItsMeshesInCommon) {
+    Scene scene;
+    scene.meshes.push_back(test::grid(4));
+    Scene copy = scene;
+    EXPECT_EQ(copy.meshes[0]->positions.data(), scene.meshes[0]->positions.data());
+    copy.meshes[0].edit().positions[0].x = 9.0F;
+    EXPECT_NE(scene.meshes[0]->positions[0].x, 9.0F);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses by hand: chains of nodes, key frames, orbits, turntables, and what is refused.
+// Poses by hand: chains of nodes, key frames, orbits, turntables, and invalid input.
 #include "relief/shade/scene_graph.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace relief {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-/// A few roundings of sines and products of order 1 to 10.
+/// A few rounding errors of sines and products of order 1 to 10.
 constexpr float place_rounding = 2e-6F;
 
 void expect_place(const glm::vec3& a, const glm::vec3& b, float tolerance = place_rounding) {
@@ -28,7 +28,7 @@ void expect_place(const glm::vec3& a, const glm::vec3& b, float tolerance = plac
         EXPECT_NEAR(a[i], b[i], tolerance) << i;
 }
 
-/// A cube, one light of each kind and a camera, each on a node of its own below a common one.
+/// A cube, one light of each kind and a camera, each on its own node below a common one.
 SceneGraph one_of_each() {
     SceneGraph graph;
     Scene& scene = graph.scene;
@@ -54,7 +54,7 @@ SceneGraph one_of_each() {
 
 TEST(Pose, PutsEverythingWhereItsNodeIs) {
     SceneGraph graph = one_of_each();
-    // Turned by a quarter about y: x to -z, z to x.
+    // A rotation by 90 degrees about y maps x to -z and z to x.
     graph.nodes[0].rotation = glm::angleAxis(pi / 2, glm::vec3(0, 1, 0));
     graph.nodes[0].translation = {0, 10, 0};
     pose(graph, 0.0);
@@ -138,8 +138,8 @@ TEST(KeyFrames, StepLineAndSpline) {
     EXPECT_EQ(value_at(line, 0.5).x, 0.0F);
     EXPECT_EQ(value_at(line, 1.25).x, 1.0F);
     EXPECT_EQ(value_at(line, 3.0).x, 4.0F);
-    // Hermite over two seconds, from 0 with slope 1 to 4 with slope 0; at the middle
-    // (0 + 4) / 2 + 2 (1 - 0) / 8.
+    // A Hermite curve over two seconds, from 0 with slope 1 to 4 with slope 0. Its middle is (0 +
+    // 4) / 2 + 2 (1 - 0) / 8.
     const KeyChannel spline =
         keys(P::scale, KeyInterpolation::cubic_spline, {0, 2},
              {{9, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}, {4, 0, 0, 0}, {9, 0, 0, 0}});
@@ -151,14 +151,14 @@ TEST(KeyFrames, StepLineAndSpline) {
 TEST(KeyFrames, TurnOnTheShortestArc) {
     using P = KeyChannel::Property;
     const float s = std::sqrt(0.5F);
-    // A quarter about y, written with the other sign, and of another length.
+    // A rotation by 90 degrees about y, with the opposite sign and another length.
     const KeyChannel turn =
         keys(P::rotation, KeyInterpolation::linear, {0, 1}, {{0, 0, 0, 2}, {0, -3 * s, 0, -3 * s}});
     const glm::vec4 half = value_at(turn, 0.5);
     EXPECT_NEAR(std::abs(half.y), std::sin(pi / 8), place_rounding);
     EXPECT_NEAR(std::abs(half.w), std::cos(pi / 8), place_rounding);
     EXPECT_NEAR(glm::length(value_at(turn, 2.0)), 1.0F, place_rounding);
-    // A spline of rotations that passes through nothing keeps the key before.
+    // If a spline of rotations passes through zero, it keeps the key before.
     const KeyChannel through = keys(P::rotation, KeyInterpolation::cubic_spline, {0, 1},
                                     {{}, {0, 0, 0, 1}, {}, {}, {0, 0, 0, -1}, {}});
     EXPECT_EQ(value_at(through, 0.5), glm::vec4(0, 0, 0, 1));
@@ -204,7 +204,8 @@ TEST(Pose, OrbitsOnSphericalCoordinates) {
     expect_place(light_at(graph, 0.0), {6, 2, 3});
     expect_place(graph.scene.spot_lights[0].direction_world, {-1, 0, 0});
     expect_place(light_at(graph, 0.5), {1, 2, -2});
-    // A day later it is where it was, but for the speed's own rounding: 43200 turns of 4e-8 each.
+    // A day later, the light is in the same place except for the rounding of the speed: 43200 turns
+    // of 4e-8 each.
     expect_place(light_at(graph, 86400.0), {6, 2, 3}, 0.05F);
     std::get<Orbit>(graph.animations[0]).elevation = pi / 2;
     expect_place(light_at(graph, 0.3), {1, 7, 3});
@@ -233,7 +234,7 @@ TEST(LookingAlong, PutsMinusZThere) {
     }
 }
 
-/// What validate() says, or "valid".
+/// Returns the message of validate(), or "valid".
 std::string verdict(const std::function<void(SceneGraph&)>& spoil) {
     SceneGraph graph = one_of_each();
     graph.nodes[1].name = "wheel";
@@ -322,7 +323,7 @@ TEST(LoadSceneGraph, MovesTheBoxOfARealAnimation) {
     const Bounds before = world_bounds(graph.scene);
     pose(graph, 1.8);
     const Bounds after = world_bounds(graph.scene);
-    EXPECT_GT(after.max.y, before.max.y + 0.5F);  // The inner box has risen.
+    EXPECT_GT(after.max.y, before.max.y + 0.5F);  // The inner box moved up.
     pose(graph, 0.0);
     EXPECT_EQ(world_bounds(graph.scene).max, before.max);
 }

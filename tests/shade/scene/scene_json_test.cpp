@@ -41,7 +41,7 @@ class SceneFile : public testing::Test {
         return load_scene_graph(file, {}, report_);
     }
 
-    /// What loading says, without the file's name.
+    /// Returns the message of loading without the name of the file.
     std::string error_of(const std::string& members) {
         try {
             (void)load(members);
@@ -75,7 +75,7 @@ TEST(SampleScenes, AreReadWithoutAFindingAndMoveSoundly) {
     EXPECT_EQ(count, 10U);
 }
 
-/// The first JSON block of the page that describes the format.
+/// Returns the first JSON block of the page that describes the format.
 std::string documented_example() {
     std::ifstream stream(test::source_directory() / "docs/scene-files.md");
     const std::string page{std::istreambuf_iterator<char>(stream), {}};
@@ -88,13 +88,13 @@ TEST_F(SceneFile, AsDocumentedIsRead) {
     std::filesystem::copy(test::source_directory() / "data/vase.obj", folder_.path());
     SceneGraph graph = load_scene_graph(folder_ / "scene.json", {}, report_);
     const Scene& scene = graph.scene;
-    EXPECT_EQ(scene.instances.size(), 5U);  // Pot, floor, ring, two markers.
+    EXPECT_EQ(scene.instances.size(), 5U);  // Pot, floor, ring and two markers.
     EXPECT_EQ(scene.point_lights.size(), 2U);
     EXPECT_EQ(graph.picture_size, glm::ivec2(640, 480));
     ASSERT_TRUE(scene.camera);
     EXPECT_NEAR(scene.camera->vertical_fov, 0.610865F, json_rounding);
     EXPECT_EQ(scene.ambient, glm::vec3(0.05F));
-    EXPECT_NEAR(duration(graph), 8.0, 1e-5);  // The ring's turn.
+    EXPECT_NEAR(duration(graph), 8.0, 1e-5);  // The rotation of the ring.
     const glm::vec3 red = scene.point_lights[1].position_world;
     EXPECT_NEAR(red.z, -1.5F, json_rounding);
     pose(graph, 0.9);  // 90 degrees backwards.
@@ -136,7 +136,7 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     EXPECT_EQ(m.conductor_index, glm::vec3(0.4F));
     EXPECT_EQ(m.conductor_absorption, glm::vec3(5.0F));
     EXPECT_EQ(m.reflection_roughness, 0.6F);
-    EXPECT_EQ(graph.scene.images.size(), 2U);  // Each file once.
+    EXPECT_EQ(graph.scene.images.size(), 2U);  // Each file occurs once.
     EXPECT_EQ(m.emission_texture->wrap_u, TextureWrap::clamp);
     EXPECT_EQ(m.emission_texture->wrap_v, TextureWrap::mirror);
     EXPECT_EQ(m.emission_texture->filter, TextureFilter::nearest);
@@ -249,7 +249,7 @@ TEST_F(SceneFile, CamerasLookAtAPlaceOrFrameTheScene) {
         "lights": [{"type": "point", "position": [0, 100, 0]}],
         "camera": {"azimuth": 0, "elevation": 0}, "picture": {"width": 200, "height": 100})")
                              .scene;
-    // Markers do not move the camera away; the cube of edge 2 fills the picture's height.
+    // Markers do not move the camera away. The cube of edge 2 fills the height of the picture.
     EXPECT_NEAR(framed.camera->world_from_view[3].z, 1.0F + 1.04F / std::tan(0.30543F), 1e-3F);
     EXPECT_GT(framed.camera->far, 99.0F);
 }
@@ -330,7 +330,7 @@ TEST_F(SceneFile, RefusesWhatItDoesNotKnowAndSaysWhere) {
     expect(R"("picture": {"width": 0, "height": 1})",
            "/picture/width: must be a whole number within [1, 16384]");
     expect(R"("ambient": 1, "ambient": 2)", "the key 'ambient' stands twice in one object");
-    expect(R"("ambient": -1)", "ambient light is (-1, -1, -1)");  // The scene's own check.
+    expect(R"("ambient": -1)", "ambient light is (-1, -1, -1)");  // The check of the scene itself.
     expect(R"("relief_scene": 2)", "stands twice");
     std::ofstream(folder_ / "other.json") << "{\"relief_scene\": 2}";
     EXPECT_THROW((void)load_scene_graph(folder_ / "other.json", {}, report_), FileError);

@@ -44,7 +44,8 @@ TEST(WorldBounds, LeaveOutWhatIsNotFinite) {
     EXPECT_TRUE(world_bounds(Scene{}).empty());
 }
 
-/// Where a point stands in the picture: -1 to 1 across and up if it is seen, and its depth.
+/// Returns the position of a point in the picture, from -1 to 1 to the right and up if it is
+/// visible, and its depth.
 glm::vec3 seen(const Camera& camera, const glm::vec3& world, float aspect) {
     const glm::vec3 view(glm::inverse(camera.world_from_view) * glm::vec4(world, 1.0F));
     const float y = std::tan(camera.vertical_fov * 0.5F);
@@ -85,7 +86,7 @@ TEST(Framed, LooksFromTheAskedDirection) {
     EXPECT_NEAR(right.z, 0.0F, 1e-6F);
     const glm::vec3 above(framed(box, 0, 1.5707964F, 0.7F, 1).world_from_view[3]);
     EXPECT_GT(above.y, 2.0F);
-    // Upright: the camera's up points upwards, its right to world +x in front.
+    // The camera is upright: its up vector points upwards, and its right vector along world +x.
     const Camera tilted = framed(box, 0, 0.5F, 0.7F, 1);
     EXPECT_GT(tilted.world_from_view[1].y, 0.5F);
     EXPECT_EQ(tilted.world_from_view[0], glm::vec4(1, 0, 0, 0));
@@ -117,7 +118,7 @@ TEST(Framed, RefusesViewsThatShowNothing) {
     EXPECT_THROW((void)framed(box, 0, 0, 0.7F, 0), InvalidInput);
 }
 
-/// What validate() says, or "valid".
+/// Returns the message of validate(), or "valid".
 std::string verdict(const std::function<void(Scene&)>& spoil) {
     Scene scene = cube_scene();
     spoil(scene);

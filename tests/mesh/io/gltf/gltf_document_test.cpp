@@ -11,8 +11,8 @@
 #include <random>
 #include <set>
 
-#include "gltf_semantics.h"
 #include "io/gltf/gltf_uri.h"
+#include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "support/shapes.h"
@@ -92,7 +92,7 @@ TEST_F(GltfDocumentTest, PropertiesThatNobodyKnowsAreKept) {
         read(folder_ / "a.glb").write(folder_ / name);
         EXPECT_EQ(meaning_of(folder_ / name), meaning_of(folder_ / "a.glb"));
     }
-    // And the JSON itself, but for the buffer's place.
+    // The JSON also stays the same, except for the URI of the buffer.
     std::ifstream stream(folder_ / "b.gltf");
     json written = json::parse(stream);
     EXPECT_EQ(written["buffers"][0]["uri"], "b.bin");
@@ -118,7 +118,7 @@ TEST_F(GltfDocumentTest, ChunksThatNobodyKnowsAreKept) {
 
 TEST_F(GltfDocumentTest, EveryReadableModelMeansTheSameAfterACopy) {
     RELIEF_NEEDS_SHARED(models, "data/models");
-    // A later version and a made-up extension.
+    // A later version and an invented extension.
     const std::set<std::string> refused = {"Compatibility_04.gltf", "Compatibility_05.gltf"};
     int copied = 0;
     for (const auto& file : test::gltf_files_below(models)) {
@@ -243,7 +243,7 @@ TEST_F(GltfDocumentTest, FilesWithWrongBytesAreRefusedOrCanBeWorkedWith) {
         std::string bytes = whole;
         for (unsigned k = 0; k <= random() % 3; ++k) {
             char& byte = bytes[random() % bytes.size()];
-            // Digits for digits, so that most of them stay JSON.
+            // Digits replace digits, so that most files stay valid JSON.
             if (byte >= '0' && byte <= '9') {
                 byte = static_cast<char>('0' + random() % 10);
             } else if (random() % 3 == 0) {
@@ -277,7 +277,7 @@ TEST_F(GltfDocumentTest, FilesWithWrongBytesAreRefusedOrCanBeWorkedWith) {
     EXPECT_GT(kept, 250);
 }
 
-/// A place in the JSON, a wrong value, and what the error says about it.
+/// A position in the JSON, a wrong value, and its error message.
 struct DocumentFault {
     const char* pointer;
     json value;
@@ -420,7 +420,7 @@ TEST_F(GltfDocumentTest, SparseElementsReplaceTheirBase) {
     RELIEF_NEEDS_SHARED(file,
                         "data/models/gltf/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf");
     const Mesh mesh = read(file).mesh({0, 0});
-    // As the sample's author draws it: vertices 8, 10 and 12 are moved.
+    // The sample's author moves vertices 8, 10 and 12.
     EXPECT_EQ(mesh.positions[8], glm::vec3(1, 2, 0));
     EXPECT_EQ(mesh.positions[9], glm::vec3(2, 1, 0));
     EXPECT_EQ(mesh.positions[10], glm::vec3(3, 3, 0));
@@ -435,7 +435,7 @@ TEST_F(GltfDocumentTest, QuantisedModelsLieWhereTheFloatOnesDo) {
     const Bounds b = bounds_of(quantised.mesh);
     EXPECT_EQ(exact.mesh.triangles.size(), 4212U);
     EXPECT_EQ(quantised.mesh.triangles.size(), 4212U);
-    // 14 bits over 1.7 units of length.
+    // 14 bits over a length of 1.7.
     EXPECT_LT(glm::length(a.min - b.min), 1e-3F);
     EXPECT_LT(glm::length(a.max - b.max), 1e-3F);
 }
@@ -452,7 +452,7 @@ TEST_F(GltfDocumentTest, ImagesInFilesAreCopiedAlongOrPutInside) {
     const GltfDocument document = read(folder_ / "in/a.glb");
     EXPECT_EQ(report_.count("missing image"), 1U);
     EXPECT_EQ(report_.count("image outside the document's folder"), 1U);
-    // In its own folder all names stay right; from another one, "../out.png" would not.
+    // In the original folder, all names stay valid. From another one, "../out.png" would not.
     document.write(folder_ / "in/b.gltf");
     EXPECT_EQ(meaning_of(folder_ / "in/b.gltf"), meaning_of(folder_ / "in/a.glb"));
     EXPECT_THROW(document.write(folder_ / "out/b.gltf"), FileError);
@@ -463,7 +463,7 @@ TEST_F(GltfDocumentTest, ImagesInFilesAreCopiedAlongOrPutInside) {
     moved.write(folder_ / "out/b.gltf");
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/sub/my image.png"));
     EXPECT_EQ(meaning_of(folder_ / "out/b.gltf"), meaning_of(folder_ / "in/a.glb"));
-    moved.write(folder_ / "out/b.gltf");  // The same again: nothing is in the way.
+    moved.write(folder_ / "out/b.gltf");  // A second write succeeds.
     std::ofstream(folder_ / "out/sub/my image.png", std::ios::binary) << "another";
     EXPECT_THROW(moved.write(folder_ / "out/b.gltf"), FileError);
     moved.write(folder_ / "out/c.glb");
@@ -548,7 +548,7 @@ TEST(GltfUri, DataUrisAreDecoded) {
     EXPECT_THROW(decode_data_uri("data:nothing"), InvalidInput);
 }
 
-/// A document with a primitive of one triangle that has these sets and this material.
+/// A document with a primitive of one triangle with these sets and this material.
 class GltfTangentTexcoordsTest : public testing::Test {
   protected:
     GltfTangentTexcoords of(const std::vector<std::string>& attributes, const json& material) {

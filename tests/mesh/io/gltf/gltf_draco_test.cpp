@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Primitives compressed by Draco: they are what the plain ones are, and damaged ones end in an
-// error.
+// Primitives compressed by Draco equal the uncompressed ones, and damaged ones end in an error.
 #include <draco/compression/encode.h>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
@@ -12,10 +11,9 @@
 #include <cstring>
 #include <random>
 
-#include "gltf_damage.h"
-#include "gltf_semantics.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_reader.h"
+#include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "support/shared_data.h"
@@ -32,8 +30,8 @@ std::string bytes_in(const draco::EncoderBuffer& buffer) {
     return {buffer.data(), buffer.size()};
 }
 
-/// Two triangles, not quantised and in their order, with a position, a two-component byte attribute
-/// and a 16-bit scalar: unique numbers 0, 1 and 2.
+/// Two triangles in their order, without quantization, with a position, a two-component byte
+/// attribute and a 16-bit scalar: unique numbers 0, 1 and 2.
 std::string packed_quad() {
     draco::Mesh mesh;
     mesh.set_num_points(4);
@@ -81,7 +79,7 @@ std::string packed_points() {
 
 class GltfDraco : public testing::Test {
   protected:
-    /// A document with one primitive, for the bytes of packed_quad().
+    /// A document with one primitive for the bytes of packed_quad().
     static json quad_document(std::size_t packed_size) {
         json root = json::parse(R"({
             "asset": {"version": "2.0"},
@@ -137,7 +135,7 @@ TEST_F(GltfDraco, EveryAttributeFillsItsAccessorInItsOwnType) {
     EXPECT_EQ(raw_elements(contents, 1), std::string("\x00\x00\xFF\x00\xFF\x80\x07\xFF", 8));
     EXPECT_EQ(float_elements<glm::vec1>(contents, 2)[3].x, 4000.0F);
     EXPECT_THAT(index_elements(contents, 3), ElementsAre(0, 1, 2, 0, 2, 3));
-    // Bounds are those of what was decoded; names and all else stay.
+    // Bounds are those of the decoded values. Names and everything else stay.
     EXPECT_EQ(contents.root["accessors"][0]["min"], json({0, 0, 0}));
     EXPECT_EQ(contents.root["accessors"][0]["max"], json({1, 1, 0.25}));
     EXPECT_EQ(contents.root["accessors"][0]["name"], "corners");
@@ -197,7 +195,8 @@ TEST_F(GltfDraco, SharedAccessorsStaySharedUnlessTheirDataDiffer) {
     EXPECT_EQ(contents.root["accessors"].size(), 4U);
     EXPECT_EQ(contents.root["meshes"][0]["primitives"][0],
               contents.root["meshes"][0]["primitives"][1]);
-    // The texture coordinates of the second come from elsewhere: they get an accessor of their own.
+    // The texture coordinates of the second primitive have another source, so they get a separate
+    // accessor.
     root_["bufferViews"].push_back(root_["bufferViews"][0]);
     json& second = root_["meshes"][0]["primitives"][1];
     second["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = 1;
@@ -273,7 +272,8 @@ TEST_F(GltfDraco, EveryContradictionIsNamed) {
     EXPECT_EQ(error_of(root_, packed_), "no error");
 }
 
-/// The largest distance of corners, triangle by triangle, where both meshes have the same ones.
+/// Returns the largest distance of corners, triangle by triangle, of meshes with the same
+/// triangles.
 float largest_distance(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.triangles.size(), b.triangles.size());
     const auto centre = [](const Mesh& mesh, const glm::uvec3& t) {
@@ -297,7 +297,7 @@ TEST_F(GltfDraco, RealModelsLieWhereThePlainOnesDo) {
         for (const GltfPrimitiveId id : b.triangle_primitives())
             EXPECT_LE(largest_distance(a.mesh(id), b.mesh(id)), tolerance) << packed;
     };
-    // 11 bits over the largest extent: half a step per axis, or less.
+    // 11 bits over the largest extent: at most half a step per axis.
     compare("Box/glTF-Draco/Box.gltf", "Box/glTF-Binary/Box.glb", 1e-3F);
     compare("Duck/glTF-Draco/Duck.gltf", "Duck/glTF-Binary/Duck.glb", 166.0F / 2047.0F);
     compare("RiggedFigure/glTF-Draco/RiggedFigure.gltf",
@@ -315,7 +315,7 @@ TEST_F(GltfDraco, MorphTargetsThatAreNotCompressedFitTheDecodedVertices) {
         const auto moved = float_elements<glm::vec3>(contents, target["POSITION"]);
         const Mesh mesh = document.mesh({0, i});
         ASSERT_EQ(moved.size(), mesh.positions.size());
-        // The author lifts the inner vertices of a square of one unit.
+        // The author moves the inner vertices of a square of one unit.
         for (std::size_t v = 0; v < moved.size(); ++v) {
             const glm::vec3 distance = glm::abs(mesh.positions[v]);
             EXPECT_EQ(moved[v].y > 0.0F, std::max(distance.x, distance.z) < 0.3F) << i << ' ' << v;

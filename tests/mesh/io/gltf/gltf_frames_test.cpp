@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replacing frames: everything else is carried over or stays unchanged, and no unused data remains.
-// A morph target of weight 1 has exactly the frames of its displaced shape, even if vertices were
-// split.
+// Replaced frames: everything else is carried over or stays unchanged, and no unused data remains.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <fstream>
 
-#include "gltf_semantics.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_reader.h"
+#include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "support/angle.h"
@@ -25,10 +23,10 @@ using test::write_gltf_file;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Bytes of a document under construction.
+/// The bytes of a document under construction.
 class Buffer {
   public:
-    /// A view over these values; returns its JSON.
+    /// Adds a view over these values and returns its JSON.
     template <typename Value>
     json view(const std::vector<Value>& values, std::size_t stride = 0) {
         bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
@@ -87,8 +85,8 @@ class GltfFrames : public testing::Test {
         root_["buffers"] = {{{"byteLength", buffer_.bytes.size()}}};
         write_gltf_file(in_, root_, buffer_.bytes);
     }
-    /// The mesh of a primitive as if frames had split vertices: each corner its own, with a normal
-    /// that tells it apart.
+    /// Returns the mesh of a primitive with all vertices split: each corner has its own vertex with
+    /// a different normal.
     static FramedMesh all_corners_apart(const Mesh& mesh) {
         FramedMesh framed;
         std::vector<std::uint32_t> place(mesh.positions.size(), 0);
@@ -113,7 +111,7 @@ class GltfFrames : public testing::Test {
         }
         return framed;
     }
-    /// Frames without a split.
+    /// Returns frames without a split.
     static FramedMesh with_normals(Mesh mesh, const glm::vec3& normal) {
         FramedMesh framed;
         mesh.normals.assign(mesh.positions.size(), normal);
@@ -178,11 +176,11 @@ TEST_F(GltfFrames, ASplitCarriesEveryAttributeInItsOwnType) {
         written.root["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()];
     EXPECT_EQ(positions["name"], "corners");
     EXPECT_EQ(positions["max"], json({1, 1, 0}));
-    // Everything else was replaced and is gone: seven accessors now are POSITION, NORMAL, TANGENT,
-    // TEXCOORD_0, JOINTS_0, _ID, the target and the indices.
+    // Everything else was replaced. The accessors are POSITION, NORMAL, TANGENT, TEXCOORD_0,
+    // JOINTS_0, _ID, the target and the indices.
     EXPECT_EQ(written.root["accessors"].size(), 8U);
     EXPECT_EQ(written.root["bufferViews"].size(), 8U);
-    EXPECT_EQ(test::unreferenced_bytes(out_), 6U * 3);  // Padding of _ID.
+    EXPECT_EQ(test::unreferenced_bytes(out_), 6U * 3);  // The padding of _ID.
 }
 
 TEST_F(GltfFrames, UnchangedFramesChangeNothing) {
@@ -212,7 +210,7 @@ TEST_F(GltfFrames, WithoutASplitOnlyTheFramesAreReplaced) {
     actual.erase("accessors");
     EXPECT_EQ(actual, expected);
     EXPECT_EQ(after.root["accessors"].size(), before.root["accessors"].size());
-    // 16 bytes of quantised normals are gone, 48 of float ones are there.
+    // 16 bytes of quantized normals are gone, and 48 of float ones were added.
     EXPECT_EQ(after.buffers[0].size, (before.buffers[0].size + 3) / 4 * 4 - 16 + 48);
 }
 
@@ -247,7 +245,8 @@ TEST_F(GltfFrames, RemovingTangentsRemovesTheirDisplacementsToo) {
     const json after = contents(out_).root["meshes"][0]["primitives"][0];
     EXPECT_FALSE(after["attributes"].contains("TANGENT"));
     EXPECT_FALSE(after["targets"][0].contains("TANGENT"));
-    // JOINTS_0 and the target's POSITION shared the accessors' bytes: they are still there.
+    // JOINTS_0 and the POSITION of the target shared the bytes of the accessors, and they are still
+    // there.
     EXPECT_TRUE(after["attributes"].contains("JOINTS_0"));
     EXPECT_TRUE(after["targets"][0].contains("POSITION"));
 }
@@ -360,7 +359,7 @@ TEST_F(GltfFrames, ACompressedCopyGoesWithWhatItWasACopyOf) {
     root_["extensionsUsed"] = {"KHR_draco_mesh_compression"};
     root_["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
         {"bufferView", 7}, {"attributes", {{"POSITION", 0}}}};
-    // Another view between, so that the one behind has to move.
+    // A view in between forces the one behind to move.
     root_["bufferViews"].push_back(buffer_.view<std::uint8_t>({1, 2, 3, 4}));
     root_["images"] = {{{"bufferView", 8}, {"mimeType", "image/png"}}};
     finish();
@@ -405,8 +404,8 @@ TEST_F(GltfFrames, FramesOfAnotherMeshAreRefused) {
 }
 
 TEST_F(GltfFrames, NodesThatMirrorChangeNothingInObjectSpace) {
-    // glTF turns the winding of what a node of negative scale shows; the mesh itself, its winding
-    // and its frames stay those of its own space.
+    // glTF reverses the winding of the triangles of a node with negative scale. The mesh keeps its
+    // winding and its frames.
     RELIEF_NEEDS_SHARED(folder, "data/models/gltf-ext/misc");
     const auto processed = [&](const char* name) {
         GltfDocument document = read(folder / name);
@@ -425,7 +424,7 @@ TEST_F(GltfFrames, NodesThatMirrorChangeNothingInObjectSpace) {
               contents(folder / "one_face_123_mirror.gltf").root["nodes"]);
 }
 
-/// Processes every primitive as relief-mesh does and compares all that is not frames.
+/// Processes every primitive as relief-mesh does and compares everything except frames.
 void process_and_compare(const std::filesystem::path& file, const std::filesystem::path& out,
                          NormalMode normals) {
     SCOPED_TRACE(file);
@@ -453,7 +452,7 @@ void process_and_compare(const std::filesystem::path& file, const std::filesyste
     }
     document.write(out);
     EXPECT_TRUE(test::meaning_beside_meshes(out) == test::meaning_beside_meshes(file));
-    // Each accessor may need three bytes of padding, and each byte-sized element too.
+    // Each accessor may need three bytes of padding, and each byte-sized element, too.
     const GltfContents written = read_gltf(out, report);
     std::size_t padding = 4 * array_in(written.root, "bufferViews").size();
     for (const Json& accessor : array_in(written.root, "accessors")) {
@@ -469,7 +468,7 @@ TEST_F(GltfFrames, ProcessingRealModelsKeepsAllElseAndLeavesNothingDead) {
         try {
             read(file);
         } catch (const FileError&) {
-            continue;  // gltf_document_test.cpp knows which these are.
+            continue;  // gltf_document_test.cpp lists these files.
         }
         for (const NormalMode normals : {NormalMode::flat, NormalMode::angle}) {
             process_and_compare(file, out_, normals);
@@ -479,226 +478,5 @@ TEST_F(GltfFrames, ProcessingRealModelsKeepsAllElseAndLeavesNothingDead) {
     EXPECT_EQ(processed, 102);
 }
 
-/// Sums and differences of unit vectors in float, over again.
-constexpr double rounding = 1e-6;
-
-class GltfMorph : public testing::Test {
-  protected:
-    GltfMorph() {
-        root_ = json::parse(R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
-                                "scenes": [{"nodes": [0]}], "scene": 0, "bufferViews": [],
-                                "accessors": []})");
-        // A flat unit square of two triangles, (0 1 2) and (0 2 3), and a target that lifts the
-        // last corner.
-        json& primitive = root_["meshes"][0]["primitives"][0];
-        primitive["attributes"]["POSITION"] =
-            accessor<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-        primitive["attributes"]["TEXCOORD_0"] =
-            accessor<glm::vec2>({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
-        primitive["indices"] = accessor<std::uint8_t>({0, 1, 2, 0, 2, 3});
-        primitive["targets"][0]["POSITION"] =
-            accessor<glm::vec3>({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 1}});
-    }
-    json& primitive() { return root_["meshes"][0]["primitives"][0]; }
-    json& target() { return primitive()["targets"][0]; }
-
-    /// An accessor over values; returns its number.
-    template <typename Value>
-    std::size_t accessor(const std::vector<Value>& values) {
-        buffer_.resize((buffer_.size() + 3) / 4 * 4, '\0');
-        root_["bufferViews"].push_back({{"buffer", 0},
-                                        {"byteOffset", buffer_.size()},
-                                        {"byteLength", values.size() * sizeof(Value)}});
-        buffer_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
-        const char* type = sizeof(Value) == 1    ? "SCALAR"
-                           : sizeof(Value) == 8  ? "VEC2"
-                           : sizeof(Value) == 12 ? "VEC3"
-                                                 : "VEC4";
-        root_["accessors"].push_back({{"bufferView", root_["bufferViews"].size() - 1},
-                                      {"componentType", sizeof(Value) == 1 ? 5121 : 5126},
-                                      {"count", values.size()},
-                                      {"type", type}});
-        return root_["accessors"].size() - 1;
-    }
-    /// Processes the made document's primitive and reads what was written.
-    GltfContents processed(NormalMode normals, TangentMode tangents) {
-        root_["buffers"] = {{{"byteLength", buffer_.size()}}};
-        write_gltf_file(in_, root_, buffer_);
-        process(in_, normals, tangents);
-        return read_gltf(out_, report_);
-    }
-    void process(const std::filesystem::path& file, NormalMode normals, TangentMode tangents) {
-        GltfDocument document = GltfDocument::read(file, report_);
-        for (const GltfPrimitiveId id : document.triangle_primitives()) {
-            FrameOptions options{normals, NormalMode::flat, tangents};
-            const Mesh mesh = document.mesh(id);
-            if (mesh.texcoords.empty()) options.tangents = TangentMode::none;
-            const FramedMesh framed = with_frames(mesh, options, report_);
-            vertices_ = document.set_frames(id, framed, options, report_);
-        }
-        document.write(out_);
-    }
-
-    test::TemporaryDirectory folder_;
-    std::filesystem::path in_ = folder_ / "in.glb";
-    std::filesystem::path out_ = folder_ / "out.glb";
-    json root_;
-    std::string buffer_;
-    Report report_;
-    std::size_t vertices_ = 0;
-};
-
-std::vector<glm::vec3> vectors(const GltfContents& contents, const json& accessor) {
-    return float_elements<glm::vec3>(contents, accessor.get<std::size_t>());
-}
-
-TEST_F(GltfMorph, FlatNormalsOfADisplacedShapeSplitWhatIsFlatAtRest) {
-    const GltfContents written = processed(NormalMode::flat, TangentMode::none);
-    // At rest both triangles share all normals; displaced, the second one leans.
-    EXPECT_EQ(vertices_, 6U);
-    const Json& made = written.root["meshes"][0]["primitives"][0];
-    const auto rest = vectors(written, made["attributes"]["NORMAL"]);
-    const auto moved = vectors(written, made["targets"][0]["NORMAL"]);
-    const auto indices = index_elements(written, made["indices"]);
-    const glm::vec3 leaning = glm::normalize(glm::vec3(1, -1, 1));
-    for (std::size_t corner = 0; corner < 6; ++corner) {
-        const std::uint32_t v = indices[corner];
-        EXPECT_EQ(rest[v], glm::vec3(0, 0, 1));
-        EXPECT_LT(glm::length(rest[v] + moved[v] - (corner < 3 ? glm::vec3(0, 0, 1) : leaning)),
-                  rounding);
-    }
-    // The displacement of the positions was carried to the copies.
-    const auto lifted = vectors(written, made["targets"][0]["POSITION"]);
-    EXPECT_EQ(lifted.size(), 6U);
-    EXPECT_EQ(lifted[indices[5]], glm::vec3(0, 0, 1));
-    EXPECT_TRUE(report_.empty());
-}
-
-TEST_F(GltfMorph, AveragedNormalsOfADisplacedShapeNeedNoSplit) {
-    const GltfContents written = processed(NormalMode::area, TangentMode::none);
-    EXPECT_EQ(vertices_, 4U);
-    const Json& made = written.root["meshes"][0]["primitives"][0];
-    const auto moved = vectors(written, made["targets"][0]["NORMAL"]);
-    // Areas 1/2 and sqrt(3)/2 at the shared corners; one triangle alone at the others.
-    const glm::vec3 sum = glm::normalize(glm::vec3(0, 0, 1) + glm::vec3(1, -1, 1));
-    EXPECT_LT(glm::length(moved[0] + glm::vec3(0, 0, 1) - sum), rounding);
-    EXPECT_LT(glm::length(moved[2] + glm::vec3(0, 0, 1) - sum), rounding);
-    EXPECT_EQ(moved[1], glm::vec3(0.0F));
-    EXPECT_LT(glm::length(moved[3] + glm::vec3(0, 0, 1) - glm::normalize(glm::vec3(1, -1, 1))),
-              rounding);
-}
-
-TEST_F(GltfMorph, ATargetWithoutNormalsGetsNoneWhereItsPrimitiveHadThem) {
-    // The author of this one had the choice, and left the normals where they are.
-    primitive()["attributes"]["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0, 1, 0)));
-    GltfContents written = processed(NormalMode::area, TangentMode::mikktspace);
-    json after = written.root["meshes"][0]["primitives"][0]["targets"][0];
-    EXPECT_FALSE(after.contains("NORMAL"));
-    EXPECT_TRUE(after.contains("TANGENT"));  // There were none at all before.
-    // With displacements for normals, these are made anew.
-    target()["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(7, 7, 7)));
-    written = processed(NormalMode::area, TangentMode::none);
-    after = written.root["meshes"][0]["primitives"][0]["targets"][0];
-    EXPECT_EQ(vectors(written, after["NORMAL"])[1], glm::vec3(0.0F));
-    EXPECT_FALSE(after.contains("TANGENT"));
-}
-
-TEST_F(GltfMorph, WhatIsKeptIsKeptInTheTargetsToo) {
-    primitive()["attributes"]["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0, 0, 1)));
-    target()["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0.5F, 0, 0)));
-    GltfContents written = processed(NormalMode::keep, TangentMode::keep);
-    EXPECT_EQ(written.root, read_gltf(in_, report_).root);
-    // New tangents alone: normals stay, and the target's tangents belong to its displaced normals.
-    written = processed(NormalMode::keep, TangentMode::mikktspace);
-    const Json& made = written.root["meshes"][0]["primitives"][0];
-    EXPECT_EQ(vectors(written, made["targets"][0]["NORMAL"])[2], glm::vec3(0.5F, 0, 0));
-    const auto rest =
-        float_elements<glm::vec4>(written, made["attributes"]["TANGENT"].get<std::size_t>());
-    const auto moved = vectors(written, made["targets"][0]["TANGENT"]);
-    const glm::vec3 normal = glm::normalize(glm::vec3(0.5F, 0, 1));
-    for (std::size_t v = 0; v < rest.size(); ++v) {
-        EXPECT_EQ(rest[v], glm::vec4(1, 0, 0, -1));
-        const glm::vec3 tangent = glm::vec3(rest[v]) + moved[v];
-        EXPECT_NEAR(glm::length(tangent), 1.0F, 1e-6F);
-        EXPECT_NEAR(glm::dot(tangent, normal), 0.0F, 1e-6F);
-    }
-}
-
-TEST_F(GltfMorph, WhatOnlyTheDisplacedShapeShowsIsReported) {
-    // The last corner moves onto the second one's diagonal: its triangle has no area any more.
-    target()["POSITION"] = accessor<glm::vec3>({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0.5F, -0.5F, 0}});
-    processed(NormalMode::flat, TangentMode::none);
-    ASSERT_EQ(report_.findings().size(), 1U);
-    EXPECT_EQ(report_.findings()[0].kind, "degenerate triangle, in a morph target");
-    EXPECT_EQ(report_.findings()[0].element, "morph target");
-    EXPECT_THAT(report_.findings()[0].first, ElementsAre(0U));
-}
-
-TEST_F(GltfMorph, HandednessThatATargetCannotTurnIsReported) {
-    // The second triangle has no texture gradient and takes the frame of the first one, whose
-    // texture is mirrored (w = 1), across an edge of equal vertices. The target moves the first one
-    // away: alone, the second has w = -1.
-    primitive()["attributes"]["POSITION"] =
-        accessor<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-    primitive()["attributes"]["TEXCOORD_0"] =
-        accessor<glm::vec2>({{0, 0}, {1, 0}, {1, -1}, {0, 0}, {1, -1}, {0.5F, -0.5F}});
-    primitive()["indices"] = accessor<std::uint8_t>({0, 1, 2, 3, 4, 5});
-    target()["POSITION"] =
-        accessor<glm::vec3>({{9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-    const GltfContents written = processed(NormalMode::area, TangentMode::mikktspace);
-    EXPECT_EQ(report_.count("tangents of other handedness in a morph target"), 1U);
-    const Json& attributes = written.root["meshes"][0]["primitives"][0]["attributes"];
-    EXPECT_EQ(float_elements<glm::vec4>(written, attributes["TANGENT"])[3].w, 1.0F);
-}
-
-/// The mesh that a written target makes of its primitive when it is fully on.
-Mesh displaced(const GltfContents& contents, const Json& primitive, std::size_t target, Mesh mesh) {
-    const Json& made = primitive["targets"][target];
-    if (!made.contains("POSITION")) return mesh;
-    const auto moved = vectors(contents, made["POSITION"]);
-    for (std::size_t v = 0; v < moved.size(); ++v)
-        mesh.positions[v] += moved[v];
-    return mesh;
-}
-
-TEST_F(GltfMorph, RealTargetsHaveTheFramesOfTheirShapesAtEveryCorner) {
-    RELIEF_NEEDS_SHARED(models, "data/models/gltf");
-    std::size_t compared = 0;
-    for (const char* name :
-         {"AnimatedMorphCube", "MorphPrimitivesTest", "MorphStressTest", "AnimatedMorphSphere"}) {
-        const auto file = models / name / "glTF-Binary" / (std::string(name) + ".glb");
-        if (!std::filesystem::exists(file)) continue;
-        for (const NormalMode normals : {NormalMode::flat, NormalMode::angle}) {
-            SCOPED_TRACE(file);
-            process(file, normals, TangentMode::none);
-            const GltfContents written = read_gltf(out_, report_);
-            const GltfDocument document = GltfDocument::read(out_, report_);
-            for (const GltfPrimitiveId id : document.triangle_primitives()) {
-                const Json& made = written.root["meshes"][id.mesh]["primitives"][id.primitive];
-                const Mesh rest = document.mesh(id);
-                for (std::size_t i = 0; i < array_in(made, "targets").size(); ++i) {
-                    if (!made["targets"][i].contains("NORMAL")) continue;
-                    const auto moved = vectors(written, made["targets"][i]["NORMAL"]);
-                    Report ignored;
-                    const Mesh shape = with_frames(displaced(written, made, i, rest),
-                                                   {normals, normals, TangentMode::none}, ignored)
-                                           .mesh;
-                    for (std::size_t t = 0; t < rest.triangles.size(); ++t) {
-                        for (int k = 0; k < 3; ++k) {
-                            const std::uint32_t v = rest.triangles[t][k];
-                            const glm::vec3 wanted = shape.normals[shape.triangles[t][k]];
-                            ASSERT_LT(glm::length(rest.normals[v] + moved[v] - wanted), rounding)
-                                << i << ' ' << t;
-                            ++compared;
-                        }
-                    }
-                }
-            }
-        }
-    }
-    EXPECT_GT(compared, 1000U);
-}
-
 }  // namespace
-
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffer views compressed by meshopt: every mode, filter and version gives the values back, and
+// Buffer views compressed by meshopt: every mode, filter and version reproduces the values, and
 // damaged ones end in an error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,10 @@
 #include <numeric>
 #include <random>
 
-#include "gltf_damage.h"
-#include "gltf_semantics.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_compression.h"
 #include "io/gltf/gltf_reader.h"
+#include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "support/shared_data.h"
@@ -28,7 +27,7 @@ using test::write_gltf_file;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// What a view holds after decoding, and the parameters to get there.
+/// The decoded contents of a view, and its parameters.
 struct PackedCase {
     std::string packed;
     const char* mode = "ATTRIBUTES";
@@ -39,7 +38,7 @@ struct PackedCase {
 
 class GltfMeshopt : public testing::Test {
   protected:
-    /// A document with one compressed view and, over it, one accessor of bytes.
+    /// A document with one compressed view and an accessor of bytes over it.
     static json document_of(const PackedCase& packed, const std::string& extension) {
         const std::size_t length = packed.count * packed.stride;
         json root = json::parse(R"({"asset": {"version": "2.0"}})");
@@ -59,7 +58,7 @@ class GltfMeshopt : public testing::Test {
         root["extensionsRequired"] = {extension};
         return root;
     }
-    /// The bytes that a compressed view is decoded to.
+    /// Returns the decoded bytes of a compressed view.
     std::string decoded(const PackedCase& packed,
                         const std::string& extension = "EXT_meshopt_compression") {
         write_gltf_file(in_, document_of(packed, extension), packed.packed);
@@ -96,7 +95,7 @@ std::vector<Value> values_in(const std::string& bytes) {
     return values;
 }
 
-/// Attributes as meshoptimizer packs them.
+/// Packs attributes with meshoptimizer.
 std::string packed_attributes(const void* elements, std::size_t count, std::size_t stride) {
     std::string packed(meshopt_encodeVertexBufferBound(count, stride), '\0');
     packed.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(packed.data()),
@@ -139,7 +138,7 @@ TEST_F(GltfMeshopt, IndicesOfBothModesAndSizesComeBack) {
     for (const std::size_t size : {2U, 4U}) {
         EXPECT_TRUE(decoded({packed_sequence, "INDICES", "NONE", sequence.size(), size}) ==
                     bytes_of(sequence, size));
-        // The triangles may be turned, not more.
+        // Only the first corner of a triangle may change.
         const std::string bytes = decoded({packed, "TRIANGLES", "NONE", triangles.size(), size});
         std::vector<std::uint32_t> result(triangles.size());
         for (std::size_t i = 0; i < result.size(); ++i)
@@ -170,7 +169,7 @@ TEST_F(GltfMeshopt, OctahedralUnitVectorsComeBackWithinTheirPrecision) {
     for (std::size_t i = 0; i < vectors.size(); ++i) {
         glm::vec4 back(result[4 * i], result[4 * i + 1], result[4 * i + 2], result[4 * i + 3]);
         back = back / 32767.0F;
-        // 12 bits: half a step of 1/2047 in x and y of the octahedron, on the sphere up to three
+        // 12 bits: half a step of 1/2047 in x and y of the octahedron; on the sphere, up to three
         // times that where its faces are steepest.
         EXPECT_LT(glm::length(glm::vec3(back - vectors[i])), 3.0F * 0.71F / 2047.0F);
         EXPECT_NEAR(glm::length(glm::vec3(back)), 1.0F, 1e-4F);
@@ -195,7 +194,7 @@ TEST_F(GltfMeshopt, QuaternionsAndExponentialFloatsComeBackWithinTheirPrecision)
     for (std::size_t i = 0; i < quaternions.size(); ++i) {
         const glm::vec4 back(turned[4 * i], turned[4 * i + 1], turned[4 * i + 2],
                              turned[4 * i + 3]);
-        // The same rotation, if perhaps with the other sign.
+        // The same rotation, possibly with the opposite sign.
         EXPECT_NEAR(std::abs(glm::dot(back / 32767.0F, quaternions[i])), 1.0F, 2e-4F);
     }
     filtered.assign(numbers.size() * 12, '\0');
@@ -211,12 +210,13 @@ TEST_F(GltfMeshopt, QuaternionsAndExponentialFloatsComeBackWithinTheirPrecision)
     }
 }
 
-/// Attributes of version 1 in 4 byte positions: as the specification's example has it for the
-/// first, zeros for the rest; the tail holds the element before the first, and the channel's mode.
+/// Attributes of version 1 in 4 byte positions: the first one is the example of the specification,
+/// and the others are zeros. The tail holds the element before the first, and the mode of the
+/// channel.
 std::string specification_example() {
-    // The first byte in control mode 1, the others in mode 2.
+    // The first byte has control mode 1, the others mode 2.
     std::string packed = "\xA1\xA9";
-    packed += '\x02';  // The one group of 16 has 4 bits each.
+    packed += '\x02';  // The only group of 16 has 4 bits each.
     packed += "\x17\x5F\xF0\xBC\x77\xA9\x21" + std::string(1, '\0') + "\x34\xB5";
     packed += std::string(24 - 5, '\0');
     packed += std::string(5, '\0');
@@ -236,9 +236,9 @@ TEST_F(GltfMeshopt, VersionOneGivesTheDeltasOfTheSpecificationsExample) {
 }
 
 TEST_F(GltfMeshopt, VersionOneHasWiderDeltasAndTurnedDifferences) {
-    // Two elements, all bytes literal: for each byte position, both codes. Channel 0 adds pairs of
-    // bytes: code 3 is -2, 0x0200 is 256, 0x0100 is 128. Channel 1 takes exclusive ors of words,
-    // which were turned left by 8 bits.
+    // Two elements with literal bytes: both codes for each byte position. Channel 0 adds pairs of
+    // bytes: code 3 is -2, 0x0200 is 256, 0x0100 is 128. Channel 1 uses exclusive ors of words that
+    // are rotated left by 8 bits.
     std::string packed = "\xA1\xFF\xFF";
     packed += std::string("\x03\x00\x00\x00\x00\x00\x02\x01", 8);
     packed += std::string("\x01\x00\x00\x04\x00\x00\x02\x00", 8);
@@ -253,7 +253,8 @@ TEST_F(GltfMeshopt, VersionOneHasWiderDeltasAndTurnedDifferences) {
 }
 
 TEST_F(GltfMeshopt, ColorsComeBackFromLumaAndChroma) {
-    // 8 bits: alpha's highest bit is the scale's, so 0x80 + 0x7F is opaque. White, and a red.
+    // 8 bits: the highest bit of alpha is that of the scale, so 0x80 + 0x7F is opaque. White, and a
+    // red.
     const std::array<std::uint8_t, 8> bytes = {255, 0, 0, 255, 64, 128, 192, 0xC0};
     std::string elements(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     decode_meshopt_colors(elements, 4);
@@ -278,7 +279,7 @@ TEST_F(GltfMeshopt, EveryTruncationOfVersionOneIsDamaged) {
     }
 }
 
-/// Elements of an accessor as floats, for as many components as it has.
+/// Returns the elements of an accessor as floats, with all its components.
 std::vector<float> numbers_of(const GltfContents& contents, std::size_t accessor) {
     std::vector<float> numbers;
     const auto add = [&]<typename Vector>(Vector) {
@@ -305,7 +306,8 @@ float largest_difference(const std::vector<float>& a, const std::vector<float>& 
 TEST_F(GltfMeshopt, TheKhronosCubesAgreeInAllVersionsModesAndFilters) {
     RELIEF_NEEDS_SHARED(file, "data/models/gltf-ext/meshopt/MeshoptCubeTest/MeshoptCubeTest.gltf");
     const GltfContents contents = read_gltf(file, report_);
-    // Five kinds of cubes: plain, indices packed, triangles packed, filtered, filtered version 1.
+    // Five kinds of cubes: plain, packed indices, packed triangles, filtered, and filtered in
+    // version 1.
     constexpr std::size_t first = 10;
     for (std::size_t kind = 0; kind < 5; ++kind) {
         const Json& plain = contents.root["meshes"][first + kind]["primitives"][0];
@@ -316,8 +318,8 @@ TEST_F(GltfMeshopt, TheKhronosCubesAgreeInAllVersionsModesAndFilters) {
                 const float difference =
                     largest_difference(numbers_of(contents, accessor.get<std::size_t>()),
                                        numbers_of(contents, packed["attributes"][name]));
-                // Filters keep 8 bits of colours and normals; the interleaved cube has none, and
-                // nothing else changes a bit.
+                // Filters keep 8 bits of colors and normals. The interleaved cube has no filter,
+                // and the other steps change no bit.
                 const bool is_filtered = row >= 3 && kind > 0;
                 EXPECT_LE(difference, is_filtered ? 1.0F / 127.0F : 0.0F) << name;
             }
@@ -345,7 +347,7 @@ TEST_F(GltfMeshopt, ADecodedDocumentSaysNothingOfCompressionAndLeavesNoPackedByt
     EXPECT_EQ(written.root["extensionsUsed"], json({"KHR_mesh_quantization"}));
     EXPECT_EQ(written.root["extensionsRequired"], json({"KHR_mesh_quantization"}));
     EXPECT_EQ(written.root["buffers"].size(), 1U);
-    // 2887 positions of 8 bytes, normals of 4, 15030 indices of 2; what was packed is gone.
+    // 2887 positions of 8 bytes, normals of 4, 15030 indices of 2. The compressed data is gone.
     EXPECT_EQ(written.buffers[0].size, 2887U * 12 + 15030 * 2);
     for (const Json& view : written.root["bufferViews"])
         EXPECT_FALSE(view.contains("extensions"));
@@ -399,7 +401,7 @@ TEST_F(GltfMeshopt, EveryContradictionIsNamed) {
     json root = document_of(packed, "EXT_meshopt_compression");
     root["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 4}});
     EXPECT_THAT(error_of(root, packed.packed), HasSubstr("buffers[1] has no data"));
-    // A few bytes that claim to be a thousand million are refused before memory is asked for.
+    // A few bytes with a stated size of a thousand million are refused before memory is allocated.
     root = document_of({packed.packed, "ATTRIBUTES", "NONE", 250'000'000, 4},
                        "EXT_meshopt_compression");
     EXPECT_THAT(error_of(root, packed.packed), HasSubstr("bytes cannot stand for 1000000000"));

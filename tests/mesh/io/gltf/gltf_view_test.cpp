@@ -8,7 +8,7 @@
 #include <fstream>
 #include <limits>
 
-#include "gltf_semantics.h"
+#include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/shapes.h"
@@ -83,7 +83,7 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_FALSE(full.emission_texture);
     EXPECT_EQ(std::get<std::filesystem::path>(view.images[0].source), folder_ / "a.png");
     EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[1].source).size(), 3U);
-    // Outside the folder: never opened, so empty.
+    // The file is outside the folder and is not opened, so the image is empty.
     EXPECT_TRUE(std::get<std::vector<std::byte>>(view.images[2].source).empty());
     EXPECT_EQ(view.images[0].fault, "");
     EXPECT_EQ(view.images[1].fault, "");
@@ -94,7 +94,7 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
 TEST_F(GltfViewTest, TextureTransformsScaleThenTurnThenShift) {
     const GltfTextureTransform transform{{0.5F, 0.25F}, 1.5707963F, {2.0F, 3.0F}};
     const glm::vec2 at = transformed(transform, {0.25F, 0.5F});
-    // (0.5, 1.5), turned by a quarter: counter-clockwise as seen with v down, so to (1.5, -0.5).
+    // (0.5, 1.5), rotated by 90 degrees: counter-clockwise with v down, so to (1.5, -0.5).
     EXPECT_NEAR(at.x, 2.0F, 1e-6F);
     EXPECT_NEAR(at.y, -0.25F, 1e-6F);
 }
@@ -106,7 +106,7 @@ TEST_F(GltfViewTest, TextureTransformsTurnTangentsAsTheyTurnTheImage) {
         return with_frames(std::move(mesh), {.tangents = TangentMode::mikktspace}, report).mesh;
     };
     const std::vector<std::pair<Mesh, GltfTextureTransform>> cases = {
-        // Where the image lies undistorted any turn will do, elsewhere scales and mirrors.
+        // An undistorted image allows any rotation; otherwise, only scales and mirrors.
         {make_quad(2), {{0.5F, 0.25F}, 0.7F, {2.0F, 2.0F}}},
         {make_quad(2), {{0.0F, 0.0F}, -2.0F, {-3.0F, 3.0F}}},
         {make_quad(2), {{0.0F, 0.0F}, 1.5707963F, {0.5F, -0.5F}}},
@@ -156,7 +156,7 @@ TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
     EXPECT_EQ(spot.range, 9.0F);
     EXPECT_EQ(spot.inner_cone, 0.1F);
     EXPECT_EQ(spot.outer_cone, 0.2F);
-    // A quarter turn about y takes -z to -x.
+    // A quarter turn about y maps -z to -x.
     const glm::vec3 looks(view.lights[0].world_from_object * glm::vec4(0, 0, -1, 0));
     EXPECT_LT(test::degrees_between(looks, {-1, 0, 0}), 1e-5);
     EXPECT_NEAR(glm::length(looks), 2.0F, 1e-6F);
@@ -164,7 +164,7 @@ TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
     EXPECT_EQ(view.lights[1].what.type, GltfLight::Type::directional);
     EXPECT_EQ(view.lights[2].what.type, GltfLight::Type::point);
     EXPECT_FALSE(view.lights[2].what.range);
-    // The orthographic camera has no place in a scene of perspective ones.
+    // Scenes are perspective, so the orthographic camera is omitted.
     ASSERT_EQ(view.cameras.size(), 2U);
     EXPECT_EQ(view.cameras[0].what.vertical_fov, 0.7F);
     EXPECT_EQ(view.cameras[0].what.near, 0.01F);
@@ -214,18 +214,19 @@ TEST_F(GltfViewTest, FlattenedNormalsStayPerpendicularUnderUnevenScale) {
         root["nodes"][0]["rotation"] = {0.5, 0.5, 0.5, 0.5};
         test::write_gltf_file(folder_ / "t.gltf", root);
         const MeshFile flat = flattened(read(folder_ / "t.gltf"));
-        // The ellipsoid's true normal is the gradient of its equation.
-        const glm::dmat3 rotation(0, 1, 0, 0, 0, 1, 1, 0, 0);  // The quaternion's: x to y to z.
+        // The exact normal of the ellipsoid is the gradient of its equation.
+        const glm::dmat3 rotation(0, 1, 0, 0, 0, 1, 1, 0, 0);  // The rotation of the quaternion: x
+                                                               // to y to z.
         const glm::dvec3 scale(x, x / 3, x / 6);
         for (std::size_t i = 0; i < flat.mesh.positions.size(); ++i) {
             const glm::dvec3 local =
                 glm::transpose(rotation) * glm::dvec3(flat.mesh.positions[i]) / scale;
-            const glm::dvec3 ground_truth = rotation * (local / scale);
-            // Rounding of float positions and normals, stretched by the ratio of the scales.
-            ASSERT_LT(test::degrees_between(flat.mesh.normals[i], ground_truth), 1e-4)
+            const glm::dvec3 reference = rotation * (local / scale);
+            // The rounding of float positions and normals, stretched by the ratio of the scales.
+            ASSERT_LT(test::degrees_between(flat.mesh.normals[i], reference), 1e-4)
                 << x << " " << i;
         }
-        // Front faces look outwards, mirrored or not.
+        // Front faces are outside, mirrored or not.
         const glm::uvec3 t = flat.mesh.triangles[100];
         const glm::dvec3 a(flat.mesh.positions[t.x]), b(flat.mesh.positions[t.y]),
             c(flat.mesh.positions[t.z]);
@@ -279,7 +280,7 @@ class Animated : public testing::Test {
     }
     std::size_t times(const std::vector<float>& values) { return add(values, "SCALAR", 1); }
 
-    /// One more channel on its own sampler.
+    /// Adds a channel with its own sampler.
     void channel(const json& target, std::size_t input, std::size_t output,
                  const char* interpolation = "LINEAR") {
         json& animation = root_["animations"][0];
@@ -333,8 +334,8 @@ TEST_F(Animated, WhatCannotBeUsedIsLeftOutAndCounted) {
     const json place = {{"node", 0}, {"path", "translation"}};
     channel({{"node", 0}, {"path", "weights"}}, two, good);      // 0
     channel({{"path", "pointer"}}, two, good);                   // 1
-    channel({{"path", "translation"}}, two, good);               // 2: nobody's
-    channel({{"node", 1}, {"path", "translation"}}, two, good);  // 3: has a matrix
+    channel({{"path", "translation"}}, two, good);               // 2: without node
+    channel({{"node", 1}, {"path", "translation"}}, two, good);  // 3: the node has a matrix
     channel(place, times({1, 1}), good);                         // 4: not ascending
     channel(place, times({1, nan}), good);                       // 5
     channel(place, times({-1, 1}), good);                        // 6: before all time

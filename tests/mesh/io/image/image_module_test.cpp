@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "module_reference.h"
+#include "mesh/io/image/module_reference.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/image_rows.h"
@@ -27,7 +27,7 @@
 namespace relief {
 namespace {
 
-using test::contents_of;
+using test::read_bytes;
 using test::TemporaryDirectory;
 using testing::HasSubstr;
 using testing::Not;
@@ -40,7 +40,7 @@ bool module_is_mapped() {
 
 const Image one_texel = make_image(1, 1, 1, 8, ColorSpace::data);
 
-// Run only in a process of its own, by the tests below.
+// Only the tests below run it, in a separate process.
 TEST(ImageModuleChild, WritesAndReadsAndSaysHowItWent) {
     const char* file = std::getenv("RELIEF_TEST_IMAGE");
     if (file == nullptr) GTEST_SKIP() << "is started by other tests";
@@ -63,7 +63,7 @@ TEST(ImageModuleChild, WritesAndReadsAndSaysHowItWent) {
     }
 }
 
-/// What the child prints when this program runs as `program`.
+/// Returns the output of the child when this program runs as `program`.
 std::string child_output(const std::filesystem::path& program, const std::string& module_folder,
                          const std::filesystem::path& image) {
     const std::string command = "RELIEF_MODULE_DIR='" + module_folder + "' RELIEF_TEST_IMAGE='" +
@@ -82,7 +82,7 @@ std::filesystem::path this_program() {
     return std::filesystem::read_symlink("/proc/self/exe");
 }
 
-/// This program in a tree of its own, where no module lies beside it.
+/// Returns a copy of this program in a separate tree without a module.
 std::filesystem::path program_elsewhere(const TemporaryDirectory& folder) {
     std::filesystem::create_directory(folder / "bin");
     std::filesystem::copy_file(this_program(), folder / "bin/program");
@@ -134,12 +134,12 @@ struct SlowKind {
 };
 constexpr SlowKind slow_kinds[] = {{"16.tif", 16}, {"32.tif", 32}, {"32.exr", 32}};
 
-/// Above the five seconds after which OpenImageIO looks at the clock.
+/// The pause exceeds the five seconds after which OpenImageIO reads the clock.
 constexpr std::chrono::milliseconds pause(5300);
-/// Rows reach the encoder in bands of 8 MB: there is at least one before the pause, one after.
+/// Rows reach the encoder in bands of 8 MB: at least one before the pause and one after it.
 constexpr int map_width = 16384, map_height = 512;
 
-/// Half of the rows of a map that is not the same everywhere.
+/// Returns half of the rows of a nonuniform map.
 std::vector<std::byte> half_of(const SlowKind& kind, int part) {
     const std::size_t count = std::size_t{map_width} * map_height / 2;
     std::vector<std::byte> bytes(count * static_cast<std::size_t>(kind.bits / 8));
@@ -171,7 +171,7 @@ std::vector<std::string> written(std::chrono::milliseconds between_halves) {
     std::vector<std::string> files;
     for (std::size_t i = 0; i < writers.size(); ++i) {
         writers[i]->finish();
-        files.push_back(contents_of(folder / slow_kinds[i].name));
+        files.push_back(read_bytes(folder / slow_kinds[i].name));
     }
     return files;
 }

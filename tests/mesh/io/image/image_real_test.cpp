@@ -12,23 +12,23 @@
 #include "io/image/image_module_client.h"
 #include "io/png/inflate.h"
 #include "io/png/png_format.h"
-#include "module_reference.h"
+#include "mesh/io/image/module_reference.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/image_rows.h"
+#include "support/images.h"
 #include "support/peak_memory.h"
-#include "support/samples.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
-using test::contents_of;
+using test::read_bytes;
 using test::samples_of;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 
-/// Size, channels and bits of an image in one line.
+/// Returns size, channels and bits of an image in one line.
 std::string shape_of(const Image& image) {
     std::ostringstream text;
     text << image.width << " x " << image.height << " x " << image.channels << ", " << image.bits();
@@ -45,7 +45,7 @@ TEST(ImageFileReal, PngOfEverySampleTypeHasTheShapeThatTheHeaderPromises) {
     EXPECT_EQ(shape_of(read_data(png / "basn2c16.png")), "32 x 32 x 3, 16");
     EXPECT_EQ(shape_of(read_data(png / "basn6a16.png")), "32 x 32 x 4, 16");
     EXPECT_EQ(shape_of(read_data(png / "magnum_ga.png")), "3 x 2 x 2, 8");
-    // Palettes become RGB, with transparent entries RGB and alpha.
+    // Palettes become RGB, and with transparent entries RGB and alpha.
     EXPECT_EQ(shape_of(read_data(png / "magnum_rgb-palette1.png")), "256 x 256 x 3, 8");
     EXPECT_EQ(shape_of(read_data(png / "tm3n3p02.png")), "32 x 32 x 4, 8");
     EXPECT_EQ(shape_of(read_data(png / "tbrn2c08.png")), "32 x 32 x 4, 8");
@@ -68,7 +68,7 @@ TEST(ImageFileReal, ColourTagsOfAFileChangeNoSample) {
     // The same picture with an sRGB chunk, and as linear with a gAMA chunk of 1.
     EXPECT_EQ(read_data(png / "magnum_rgba-srgb.png").samples,
               read_data(png / "magnum_rgba-linear.png").samples);
-    // A grey ICC profile hangs on this depth map.
+    // This depth map has a gray ICC profile.
     RELIEF_NEEDS_SHARED(cube, "data/textures/parallax_cube_bevy/cube_depth.png");
     EXPECT_EQ(shape_of(read_data(cube)), "348 x 348 x 1, 8");
 }
@@ -101,7 +101,7 @@ TEST(ImageFileReal, HalfFloatsArriveExactlyAsFloats) {
     RELIEF_NEEDS_SHARED(file, "data/textures/oiio_bump_normal/normal.exr");
     const Image image = read_data(file);
     EXPECT_EQ(shape_of(image), "128 x 128 x 3, 32");
-    // A half has 11 significant bits: the 13 lowest of a float stay zero.
+    // A half has 11 significant bits: the 13 lowest bits of a float stay zero.
     for (const float sample : image.as<float>())
         ASSERT_EQ(std::bit_cast<std::uint32_t>(sample) & 0x1FFFU, 0U);
 }
@@ -115,16 +115,14 @@ TEST(ImageFileReal, HdrOfTheUsualCodingsIsRead) {
     RELIEF_NEEDS_SHARED(hdr, "data/env/hdr-decoder");
     EXPECT_EQ(shape_of(read_data(hdr / "rgbr4x4.hdr")), "4 x 4 x 3, 32");
     EXPECT_EQ(shape_of(read_data(hdr / "image1.hdr")), "128 x 85 x 3, 32");
-    // OpenImageIO knows no old run-length coding: an error, never half a picture.
+    // OpenImageIO does not read the old run-length coding: an error, never half a picture.
     EXPECT_THROW(read_data(hdr / "old-rle.hdr"), FileError);
 }
 
-// ---------------------------------------------------------------------------------------------
-
-/// What became of a file. A crash would end the test program, and that is a failure as well.
+/// The outcome for a file. A crash ends the test program, which is also a failure.
 struct FileOutcome {
-    bool error = false;   ///< A FileError; otherwise an image.
-    std::string printed;  ///< What somebody wrote to stdout or stderr.
+    bool error = false;   ///< True for a FileError, false for an image.
+    std::string printed;  ///< Output to stdout or stderr.
     double seconds = 0.0;
 };
 
@@ -147,7 +145,7 @@ FileOutcome outcome_of(const std::filesystem::path& file) {
 
 TEST(ImageFileBroken, EveryHostileFileEndsInAnErrorOrAnImage) {
     RELIEF_NEEDS_SHARED(folder, "data/broken/image");
-    image_module("the memory that it takes");  // Is not what is measured.
+    image_module("the memory that it takes");  // The measurement excludes the module.
     const double peak_before = test::peak_megabytes();
     std::vector<std::string> images;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -159,7 +157,7 @@ TEST(ImageFileBroken, EveryHostileFileEndsInAnErrorOrAnImage) {
         if (!outcome.error) images.push_back(entry.path().filename().string());
     }
     std::sort(images.begin(), images.end());
-    // Images with hostile metadata, and one whose fault is beyond its samples.
+    // Images with hostile metadata, and one with a fault after its samples.
     EXPECT_THAT(images,
                 ElementsAre("corrupt-xmp-deep-nesting.jpg", "crash-5158.bmp", "exif-utf8-type.png",
                             "this_is_png.jpg", "xmp-list-blowup.png"));
@@ -183,7 +181,7 @@ TEST(ImageFileBroken, AChangedByteAnywhereEndsInAnErrorOrAnImage) {
     }
 }
 
-/// An image's samples, or why there are none.
+/// The samples of an image, or the reason for their absence.
 struct ReadRows {
     std::string error;
     std::string shape;
@@ -203,7 +201,7 @@ std::string shape_of(int width, int height, int channels, int bits) {
 ReadRows read_whole(const std::filesystem::path& file) {
     ReadRows outcome;
     try {
-        const std::string bytes = contents_of(file);
+        const std::string bytes = read_bytes(file);
         const Image image =
             read_image(std::as_bytes(std::span(bytes)), file.string(), ImageUse::data);
         outcome.shape = shape_of(image.width, image.height, image.channels, image.bits());
@@ -238,7 +236,7 @@ ReadRows read_by_rows(const std::filesystem::path& file) {
     return outcome;
 }
 
-/// How many of the files below a folder were images.
+/// Compares all files below a folder and returns the number of images.
 int compare_all(const std::filesystem::path& folder) {
     int images = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -262,10 +260,7 @@ TEST(ImageRowsReal, EveryBrokenFileIsTheSameErrorOrImage) {
     EXPECT_EQ(compare_all(folder), 5);
 }
 
-// ---------------------------------------------------------------------------------------------
-// Damage on the way
-
-/// A PNG of several chunks and bands, 3 MB of noise.
+/// A PNG of several chunks and bands with 3 MB of noise.
 std::string noisy_png(const std::filesystem::path& file) {
     Image image = make_image(1000, 500, 3, 16, ColorSpace::data);
     std::uint32_t state = 1;
@@ -274,7 +269,7 @@ std::string noisy_png(const std::filesystem::path& file) {
         sample = static_cast<std::uint16_t>(state >> 12);
     }
     write_image(file, image);
-    return contents_of(file);
+    return read_bytes(file);
 }
 
 void replace(const std::filesystem::path& file, const std::string& bytes) {
@@ -299,7 +294,7 @@ TEST(ImageRowsDamaged, AWrongBitOrAMissingEndIsTheSameErrorAfterTheRowsBeforeIt)
     EXPECT_EQ(read_by_rows(file).rows_read, 0) << "noticed on opening";
 }
 
-/// A PNG of grey bytes with this stream.
+/// A PNG of gray bytes with this stream.
 std::string png_of(std::uint32_t width, std::uint32_t height, const std::string& stream) {
     std::string header;
     append_big32(header, width);
@@ -349,7 +344,7 @@ TEST(ImageRowsDamaged, CutTiffAndExrFilesFailByRowsAsTheyDoWhole) {
     }
     for (const char* name : {"a.tif", "a.exr"}) {
         write_image(folder / name, name == std::string("a.tif") ? words : floats);
-        const std::string whole = contents_of(folder / name);
+        const std::string whole = read_bytes(folder / name);
         for (const std::size_t tenths : {1U, 5U, 9U}) {
             replace(folder / name, whole.substr(0, whole.size() * tenths / 10));
             const ReadRows outcome = read_by_rows(folder / name);
@@ -379,10 +374,7 @@ TEST(ImageRowsDamaged, AnErrorWhileRowsGoFromFileToFileLeavesNoOutput) {
     EXPECT_EQ(std::distance(begin(files), end(files)), 1);
 }
 
-// ---------------------------------------------------------------------------------------------
-// Tiles
-
-/// A TIFF of 40 x 50 grey bytes in tiles of 16 x 16, not compressed.
+/// An uncompressed TIFF of 40 x 50 gray bytes in tiles of 16 x 16.
 std::string tiled_tiff(const std::vector<std::uint8_t>& samples) {
     constexpr std::uint32_t width = 40, height = 50, tile = 16, across = 3, down = 4;
     constexpr std::uint32_t entries = 10,
@@ -403,8 +395,8 @@ std::string tiled_tiff(const std::vector<std::uint8_t>& samples) {
     entry(256, 3, 1, width);
     entry(257, 3, 1, height);
     entry(258, 3, 1, 8);
-    entry(259, 3, 1, 1);  // Not compressed.
-    entry(262, 3, 1, 1);  // Grey.
+    entry(259, 3, 1, 1);  // No compression.
+    entry(262, 3, 1, 1);  // Gray.
     entry(277, 3, 1, 1);
     entry(322, 3, 1, tile);
     entry(323, 3, 1, tile);

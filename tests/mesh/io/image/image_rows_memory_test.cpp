@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory images take that are read and written by rows: a program of its own, whose peak
-// says it for everything together, libraries and all.
+// The peak memory for images that are read and written by rows. The program is separate, because
+// its peak includes libraries and all threads.
 #include "relief/mesh/image_rows.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace relief {
 namespace {
 
-/// Rows of some slopes and some noise.
+/// Fills rows with slopes and noise.
 void fill_row(std::vector<std::uint16_t>& row, int y) {
     std::uint32_t state = static_cast<std::uint32_t>(y) * 2654435761U;
     for (std::size_t i = 0; i < row.size(); ++i) {
@@ -34,7 +34,7 @@ void write_large(const std::filesystem::path& file, int width, int height) {
     writer.finish();
 }
 
-/// Grey to RGB, as normal maps are made of heights. Every row is checked on its way.
+/// Converts gray to RGB, as normal maps are made from heights, and checks every row.
 void copy_as_rgb(const std::filesystem::path& from, const std::filesystem::path& to) {
     ImageRowReader reader(from);
     const ImageInfo info = reader.info();
@@ -54,7 +54,7 @@ void copy_as_rgb(const std::filesystem::path& from, const std::filesystem::path&
 
 TEST(ImageRowsMemory, FromFileToFileIsBoundedWhateverTheHeight) {
     const test::TemporaryDirectory folder;
-    set_thread_limit(2);  // Pieces in work are 4 for each thread.
+    set_thread_limit(2);  // Each thread has 4 pieces in work.
     for (const char* extension : {".png", ".tif"}) {
         const auto from = folder / ("from" + std::string(extension));
         const auto to = folder / ("to" + std::string(extension));
@@ -63,8 +63,8 @@ TEST(ImageRowsMemory, FromFileToFileIsBoundedWhateverTheHeight) {
         const double small = test::peak_megabytes();
         write_large(from, 4096, 6144);
         copy_as_rgb(from, to);
-        // The samples are 50 MB grey and 151 MB in colour. Of the small image all was in the
-        // buffers already that hold a batch of pieces, but for what no small image fills.
+        // The samples are 50 MB gray and 151 MB in color. The small image already filled the
+        // buffers of a batch of pieces, except for a part that depends on the size.
         EXPECT_LT(test::peak_megabytes() - small, 60.0) << extension;
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images read and written by rows: the same samples and the same errors as for whole images,
-// however the rows are cut up.
+// Images read and written by rows have the same samples and errors as whole images, for every
+// division into rows.
 #include "relief/mesh/image_rows.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 #include <fstream>
 #include <limits>
 
-#include "module_reference.h"
+#include "mesh/io/image/module_reference.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/threads.h"
 #include "support/message_of.h"
@@ -20,13 +20,13 @@
 namespace relief {
 namespace {
 
-using test::contents_of;
+using test::read_bytes;
 using test::TemporaryDirectory;
 using testing::HasSubstr;
 
 using Bytes = std::vector<std::byte>;
 
-/// Codes that look like nothing in particular.
+/// Pseudorandom codes.
 Bytes pattern(const ImageShape& shape) {
     const std::size_t count = static_cast<std::size_t>(shape.width) *
                               static_cast<std::size_t>(shape.height) *
@@ -67,7 +67,7 @@ void write_in_pieces(const std::filesystem::path& file, const ImageShape& shape,
     writer.finish();
 }
 
-/// Reads `rows` at a time, or what is left.
+/// Reads `rows` at a time, or the remaining ones.
 Bytes read_in_pieces(const std::filesystem::path& file, int rows) {
     ImageRowReader reader(file);
     Bytes samples(reader.row_bytes() * static_cast<std::size_t>(reader.info().height));
@@ -113,14 +113,14 @@ TEST(ImageRows, WholeImagesAndRowsGiveTheSameFile) {
         const ImageShape shape{700, 300, 3, kind.bits, ColorSpace::data};
         const Bytes samples = pattern(shape);
         write_in_pieces(folder / kind.name, shape, samples);
-        const std::string by_rows = contents_of(folder / kind.name);
+        const std::string by_rows = read_bytes(folder / kind.name);
         write_image(folder / kind.name, read_image(folder / kind.name, ImageUse::data),
                     {{"relief:content", "test"}});
-        EXPECT_TRUE(contents_of(folder / kind.name) == by_rows) << kind.name;
+        EXPECT_TRUE(read_bytes(folder / kind.name) == by_rows) << kind.name;
     }
 }
 
-/// 5 MB of slopes that go up and down, with some noise: several pieces, some with repetitions.
+/// 5 MB of rising and falling slopes with noise: several pieces, some with repetitions.
 Bytes smooth_text(const ImageShape& shape) {
     Bytes bytes;
     std::uint32_t state = 3;
@@ -145,7 +145,7 @@ TEST(ImageRows, TheNumberOfThreadsChangesNoByteAndLibpngReadsThemAll) {
         for (const unsigned threads : {1U, 2U, 7U}) {
             set_thread_limit(threads);
             write_in_pieces(folder / "a.png", shape, samples, {.effort = effort});
-            const std::string file = contents_of(folder / "a.png");
+            const std::string file = read_bytes(folder / "a.png");
             if (first.empty()) first = file;
             EXPECT_TRUE(file == first) << threads << " threads";
         }
@@ -169,7 +169,7 @@ TEST(ImageRows, MoreEffortMakesSmallerPngAndTiffFilesOfTheSameSamples) {
         const auto fast = size(WriteEffort::fast);
         const auto normal = size(WriteEffort::normal);
         const auto small = size(WriteEffort::small);
-        EXPECT_LE(normal, fast + fast / 20) << name;  // Greedy searches have their luck.
+        EXPECT_LE(normal, fast + fast / 20) << name;  // The result of greedy searches varies.
         EXPECT_LT(small, normal) << name;
     }
 }
@@ -212,7 +212,7 @@ TEST(ImageRows, WithoutFinishThereIsNoFileAndTheOldOneStays) {
             EXPECT_THROW(writer.write(samples), InvalidInput) << "more rows than there are";
             EXPECT_THROW(writer.write(std::span(samples).first(50)), InvalidInput);
         }
-        EXPECT_EQ(contents_of(folder / name), "old");
+        EXPECT_EQ(read_bytes(folder / name), "old");
     }
     const auto files = std::filesystem::directory_iterator(folder.path());
     EXPECT_EQ(std::distance(begin(files), end(files)), 2);
@@ -224,7 +224,7 @@ TEST(ImageRows, TiffBeyondFourGigabytesIsBigTiff) {
         ImageRowWriter writer(folder / "a.tif", {40000, height, 3, 16, ColorSpace::data});
         writer.write(Bytes(writer.row_bytes() * 64));
         for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
-            return contents_of(entry.path()).substr(0, 4);
+            return read_bytes(entry.path()).substr(0, 4);
         return std::string();
     };
     EXPECT_EQ(signature_of(10000), std::string("II*\0", 4)) << "2.4 GB";
@@ -240,9 +240,6 @@ TEST(ImageRows, SizesThatNoFileCanHoldAreRefused) {
     }
 }
 
-// ---------------------------------------------------------------------------------------------
-// Half floats
-
 std::vector<float> written_as_half(const std::filesystem::path& file, std::vector<float> values,
                                    Report& report) {
     Image image = make_image(static_cast<int>(values.size()), 1, 1, 32, ColorSpace::data);
@@ -256,7 +253,7 @@ TEST(ImageRows, HalvesRoundToTheNearestAndTheirRangeEndsFinite) {
     const TemporaryDirectory folder;
     constexpr float infinity = std::numeric_limits<float>::infinity();
     Report report;
-    // A half has 11 significant bits: above 2048, odd numbers lie halfway and go to the even one.
+    // A half has 11 significant bits: above 2048, odd numbers lie in the middle and round to even.
     EXPECT_THAT(written_as_half(folder / "a.exr",
                                 {0.5F, -2049.0F, 2051.0F, 65504.0F, 65519.9F, 65520.0F, -1e30F,
                                  infinity, -infinity, 6e-8F},

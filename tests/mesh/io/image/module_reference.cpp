@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "module_reference.h"
+#include "mesh/io/image/module_reference.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include "io/png/inflate.h"
 #include "io/png/png_format.h"
 #include "relief/mesh/error.h"
+#include "support/shared_data.h"
 
 namespace relief::test {
 namespace {
@@ -20,11 +21,6 @@ ImageContainer examined(const std::string& file) {
 }
 
 }  // namespace
-
-std::string contents_of(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::string zlib_stream(const std::string& bytes) {
     const std::span all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
@@ -71,7 +67,7 @@ Comparison compare_all(const std::filesystem::path& folder, const std::string& e
     Comparison comparison;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (entry.path().extension() != extension) continue;
-        const std::string file = contents_of(entry.path());
+        const std::string file = read_bytes(entry.path());
         std::optional<Image> found;
         try {
             found = directly(file);

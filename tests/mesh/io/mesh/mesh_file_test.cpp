@@ -13,7 +13,7 @@
 #include <string>
 
 #include "io/mesh/mesh_formats.h"
-#include "mesh_text_test.h"
+#include "mesh/io/mesh/mesh_files.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
@@ -39,7 +39,8 @@ std::vector<std::filesystem::path> mesh_files_below(const std::filesystem::path&
     return files;
 }
 
-/// Whether the file was read; fails the test on anything but a valid mesh or a proper FileError.
+/// Returns whether the file was read. The test fails unless the result is a valid mesh or a proper
+/// FileError.
 bool is_read(const std::filesystem::path& file) {
     try {
         Report report;
@@ -59,8 +60,8 @@ bool is_read(const std::filesystem::path& file) {
 
 TEST(MeshFile, EveryRealModelWithTrianglesIsRead) {
     RELIEF_NEEDS_SHARED(models, "data/models");
-    // Without triangles (points or lines only), malformed (3.1+e2; lists where a number is
-    // declared), or in UTF-16.
+    // Files without triangles (points or lines only), malformed ones (3.1+e2; lists instead of a
+    // declared number), or in UTF-16.
     const std::set<std::string> refused = {"box_UTF16BE.obj",
                                            "number_formats.obj",
                                            "mesh-negative-indices.obj",
@@ -174,7 +175,7 @@ class FarPositions : public test::MeshTextTest {
     }
 };
 
-/// A roof of 1 by 1, its ridge 0.25 high, as far from 0 as `far` in every coordinate.
+/// A roof of 1 by 1 with a ridge of height 0.25, at a distance of `far` from 0 in every coordinate.
 const std::vector<glm::dvec3> roof = {{0, 0, 0.001}, {0.5, 0, 0.25}, {0.5, 1, 0.25},
                                       {0, 1, 0.002}, {1, 0, 0.003},  {1, 1, 0.004}};
 const std::vector<glm::uvec3> far_faces = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
@@ -239,7 +240,7 @@ TEST_F(FarPositions, AreReadInDoubleFromEveryTextFormat) {
             const std::vector<glm::vec3> normals = normals_of(file.mesh);
             for (std::size_t v = 0; v < 6; ++v) {
                 const glm::dvec3 back = glm::dvec3(file.mesh.positions[v]) + file.origin;
-                // Doubles of 1e8 are 1.5e-8 apart, floats of 1 are 6e-8.
+                // Doubles near 1e8 are 1.5e-8 apart, floats near 1 are 6e-8 apart.
                 EXPECT_LE(glm::distance(back, glm::dvec3(far) + roof[v]), 1e-7)
                     << name << " " << far;
                 EXPECT_LE(test::degrees_between(normals[v], expected[v]), 2e-5)
@@ -257,7 +258,7 @@ TEST_F(FarPositions, OfAMeshThatFloatsPutIntoOnePlaceAreToldApart) {
     const std::vector<glm::vec3> expected = normals_of(read_as("near.obj", obj_text(0.0)).mesh);
     const std::vector<glm::vec3> normals = normals_of(file.mesh);
     for (std::size_t v = 0; v < 6; ++v) {
-        // Doubles of 1e7 are 1.9e-9 apart: 2e-6 of the roof's size.
+        // Doubles near 1e7 are 1.9e-9 apart: 2e-6 of the size of the roof.
         EXPECT_LE(test::degrees_between(normals[v], expected[v]), 1e-3);
     }
 }
@@ -297,7 +298,7 @@ TEST_F(FarPositions, FindingsAreCountedOnce) {
     EXPECT_EQ(report_.count("line"), 1U);
 }
 
-constexpr int side = 300;  // Squares of a grid: 180 000 triangles, some megabytes of text.
+constexpr int side = 300;  // A grid of 180 000 triangles, several megabytes of text.
 
 class Cancelling : public testing::TestWithParam<std::string> {
   protected:
@@ -346,7 +347,7 @@ class Cancelling : public testing::TestWithParam<std::string> {
         }
         write_mesh(file_, grid);
     }
-    /// As a viewer does.
+    /// Counts like a viewer.
     std::size_t triangles_read() const {
         Report report;
         MeshFile read = read_mesh(file_, report);
@@ -374,7 +375,7 @@ TEST_P(Cancelling, EveryStageIsToldAndEndsWhereThatIsWished) {
     EXPECT_GE(stages.size(), 3U);
     EXPECT_EQ(whole.files().count(file_), 1U);
 
-    // Wished when a stage is first heard of, it comes to no other.
+    // A request at the first report of a stage prevents every other stage.
     for (const std::string& last : std::set<std::string>(stages.begin(), stages.end())) {
         Progress* wishing = nullptr;
         std::string heard;

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "io/mesh/obj_parser.h"
-#include "mesh_text_test.h"
+#include "mesh/io/mesh/mesh_files.h"
 #include "relief/mesh/error.h"
 #include "relief/mesh/mesh_file.h"
 #include "support/shapes.h"
@@ -46,13 +46,13 @@ TEST_F(Obj, CornersThatShareAllValuesBecomeOneVertexInOrderOfFirstUse) {
     EXPECT_THAT(mesh.normals, IsEmpty());
 }
 
-/// More combinations at one position than are looked through one by one.
+/// One position has more combinations than a linear search covers.
 TEST_F(Obj, AFanWithANormalForEachFaceHasAVertexForEach) {
     std::string text = three;
     for (int i = 0; i < 100; ++i)
         text += fmt::format("vn {} 1 0\nf 1//{} 2//{} 3//1\n", i / 2, i + 1, i + 1);
     const Mesh mesh = read(text).mesh;
-    // Normals come in pairs; the first face has the only corner at the third position.
+    // Normals come in pairs. The first face has the only corner at the third position.
     ASSERT_EQ(mesh.positions.size(), 101U);
     EXPECT_EQ(mesh.triangles[1], glm::uvec3(0, 1, 2));
     EXPECT_EQ(mesh.triangles[2], glm::uvec3(3, 4, 2));
@@ -183,7 +183,7 @@ TEST_F(Obj, TrianglesAreGroupedByMaterialInOrderOfFirstUse) {
     EXPECT_EQ(red.opacity_map, folder_ / "d.png");
     EXPECT_THAT(red.more, ElementsAre("map_Ka"));
     EXPECT_EQ(file.materials[1].name, "other");
-    EXPECT_EQ(file.materials[2].illumination_model, 2);  // MTL says nothing, and 0 is no light.
+    EXPECT_EQ(file.materials[2].illumination_model, 2);  // MTL has no statement, and 0 means unlit.
     EXPECT_THAT(file.materials[2].more, ElementsAre("-s", "-o"));
     EXPECT_EQ(report_.count("unknown material"), 1U);
 }
@@ -193,7 +193,7 @@ TEST_F(Obj, SmoothingGroupsGoWithTheirTrianglesAndComeBack) {
                              "v 1 1 0\nf 1 2 3\ns 4\nusemtl B\nf 1 2 4 3\nusemtl A\ns off\n"
                              "f 1 2 3\ns on\nf 2 3 4\nusemtl B\ns 4294967295\nf 1 2 3\n";
     const MeshFile first = read(text);
-    // By material: none; B with its quad and its last; A.
+    // By material: none; B with its quad and its last triangle; A.
     EXPECT_THAT(first.mesh.smoothing_groups, ElementsAre(0U, 4U, 4U, 4294967295U, 0U, 1U));
     write_mesh(folder_ / "b.obj", first);
     EXPECT_EQ(read_mesh(folder_ / "b.obj", report_).mesh.smoothing_groups,
@@ -224,13 +224,13 @@ TEST_F(Obj, FloatsOfEveryMagnitudeComeBackBitForBit) {
         const auto any_float = [&] {
             for (;;) {
                 const float value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-                if (!std::isnan(value)) return value;  // NaN keeps no payload in text.
+                if (!std::isnan(value)) return value;  // Text does not keep the payload of a NaN.
             }
         };
         const float v = static_cast<float>(random()) / 4294967296.0F;
         contents.mesh.positions.emplace_back(any_float(), any_float(), any_float());
         contents.mesh.normals.emplace_back(any_float(), any_float(), any_float());
-        // |v| >= 2e-9 turns and comes back exactly, as obj_file.cpp says.
+        // |v| >= 2e-9 is flipped and comes back exactly, as obj_file.cpp explains.
         contents.mesh.texcoords.emplace_back(any_float(), i % 2 == 0 ? v : 3.0F * v - 1.0F);
         contents.mesh.colors.emplace_back(any_float(), any_float(), any_float(), any_float());
     }
@@ -257,7 +257,7 @@ TEST_F(Obj, MaterialsComeBack) {
     contents.materials[0].specular_map = folder_ / "s.png";
     contents.materials[0].opacity_map = folder_ / "d.png";
     contents.materials[0].refractive_index = 1.5F;
-    contents.materials[1].name = "with blank";  // The same: names are made different.
+    contents.materials[1].name = "with blank";  // Equal names become different.
     contents.materials[1].emission = glm::vec3(0.1F, 0.2F, 0.3F);
     write_mesh(folder_ / "c.obj", contents);
     const MeshFile read = read_mesh(folder_ / "c.obj", report_);
@@ -283,7 +283,7 @@ TEST_F(Obj, RealFilesHaveTheCountsOfTheirLists) {
         const char* file;
         std::size_t triangles, vertices;
     };
-    // Triangles as the data's own list has them; vertices of spot counted as distinct v/vt pairs.
+    // The triangle counts of the data's list; vertices of spot are distinct v/vt pairs.
     for (const Expected& expected : {Expected{"spot/spot_triangulated.obj", 5856, 3225},
                                      {"spot/spot_quadrangulated.obj", 5856, 3225},
                                      {"scorpion.obj", 99990, 49997},
@@ -330,7 +330,7 @@ TEST(ObjObjects, GoWithTheirTrianglesWhenTheseAreGroupedByMaterialAndCut) {
 
 constexpr std::size_t whole = 1 << 20;
 
-/// Everything that what comes before has a say in, with some faces of our choice among them.
+/// Every statement that affects later ones, with given faces in between.
 std::string every_statement(const std::string& face) {
     std::string text = "o first\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     for (int i = 0; i < 40; ++i) {
@@ -439,7 +439,7 @@ TEST(ObjPieces, EndWhereAStatementDoes) {
     EXPECT_EQ(obj_piece_ends(text, 1000), (std::vector<std::size_t>{text.size()}));
     EXPECT_EQ(obj_piece_ends("v 1 2 3\n", 4), (std::vector<std::size_t>{8}));
     EXPECT_EQ(obj_piece_ends("", 4), (std::vector<std::size_t>{0}));
-    // No line feed, as on old machines: one piece.
+    // Without line feeds, as on old machines, there is one piece.
     EXPECT_EQ(obj_piece_ends("v 1 2 3\rv 4 5 6\r", 4), (std::vector<std::size_t>{16}));
 }
 

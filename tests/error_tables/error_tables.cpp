@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "error_tables/error_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+namespace relief::test {
+namespace {
+
+struct Place {
+    std::size_t first;
+    std::size_t size;
+};
+
+Place place_in(const std::string& page, const std::string& begin) {
+    const std::size_t line = page.find(begin);
+    const std::size_t end = line == std::string::npos ? line : page.find(tables_end, line);
+    if (end == std::string::npos) throw std::runtime_error("has no place for " + begin);
+    const std::size_t first = line + begin.size();
+    return {first, end - first};
+}
+
+}  // namespace
+
+std::string in_digits(double degrees) {
+    if (degrees < 0.0005) return "0.000";
+    return degrees < 10.0 ? fmt::format("{:.3f}", degrees) : fmt::format("{:.1f}", degrees);
+}
+
+std::string table_header(const std::vector<std::string>& columns) {
+    std::string first = "| |";
+    std::string second = "|---|";
+    for (const std::string& column : columns) {
+        first += " " + column + " |";
+        second += "---|";
+    }
+    return first + "\n" + second + "\n";
+}
+
+std::string table_row(const std::string& name, const std::vector<double>& ranks,
+                      const std::vector<std::string>& cells) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const double rank : ranks) {
+        if (!std::isnan(rank)) best = std::min(best, rank);
+    }
+    std::string text = fmt::format("| {} |", name);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        text += ranks[i] <= best * 1.0005 + 5e-4 ? fmt::format(" **{}** |", cells[i])
+                                                 : fmt::format(" {} |", cells[i]);
+    }
+    return text + "\n";
+}
+
+std::string section_in(const std::string& page, const std::string& begin) {
+    const Place place = place_in(page, begin);
+    return page.substr(place.first, place.size);
+}
+
+std::string contents_of_page(const std::string& path) {
+    std::ifstream in(path);
+    if (!in) throw std::runtime_error("cannot be read");
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+int write_sections(int argc, const char* const* argv,
+                   const std::function<std::vector<PageSection>()>& measure) {
+    if (!is_one_path(argc, argv)) {
+        std::cerr << "usage: " << argv[0] << " PAGE\n";
+        return 2;
+    }
+    try {
+        std::string page = contents_of_page(argv[1]);
+        for (const PageSection& section : measure()) {
+            const Place place = place_in(page, section.begin);
+            page.replace(place.first, place.size, section.text);
+        }
+        std::ofstream(argv[1]) << page;
+    } catch (const std::runtime_error& error) {
+        std::cerr << argv[0] << ": error: " << argv[1] << ": " << error.what() << "\n";
+        return 1;
+    }
+    return 0;
+}
+
+}  // namespace relief::test

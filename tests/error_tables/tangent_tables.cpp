@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of the methods and encodings of tangent frames.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "error_tables/error_tables.h"
+#include "relief/mesh/analytic_surfaces.h"
+#include "relief/mesh/frame_encoding.h"
+#include "storage_experiments.h"
+#include "support/random_frames.h"
+#include "tangent_methods.h"
+
+namespace relief::test {
+namespace {
+
+const std::vector<TangentMethod>& methods() {
+    static const std::vector<TangentMethod> all = tangent_methods();
+    return all;
+}
+
+struct NamedMesh {
+    std::string name;
+    TexturedMesh reference;
+};
+
+const std::vector<NamedMesh>& meshes() {
+    static const std::vector<NamedMesh> all = [] {
+        constexpr int cells = 64;
+        std::vector<NamedMesh> made;
+        for (const TexturedCase& one : textured_cases())
+            made.push_back({one.name, one.mesh(cells)});
+        return made;
+    }();
+    return all;
+}
+
+std::string rms_and_max(const AngleDistribution& errors) {
+    return in_digits(errors.rms) + " / " + in_digits(errors.max);
+}
+
+constexpr double not_compared = std::numeric_limits<double>::quiet_NaN();
+
+/// Returns a table with one row for each mesh; measured(reference, tangents, method) returns the
+/// errors. The first column shows the reference tangents, the lower bound for every method.
+template <typename Measured>
+std::string method_table(const std::string& title, bool at_corners, Measured measured) {
+    std::vector<std::string> names = {"*true*"};
+    for (const TangentMethod& method : methods())
+        names.push_back(method.name);
+    std::string text = "\n" + title + "\n\n" + table_header(names);
+    for (const NamedMesh& mesh : meshes()) {
+        const AngleDistribution least =
+            measured(mesh.reference, exact_tangents(mesh.reference), ShaderBasis::as_interpolated);
+        std::vector<double> ranks = {not_compared};
+        std::vector<std::string> cells = {rms_and_max(least)};
+        for (const TangentMethod& method : methods()) {
+            const bool none = at_corners && !method.tangents;
+            const AngleDistribution errors =
+                none ? AngleDistribution{}
+                     : measured(mesh.reference, method.tangents_of(mesh.reference.mesh),
+                                method.basis);
+            ranks.push_back(none ? not_compared : errors.rms);
+            cells.push_back(none ? "" : rms_and_max(errors));
+        }
+        text += table_row(mesh.name, ranks, cells);
+    }
+    return text;
+}
+
+std::string method_tables() {
+    return method_table(
+               "The normal that a texel tilted by 30 degrees stands for, inside of "
+               "triangles: RMS / largest error in degrees",
+               false, texel_errors) +
+           method_table("The tangent's direction at vertices", true,
+                        [](const TexturedMesh& reference, const CornerTangents& tangents,
+                           ShaderBasis) { return corner_tangent_errors(reference, tangents); }) +
+           method_table("The tangent's direction inside of triangles", false,
+                        inner_tangent_errors) +
+           "\n";
+}
+
+/// Costs of methods, measured by bench/frame_costs_bench.cpp with interleaved runs. A test cannot
+/// reproduce times, so the numbers are constants, and the page states their date.
+struct MeasuredCost {
+    const char* method;
+    const char* computing;
+    const char* bytes;
+    const char* device;
+};
+constexpr std::array measured_costs = {
+    MeasuredCost{"mikktspace", "1 (88 ns a triangle, one thread)", "28; 4 or 8", "1"},
+    MeasuredCost{"area-weighted", "0.93", "28; 4 or 8", "1"},
+    MeasuredCost{"lengyel", "0.87", "28; 4 or 8", "1"},
+    MeasuredCost{"screen-space", "0", "12: normals alone", "1.05 to 1.08"}};
+
+/// Returns a table of the errors on three meshes and the costs.
+std::string cost_table() {
+    const std::array<std::string, 3> shown = {"torus, jittered", "cubic, anisotropic",
+                                              "plate with thin bevels, image sheared on those"};
+    std::string text = "\n";
+    text += table_header({"error: torus, jittered", "cubic, anisotropic", "plate with thin bevels",
+                          "computing", "bytes a vertex: floats; codes", "drawing"});
+    for (std::size_t i = 0; i < methods().size(); ++i) {
+        const TangentMethod& method = methods()[i];
+        std::vector<std::string> cells;
+        for (const std::string& name : shown) {
+            const auto mesh = std::find_if(meshes().begin(), meshes().end(),
+                                           [&](const NamedMesh& one) { return one.name == name; });
+            const TexturedMesh& reference = mesh->reference;
+            cells.push_back(in_digits(
+                texel_errors(reference, method.tangents_of(reference.mesh), method.basis).rms));
+        }
+        const MeasuredCost& cost = measured_costs.at(i);
+        cells.insert(cells.end(), {cost.computing, cost.bytes, cost.device});
+        text += table_row(cost.method, std::vector(cells.size(), not_compared), cells);
+    }
+    return text + "\n";
+}
+
+std::string mismatch_table(const std::string& title, const TexturedMesh& reference) {
+    std::vector<TangentMethod> bases = methods();
+    bases.push_back(made_unit(bases.front()));
+    std::vector<std::string> names;
+    for (const TangentMethod& reader : bases)
+        names.push_back("read in " + reader.name);
+    std::string text = "\n" + title + "\n\n" + table_header(names);
+    for (const TangentMethod& baker : bases) {
+        std::vector<double> ranks;
+        std::vector<std::string> cells;
+        for (const TangentMethod& reader : bases) {
+            const AngleDistribution errors = mismatch_errors(reference, baker, reader);
+            ranks.push_back(errors.rms);
+            cells.push_back(rms_and_max(errors));
+        }
+        text += table_row("baked in " + baker.name, ranks, cells);
+    }
+    return text;
+}
+
+std::string mismatch_tables() {
+    return mismatch_table(
+               "Normals tilted by 30 degrees on the jittered torus: RMS / largest in degrees",
+               textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
+                             TextureLayout::upright, 64, 1)) +
+           mismatch_table("On a coarse torus, 16 x 16 cells, regular",
+                          textured_mesh(AnalyticSurface::torus, Triangulation::regular,
+                                        TextureLayout::upright, 16, 1)) +
+           mismatch_table("On the plate with thin bevels", beveled_plate(0.02)) + "\n";
+}
+
+std::string encoding_tables() {
+    constexpr std::size_t count = 100000;
+    const ReferenceFrames random = random_frames(count);
+    const SampleFrames reference = sample_frames(random.normals, random.tangents);
+    std::string text =
+        "\n100,000 random frames: mean / largest error in degrees of the normal, the tangent, and "
+        "the normal of a texel tilted by 30 degrees\n\n" +
+        table_header({"rounding", "bytes", "normal", "tangent", "tilted texel", "hands lost"});
+    const auto mean_and_max = [](const AngleDistribution& errors) {
+        return fmt::format("{:.2g} / {:.2g}", errors.mean, errors.max);
+    };
+    for (const FrameEncoding encoding : all_frame_encodings) {
+        for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
+            if (encoding == FrameEncoding::float32 && rounding == FrameRounding::best) continue;
+            const FrameCodeErrors errors = frame_code_errors(reference, encoding, rounding);
+            const std::vector<std::string> cells = {
+                rounding == FrameRounding::nearest ? "nearest" : "best",
+                fmt::format("{}", 4 * words_per_frame(encoding)),
+                mean_and_max(errors.normal),
+                mean_and_max(errors.tangent),
+                mean_and_max(errors.texel),
+                fmt::format("{}", errors.flipped_frames)};
+            text += table_row(fmt::format("`{}`", name_of(encoding)),
+                              std::vector(cells.size(), not_compared), cells);
+        }
+    }
+    return text + "\n";
+}
+
+std::string begin_of(const char* name) {
+    return fmt::format("<!-- tables of {}: written by relief-tangent-errors-page -->\n", name);
+}
+
+}  // namespace
+
+std::vector<PageSection> tangent_tables() {
+    return {{begin_of("methods"), method_tables()},
+            {begin_of("bases"), mismatch_tables()},
+            {begin_of("costs"), cost_table()},
+            {begin_of("encodings"), encoding_tables()}};
+}
+
+}  // namespace relief::test

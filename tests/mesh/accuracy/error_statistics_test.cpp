@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error statistics, the Pareto frontier and timings against hand-computed values.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "accuracy/angle_sum.h"
+#include "random.h"
+#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/frontier.h"
+#include "relief/mesh/timing.h"
+#include "support/message_of.h"
+
+namespace relief {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+
+TEST(DegreesBetween, ResolvesWhatArcCosinesCannot) {
+    EXPECT_DOUBLE_EQ(degrees_between({2, 0, 0}, {0, 0, 5}), 90.0);
+    EXPECT_DOUBLE_EQ(degrees_between({1, 0, 0}, {-3, 0, 0}), 180.0);
+    EXPECT_EQ(degrees_between({1, 2, 3}, {2, 4, 6}), 0.0);
+    EXPECT_NEAR(degrees_between({1, 0, 0}, {1, 1e-9, 0}), 57.29577951e-9, 1e-17);
+}
+
+TEST(DegreesBetween, OfNoDirectionIsNoNumber) {
+    EXPECT_TRUE(std::isnan(degrees_between({0, 0, 0}, {0, 0, 1})));
+    EXPECT_TRUE(
+        std::isnan(degrees_between({std::numeric_limits<double>::infinity(), 0, 0}, {0, 0, 1})));
+}
+
+TEST(DirectionError, IsRmsMeanAndLargestOfThoseThatCount) {
+    const std::array<glm::vec3, 3> found = {glm::vec3(0, 0, 1), {0, 1, 1}, {1, 0, 0}};
+    const std::array<glm::dvec3, 3> reference = {glm::dvec3(0, 0, 1), {0, 0, 1}, {0, 0, 1}};
+    const DirectionError all = direction_error(found, reference);
+    EXPECT_EQ(all.count, 3U);
+    EXPECT_DOUBLE_EQ(all.mean, 45.0);
+    EXPECT_DOUBLE_EQ(all.rms, std::sqrt((45.0 * 45.0 + 90.0 * 90.0) / 3.0));
+    EXPECT_DOUBLE_EQ(all.max, 90.0);
+    const std::array<unsigned char, 3> counts = {1, 1, 0};
+    EXPECT_DOUBLE_EQ(direction_error(found, reference, counts).max, 45.0);
+    EXPECT_EQ(direction_error({}, {}).count, 0U);
+}
+
+TEST(DirectionError, DoesNotHideADirectionThatIsNone) {
+    const std::array<glm::vec3, 3> found = {glm::vec3(0, 0, 1), {0, 0, 0}, {1, 0, 0}};
+    const std::array<glm::dvec3, 3> reference = {glm::dvec3(0, 0, 1), {0, 0, 1}, {0, 0, 1}};
+    const DirectionError error = direction_error(found, reference);
+    EXPECT_TRUE(std::isnan(error.rms));
+    EXPECT_TRUE(std::isnan(error.mean));
+    EXPECT_TRUE(std::isnan(error.max));
+    EXPECT_THROW(direction_error(found, std::span(reference).first(2)), InvalidInput);
+}
+
+TEST(AngleDistribution, OfNothingIsAllZeros) {
+    EXPECT_EQ(angle_distribution({}), AngleDistribution());
+}
+
+TEST(AngleDistribution, SumsUpWhatItIsGiven) {
+    const AngleDistribution result = angle_distribution({4.0F, 0.0F, 3.0F, 0.0F});
+    EXPECT_EQ(result.count, 4U);
+    EXPECT_EQ(result.undefined, 0U);
+    EXPECT_DOUBLE_EQ(result.rms, 2.5);
+    EXPECT_DOUBLE_EQ(result.mean, 1.75);
+    EXPECT_EQ(result.median, 0.0) << "half do not exceed 0";
+    EXPECT_EQ(result.p99, 4.0);
+    EXPECT_EQ(result.max, 4.0);
+}
+
+TEST(AngleDistribution, PercentilesAreRanks) {
+    std::vector<float> degrees;
+    for (int i = 200; i > 0; --i)
+        degrees.push_back(static_cast<float>(i) / 2.0F);
+    const AngleDistribution result = angle_distribution(degrees);
+    EXPECT_EQ(result.median, 50.0);
+    EXPECT_EQ(result.p90, 90.0);
+    EXPECT_EQ(result.p99, 99.0);
+    EXPECT_EQ(result.max, 100.0);
+}
+
+TEST(AngleDistribution, BinsHoldTheirUpperEnd) {
+    const AngleDistribution result = angle_distribution(
+        {0.0F, 0.005F, 0.05F, 1.0F, 1.001F, 5.0F, 45.0F, 60.0F, 90.0F, 90.5F, 180.0F, 180.00002F});
+    EXPECT_THAT(result.histogram, ElementsAre(2, 1, 1, 2, 1, 2, 3));
+}
+
+TEST(AngleDistribution, WhatIsNoAngleIsCountedApart) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const AngleDistribution result = angle_distribution({nan, 2.0F, nan});
+    EXPECT_EQ(result.count, 1U);
+    EXPECT_EQ(result.undefined, 2U);
+    EXPECT_EQ(result.mean, 2.0);
+}
+
+/// Percentiles are the upper ends of bins, of which a factor of two has 64 or more.
+constexpr double bin_width = 1.0 / 64.0;
+
+/// Angles of all sizes that bins distinguish: 1e-6 to 170 degrees.
+std::vector<float> angles_of_all_sizes() {
+    std::vector<float> degrees;
+    for (int i = 0; i < 1000; ++i)
+        degrees.push_back(
+            static_cast<float>(std::pow(10.0, -6.0 + 8.23 * ((i * 617) % 1000) / 1000.0)));
+    return degrees;
+}
+
+TEST(AngleMoments, AreRmsMeanAndGreatest) {
+    AngleMoments moments;
+    for (const double degrees : {4.0, 0.0, 3.0, 0.0})
+        moments.add(degrees);
+    EXPECT_EQ(moments.count(), 4U);
+    EXPECT_EQ(moments.rms(), 2.5);
+    EXPECT_EQ(moments.mean(), 1.75);
+    EXPECT_EQ(moments.max(), 4.0);
+}
+
+TEST(AngleMoments, OfNothingAreZeros) {
+    const AngleMoments nothing;
+    EXPECT_EQ(nothing.count(), 0U);
+    EXPECT_EQ(nothing.rms(), 0.0);
+    EXPECT_EQ(nothing.mean(), 0.0);
+    EXPECT_EQ(nothing.max(), 0.0);
+}
+
+TEST(AngleMoments, OfPartsAreThoseOfTheWhole) {
+    AngleMoments whole, first, second;
+    for (int i = 0; i < 90; ++i) {  // Sums of whole degrees are exact.
+        whole.add(i);
+        (i < 17 ? first : second).add(i);
+    }
+    first.add(second);
+    first.add(AngleMoments());
+    EXPECT_EQ(first.count(), whole.count());
+    EXPECT_EQ(first.rms(), whole.rms());
+    EXPECT_EQ(first.mean(), whole.mean());
+    EXPECT_EQ(first.max(), whole.max());
+}
+
+TEST(AngleMoments, KeepWhatIsNoNumberInTheMeans) {
+    AngleMoments moments;
+    for (const double degrees : {2.0, std::numeric_limits<double>::quiet_NaN(), 5.0})
+        moments.add(degrees);
+    EXPECT_TRUE(std::isnan(moments.rms()));
+    EXPECT_TRUE(std::isnan(moments.mean()));
+    EXPECT_EQ(moments.max(), 5.0);
+    EXPECT_EQ(moments.count(), 3U);
+}
+
+TEST(AngleSum, IsTheDistributionInShort) {
+    const std::vector<float> degrees = angles_of_all_sizes();
+    AngleSum sum;
+    for (const float angle : degrees)
+        sum.add(static_cast<double>(angle));
+    const AngleSummary summary = sum.summary();
+    const AngleDistribution all = angle_distribution(degrees);
+    EXPECT_EQ(summary.count, all.count);
+    EXPECT_EQ(summary.rms, all.rms);
+    EXPECT_EQ(summary.mean, all.mean);
+    EXPECT_EQ(summary.max, all.max);
+    EXPECT_GE(summary.p99, all.p99);
+    EXPECT_LE(summary.p99, all.p99 * (1.0 + bin_width));
+}
+
+TEST(AngleSum, HasAPercentileNoFurtherOffThanABin) {
+    for (const float angle : angles_of_all_sizes()) {
+        AngleSum sum;
+        for (int i = 0; i < 99; ++i)
+            sum.add(static_cast<double>(angle));
+        sum.add(180.0);
+        const double p99 = sum.summary().p99;
+        EXPECT_GE(p99, static_cast<double>(angle));
+        EXPECT_LE(p99, static_cast<double>(angle) * (1.0 + bin_width));
+    }
+}
+
+TEST(AngleSum, OfPartsIsThatOfTheWhole) {
+    AngleSum whole, first, second;
+    for (int i = 0; i < 180; ++i) {  // Sums of whole degrees are exact.
+        whole.add(i);
+        (i % 3 == 0 ? first : second).add(i);
+    }
+    AngleSum both;
+    both.add(first);
+    both.add(second);
+    EXPECT_EQ(both.summary().count, 180U);
+    EXPECT_EQ(both.summary().rms, whole.summary().rms);
+    EXPECT_EQ(both.summary().mean, whole.summary().mean);
+    EXPECT_EQ(both.summary().p99, whole.summary().p99);
+    EXPECT_EQ(both.summary().max, 179.0);
+}
+
+TEST(AngleSum, OfNothingIsAllZerosAndOfExactAnglesExact) {
+    EXPECT_EQ(AngleSum().summary().count, 0U);
+    EXPECT_EQ(AngleSum().summary().p99, 0.0);
+    AngleSum exact;
+    exact.add(0.0);
+    EXPECT_EQ(exact.summary().count, 1U);
+    EXPECT_EQ(exact.summary().p99, 0.0) << "never more than the greatest";
+    EXPECT_EQ(exact.summary().max, 0.0);
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::vector<bool> of(std::vector<MethodCost> prices) {
+    return pareto_optimal(prices);
+}
+
+TEST(Frontier, HoldsWhatNothingBeats) {
+    EXPECT_THAT(of({{1.0, 3.0}, {2.0, 2.0}, {2.5, 2.5}, {3.0, 1.0}}),
+                ElementsAre(true, true, false, true));
+    EXPECT_THAT(of({}), IsEmpty());
+    EXPECT_THAT(of({{5.0, 5.0}}), ElementsAre(true));
+}
+
+TEST(Frontier, OfEqualTimesTakesTheTruerAndOfEqualErrorsTheFaster) {
+    EXPECT_THAT(of({{1.0, 1.0}, {2.0, 1.0}}), ElementsAre(true, false));
+    EXPECT_THAT(of({{1.0, 2.0}, {1.0, 1.0}}), ElementsAre(false, true));
+}
+
+TEST(Frontier, EqualOnesStandOrFallTogether) {
+    EXPECT_THAT(of({{1.0, 1.0}, {1.0, 1.0}, {2.0, 2.0}, {2.0, 2.0}}),
+                ElementsAre(true, true, false, false));
+}
+
+TEST(Frontier, WhatIsNotKnownIsNeverOnIt) {
+    EXPECT_THAT(of({{nan, 0.0}, {0.0, nan}, {1.0, 1.0}}), ElementsAre(false, false, true));
+    EXPECT_THAT(of({{infinity, 0.5}, {1.0, 1.0}}), ElementsAre(true, true));
+}
+
+TEST(Frontier, IsThatOfTheDefinitionOnRandomPrices) {
+    Random random(3);
+    for (int round = 0; round < 200; ++round) {
+        std::vector<MethodCost> prices(12);
+        for (MethodCost& price : prices)  // Few values give ties.
+            price = {std::floor(random.between(0, 6)), std::floor(random.between(0, 6))};
+        const std::vector<bool> found = pareto_optimal(prices);
+        for (std::size_t i = 0; i < prices.size(); ++i) {
+            const bool is_beaten =
+                std::any_of(prices.begin(), prices.end(), [&](const MethodCost& other) {
+                    return other.error <= prices[i].error && other.time <= prices[i].time &&
+                           (other.error < prices[i].error || other.time < prices[i].time);
+                });
+            EXPECT_NE(found[i], is_beaten);
+        }
+    }
+}
+
+constexpr double clock_rounding = 1e-12;  // Ticks are integers; their sums in seconds are rounded.
+
+TEST(TimeStatistics, IsTakenBetweenMeasurements) {
+    const TimeStatistics odd =
+        time_statistics({5, 1, 3, 2, 4, 11, 8, 7, 6, 10, 9});  // The values 1 to 11.
+    EXPECT_EQ(odd.median, 6.0);
+    EXPECT_EQ(odd.p10, 2.0);
+    EXPECT_EQ(odd.p90, 10.0);
+    EXPECT_EQ(odd.count, 11U);
+    const TimeStatistics even = time_statistics({4, 1});
+    EXPECT_EQ(even.median, 2.5);
+    EXPECT_NEAR(even.p10, 1.3, 1e-12);
+    EXPECT_NEAR(even.p90, 3.7, 1e-12);
+}
+
+TEST(TimeStatistics, OfOneIsThatOneAndOfNoneNothing) {
+    EXPECT_EQ(time_statistics({7}).median, 7.0);
+    EXPECT_EQ(time_statistics({7}).p10, 7.0);
+    EXPECT_EQ(time_statistics({7}).p90, 7.0);
+    EXPECT_EQ(time_statistics({}).count, 0U);
+    EXPECT_EQ(time_statistics({}).median, 0.0);
+}
+
+TEST(Stopwatch, LapsAddUpToTheWhole) {
+    const Stopwatch whole;
+    Stopwatch parts;
+    const double first = parts.lap();
+    const double second = parts.lap();
+    EXPECT_GE(first, 0.0);
+    EXPECT_GE(second, 0.0);
+    EXPECT_GE(parts.seconds(), 0.0);
+    EXPECT_LE(first + second, whole.seconds() + clock_rounding);
+}
+
+TEST(SecondsOf, IsTheTimeOfTheWorkWhichIsDoneOnce) {
+    int done = 0;
+    const Stopwatch around;
+    const double seconds = seconds_of([&] { ++done; });
+    EXPECT_EQ(done, 1);
+    EXPECT_GE(seconds, 0.0);
+    EXPECT_LE(seconds, around.seconds());
+}
+
+TEST(Interleave, TakesTurnsAndWarmsUpFirst) {
+    std::vector<std::pair<std::size_t, bool>> calls;
+    interleave(2, {.counted = 2, .warm_up = 1},
+               [&](std::size_t thing, bool counted) { calls.emplace_back(thing, counted); });
+    EXPECT_THAT(calls, ElementsAre(Pair(0, false), Pair(1, false), Pair(0, true), Pair(1, true),
+                                   Pair(0, true), Pair(1, true)));
+}
+
+TEST(MedianDifference, IsFreeOfWhatBothShare) {
+    EXPECT_EQ(median_difference({12, 110, 52}, {10, 109, 49}), 2.0);
+    EXPECT_EQ(test::message_of<InvalidInput>([] {
+                  median_difference({1, 2}, {1});
+              }),
+              "2 measurements cannot be compared with 1 round by round");
+}
+
+}  // namespace
+}  // namespace relief

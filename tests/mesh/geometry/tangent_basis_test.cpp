@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// The method that made given tangents: each method is identified through noise, quantization,
+// negated signs and other axes, and tangents of no known method are reported as such.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "relief/mesh/analytic_surfaces.h"
+#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/shapes.h"
+#include "relief/mesh/tangent_basis.h"
+#include "support/shapes.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A torus with perturbed positions, so that methods differ.
+Mesh bumpy_torus() {
+    Mesh torus = make_torus(0.4F, 48, 24);
+    for (glm::vec3& position : torus.positions) {
+        position += 0.02F * glm::vec3(std::sin(31.0F * position.y), std::sin(29.0F * position.z),
+                                      std::sin(37.0F * position.x));
+    }
+    return torus;
+}
+
+/// Gives each triangle its own vertices and the tangents of its own gradient.
+Mesh with_triangle_tangents(const Mesh& mesh) {
+    Mesh result;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        Mesh one;
+        const auto first = static_cast<std::uint32_t>(result.positions.size());
+        for (int k = 0; k < 3; ++k) {
+            one.positions.push_back(mesh.positions[triangle[k]]);
+            one.normals.push_back(mesh.normals[triangle[k]]);
+            one.texcoords.push_back(mesh.texcoords[triangle[k]]);
+        }
+        one.triangles = {{0, 1, 2}};
+        one = test::with_tangents(one, TangentMode::mikktspace);
+        result.positions.insert(result.positions.end(), one.positions.begin(), one.positions.end());
+        result.normals.insert(result.normals.end(), one.normals.begin(), one.normals.end());
+        result.texcoords.insert(result.texcoords.end(), one.texcoords.begin(), one.texcoords.end());
+        result.tangents.insert(result.tangents.end(), one.tangents.begin(), one.tangents.end());
+        result.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return result;
+}
+
+Mesh made_by(TangentBasis basis) {
+    switch (basis) {
+        case TangentBasis::mikktspace:
+            return test::with_tangents(bumpy_torus(), TangentMode::mikktspace);
+        case TangentBasis::area_weighted:
+            return test::with_tangents(bumpy_torus(), TangentMode::area_weighted);
+        case TangentBasis::lengyel:
+            return test::with_tangents(bumpy_torus(), TangentMode::lengyel);
+        case TangentBasis::triangle:
+            break;
+    }
+    return with_triangle_tangents(bumpy_torus());
+}
+
+/// Returns the tangent rotated about the normal of the vertex.
+glm::vec4 turned(const Mesh& mesh, std::size_t v, double degrees) {
+    const double angle = degrees * 3.14159265358979323846 / 180.0;
+    const glm::dvec3 n = glm::normalize(glm::dvec3(mesh.normals[v]));
+    const glm::dvec3 t(mesh.tangents[v]);
+    return {glm::vec3(t * std::cos(angle) + glm::cross(n, t) * std::sin(angle)),
+            mesh.tangents[v].w};
+}
+
+class TangentBasisTest : public testing::TestWithParam<TangentBasis> {};
+
+TEST_P(TangentBasisTest, IsToldFromTheOthers) {
+    const Mesh mesh = made_by(GetParam());
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    ASSERT_EQ(identified.basis, GetParam());
+    EXPECT_THAT(identified.equivalent_methods, IsEmpty());
+    EXPECT_EQ(identified.corners, 3 * mesh.triangles.size());
+    EXPECT_EQ(identified.left_out + identified.undefined, 0U);
+    EXPECT_EQ(identified.stored_bits, 0);
+    EXPECT_EQ(identified.agreements.size(), tangent_bases().size());
+    EXPECT_EQ(identified.best()->basis, GetParam());
+    EXPECT_EQ(identified.best()->agreeing(), identified.corners);
+    EXPECT_LT(identified.best()->angles.max, 1e-4);
+    EXPECT_EQ(identified.best()->negated, 0U);
+    for (const TangentAgreement& other : identified.agreements) {
+        if (other.basis == GetParam()) continue;
+        EXPECT_LT(other.share(), 0.6) << name_of(other.basis);
+        EXPECT_GT(other.angles.mean, 0.2) << name_of(other.basis);
+    }
+}
+
+TEST_P(TangentBasisTest, IsToldThroughNoise) {
+    Mesh mesh = made_by(GetParam());
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0.0, 0.03);  // In degrees.
+    for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
+        mesh.tangents[v] = turned(mesh, v, noise(random));
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_EQ(identified.basis, GetParam());
+    EXPECT_NEAR(identified.best()->angles.rms, 0.03, 0.003);
+}
+
+TEST_P(TangentBasisTest, IsStillTheNearestWhereNoiseIsLarge) {
+    Mesh mesh = made_by(GetParam());
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0.0, 0.3);
+    for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
+        mesh.tangents[v] = turned(mesh, v, noise(random));
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_FALSE(identified.basis);
+    EXPECT_EQ(identified.best()->basis, GetParam());
+    EXPECT_TRUE(identified.is_clearly_best());
+}
+
+TEST_P(TangentBasisTest, IsToldThroughStorageInFewBits) {
+    for (const int bits : {8, 16}) {
+        Mesh mesh = made_by(GetParam());
+        const float steps = bits == 8 ? 127.0F : 32767.0F;
+        for (glm::vec4& tangent : mesh.tangents)
+            tangent = glm::round(tangent * steps) / steps;
+        const IdentifiedTangents identified = identify_tangents(mesh);
+        EXPECT_EQ(identified.basis, GetParam()) << bits;
+        EXPECT_EQ(identified.stored_bits, bits);
+        EXPECT_EQ(identified.tolerance, bits == 8 ? 0.5 : 0.1);
+        EXPECT_LT(identified.best()->angles.max, identified.tolerance) << "which has its reason";
+    }
+}
+
+TEST_P(TangentBasisTest, IsToldWhereTheSignIsNegated) {
+    Mesh mesh = made_by(GetParam());
+    for (glm::vec4& tangent : mesh.tangents)
+        tangent.w = -tangent.w;
+    const IdentifiedTangents all = identify_tangents(mesh);
+    EXPECT_EQ(all.basis, GetParam());
+    EXPECT_EQ(all.best()->quarter_turns, 0);
+    EXPECT_EQ(all.best()->negated, all.corners);
+
+    mesh = made_by(GetParam());
+    for (std::size_t v = 0; v < mesh.tangents.size() / 4; ++v)
+        mesh.tangents[v].w = -mesh.tangents[v].w;
+    const IdentifiedTangents some = identify_tangents(mesh);
+    EXPECT_EQ(some.basis, GetParam());
+    EXPECT_GT(some.best()->negated, some.corners / 8);
+    EXPECT_LT(some.best()->negated, some.corners / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, TangentBasisTest,
+                         testing::ValuesIn(tangent_bases().begin(), tangent_bases().end()),
+                         [](const auto& name) {
+                             std::string word(name_of(name.param));
+                             std::replace(word.begin(), word.end(), '-', '_');
+                             return word;
+                         });
+
+TEST(TangentBasis, OtherAxesAreQuarterTurns) {
+    // The direction that a program stores instead, and the reported rotation and sign.
+    const struct {
+        double degrees;
+        bool negates;
+        int quarter_turns;
+        const char* words;
+    } cases[] = {{0.0, true, 0, "w negated"},
+                 {180.0, true, 2, "u mirrored"},
+                 {180.0, false, 2, "turned by half a turn"},
+                 {90.0, true, 1, "tangent and bitangent exchanged"},
+                 {-90.0, false, 3, "turned by three quarters"}};
+    for (const auto& expected : cases) {
+        SCOPED_TRACE(expected.words);
+        Mesh mesh = made_by(TangentBasis::mikktspace);
+        for (std::size_t v = 0; v < mesh.tangents.size(); ++v) {
+            const float w = mesh.tangents[v].w;
+            // The bitangent is w * cross(n, t), so the direction of a quarter turn towards it
+            // depends on w.
+            mesh.tangents[v] = turned(mesh, v, expected.degrees * static_cast<double>(w));
+            mesh.tangents[v].w = expected.negates ? -w : w;
+        }
+        const IdentifiedTangents identified = identify_tangents(mesh);
+        ASSERT_EQ(identified.basis, TangentBasis::mikktspace);
+        EXPECT_EQ(identified.best()->quarter_turns, expected.quarter_turns);
+        EXPECT_EQ(identified.best()->negated, expected.negates ? identified.corners : 0U);
+        EXPECT_EQ(variant_text(identified.best()->quarter_turns, expected.negates), expected.words);
+    }
+}
+
+TEST(TangentBasis, FlippedTextureCoordinatesAreSuchVariants) {
+    // Tangents of the vertically flipped image differ only in w. Those of the mirrored image equal
+    // mirrored u.
+    for (const int axis : {0, 1}) {
+        Mesh flipped = bumpy_torus();
+        const std::vector<glm::vec2> texcoords = flipped.texcoords;
+        for (glm::vec2& texcoord : flipped.texcoords)
+            texcoord[axis] = 1.0F - texcoord[axis];
+        flipped = test::with_tangents(std::move(flipped), TangentMode::mikktspace);
+        ASSERT_EQ(flipped.texcoords.size(), texcoords.size()) << "no vertex was split";
+        flipped.texcoords = texcoords;
+        const IdentifiedTangents identified = identify_tangents(flipped);
+        ASSERT_EQ(identified.basis, TangentBasis::mikktspace);
+        EXPECT_EQ(identified.best()->quarter_turns, axis == 0 ? 2 : 0);
+        EXPECT_EQ(identified.best()->negated, identified.corners);
+    }
+}
+
+TEST(TangentBasis, RandomTangentsAreOfNone) {
+    Mesh mesh = made_by(TangentBasis::mikktspace);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> any(0.0, 360.0);
+    for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
+        mesh.tangents[v] = turned(mesh, v, any(random));
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_FALSE(identified.basis);
+    ASSERT_NE(identified.best(), nullptr);
+    EXPECT_LT(identified.best()->share(), 0.01);
+    EXPECT_FALSE(identified.is_clearly_best());
+}
+
+TEST(TangentBasis, OtherTextureCoordinatesAreOfNone) {
+    Mesh mesh = made_by(TangentBasis::mikktspace);
+    for (std::size_t v = 0; v < mesh.texcoords.size(); ++v) {
+        // The image is sheared over the surface, so every direction changes.
+        mesh.texcoords[v].x += 0.7F * mesh.texcoords[v].y;
+        mesh.texcoords[v].y += 0.3F * mesh.texcoords[v].x;
+    }
+    EXPECT_FALSE(identify_tangents(mesh).basis);
+}
+
+TEST(TangentBasis, OnAPlaneAllAreTheSame) {
+    const IdentifiedTangents identified =
+        identify_tangents(test::with_tangents(make_quad(4), TangentMode::lengyel));
+    EXPECT_EQ(identified.basis, TangentBasis::mikktspace) << "the usual one";
+    EXPECT_THAT(
+        identified.equivalent_methods,
+        ElementsAre(TangentBasis::area_weighted, TangentBasis::lengyel, TangentBasis::triangle));
+    EXPECT_EQ(identified.stored_bits, 0) << "whole numbers are no sign of few bits";
+}
+
+TEST(TangentBasis, LeaningTangentsAreJudgedInThePlaneOfTheNormal) {
+    Mesh mesh = made_by(TangentBasis::mikktspace);
+    for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
+        mesh.tangents[v] += glm::vec4(0.2F * mesh.normals[v], 0.0F);
+    EXPECT_EQ(identify_tangents(mesh).basis, TangentBasis::mikktspace);
+}
+
+/// The direction of u of each triangle is then parallel to the normal, so there is no angle of 0.
+TEST(TangentBasis, MethodsWithoutAnyDirectionAreNotTheNearest) {
+    Mesh quad = make_quad();
+    quad.normals.assign(4, {1.0F, 0.0F, 0.0F});
+    quad.tangents.assign(4, {0.0F, 0.8F, 0.6F, 1.0F});
+    const IdentifiedTangents found = identify_tangents(quad);
+    EXPECT_FALSE(found.basis);
+    ASSERT_NE(found.best(), nullptr);
+    EXPECT_NE(found.best()->basis, TangentBasis::triangle);
+    EXPECT_EQ(found.best()->angles.count, 6U);
+}
+
+TEST(TangentBasis, UncertainCornersAreLeftOut) {
+    Mesh mesh = made_by(TangentBasis::mikktspace);
+    const IdentifiedTangents before = identify_tangents(mesh);
+    mesh.tangents[mesh.triangles[5].x] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    mesh.tangents[mesh.triangles[9].x] =
+        glm::vec4(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, 1.0F);
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    // Triangles whose texture is a line, a point that is too small for floats, and NaN.
+    for (const float height : {0.0F, 1e-7F, std::numeric_limits<float>::quiet_NaN()}) {
+        for (int k = 0; k < 3; ++k) {
+            mesh.positions.emplace_back(k == 1 ? 2.0F : 1.0F, k == 2 ? 1.0F : 0.0F, 5.0F);
+            mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
+            mesh.texcoords.emplace_back(k == 1 ? 1.0F : 0.5F, k == 2 ? 0.5F + height : 0.5F);
+            mesh.tangents.emplace_back(0.6F, 0.8F, 0.0F, 1.0F);
+        }
+    }
+    for (std::uint32_t i = 0; i < 3; ++i)
+        mesh.triangles.emplace_back(first + 3 * i, first + 3 * i + 1, first + 3 * i + 2);
+    mesh.material_ranges.clear();
+    const IdentifiedTangents identified = identify_tangents(mesh);
+    EXPECT_EQ(identified.basis, TangentBasis::mikktspace);
+    EXPECT_EQ(identified.left_out, 9U);
+    EXPECT_GT(identified.undefined, 2U) << "all corners of two vertices";
+    EXPECT_LE(identified.undefined, 16U);
+    EXPECT_EQ(identified.corners + identified.undefined, before.corners);
+}
+
+TEST(TangentBasis, WithoutWhatItTakesNothingIsSaid) {
+    const Mesh whole = made_by(TangentBasis::mikktspace);
+    for (const int missing : {0, 1, 2}) {
+        Mesh mesh = whole;
+        if (missing == 0) mesh.tangents.clear();
+        if (missing == 1) mesh.normals.clear();
+        if (missing == 2) mesh.texcoords.clear();
+        const IdentifiedTangents identified = identify_tangents(mesh);
+        EXPECT_FALSE(identified.basis);
+        EXPECT_EQ(identified.best(), nullptr);
+    }
+    EXPECT_EQ(identify_tangents({}).best(), nullptr);
+    Mesh broken = whole;
+    broken.triangles.front().x = 1000000;
+    EXPECT_THROW(identify_tangents(broken), InvalidInput);
+}
+
+TEST(TangentBasis, OfRealModels) {
+    RELIEF_NEEDS_SHARED(models, "data/models");
+    const struct {
+        const char* file;
+        int set;
+        std::optional<TangentBasis> basis;
+    } expected[] = {
+        {"gltf/WaterBottle/glTF/WaterBottle.gltf", 0, TangentBasis::mikktspace},
+        {"gltf/NormalTangentMirrorTest/glTF-Binary/NormalTangentMirrorTest.glb", 0,
+         TangentBasis::mikktspace},
+        {"gltf/AnisotropyStrengthTest/glTF-Binary/AnisotropyStrengthTest.glb", 0,
+         TangentBasis::mikktspace},
+        {"gltf-ext/misc/DuplicateMeshes/duplicate_meshes.gltf", 0, TangentBasis::mikktspace},
+        {"gltf-ext/tangent-pair/sphere.gltf", 0, TangentBasis::lengyel},
+        {"gltf/MultiUVTest/glTF-Binary/MultiUVTest.glb", 0, std::nullopt},
+        {"gltf/MultiUVTest/glTF-Binary/MultiUVTest.glb", 1, TangentBasis::mikktspace},
+        {"gltf/BoomBox/glTF/BoomBox.gltf", 0, std::nullopt},
+    };
+    for (const auto& model : expected) {
+        SCOPED_TRACE(model.file);
+        Report report;
+        const GltfDocument document = GltfDocument::read(models / model.file, report);
+        EXPECT_EQ(identify_tangents(document.mesh({0, 0}, model.set)).basis, model.basis);
+    }
+}
+
+}  // namespace
+}  // namespace relief

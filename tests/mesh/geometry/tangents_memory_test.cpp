@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The peak memory of tangent computation. The program is separate because it replaces operator
+// new.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "relief/mesh/tangents.h"
+#include "relief/mesh/threads.h"
+#include "support/shapes.h"
+
+namespace {
+
+std::atomic<std::size_t> in_use{0};
+std::atomic<std::size_t> max_used{0};
+
+// Each block begins with its size. The header keeps the alignment of the data.
+constexpr std::size_t header = 64;
+
+void* counted_new(std::size_t size) {
+    void* block = std::aligned_alloc(header, (size + 2 * header - 1) / header * header);
+    if (block == nullptr) throw std::bad_alloc();
+    *static_cast<std::size_t*>(block) = size;
+    const std::size_t now = in_use += size;
+    std::size_t most = max_used;
+    while (now > most && !max_used.compare_exchange_weak(most, now)) {
+    }
+    return static_cast<std::byte*>(block) + header;
+}
+
+void counted_delete(void* memory) noexcept {
+    if (memory == nullptr) return;
+    void* block = static_cast<std::byte*>(memory) - header;
+    in_use -= *static_cast<std::size_t*>(block);
+    std::free(block);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return counted_new(size);
+}
+void operator delete(void* memory) noexcept {
+    counted_delete(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    counted_delete(memory);
+}
+
+namespace relief {
+namespace {
+
+std::size_t bytes_of(const Mesh& mesh) {
+    return mesh.positions.size() * (2 * sizeof(glm::vec3) + sizeof(glm::vec2)) +
+           mesh.triangles.size() * sizeof(glm::uvec3);
+}
+
+/// Returns the peak memory of input, output and temporary data, divided by that of input and
+/// output.
+double peak_ratio(const Mesh& mesh) {
+    const std::size_t before = in_use;
+    max_used = before;
+    Report report;
+    const auto tangents =
+        mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
+    const std::size_t needed = bytes_of(mesh) + tangents.size() * sizeof(glm::vec4);
+    return static_cast<double>(bytes_of(mesh) + max_used - before) / static_cast<double>(needed);
+}
+
+TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {
+    Mesh welded = test::grid(320);
+    // A single duplicate vertex makes triangles over welded vertices necessary.
+    welded.positions.push_back(welded.positions[0]);
+    welded.normals.push_back(welded.normals[0]);
+    welded.texcoords.push_back(welded.texcoords[0]);
+    for (const unsigned threads : {1U, 2U}) {
+        set_thread_limit(threads);
+        // Bytes per triangle by hand: input 28, output 48, and 34 more at the peak: 12 for welded
+        // triangles, 12 for corners by vertex, 1 for kinds, 2 for the first corners of vertices,
+        // and 2 more for the counts of each thread.
+        EXPECT_LT(peak_ratio(welded), 1.45);
+        EXPECT_GT(peak_ratio(welded), 1.3) << "the count counts";
+        EXPECT_LT(peak_ratio(test::soup(test::grid(320))), 1.5);
+    }
+    set_thread_limit(0);
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The number of boundary edges of a welded mesh.
+#pragma once
+
+#include <algorithm>
+
+#include "geometry/weld.h"
+#include "topology/topology.h"
+
+namespace relief::test {
+
+inline std::size_t boundary_edges(const Mesh& mesh) {
+    Report report;
+    const Topology surface = topology_of(mesh, weld_positions(mesh.positions), report);
+    return static_cast<std::size_t>(
+        std::count(surface.opposite.begin(), surface.opposite.end(), no_corner));
+}
+
+}  // namespace relief::test

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/effects/feature_sets.h"
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "relief/shade/framing.h"
+#include "support/shapes.h"
+
+namespace relief::test {
+namespace {
+
+template <auto Member, unsigned Count = 2>
+FeatureField field(const char* name) {
+    using Value = std::decay_t<decltype(std::declval<Features>().*Member)>;
+    return {name, Count, [](const Features& f) { return static_cast<unsigned>(f.*Member); },
+            [](Features& f, unsigned value) { f.*Member = static_cast<Value>(value); }};
+}
+
+constexpr unsigned max_values = 4;
+
+/// A set and an upper bound of the pairs that it adds. The bound is its last count, since the
+/// number of new pairs only decreases.
+struct Candidate {
+    const Features* features;
+    std::vector<unsigned char> values;  ///< Values of each field.
+    std::size_t bound = static_cast<std::size_t>(-1);
+};
+
+/// The pairs of values of two fields that occurred.
+class CoveredPairs {
+  public:
+    explicit CoveredPairs(std::size_t fields)
+        : fields_(fields), met_(fields * fields * max_values * max_values, 0) {}
+
+    [[nodiscard]] std::size_t fresh_in(const std::vector<unsigned char>& values) const {
+        std::size_t fresh = 0;
+        const unsigned char* const met = met_.data();
+        for (std::size_t i = 0; i < fields_; ++i) {
+            for (std::size_t j = i + 1; j < fields_; ++j)
+                fresh += met[place(i, j, values[i], values[j])] == 0 ? 1U : 0U;
+        }
+        return fresh;
+    }
+    void add(const std::vector<unsigned char>& values) {
+        for (std::size_t i = 0; i < fields_; ++i) {
+            for (std::size_t j = i + 1; j < fields_; ++j)
+                met_[place(i, j, values[i], values[j])] = 1;
+        }
+    }
+
+  private:
+    [[nodiscard]] std::size_t place(std::size_t i, std::size_t j, std::size_t a,
+                                    std::size_t b) const {
+        return ((i * fields_ + j) * max_values + a) * max_values + b;
+    }
+
+    std::size_t fields_;
+    std::vector<unsigned char> met_;
+};
+
+}  // namespace
+
+const std::vector<FeatureField>& feature_fields() {
+    using F = Features;
+    static const std::vector<FeatureField> all = {
+        field<&F::unlit>("unlit"),
+        field<&F::metallic_roughness>("metallic-roughness"),
+        field<&F::interpolation, 3>("interpolation"),
+        field<&F::diffuse_texture>("diffuse texture"),
+        field<&F::specular_texture>("specular texture"),
+        field<&F::metallic_roughness_texture>("metallic-roughness texture"),
+        field<&F::occlusion_texture>("occlusion texture"),
+        field<&F::vertex_colors>("vertex colours"),
+        field<&F::alpha, 3>("alpha"),
+        field<&F::opacity_texture>("opacity texture"),
+        field<&F::detail, 4>("detail"),
+        field<&F::frame, 2>("frame"),
+        field<&F::specular_antialiasing>("specular antialiasing"),
+        field<&F::double_sided>("double-sided"),
+        field<&F::ambient>("ambient"),
+        field<&F::directional_lights, 3>("directional lights"),
+        field<&F::point_lights, 3>("point lights"),
+        field<&F::spot_lights, 3>("spot lights"),
+        field<&F::falloff, 3>("falloff"),
+        field<&F::light_ranges>("light ranges"),
+        field<&F::highlight_colors>("highlight colours"),
+        field<&F::lights_in_buffer>("light buffer"),
+        field<&F::environment_diffuse>("environment light"),
+        field<&F::diffuse>("diffuse"),
+        field<&F::specular, 3>("specular"),
+        field<&F::emission>("emission"),
+        field<&F::emission_texture>("emission texture"),
+        field<&F::reflection, 3>("reflection"),
+        field<&F::fresnel, 4>("fresnel"),
+        field<&F::refraction>("refraction"),
+        field<&F::output, 4>("output"),
+        field<&F::tone_mapping, 3>("tone mapping"),
+        field<&F::exposure>("exposure"),
+    };
+    return all;
+}
+
+Features random_features(std::mt19937& random) {
+    Features f;
+    for (const FeatureField& field : feature_fields())
+        field.set(f, static_cast<unsigned>(random() % field.count));
+    if (random() % 8 != 0) f.unlit = false;
+    return f;
+}
+
+void for_random_features(std::size_t count, const std::function<void(const Features&)>& visit) {
+    std::mt19937 random(1);
+    for (std::size_t i = 0; i < count; ++i)
+        visit(random_features(random));
+}
+
+namespace {
+
+std::vector<Features> make_covering_features() {
+    std::set<Features> canonical_sets;
+    for_random_features(40000, [&](const Features& f) { canonical_sets.insert(canonical(f)); });
+    std::vector<Candidate> candidates;
+    for (const Features& f : canonical_sets) {
+        Candidate candidate{&f, {}};
+        for (const FeatureField& field : feature_fields())
+            candidate.values.push_back(static_cast<unsigned char>(field.get(f)));
+        candidates.push_back(std::move(candidate));
+    }
+    CoveredPairs covered(feature_fields().size());
+    std::vector<Features> chosen;
+    // Passes with a decreasing threshold. This is cheaper than the exact greedy choice and gives
+    // almost as small a result.
+    for (std::size_t bar = 400; bar > 0; bar = bar > 8 ? bar * 3 / 4 : bar - 1) {
+        for (Candidate& candidate : candidates) {
+            if (candidate.bound < bar) continue;
+            candidate.bound = covered.fresh_in(candidate.values);
+            if (candidate.bound < bar) continue;
+            covered.add(candidate.values);
+            chosen.push_back(*candidate.features);
+            candidate.bound = 0;
+        }
+    }
+    return chosen;
+}
+
+}  // namespace
+
+const std::vector<Features>& covering_features() {
+    static const std::vector<Features> all = make_covering_features();
+    return all;
+}
+
+namespace {
+
+/// Texels of noise between two codes, including alpha.
+Image noise(std::uint32_t seed, int channels, int low, int high, ColorSpace space) {
+    std::mt19937 random(seed);
+    Image image = make_image(4, 4, channels, 8, space);
+    for (std::uint8_t& sample : image.as<std::uint8_t>()) {
+        sample = static_cast<std::uint8_t>(
+            low + static_cast<int>(random() % static_cast<unsigned>(high - low)));
+    }
+    return image;
+}
+
+Texture add_image(Scene& scene, const char* name, Image image) {
+    scene.images.push_back({name, std::move(image)});
+    return {scene.images.size() - 1};
+}
+
+void add_textures(Scene& scene, Material& m, const Features& f) {
+    const auto color = [&](const char* name, std::uint32_t seed) {
+        return add_image(scene, name, noise(seed, 4, 40, 256, ColorSpace::srgb));
+    };
+    const auto data = [&](const char* name, std::uint32_t seed, int low) {
+        return add_image(scene, name, noise(seed, 3, low, 256, ColorSpace::data));
+    };
+    if (f.diffuse_texture) m.diffuse_texture = color("diffuse", 1);
+    if (f.specular_texture) m.specular_texture = color("specular", 2);
+    if (f.emission_texture) m.emission_texture = color("emission", 3);
+    if (f.occlusion_texture) m.occlusion_texture = data("occlusion", 4, 40);
+    m.occlusion_strength = 0.7F;
+    if (f.opacity_texture) m.opacity_texture = data("opacity", 5, 100);
+    if (f.metallic_roughness_texture) {
+        m.metallic_roughness->texture = data("metallic and roughness", 6, 40);
+    }
+    if (f.detail == NormalDetail::normal_map || f.detail == NormalDetail::object_normal_map) {
+        m.normal_map = NormalMap{data("normal", 7, 90)};
+        if (f.detail == NormalDetail::object_normal_map) m.normal_map->space = NormalSpace::object;
+    }
+    if (f.detail == NormalDetail::bump_map) m.bump_map = BumpMap{data("bump", 8, 0), 2.0F};
+}
+
+Material material_calling_for(const Features& f) {
+    Material m;
+    m.name = "m";
+    m.unlit = f.unlit;
+    m.interpolation = f.interpolation;
+    m.tangent_frame = f.frame;
+    m.specular_antialiasing = f.specular_antialiasing;
+    m.double_sided = f.double_sided;
+    m.alpha_mode = f.alpha;
+    if (f.alpha != AlphaMode::opaque) m.opacity = 0.8F;
+    m.alpha_cutoff = 0.3F;
+    const bool scatters = f.diffuse || f.environment_diffuse || f.unlit;
+    m.diffuse = scatters ? glm::vec3(0.6F, 0.5F, 0.4F) : glm::vec3(0.0F);
+    m.ambient = glm::vec3(0.3F, 0.2F, 0.4F);
+    if (f.metallic_roughness) m.metallic_roughness = {{0.7F, 0.5F, 0.3F}, 0.4F, 0.5F, {}};
+    if (f.specular != SpecularTerm::none) m.specular = glm::vec3(0.5F, 0.4F, 0.3F);
+    m.shininess = 12.0F;
+    if (f.specular == SpecularTerm::phong) m.specular_model = SpecularModel::phong;
+    if (f.emission) m.emission = glm::vec3(0.1F, 0.05F, 0.02F);
+    if (f.reflection != ReflectionTerm::none) m.reflectivity = glm::vec3(0.4F, 0.5F, 0.6F);
+    if (f.reflection == ReflectionTerm::glossy) m.reflection_roughness = 0.4F;
+    if (f.fresnel == FresnelTerm::constant) m.grazing_reflectivity = m.reflectivity;
+    if (f.fresnel == FresnelTerm::dielectric) m.fresnel = FresnelModel::dielectric;
+    if (f.fresnel == FresnelTerm::conductor) m.fresnel = FresnelModel::conductor;
+    if (f.refraction) m.transmission = 0.5F;
+    return m;
+}
+
+void add_lights(Scene& scene, const Features& f) {
+    const auto shift = [](std::uint32_t i) { return 0.5F * static_cast<float>(i); };
+    for (std::uint32_t i = 0; i < f.directional_lights; ++i) {
+        scene.directional_lights.push_back({{1.0F - shift(i), -1, -2}, {0.5F, 0.4F, 0.3F}});
+    }
+    const auto point = [&](std::uint32_t i) {
+        PointLight light{{1.0F + shift(i), 1, 2}, glm::vec3(1.5F)};
+        const bool falls = f.falloff == FalloffTerm::inverse_square ||
+                           (f.falloff == FalloffTerm::mixed && i % 2 == 0);
+        light.falloff = falls ? Falloff::inverse_square : Falloff::none;
+        if (f.light_ranges) light.range = 5.0F;
+        if (f.highlight_colors) light.highlight_intensity = glm::vec3(0.5F, 1.0F, 0.2F);
+        return light;
+    };
+    for (std::uint32_t i = 0; i < f.point_lights; ++i)
+        scene.point_lights.push_back(point(i));
+    for (std::uint32_t i = 0; i < f.spot_lights; ++i) {
+        scene.spot_lights.push_back({point(f.point_lights + i), {-0.5F, -0.4F, -1}, 0.2F, 0.7F});
+    }
+    if (!f.highlight_colors) return;
+    for (DirectionalLight& light : scene.directional_lights)
+        light.highlight_irradiance = glm::vec3(0.1F, 0.3F, 0.5F);
+}
+
+void add_surroundings(Scene& scene, const Features& f) {
+    if (f.ambient) scene.ambient = glm::vec3(0.2F, 0.3F, 0.1F);
+    if (!f.environment_diffuse && f.reflection == ReflectionTerm::none) return;
+    CubeFaces faces;
+    for (std::uint32_t i = 0; i < 6; ++i)
+        faces.faces[i] = {"face", noise(20 + i, 3, 0, 256, ColorSpace::srgb)};
+    scene.environment = Environment{faces, 1.5F, !f.double_sided, f.environment_diffuse};
+}
+
+/// Returns the closest features that a scene can need.
+Features attainable(Features f) {
+    f.lights_in_buffer = false;
+    const bool lights = f.directional_lights + f.point_lights + f.spot_lights > 0;
+    const bool environment = f.environment_diffuse || f.reflection != ReflectionTerm::none;
+    if (f.falloff == FalloffTerm::mixed && f.point_lights + f.spot_lights == 1) {
+        f.falloff = FalloffTerm::inverse_square;
+    }
+    if (f.metallic_roughness && environment) f.reflection = ReflectionTerm::glossy;
+    if (lights && f.environment_diffuse) f.diffuse = true;
+    if (f.output == OutputCoding::half) f.output = OutputCoding::srgb;
+    if (f.alpha == AlphaMode::blend && f.output != OutputCoding::linear) {
+        f.output = OutputCoding::half;
+    }
+    return f;
+}
+
+}  // namespace
+
+CallingScene scene_calling_for(const Features& features) {
+    CallingScene result;
+    Scene& scene = result.scene;
+    Mesh mesh = sphere(24, 12);
+    mesh.name = "sphere";
+    if (features.vertex_colors) {
+        for (const glm::vec3& p : mesh.positions) {
+            mesh.colors.emplace_back(0.5F + 0.5F * p.x, 0.9F, 0.5F - 0.5F * p.y, 0.9F);
+        }
+    }
+    mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
+    scene.meshes = {std::move(mesh)};
+    scene.instances = {{0, glm::mat4(1.3F), "i"}};
+    scene.instances[0].world_from_object[1] = glm::vec4(0.3F, 1.0F, 0.1F, 0.0F);
+    scene.instances[0].world_from_object[3] = glm::vec4(0.1F, 0.2F, 0.0F, 1.0F);
+    scene.materials = {material_calling_for(features)};
+    add_textures(scene, scene.materials[0], features);
+    add_lights(scene, features);
+    add_surroundings(scene, features);
+    if (features.exposure) scene.exposure = 1.5F;
+    scene.tone_mapping = features.tone_mapping;
+    scene.background = {0.1F, 0.2F, 0.3F, 1.0F};
+    scene.camera = framed(scene, 0.4F, 0.3F, 0.6F, 1.0F);
+    result.expected = canonical(attainable(features));
+    result.settings = {32, 32, 1, features.output};
+    if (features.output == OutputCoding::half) result.settings.output = OutputCoding::srgb;
+    return result;
+}
+
+Material gray(const char* name) {
+    Material material;
+    material.name = name;
+    return material;
+}
+
+Scene lit_scene(const Material& material) {
+    Scene scene;
+    scene.meshes = {grid(1)};
+    scene.meshes[0].edit().name = "plane";
+    scene.meshes[0].edit().material_ranges = {{0, 2, 0}};
+    scene.materials = {material};
+    scene.instances = {{0, glm::mat4(1), "node"}};
+    scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
+    return scene;
+}
+
+const EffectReason& reason(const std::vector<EffectReason>& reasons, const char* effect) {
+    const auto found = std::find_if(reasons.begin(), reasons.end(),
+                                    [&](const EffectReason& r) { return r.effect == effect; });
+    if (found == reasons.end()) throw std::runtime_error(std::string("no reason for ") + effect);
+    return *found;
+}
+
+}  // namespace relief::test

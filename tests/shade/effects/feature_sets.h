@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Sets of effects for tests: each field of Features with its values, random sets, a small list of
+/// sets that covers every pair of values, and a scene that needs exactly a given set.
+#pragma once
+
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "relief/shade/effects.h"
+
+namespace relief::test {
+
+/// One field of Features as a number below `count`. Light counts have the values 0, 1 and 2.
+struct FeatureField {
+    const char* name;
+    unsigned count;
+    unsigned (*get)(const Features& f);
+    void (*set)(Features& f, unsigned value);
+};
+
+const std::vector<FeatureField>& feature_fields();
+
+/// Returns random values with a probability for each field. Unlit, which removes most other
+/// effects, is rare.
+Features random_features(std::mt19937& random);
+
+/// Calls visit with `count` random sets, the same in every run.
+void for_random_features(std::size_t count, const std::function<void(const Features&)>& visit);
+
+/// A small set of canonical features in which every value of every field meets every value of every
+/// other field, as far as 40,000 random sets show that they can meet. The greedy algorithm has a
+/// fixed order.
+const std::vector<Features>& covering_features();
+
+struct CallingScene {
+    Scene scene;
+    FrameSettings settings;
+    /// The planned features of its only draw: the requested ones, unless no scene needs exactly
+    /// those (a light buffer for few lights; glTF's model without reflection of the environment;
+    /// codes before blending).
+    Features expected;
+};
+
+/// \param features  canonical
+CallingScene scene_calling_for(const Features& features);
+
+/// The default material with a name.
+Material gray(const char* name = "body");
+
+/// A grid under one directional light.
+Scene lit_scene(const Material& material);
+
+/// Returns the reason of an effect. \throws std::runtime_error if there is none
+const EffectReason& reason(const std::vector<EffectReason>& reasons, const char* effect);
+
+}  // namespace relief::test
