@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The option words of normals, tangents, height maps and normal maps, which all tools share.
-/// Tests: tests/tools/relief_bake_test.cpp, relief_bake_heights_test.cpp, convert_test.cpp.
+/// Tests: tests/tools/relief_bake_bump_test.cpp, relief_bake_convert_test.cpp.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Reads a normal map with its conventions, which are given by the command line or the file, or are
-/// detected. Tests: tests/tools/convert_test.cpp.
+/// detected. Tests: tests/tools/relief_bake_convert_test.cpp.
 #pragma once
 
 #include <filesystem>

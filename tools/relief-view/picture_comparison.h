@@ -2,7 +2,7 @@
 /// \file
 /// Comparison of pictures: with a reference picture (--reference), with a variant of the scene
 /// (--compare), or with another file (--compare-to).
-/// Tests: tests/tools/compare_options_test.cpp, tests/tools/picture_reference_test.cpp.
+/// Tests: tests/tools/compare_options_test.cpp, picture_reference_test.cpp.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

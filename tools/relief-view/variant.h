@@ -14,7 +14,7 @@
 ///
 /// Heights come from bump maps, or from the height map of the options. A variant is prepared once
 /// for the meshes and maps of a scene; later edits of lights and colors do not need another
-/// preparation. Tests: tests/tools/variant_test.cpp, tests/tools/variant_scene_test.cpp.
+/// preparation. Tests: tests/tools/variant_test.cpp, variant_scene_test.cpp.
 #pragma once
 
 #include <optional>

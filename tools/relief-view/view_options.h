@@ -10,7 +10,7 @@
 ///
 /// The intensity is irradiance over pi (at distance 1 for point and spot), so a white surface that
 /// faces a directional light of intensity 1 is white. Tests: tests/tools/relief_view_test.cpp,
-/// tests/tools/light_option_test.cpp.
+/// light_option_test.cpp.
 #pragma once
 
 #include <filesystem>

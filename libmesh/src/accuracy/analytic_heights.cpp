@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields of waves with their true normals, in texels, computed in double from the formula itself.
-// Bad sizes throw. Tests: tests/mesh/accuracy/analytic_heights_test.cpp.
+// Bad sizes throw. Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
 #include "relief/mesh/analytic_heights.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Height maps with known normals: shapes in closed form, noise added, then coded as a file has it.
-// Lengths in texels. Sizes too small throw. Tests: tests/mesh/accuracy/bump_fields_test.cpp.
+// Lengths in texels. Sizes too small throw. Tests: tests/mesh/accuracy/bump_experiment_test.cpp.
 #include "relief/mesh/bump_fields.h"
 
 #include <fmt/format.h>

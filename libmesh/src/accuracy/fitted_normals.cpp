@@ -2,7 +2,7 @@
 // Weighted least squares for heights over the tangent plane, turned to the normal found and fitted
 // again. Object space, lengths in units of the neighbourhood. Source: [Cazals and Pouget 2005];
 // unlike there, the polynomial goes through the vertex itself, and near vertices count more.
-// Tests: tests/mesh/accuracy/fitted_normals_test.cpp.
+// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
 #include "relief/mesh/fitted_normals.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sorted by time, a method is efficient where its error is below that of all faster ones.
-// Tests: tests/mesh/accuracy/frontier_test.cpp.
+// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
 #include "relief/mesh/frontier.h"
 
 #include <algorithm>

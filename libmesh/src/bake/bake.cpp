@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes maps of high-poly meshes for a low-poly mesh: checks of options, parts, and strips of the
-// map. Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_sphere_test.cpp.
+// map. Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp.
 #include "relief/mesh/bake.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks of baked maps against a reference bake of many samples, in strips of rows.
-// Tests: tests/mesh/bake/bake_check_test.cpp, bake_trials_test.cpp.
+// Tests: tests/mesh/bake/bake_check_test.cpp.
 #include "relief/mesh/bake_check.h"
 
 #include <fmt/format.h>

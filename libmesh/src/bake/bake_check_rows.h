@@ -2,14 +2,14 @@
 /// \file
 /// Comparison of rows of a baked map with a reference bake of many samples: the error of each texel
 /// in degrees, in the space of the meshes, and its causes. Tests:
-/// tests/mesh/bake/bake_check_test.cpp, bake_trials_test.cpp.
+/// tests/mesh/bake/bake_check_test.cpp.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "accuracy/angle_sum.h"
+#include "geometry/angle_sum.h"
 #include "relief/mesh/bake_check.h"
 
 namespace relief {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors and times of bakes with several sample counts and encodings. The reference is baked once,
-// for bands spread over the map. Tests: tests/mesh/bake/bake_trials_test.cpp.
+// for bands spread over the map. Tests: tests/mesh/bake/bake_check_test.cpp.
 #include "relief/mesh/bake_trials.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edge padding: distances along columns first, then the nearest columns of each row. Only baked
 // texels are read and only others are written, so rows are filled in place. Tests:
-// tests/mesh/bake/dilation_test.cpp, border_fill_test.cpp, nearest_columns_test.cpp.
+// tests/mesh/bake/padding_test.cpp.
 #include "bake/edge_padding.h"
 
 #include <fmt/format.h>

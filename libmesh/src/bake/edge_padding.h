@@ -7,8 +7,7 @@
 /// between centers: the mean direction for normals, the mean value for other layers. So each chart
 /// continues beyond its border in all directions alike, and a mip level that averages 2^k texels
 /// sees only chart values within 2^k texels of a chart. The time depends only on the size of the
-/// map, not on the padding distance. Tests: tests/mesh/bake/dilation_test.cpp,
-/// border_fill_test.cpp, nearest_columns_test.cpp.
+/// map, not on the padding distance. Tests: tests/mesh/bake/padding_test.cpp.
 #pragma once
 
 #include <cstdint>

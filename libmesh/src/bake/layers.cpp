@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ambient occlusion, and texel means of layers.
-// Tests: tests/mesh/bake/bake_layers_test.cpp, occlusion_test.cpp.
+// Tests: tests/mesh/bake/bake_layers_test.cpp.
 #include "bake/layers.h"
 
 #include <array>

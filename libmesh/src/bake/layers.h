@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The layers of a bake: the list of all layers, ambient occlusion, and the texel means of the
-/// layers other than normals and heights. Tests: tests/mesh/bake/bake_layers_test.cpp,
-/// occlusion_test.cpp.
+/// layers other than normals and heights. Tests: tests/mesh/bake/bake_layers_test.cpp.
 #pragma once
 
 #include <array>

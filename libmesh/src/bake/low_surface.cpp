@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texels on the low-poly mesh: interpolated positions and ray directions.
-// Tests: tests/mesh/bake/bake_test.cpp, border_sample_test.cpp.
+// Tests: tests/mesh/bake/bake_test.cpp, padding_test.cpp.
 #include "bake/low_surface.h"
 
 #include <fmt/format.h>

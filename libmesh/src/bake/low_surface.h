@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The low-poly mesh of a bake: positions and projection lines of texels. All values are in the
-/// space and unit of the meshes, in double. Tests: tests/mesh/bake/bake_test.cpp,
-/// border_sample_test.cpp.
+/// space and unit of the meshes, in double. Tests: tests/mesh/bake/bake_test.cpp, padding_test.cpp.
 #pragma once
 
 #include <optional>

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <map>
 
-#include "accuracy/angle_sum.h"
+#include "geometry/angle_sum.h"
 #include "geometry/direction.h"
 #include "parallel.h"
 #include "relief/mesh/direction_error.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assigns triangles to the texture tiles that they overlap. Texture space with v down, in double.
-// Tests: tests/mesh/bake/map_tiles_test.cpp.
+// Tests: tests/mesh/bake/texel_coverage_test.cpp.
 #include "relief/mesh/map_tiles.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts normal maps between tangent and object space, with the interpolated frame of the mesh at
 // each texel, in double. Texels without a frame become (0, 0, 1) and are reported. Tests:
-// tests/mesh/bake/normal_space_test.cpp.
+// tests/mesh/bake/map_convention_test.cpp.
 #include "relief/mesh/normal_space.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projection onto the high meshes, automatic ray lengths, and the comparison of bounding boxes.
-// Tests: tests/mesh/bake/projection_test.cpp, bake_test.cpp.
+// Tests: tests/mesh/bake/ray_scene_test.cpp, bake_test.cpp.
 #include "bake/projection.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 /// \file
 /// Projection of points of the low mesh onto the high meshes: how far rays run, and which hit
 /// counts. All values are in the space and unit of the meshes. Tests:
-/// tests/mesh/bake/projection_test.cpp, bake_test.cpp.
+/// tests/mesh/bake/ray_scene_test.cpp, bake_test.cpp.
 ///
 /// *The rule.* A line runs through a point P along an outward direction. Walking outwards from P,
 /// the line crosses each triangle from behind (it leaves a solid) or from the front (it enters

@@ -2,7 +2,7 @@
 /// \file
 /// The tangent frame at a point of a triangle, as the shader computes it: normal and tangent are
 /// interpolated linearly and not renormalized, and b = w cross(n, t). Source: [Mikkelsen 2008].
-/// Tests: tests/mesh/bake/normal_space_test.cpp.
+/// Tests: tests/mesh/bake/map_convention_test.cpp.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clustering of triangles along a space-filling curve [Morton 1966], and ray tests of whole
-// clusters. Tests: tests/mesh/rays/triangle_clusters_test.cpp.
+// clusters. Tests: tests/mesh/rays/embree_scene_test.cpp.
 #include "bake/triangle_clusters.h"
 
 #include <algorithm>

@@ -12,8 +12,7 @@
 ///
 /// *Clusters.* A cluster holds copies of the corners of nearby triangles, so that one ray is tested
 /// against all of them with vector instructions. Embree builds its tree from the boxes of clusters,
-/// which are several times fewer than triangles. Tests: tests/mesh/rays/exact_hit_test.cpp,
-/// triangle_clusters_test.cpp.
+/// which are several times fewer than triangles. Tests: tests/mesh/rays/embree_scene_test.cpp.
 #pragma once
 
 #include <array>

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "relief/mesh/bump.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -12,7 +12,6 @@
 #include <type_traits>
 
 #include "parallel.h"
-#include "relief/mesh/bump.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 

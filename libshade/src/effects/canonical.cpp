@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // canonical(): the rules that drop effects which cannot show, in pictures and in debug views. Also
 // describes a set of effects in words. Pure.
-// Tests: tests/shade/effects/effects_test.cpp, debug_views_test.cpp.
+// Tests: tests/shade/effects/effects_test.cpp.
 #include <fmt/format.h>
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Debug views: their names and descriptions, and the plan that shows one: the features of each
 // draw, or the reason why it has nothing to show. Pure. Tests:
-// tests/shade/effects/debug_views_test.cpp.
+// tests/shade/effects/effects_test.cpp.
 #include "relief/shade/debug_views.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forces effects on and off: looks up their names, changes the features of each draw, checks what
 // canonical() leaves of them against the request, and rewrites the reasons. Pure. Unknown names and
-// impossible sets throw InvalidInput. Tests: tests/shade/effects/effect_forcing_test.cpp.
+// impossible sets throw InvalidInput. Tests: tests/shade/effects/effects_test.cpp.
 #include "relief/shade/effect_forcing.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // One row per effect: its name, its place in Features, the condition under which a scene calls for
 // it, whether it is neutral when forced on, and why it may be hidden. An effect is left out only if
 // its contribution is exactly zero. Pure.
-// Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp, effect_forcing_test.cpp.
+// Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
 #include "effects/effect_table.h"
 
 #include <fmt/format.h>

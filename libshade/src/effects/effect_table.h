@@ -2,7 +2,7 @@
 /// \file
 /// The table of effects: one row describes everything that planning and forcing know of an effect.
 /// Its shader code is in surface_program.cpp, since parts depend on several effects at once. Pure.
-/// Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp, effect_forcing_test.cpp.
+/// Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Questions about a set of effects that planning, shader assembly and drawing share. Pure.
-/// Tests: tests/shade/effects/effects_test.cpp, debug_views_test.cpp.
+/// Tests: tests/shade/effects/effects_test.cpp.
 #pragma once
 
 #include "relief/shade/effects.h"

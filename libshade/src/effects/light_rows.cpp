@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights as numbers for the shaders, in world space; light_rows.h describes the layout. Directions
 // are normalized in double precision, so that every length of a float works.
-// Tests: tests/shade/effects/light_rows_test.cpp.
+// Tests: tests/shade/effects/shader_source_test.cpp.
 #include "effects/light_rows.h"
 
 #include <algorithm>

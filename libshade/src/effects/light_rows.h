@@ -10,7 +10,7 @@
 /// own; first all directional lights, then point lights, then spot lights. 1 / range is 0 without a
 /// range; law is 1 for the inverse square and 0 for none; cone scale and offset map the cosine
 /// between axis and ray to 1 at the inner cone and 0 at the outer (KHR_lights_punctual). Black
-/// lights have no row. Tests: tests/shade/effects/light_rows_test.cpp.
+/// lights have no row. Tests: tests/shade/effects/shader_source_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of shader parts: one row per step, with the parts that implement it, and the programs
 // that are assembled from it. At most one part of a step is chosen for any Features value. Pure.
-// Tests: tests/shade/effects/surface_program_test.cpp, shader_listing_test.cpp.
+// Tests: tests/shade/effects/shader_source_test.cpp.
 #include <algorithm>
 #include <cassert>
 

@@ -5,7 +5,7 @@
 /// One table (surface_program.cpp) has a row for every step: the parts that implement it, the
 /// condition of each, what it takes from outside, and the neutral code for a step whose effect is
 /// absent. planned_interface() (effects.h) is read from the same table. Pure. Tests:
-/// tests/shade/effects/surface_program_test.cpp, tests/shade/render/programs_test.cpp.
+/// tests/shade/effects/shader_source_test.cpp, tests/shade/render/render_cache_test.cpp.
 #pragma once
 
 #include "effects/shader_source.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Costs of effects, measured by interleaved drawing with and without them, and the choice of
 // effects to drop by visible change per millisecond of wall-clock time. Tests:
-// tests/shade/render/effect_costs_test.cpp.
+// tests/shade/render/forced_effects_test.cpp.
 #include "relief/shade/effect_costs.h"
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlay lines and points, whose colors are final codes. The depth of the surfaces is moved back
 // by polygon offset, so that a surface does not hide lines on it. Vertex frames are computed in
-// double, relative to a center. Tests: tests/shade/render/overlays_test.cpp,
-// vertex_frames_test.cpp.
+// double, relative to a center. Tests: tests/shade/render/overlays_test.cpp, draw_values_test.cpp.
 #include "render/overlays.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Overlays on a finished picture: wireframe, vertex frames, markers (debug_views.h).
-/// Tests: tests/shade/render/overlays_test.cpp, vertex_frames_test.cpp.
+/// Tests: tests/shade/render/overlays_test.cpp, draw_values_test.cpp.
 #pragma once
 
 #include <array>

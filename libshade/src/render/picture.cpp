@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Render targets of a picture, its finishing pass with sRGB codes by [IEC 61966-2-1], and the
 // exchange of finished pictures between threads. Tests: tests/shade/render/renderer_test.cpp,
-// picture_test.cpp, picture_exchange_test.cpp.
+// shading_test.cpp, picture_exchange_test.cpp.
 #include "render/picture.h"
 
 #include <algorithm>

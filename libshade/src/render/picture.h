@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The render targets of a picture and the finishing pass, which tone-maps, averages and encodes
-/// samples. Tests: tests/shade/render/renderer_test.cpp, picture_test.cpp.
+/// samples. Tests: tests/shade/render/renderer_test.cpp, shading_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Links programs with common bindings, once for each set of features. Tests:
-// tests/shade/render/programs_test.cpp.
+// tests/shade/render/render_cache_test.cpp.
 #include "render/program_cache.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 /// \file
 /// Linked programs by their Features, and the bindings that all programs share: attribute
 /// locations, texture units, and the binding point of the lights. Tests:
-/// tests/shade/render/programs_test.cpp.
+/// tests/shade/render/render_cache_test.cpp.
 #pragma once
 
 #include <map>

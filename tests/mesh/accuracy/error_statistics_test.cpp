@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "accuracy/angle_sum.h"
+#include "geometry/angle_sum.h"
 #include "random.h"
 #include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/direction_error.h"

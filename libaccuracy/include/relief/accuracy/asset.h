@@ -5,7 +5,7 @@
 /// states its reference and the limits of that reference. Large inputs are measured in part, and
 /// the experiment says so. A ProgressScope receives progress and can cancel
 /// (relief/mesh/progress.h).
-/// Tests: tests/accuracy/own_mesh_test.cpp, own_maps_test.cpp, own_bake_test.cpp.
+/// Tests: tests/accuracy/asset_mesh_test.cpp, own_maps_test.cpp, own_bake_test.cpp.
 #pragma once
 
 #include <cstddef>

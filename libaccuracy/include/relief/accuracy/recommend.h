@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Recommends a method of an experiment, and states the cost of the next more accurate one.
-/// Tests: tests/accuracy/recommend_test.cpp.
+/// Tests: tests/accuracy/asset_report_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 /// \file
 /// Generates height fields whose slopes are known in closed form. They are the ground truth for the
 /// errors of derivative kernels.
-/// Tests: tests/mesh/accuracy/analytic_heights_test.cpp.
+/// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
 #pragma once
 
 #include <cstdint>

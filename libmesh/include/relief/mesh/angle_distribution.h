@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Computes statistics of many angles in degrees: mean, RMS, percentiles and a histogram.
-/// Tests: tests/mesh/accuracy/angle_distribution_test.cpp.
+/// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
 #pragma once
 
 #include <array>

@@ -2,8 +2,7 @@
 /// \file
 /// Bakes maps for a low-poly mesh from high-poly meshes: normals, and optionally heights,
 /// occlusion, curvature, positions and colors. Part of the library relief::bake.
-/// Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_layers_test.cpp,
-/// bake_sphere_test.cpp.
+/// Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_layers_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 /// \file
 /// Measures the errors and times of bakes with several sample counts and formats, without writing
 /// maps. Part of the library relief::bake.
-/// Tests: tests/mesh/bake/bake_trials_test.cpp, tests/accuracy/own_bake_test.cpp.
+/// Tests: tests/mesh/bake/bake_check_test.cpp, tests/accuracy/asset_maps_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Converts bump maps (height fields) to unit normals, normal maps or slopes by finite differences.
-/// Tests: tests/mesh/image/bump/bump_test.cpp.
+/// Tests: tests/mesh/bump/bump_test.cpp.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -14,26 +14,6 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
-
-/// The continuation of an image beyond its border.
-enum class Wrap {
-    repeat,  ///< The image repeats.
-    /// The surface continues as its point reflection at the border texel: a plane stays a plane,
-    /// and derivatives across the border are one-sided.
-    clamp,
-    mirror,  ///< The image is mirrored, and its outermost texels appear twice, as in OpenGL.
-};
-
-/// The wrap modes of both axes.
-struct Wraps {
-    Wrap x = Wrap::repeat;
-    Wrap y = Wrap::repeat;
-
-    constexpr Wraps() = default;
-    constexpr Wraps(Wrap both) : x(both), y(both) {}
-    constexpr Wraps(Wrap along_x, Wrap along_y) : x(along_x), y(along_y) {}
-    bool operator==(const Wraps&) const = default;
-};
 
 /// Options for the conversion of heights to slopes. Absent options are derived from the map: see
 /// resolve_options().

@@ -2,7 +2,7 @@
 /// \file
 /// Generates height maps like those in files, with exact normals, for tuning and evaluating the
 /// choice of a kernel.
-/// Tests: tests/mesh/accuracy/bump_fields_test.cpp.
+/// Tests: tests/mesh/accuracy/bump_experiment_test.cpp.
 #pragma once
 
 #include <cstdint>

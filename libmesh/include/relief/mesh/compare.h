@@ -5,7 +5,7 @@
 ///
 /// Corners are matched by position and texture coordinate, independent of the order of vertices and
 /// triangles and of vertex splits.
-/// Tests: tests/mesh/geometry/compare/compare_test.cpp.
+/// Tests: tests/mesh/topology/compare_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 /// \file
 /// Decimates meshes: reduces the number of triangles and preserves the surface and its texture
 /// mapping.
-/// Tests: tests/mesh/geometry/topology/decimate_test.cpp.
+/// Tests: tests/mesh/topology/decimate_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 /// \file
 /// Removes the quantization steps of 8-bit height maps. No height changes by more than its rounding
 /// error.
-/// Tests: tests/mesh/image/heights/destaircase_test.cpp.
+/// Tests: tests/mesh/image/height_map_test.cpp.
 #pragma once
 
 #include "relief/mesh/bump.h"

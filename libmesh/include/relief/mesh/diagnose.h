@@ -4,7 +4,7 @@
 /// before anything is computed.
 ///
 /// docs/hard-cases.md uses the same terms and documents the effect of each condition on every step.
-/// Tests: tests/mesh/geometry/health/diagnose_test.cpp, tests/hard_cases/hard_cases_test.cpp.
+/// Tests: tests/mesh/topology/diagnose_test.cpp, tests/hard_cases/hard_cases_test.cpp.
 #pragma once
 
 #include <cstddef>

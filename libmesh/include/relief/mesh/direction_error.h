@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Computes angles between directions in degrees, and their RMS, mean and maximum.
-/// Tests: tests/mesh/accuracy/direction_error_test.cpp.
+/// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
 #pragma once
 
 #include <cstddef>

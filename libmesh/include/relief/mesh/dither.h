@@ -3,7 +3,7 @@
 /// Dithering: rounds values up or down by a fixed pattern, so that the mean over a few texels is
 /// more accurate than single codes. The threshold of a texel depends only on its coordinates, so
 /// results do not depend on the order of computation or the number of threads.
-/// Tests: tests/mesh/image/normals/dither_test.cpp.
+/// Tests: tests/mesh/image/normal_map_test.cpp.
 #pragma once
 
 namespace relief {

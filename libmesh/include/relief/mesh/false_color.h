@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Renders values as a false-color image.
-/// Tests: tests/mesh/image/false_color_test.cpp.
+/// Tests: tests/mesh/image/image_test.cpp.
 #pragma once
 
 #include "relief/mesh/image.h"

@@ -2,7 +2,7 @@
 /// \file
 /// Estimates reference normals of a mesh without a known formula: the normals of a smooth surface
 /// that is fitted through its vertices.
-/// Tests: tests/mesh/accuracy/fitted_normals_test.cpp.
+/// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -2,8 +2,7 @@
 /// \file
 /// Encodes tangent frames in 4 to 28 bytes for vertex buffers and files, and decodes them.
 /// docs/tangents.md has the size and error of each encoding, and shaders that decode them.
-/// Tests: tests/mesh/geometry/encoding/frame_encoding_test.cpp,
-/// tests/shade/gl/frame_decoding_test.cpp.
+/// Tests: tests/mesh/geometry/frame_encoding_test.cpp, tests/shade/gl/program_test.cpp.
 #pragma once
 
 #include <array>

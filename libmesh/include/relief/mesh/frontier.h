@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Finds the Pareto-optimal methods by error and time.
-/// Tests: tests/mesh/accuracy/frontier_test.cpp.
+/// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
 #pragma once
 
 #include <span>

@@ -2,7 +2,7 @@
 /// \file
 /// Defines the derivative kernels for slopes of height fields, and computes their noise gain,
 /// response and anisotropy in closed form.
-/// Tests: tests/mesh/image/bump/gradient_kernel_test.cpp.
+/// Tests: tests/mesh/bump/bump_kernels_test.cpp.
 #pragma once
 
 #include <glm/vec2.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Extracts heights from images, and finds the texels that have none.
-/// Tests: tests/mesh/image/heights/height_map_test.cpp.
+/// Tests: tests/mesh/image/height_map_test.cpp.
 #pragma once
 
 #include <cstddef>

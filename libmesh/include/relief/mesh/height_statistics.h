@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Analyzes a height map: whether it tiles, how many bits it uses, and how noisy it is.
-/// Tests: tests/mesh/image/heights/height_statistics_test.cpp.
+/// Tests: tests/mesh/image/height_map_test.cpp.
 #pragma once
 
 #include "relief/mesh/bump.h"

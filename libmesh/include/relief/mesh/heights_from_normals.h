@@ -2,7 +2,7 @@
 /// \file
 /// Integrates a normal map: computes the height field whose slopes have the least squared
 /// difference from those of the normals.
-/// Tests: tests/mesh/image/integration/heights_from_normals_test.cpp.
+/// Tests: tests/mesh/image/heights_from_normals_test.cpp.
 #pragma once
 
 #include <cstddef>

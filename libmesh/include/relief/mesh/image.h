@@ -77,4 +77,24 @@ Image to_srgb(const Image& linear, int bits);
 float srgb_from_linear(float linear);
 float linear_from_srgb(float coded);
 
+/// The continuation of an image beyond its border.
+enum class Wrap {
+    repeat,  ///< The image repeats.
+    /// The surface continues as its point reflection at the border texel: a plane stays a plane,
+    /// and derivatives across the border are one-sided.
+    clamp,
+    mirror,  ///< The image is mirrored, and its outermost texels appear twice, as in OpenGL.
+};
+
+/// The wrap modes of both axes.
+struct Wraps {
+    Wrap x = Wrap::repeat;
+    Wrap y = Wrap::repeat;
+
+    constexpr Wraps() = default;
+    constexpr Wraps(Wrap both) : x(both), y(both) {}
+    constexpr Wraps(Wrap along_x, Wrap along_y) : x(along_x), y(along_y) {}
+    bool operator==(const Wraps&) const = default;
+};
+
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Extracts single channels of images, and adds or removes alpha.
-/// Tests: tests/mesh/image/image_channels_test.cpp.
+/// Tests: tests/mesh/image/image_test.cpp.
 #pragma once
 
 #include "relief/mesh/image.h"

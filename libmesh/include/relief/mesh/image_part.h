@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Extracts rectangles of images.
-/// Tests: tests/mesh/image/image_part_test.cpp.
+/// Tests: tests/mesh/image/image_test.cpp.
 #pragma once
 
 #include "relief/mesh/image.h"

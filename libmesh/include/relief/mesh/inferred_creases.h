@@ -2,7 +2,7 @@
 /// \file
 /// Infers the hard edges of a mesh from its normals, and the crease angle that best separates them
 /// from smooth edges.
-/// Tests: tests/mesh/geometry/normals/inferred_creases_test.cpp.
+/// Tests: tests/mesh/geometry/corner_normals_test.cpp.
 #pragma once
 
 #include <cstddef>

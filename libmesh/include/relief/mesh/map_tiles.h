@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Finds the UDIM tiles (unit squares of texture space) that triangles cover.
-/// Tests: tests/mesh/bake/map_tiles_test.cpp.
+/// Tests: tests/mesh/bake/texel_coverage_test.cpp.
 #pragma once
 
 #include <cstdint>

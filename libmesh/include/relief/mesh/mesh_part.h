@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Extracts triangles of a mesh as a new mesh.
-/// Tests: tests/mesh/geometry/mesh_part_test.cpp.
+/// Tests: tests/mesh/geometry/mesh_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Computes the mip levels of an image.
-/// Tests: tests/mesh/image/mip_levels_test.cpp.
+/// Tests: tests/mesh/image/image_test.cpp.
 #pragma once
 
 #include <vector>

@@ -2,7 +2,7 @@
 /// \file
 /// Blends a detail normal map into a base normal map. docs/normal-maps.md has the error of each
 /// method.
-/// Tests: tests/mesh/image/normals/normal_blend_test.cpp
+/// Tests: tests/mesh/image/normal_map_operations_test.cpp
 #pragma once
 
 #include "relief/mesh/image.h"

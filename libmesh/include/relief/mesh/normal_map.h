@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Encodes unit normals as normal maps and decodes them.
-/// Tests: tests/mesh/image/normals/normal_map_test.cpp.
+/// Tests: tests/mesh/image/normal_map_test.cpp.
 #pragma once
 
 #include <array>

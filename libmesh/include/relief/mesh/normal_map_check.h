@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Checks an image that should be a normal map: its content, its conventions and its defects.
-/// Tests: tests/mesh/image/check/normal_map_check_test.cpp, normal_map_check_real_test.cpp.
+/// Tests: tests/mesh/image/normal_map_check_test.cpp.
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 /// \file
 /// Applies per-texel operations to normals: axis permutations, reconstruction of z, length
 /// statistics, and scaling of slopes.
-/// Tests: tests/mesh/image/normals/normal_map_operations_test.cpp.
+/// Tests: tests/mesh/image/normal_map_operations_test.cpp.
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 /// \file
 /// Computes mip levels of normal maps, and converts the shortening of averaged normals to slope
 /// variance and roughness.
-/// Tests: tests/mesh/image/normals/normal_mips_test.cpp.
+/// Tests: tests/mesh/image/normal_resize_test.cpp.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Resizes normal maps. docs/normal-maps.md has the errors of the filters.
-/// Tests: tests/mesh/image/normals/normal_resize_test.cpp
+/// Tests: tests/mesh/image/normal_resize_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Converts normal maps between the tangent space and the object space of a mesh.
-/// Tests: tests/mesh/bake/normal_space_test.cpp.
+/// Tests: tests/mesh/bake/map_convention_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -3,7 +3,7 @@
 /// Computes normals of vertices, corners and triangles from positions.
 ///
 /// docs/normals.md has the error and time of each weighting.
-/// Tests: tests/mesh/geometry/normals/normals_test.cpp, corner_normals_test.cpp.
+/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Transforms meshes.
-/// Tests: tests/mesh/geometry/placed_test.cpp.
+/// Tests: tests/mesh/geometry/mesh_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

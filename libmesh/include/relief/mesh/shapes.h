@@ -2,7 +2,7 @@
 /// \file
 /// Generates simple shapes around the origin with normals and texture coordinates. Object space,
 /// right-handed, y up.
-/// Tests: tests/mesh/geometry/shapes_test.cpp.
+/// Tests: tests/mesh/geometry/mesh_test.cpp.
 #pragma once
 
 #include "relief/mesh/mesh.h"

@@ -2,7 +2,7 @@
 /// \file
 /// Converts values at triangle corners to values at vertices, with the minimum number of additional
 /// vertices.
-/// Tests: tests/mesh/geometry/split_test.cpp.
+/// Tests: tests/mesh/geometry/mesh_test.cpp.
 #pragma once
 
 #include <cassert>

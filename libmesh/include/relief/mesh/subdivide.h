@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Subdivides meshes into finer, smoother surfaces.
-/// Tests: tests/mesh/geometry/topology/subdivide_test.cpp.
+/// Tests: tests/mesh/topology/subdivide_test.cpp.
 #pragma once
 
 #include "relief/mesh/frames.h"

@@ -5,7 +5,7 @@
 /// A normal map is correct only with the tangents that its baker assumed, but files do not name the
 /// method. Therefore the tangents are computed by all known methods and compared with the stored
 /// ones.
-/// Tests: tests/mesh/geometry/tangents/tangent_basis_test.cpp.
+/// Tests: tests/mesh/geometry/tangent_basis_test.cpp.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Computes tangent frames from texture coordinates: MikkTSpace and two other weightings.
-/// Tests: tests/mesh/geometry/tangents/tangents_test.cpp.
+/// Tests: tests/mesh/geometry/tangents_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -5,7 +5,7 @@
 ///
 /// FrameSettings selects the view. Views do not change the programs and pixels of the normal
 /// picture: a view selects other shader parts. World space, linear light.
-/// Tests: tests/shade/effects/debug_views_test.cpp, tests/shade/render/debug_views_test.cpp,
+/// Tests: tests/shade/effects/effects_test.cpp, tests/shade/render/debug_views_test.cpp,
 /// overlays_test.cpp.
 #pragma once
 

@@ -3,7 +3,7 @@
 /// Measures the time of each effect and its visible contribution, and selects the effects to drop
 /// so that a frame fits a time budget. Measurements differ between machines; the selection depends
 /// only on the measurements.
-/// Tests: tests/shade/render/effect_costs_test.cpp.
+/// Tests: tests/shade/render/forced_effects_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,7 @@
 /// existing lights, the exact Fresnel term of an existing reflection, tone curves, and whether the
 /// environment is visible or lights surfaces. Any effect can be forced off, which changes the
 /// picture.
-/// Tests: tests/shade/effects/effect_forcing_test.cpp, tests/shade/render/forced_effects_test.cpp.
+/// Tests: tests/shade/effects/effects_test.cpp, tests/shade/render/forced_effects_test.cpp.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Lists the shader source of the programs of a plan, as the driver gets it. Pure: no OpenGL.
-/// Tests: tests/shade/effects/shader_listing_test.cpp.
+/// Tests: tests/shade/effects/shader_source_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Degrees in, their distribution out. Percentiles are values that occur (nearest rank). Linear
-// expected time. Tests: tests/mesh/accuracy/angle_distribution_test.cpp.
+// expected time. Tests: tests/mesh/accuracy/error_statistics_test.cpp.
 #include "relief/mesh/angle_distribution.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "accuracy/angle_sum.h"
+#include "geometry/angle_sum.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Angles by atan2 in double, and their sums, in degrees. Unlike angle_distribution(), which counts
 // what is no angle apart, one NaN makes all three sums NaN: there is no place here to tell of it.
-// Tests: tests/mesh/accuracy/direction_error_test.cpp.
+// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
 #include "relief/mesh/direction_error.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "accuracy/angle_sum.h"
+#include "geometry/angle_sum.h"
 #include "relief/mesh/error.h"
 
 namespace relief {

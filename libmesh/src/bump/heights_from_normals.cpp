@@ -27,7 +27,7 @@
 #include <span>
 #include <vector>
 
-#include "accuracy/angle_sum.h"
+#include "geometry/angle_sum.h"
 #include "geometry/portable_math.h"
 #include "image/fft.h"
 #include "image/texel_loops.h"

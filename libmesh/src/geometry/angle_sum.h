@@ -2,7 +2,8 @@
 /// \file
 /// Angles added up as they come, in constant memory, in double, in degrees: the one place where
 /// their mean, root of the mean square and greatest are formed, and AngleSummary for those who
-/// cannot keep all of them. Of none, all zeros. Tests: tests/mesh/accuracy/angle_sum_test.cpp.
+/// cannot keep all of them. Of none, all zeros. Tests:
+/// tests/mesh/accuracy/error_statistics_test.cpp.
 #pragma once
 
 #include <algorithm>
