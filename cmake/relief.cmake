@@ -2,7 +2,7 @@
 
 # GCC contracts a*b+c into fused instructions by default, Clang does so differently: off, so that
 # the same input gives the same bits from both. GCC 12's vectoriser of straight-line code takes two
-# neighbouring double -> float -> double for nothing to do, and the rounding is gone; that of loops, which
+# neighboring double -> float -> double for nothing to do, and the rounding is gone; that of loops, which
 # hot code lives by, does not.
 add_library(relief_flags INTERFACE)
 target_compile_features(relief_flags INTERFACE cxx_std_20)

@@ -269,7 +269,7 @@ KitMesh quads() {
     return kit;
 }
 
-/// A few hills, their triangles in an order in which the reference misses neighbours: around the
+/// A few hills, their triangles in an order in which the reference misses neighbors: around the
 /// vertex whose edges it comes to last, and does not sort to the end. One order in a hundred does.
 Mesh unsorted_bucket() {
     Random random(284);
@@ -370,7 +370,7 @@ std::vector<KitMesh> conformance_meshes() {
          {}},
         {"unsorted-bucket",
          Group::defect,
-         "A vertex whose edges the reference does not sort, so that it misses neighbours.",
+         "A vertex whose edges the reference does not sort, so that it misses neighbors.",
          unsorted_bucket(),
          {}},
     };

@@ -34,7 +34,7 @@ struct Brick {
     [[nodiscard]] double spread(std::uint32_t which) const { return 2.0 * chance(which) - 1.0; }
 };
 
-/// Everything that height and colour share at one place of the wall.
+/// Everything that height and color share at one place of the wall.
 struct WallPlace {
     Brick brick;
     double inside;     ///< Distance from the brick's worn outline; negative in the joint.
@@ -156,7 +156,7 @@ double height_at(double x, double y) {
     return mix(mortar, brick_face(x, y, place), 1.0 - left * left * left);
 }
 
-/// Linear diffuse colour.
+/// Linear diffuse color.
 glm::dvec3 color_at(double x, double y) {
     const WallPlace place = place_at(x, y);
     const Brick& brick = place.brick;

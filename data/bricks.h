@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A wall of weathered bricks in running bond, as heights and as colour; both tile.
+/// A wall of weathered bricks in running bond, as heights and as color; both tile.
 /// Tests: tests/mesh/image/sample_data_test.cpp.
 #pragma once
 
@@ -11,7 +11,7 @@ namespace relief::sample {
 /// Heights in 16 bits, data. White is the front of the foremost brick.
 Image brick_heights(int size);
 
-/// Diffuse colour in 8 bits, sRGB, of the same wall.
+/// Diffuse color in 8 bits, sRGB, of the same wall.
 Image brick_colors(int size);
 
 }  // namespace relief::sample

@@ -129,16 +129,16 @@ void add_disc(Mesh& mesh, const Fineness& fineness, bool is_lid) {
         mesh.texcoords.emplace_back(rounded(middle.x + 0.11 / rim.x * position.x),
                                     rounded(middle.y + 0.11 / rim.x * turn * position.z));
     };
-    const auto centre = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto center = static_cast<std::uint32_t>(mesh.positions.size());
     add(turned({0.0, rim.y}, 0.0));
     for (int segment = 0; segment < fineness.segments; ++segment)
         add(turned(rim, whole_turn * segment / fineness.segments));
     const auto count = static_cast<std::uint32_t>(fineness.segments);
     for (std::uint32_t segment = 0; segment < count; ++segment) {
-        const std::uint32_t here = centre + 1 + segment;
-        const std::uint32_t next = centre + 1 + (segment + 1) % count;
-        if (is_lid) mesh.triangles.emplace_back(centre, here, next);
-        if (!is_lid) mesh.triangles.emplace_back(centre, next, here);
+        const std::uint32_t here = center + 1 + segment;
+        const std::uint32_t next = center + 1 + (segment + 1) % count;
+        if (is_lid) mesh.triangles.emplace_back(center, here, next);
+        if (!is_lid) mesh.triangles.emplace_back(center, next, here);
     }
 }
 

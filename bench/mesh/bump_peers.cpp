@@ -12,7 +12,7 @@ namespace relief::bench {
 #ifdef RELIEF_HAS_OPENCV
 namespace {
 
-/// Two Sobel images, then a loop over rows that normalises and codes, shared out by OpenCV.
+/// Two Sobel images, then a loop over rows that normalizes and codes, shared out by OpenCV.
 void opencv_sobel(const Image& heights, Image& map, int threads) {
     cv::setNumThreads(threads);
     const cv::Mat in(heights.height, heights.width, CV_32F,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Meshes that tangents are timed on, beside the bumpy sphere: a terrain, and shapes on which
-/// looking for neighbours, recursion or comparing sets takes quadratic time.
+/// looking for neighbors, recursion or comparing sets takes quadratic time.
 #pragma once
 
 #include <cstddef>

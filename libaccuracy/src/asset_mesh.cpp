@@ -97,7 +97,7 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
     CornerGroundTruth ground_truth;
     ground_truth.words = fmt::format(
         "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). "
-        "Known at {} of {} places looked at; at the others there are too few neighbours, or no "
+        "Known at {} of {} places looked at; at the others there are too few neighbors, or no "
         "smooth surface. Where it is known, it has an expected error of {:.2g} degrees itself. It "
         "takes the vertices for points of the surface, and cannot judge models whose vertices are "
         "not.",

@@ -240,19 +240,19 @@ Experiment on_fans(const RunOptions& options) {
     experiment.id = "normals/fans";
     experiment.subject = Subject::normals;
     experiment.question =
-        "How close is each weighting around a single vertex, by the number of its neighbours?";
+        "How close is each weighting around a single vertex, by the number of its neighbors?";
     experiment.ground_truth =
         "The normal of a random cubic at the origin, (0, 0, 1) by construction [Max 1999]; a test "
         "fits the cubic to its fan and differentiates it numerically.";
     experiment.input =
-        fmt::format("{} fans of random cubic surfaces, {} neighbours each", fans, usual_valence);
+        fmt::format("{} fans of random cubic surfaces, {} neighbors each", fans, usual_valence);
     experiment.error_unit = "degrees";
     experiment.item = "fan";
     experiment.items = fans;
     Chart chart;
     chart.id = "neighbours";
-    chart.title = "More neighbours";
-    chart.x_label = "neighbours of the vertex";
+    chart.title = "More neighbors";
+    chart.x_label = "neighbors of the vertex";
     chart.is_x_log = false;
     chart.y_label = "RMS error, degrees";
     std::vector<MeasuredMethod> measured;
@@ -272,7 +272,7 @@ Experiment on_fans(const RunOptions& options) {
     measure_methods(measured, options, {}, experiment);
     experiment.charts.push_back(std::move(chart));
     const Measurement& best = *most_accurate(experiment);
-    experiment.finding = fmt::format("With {} neighbours {} is closest, {:.3g} degrees RMS.",
+    experiment.finding = fmt::format("With {} neighbors {} is closest, {:.3g} degrees RMS.",
                                      usual_valence, value_of(best, "weighting"), best.error.rms);
     return experiment;
 }

@@ -74,7 +74,7 @@ Experiment interpolation_experiment(const GlDevice& device, const RunOptions& op
             "computed?",
         .ground_truth = fmt::format(
             "the reference shader in double on a torus of {} triangles with the true normals, one "
-            "ray through the centre of each pixel; a test holds that shader to the closed form of "
+            "ray through the center of each pixel; a test holds that shader to the closed form of "
             "a lit sphere",
             torus_triangles(smooth_torus_slices)),
         .input = fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size),
@@ -190,7 +190,7 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
         .question = "How near do Phong's and Blinn's highlights come to those of a rough metal?",
         .ground_truth =
             "a metal of GGX facets, by the reference shader in double, one ray through the "
-            "centre of each pixel; tests hold its GGX to the closed form in another notation, and "
+            "center of each pixel; tests hold its GGX to the closed form in another notation, and "
             "its facets to how many there are within 45 degrees",
         .input = fmt::format("torus of roughness {0} under two lamps, one behind it, {1} x {1} "
                              "pixels; exponent {2:.0f}",
@@ -325,9 +325,10 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
     Experiment experiment{
         .id = "shading/specular-antialiasing",
         .question = "What keeps highlights right where many texels of a normal map share a pixel?",
-        .ground_truth = fmt::format("the reference shader in double with the normal map at full size, "
-                                 "mean of {} rays a pixel in linear light",
-                                 rays * rays),
+        .ground_truth =
+            fmt::format("the reference shader in double with the normal map at full size, "
+                        "mean of {} rays a pixel in linear light",
+                        rays * rays),
         .input = fmt::format("shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
                              "pixels",
                              size, shown),

@@ -222,7 +222,7 @@ Chart index_chart(std::span<const float> cosines) {
 Experiment described(const Boundary& boundary, std::size_t angles) {
     return {.question = "What does Schlick's fit give away, and what does Fresnel's formula cost?",
             .ground_truth =
-                "Fresnel's formulas for unpolarised light in double; tests hold them to "
+                "Fresnel's formulas for unpolarized light in double; tests hold them to "
                 "normal incidence, Brewster's angle and grazing incidence in closed form",
             .input = fmt::format("{}: {} angles from 0 to 90 degrees", boundary.name, angles),
             .error_unit = "reflectance",
@@ -371,7 +371,7 @@ namespace {
 
 Chart chart_by_turn() {
     Chart chart{.id = "angle",
-                .title = "Error by the angle between neighbouring normals",
+                .title = "Error by the angle between neighboring normals",
                 .x_label = "degrees between the normals of a triangle's corners",
                 .y_label = "radiance"};
     const NormalSamples first(1.0, 32);

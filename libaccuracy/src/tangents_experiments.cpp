@@ -115,7 +115,7 @@ Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& 
         .question = "What do frames that shaders derive cost, where stored ones cost memory?",
         .ground_truth = fmt::format(
             "the reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
-            "one ray through the centre of each pixel; tests hold that shader to closed forms",
+            "one ray through the center of each pixel; tests hold that shader to closed forms",
             torus_triangles(smooth_torus_slices)),
         .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size),
         .error_unit = "FLIP",

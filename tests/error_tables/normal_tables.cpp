@@ -46,7 +46,7 @@ std::string fan_table() {
     constexpr std::uint32_t fans = 20000;
     std::string text =
         "\nFans on random cubic surfaces, as in [Max 1999]: RMS of 20,000 each, by the number of "
-        "neighbours\n\n" +
+        "neighbors\n\n" +
         header();
     for (const int valence : {3, 4, 5, 6, 7, 8, 9}) {
         std::vector<double> ranks;
@@ -55,7 +55,7 @@ std::string fan_table() {
             ranks.push_back(fan_errors(method, valence, fans).rms);
             entries.push_back(in_digits(ranks.back()));
         }
-        text += table_row(fmt::format("{} neighbours", valence), ranks, entries);
+        text += table_row(fmt::format("{} neighbors", valence), ranks, entries);
     }
     return text;
 }

@@ -112,7 +112,7 @@ HardCase self_case() {
 
 HardCase edges_case() {
     return {"rays on edges and vertices",
-            "A square of 8 x 8 cells under a map whose texel centres lie on its diagonals.",
+            "A square of 8 x 8 cells under a map whose texel centers lie on its diagonals.",
             "Embree#174, #181; tinybvh#168",
             {{"bake", "one hit each, the same whatever the order of triangles", [] {
                   Mesh high = moved(make_quad(8), {0, 0, 0.125F});
@@ -552,7 +552,7 @@ HardCase texture_overlap_case() {
 
 HardCase speck_case() {
     return {"bake of a chart smaller than a texel",
-            "A square on a tenth of a texel, between the centres of all.",
+            "A square on a tenth of a texel, between the centers of all.",
             "charts that vanish",
             {{"bake", "one texel", [] {
                   const Mesh low = with_texcoords(make_quad(), 0.1F / bake_side,

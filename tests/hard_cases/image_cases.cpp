@@ -206,7 +206,7 @@ HardCase hole_case() {
                   return std::string("not counted twice");
               return in_every_way(plane, 16.0, not_unit);
           }},
-         {"de-staircasing", "stay as they are; their neighbours stay finite", []() -> std::string {
+         {"de-staircasing", "stay as they are; their neighbors stay finite", []() -> std::string {
               Image steps = heights_of(
                   16, 16, [](int x, int y) { return std::round(0.2 * x + 0.1 * y) / 255.0; });
               steps.as<float>()[50] = std::numeric_limits<float>::quiet_NaN();
@@ -365,17 +365,17 @@ std::string cmyk_tiff(const std::string& texels) {
 }
 
 HardCase kind_case() {
-    return {"colours by palette and in CMYK",
+    return {"colors by palette and in CMYK",
             "A PNG with a palette, and a TIFF of cyan, magenta, yellow and black.",
             "indices and inks taken for heights",
-            {{"heights, palette", "the mean of the colour that is meant",
+            {{"heights, palette", "the mean of the color that is meant",
               [] {
                   const TemporaryDirectory folder;
                   write_bytes(folder / "p.png", palette_png());
                   return unexpected_heights(
                       height_field(read_image(folder / "p.png", ImageUse::data)), {0.4F, 1.0F});
               }},
-             {"heights, CMYK", "of the colours as RGB: no ink is white, black is black", [] {
+             {"heights, CMYK", "of the colors as RGB: no ink is white, black is black", [] {
                   const TemporaryDirectory folder;
                   write_bytes(folder / "c.tif",
                               cmyk_tiff(std::string("\0\0\0\0\0\0\0\xff\xff\0\0\0", 12)));
@@ -387,7 +387,7 @@ HardCase kind_case() {
 
 HardCase transparent_case() {
     return {"transparent texels",
-            "A grey plane with alpha, black and transparent on the right.",
+            "A gray plane with alpha, black and transparent on the right.",
             "cliffs at the border of what is shown",
             {{"bump",
               "flat where it is transparent; beside it no slope above the plane's, where "

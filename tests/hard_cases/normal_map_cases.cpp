@@ -144,7 +144,7 @@ HardCase checker_case() {
     return {
         "chequerboard of slopes",
         "Slopes of 1 and -1 in turns: every mip level is flat, and would shine like a mirror.",
-        "renormalised mip levels",
+        "renormalized mip levels",
         {{"mips",
           "flat, of length 0.7071 on each level; roughness 0 becomes 1, the slopes' "
           "variance of 0.5 along each axis being kept",
@@ -221,7 +221,7 @@ std::string not_found(const Image& map, const std::vector<MapCondition>& expecte
 }
 
 HardCase color_case() {
-    return {"normal map stored as a colour",
+    return {"normal map stored as a color",
             "The sRGB curve was applied when it was saved, or undone when it was read: flat is 188 "
             "or 55 of 255.",
             "paintsystem#132",
@@ -319,8 +319,8 @@ std::string not_owned(const std::string& rows, const std::string& expected, cons
 }
 
 HardCase shared_edge_case() {
-    return {"texel centres on a shared edge",
-            "A square of two triangles on 4 x 4 texels: their diagonal runs through four centres.",
+    return {"texel centers on a shared edge",
+            "A square of two triangles on 4 x 4 texels: their diagonal runs through four centers.",
             "rasterisers without a fill rule",
             {{"cover texels", "each of the 16 has one owner, in either order of the triangles", [] {
                   const std::vector<glm::vec2> corners = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};
@@ -336,7 +336,7 @@ HardCase shared_edge_case() {
 
 HardCase small_chart_case() {
     return {"chart smaller than a texel",
-            "A triangle of a tenth of a texel, away from the centre of any.",
+            "A triangle of a tenth of a texel, away from the center of any.",
             "bakers that lose such charts",
             {{"cover texels", "owns the texel, with the nearest point on it", [] {
                   Report report;

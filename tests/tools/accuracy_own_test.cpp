@@ -165,8 +165,8 @@ TEST(AccuracyOwn, SaysThatAPhotographIsHardlyAHeightMap) {
     const json found =
         json::parse(workplace.run("relief-accuracy own photo.png --quick --no-times --json").out);
     EXPECT_EQ(found["experiments"][0]["input_findings"].size(), 1U);
-    write_image(workplace / "grey.png", image_of_bumps(3, [](int, double bump) { return bump; }));
-    EXPECT_THAT(workplace.run("relief-accuracy own grey.png --quick --no-times").out,
+    write_image(workplace / "gray.png", image_of_bumps(3, [](int, double bump) { return bump; }));
+    EXPECT_THAT(workplace.run("relief-accuracy own gray.png --quick --no-times").out,
                 HasSubstr("findings  none\n"));
 }
 

@@ -422,7 +422,7 @@ TEST(BakeRefusal, ExplainsAndLeavesNoFiles) {
          {"relief-bake bump flat.png out/n.png --report flat.png", 2,
           "--report flat.png: is also the input or the output"},
          {"relief-bake bump flat.png out/n.png --channel blue", 1,
-          "flat.png: a grey image has no blue channel to take heights from"},
+          "flat.png: a gray image has no blue channel to take heights from"},
          {"relief-bake bump flat.png out/n.png --slope-moments", 2,
           "--bits 32: .png holds 16 or 8 bits"},
          {"relief-bake bump flat.png out/n.exr --slope-moments --xy", 2,

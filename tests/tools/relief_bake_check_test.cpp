@@ -175,10 +175,10 @@ TEST(MapCheckCommand, NotesColorTags) {
     RELIEF_NEEDS_SHARED(file, "data/textures/sand_ambientcg/sand_normal.png");
     const Workplace workplace;
     std::filesystem::copy_file(file, workplace / "sand.png");
-    const std::string remedy = remedy_of(workplace, "sand.png", "tagged as a colour");
+    const std::string remedy = remedy_of(workplace, "sand.png", "tagged as a color");
     EXPECT_EQ(remedy, "relief-bake convert sand.png out.png");
     EXPECT_EQ(workplace.run(remedy).exit_code, 0);
-    EXPECT_EQ(remedy_of(workplace, "out.png", "tagged as a colour"), "");
+    EXPECT_EQ(remedy_of(workplace, "out.png", "tagged as a color"), "");
     EXPECT_NE(remedy_of(workplace, "out.png", "green is down"), "");
 }
 

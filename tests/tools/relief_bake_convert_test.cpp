@@ -446,14 +446,14 @@ TEST(ConvertCommand, ARealDirectXMapIsConvertedToOpenGl) {
 TEST(ConvertRefusal, ExplainsAndLeavesNoFiles) {
     const Workplace workplace;
     write_image(workplace / "map.png", make_image(4, 3, 3, 8, ColorSpace::data));
-    write_image(workplace / "grey.png", make_image(4, 3, 1, 8, ColorSpace::data));
+    write_image(workplace / "gray.png", make_image(4, 3, 1, 8, ColorSpace::data));
     for (const char* name : {"n.png", "n-mip01.png", "n-roughness.png"})
         write_image(workplace / name, make_image(4, 3, 3, 8, ColorSpace::data));
     expect_refusals(
         workplace, "relief-bake", "old.png",
         {{"relief-bake convert missing.png out/old.png", 1, "missing.png: "},
-         {"relief-bake convert grey.png out/old.png", 1,
-          "grey.png: has 1 channel, which holds no normals (relief-bake bump converts height "
+         {"relief-bake convert gray.png out/old.png", 1,
+          "gray.png: has 1 channel, which holds no normals (relief-bake bump converts height "
           "maps)"},
          {"relief-bake convert map.png out/n.jpg", 2,
           "out/n.jpg: JPEG compression distorts normals"},

@@ -49,10 +49,10 @@ Pixel middle_of(const Workplace& workplace, const std::string& options) {
     return pixel(picture_in(workplace / "out/p.png"), 16, 16);
 }
 
-/// 0.8, the diffuse colour of a model without materials, sRGB-coded: 1.055 * 0.8^(1/2.4) - 0.055.
+/// 0.8, the diffuse color of a model without materials, sRGB-coded: 1.055 * 0.8^(1/2.4) - 0.055.
 constexpr Pixel white_lit = {231, 231, 231, 255};
 
-TEST(ViewCommand, ALightOfIntensity1ShowsTheDiffuseColourOfASurfaceThatFacesIt) {
+TEST(ViewCommand, ALightOfIntensity1ShowsTheDiffuseColorOfASurfaceThatFacesIt) {
     const Workplace workplace;
     EXPECT_EQ(middle_of(workplace, "--light directional:0,0"), white_lit);
     EXPECT_EQ(middle_of(workplace, "--light directional:0,0,1,#ff0000"), (Pixel{231, 0, 0, 255}));
@@ -89,7 +89,7 @@ TEST(ViewCommand, LightsAreAddedWhereThereAreNoneAndItSaysSo) {
     EXPECT_GT(pixel(picture_in(workplace / "out/p.png"), 16, 16)[0], 100);
 }
 
-TEST(ViewCommand, BackgroundIsTheColourOrNothing) {
+TEST(ViewCommand, BackgroundIsTheColorOrNothing) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const auto corner = [&](const std::string& options) {
@@ -145,7 +145,7 @@ TEST(ViewCommand, ExrHoldsLinearRadiance) {
     EXPECT_NEAR(image.as<float>()[middle], 8.0F, 1e-2) << "half-float frame buffer";
 }
 
-/// A picture of one colour.
+/// A picture of one color.
 void write_plain(const std::filesystem::path& file, std::array<std::uint8_t, 3> color) {
     Image image = make_image(8, 8, 3, 8, ColorSpace::srgb);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
@@ -153,7 +153,7 @@ void write_plain(const std::filesystem::path& file, std::array<std::uint8_t, 3> 
     write_image(file, image);
 }
 
-TEST(ViewCommand, ADiffuseMapIsTheColour) {
+TEST(ViewCommand, ADiffuseMapIsTheColor) {
     const Workplace workplace;
     write_plain(workplace / "map.png", {200, 100, 50});
     EXPECT_EQ(middle_of(workplace, "--light directional:0,0 --diffuse-map map.png"),
@@ -191,7 +191,7 @@ TEST(ViewCommand, ANormalMapIsReadByItsGreenDirection) {
               middle_of(workplace, "--light directional:0,45")[0]);
 }
 
-/// Six plain faces, each of its own colour, as posx.png and so on.
+/// Six plain faces, each of its own color, as posx.png and so on.
 constexpr std::array<std::pair<const char*, std::array<std::uint8_t, 3>>, 6> faces = {
     {{"posx", {255, 0, 0}},
      {"negx", {0, 255, 0}},
@@ -297,7 +297,7 @@ TEST(ViewCommand, DrawsRealModelsWithTheirOwnMaps) {
     const ProgramResult result = workplace.run("relief-view " + bottle.string() +
                                                " --output out/bottle.png --size 256x256 --json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_GE(json::parse(result.out)["picture"]["textures"], 2) << "colour and normals";
+    EXPECT_GE(json::parse(result.out)["picture"]["textures"], 2) << "color and normals";
 }
 
 /// A square with a material whose base color texture has this image.

@@ -344,7 +344,7 @@ void print_verified(const VerifiedMap& map) {
         "error",
         {to_string(check.error) +
              fmt::format(", from the mean over each texel ({} samples)", check.reference_samples),
-         to_string(check.centre) + ", from the normal at its center", texel_text(check)});
+         to_string(check.center) + ", from the normal at its center", texel_text(check)});
     print_entry("stages", stage_lines(check));
     if (check.error.max > 0.0) print_entry("worst", worst_text(check));
     print_entry("verdict", verdict_lines(map));
@@ -368,7 +368,7 @@ nlohmann::ordered_json verified_json(const VerifiedMap& map) {
                          {"torn", texel.is_discontinuous}});
     }
     nlohmann::ordered_json json = {{"error", summary_json(check.error)},
-                                   {"centre", summary_json(check.centre)},
+                                   {"centre", summary_json(check.center)},
                                    {"remade", summary_json(check.rebaked)},
                                    {"reference_samples", check.reference_samples},
                                    {"torn", check.discontinuous},

@@ -313,11 +313,11 @@ TexturedMesh beveled_plate(double width) {
 
 Mesh cubic_fan(int valence, std::uint32_t seed) {
     if (valence < 3)
-        throw InvalidInput(fmt::format("{} neighbours are too few: 3 or more", valence));
+        throw InvalidInput(fmt::format("{} neighbors are too few: 3 or more", valence));
     Random random(seed);
     const Cubic cubic = random_cubic(random, 2, 1.0);
     std::vector<double> angles;
-    // Drawn again until no gap is half a turn: the vertex must be inside of its neighbours.
+    // Drawn again until no gap is half a turn: the vertex must be inside of its neighbors.
     for (bool closed = false; !closed;) {
         angles.clear();
         for (int i = 0; i < valence; ++i)

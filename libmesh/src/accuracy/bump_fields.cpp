@@ -48,11 +48,11 @@ FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
         Random random(recipe.seed + static_cast<std::uint32_t>(index.x + index.y * cells.x));
         // rms slope of the shape is about the height over the radius.
         const double peak = recipe.rms_slope * radius * random.between(0.5, 1.5);
-        const glm::dvec2 from_centre = place - (index + 0.5) * cell;
-        const double inside = 1.0 - glm::dot(from_centre, from_centre) / (radius * radius);
+        const glm::dvec2 from_center = place - (index + 0.5) * cell;
+        const double inside = 1.0 - glm::dot(from_center, from_center) / (radius * radius);
         if (inside <= 0.0) return {};
         return {peak * inside * inside * inside,
-                peak * 3.0 * inside * inside * -2.0 * from_centre / (radius * radius)};
+                peak * 3.0 * inside * inside * -2.0 * from_center / (radius * radius)};
     };
 }
 
@@ -84,7 +84,7 @@ FieldFunction terraces(int width, int height, const FieldRecipe& recipe) {
         HeightSample result = evaluate_waves(ground, place);
         const double own = level(place);
         result.height += wall * own;
-        // Where a neighbour is on another level, there is a wall in between, and no normal.
+        // Where a neighbor is on another level, there is a wall in between, and no normal.
         for (const glm::dvec2& step :
              {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1)}) {
             if (level(place + step) != own)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weighted least squares for heights over the tangent plane, turned to the normal found and fitted
-// again. Object space, lengths in units of the neighbourhood. Source: [Cazals and Pouget 2005];
+// again. Object space, lengths in units of the neighborhood. Source: [Cazals and Pouget 2005];
 // unlike there, the polynomial goes through the vertex itself, and near vertices count more.
 // Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
 #include "relief/mesh/fitted_normals.h"
@@ -27,7 +27,7 @@ constexpr std::size_t terms_of(int degree) {
     return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2 - 1);
 }
 constexpr std::size_t max_terms = terms_of(fine_degree);
-/// Hubs of huge fans: what is around them is no neighbourhood.
+/// Hubs of huge fans: what is around them is no neighborhood.
 constexpr std::size_t max_triangles_around = 1024;
 
 /// A symmetric system of equations, solved by Cholesky's decomposition.

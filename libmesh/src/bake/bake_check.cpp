@@ -285,7 +285,7 @@ void check(const Image& map, const BakeMapOptions& options) {
 
 void summarize(const CheckSums& sums, BakeCheck& check) {
     check.error = sums.error.summary();
-    check.centre = sums.center.summary();
+    check.center = sums.center.summary();
     check.rebaked = sums.rebaked.summary();
     check.missed = sums.missed;
     check.frameless = sums.frameless;

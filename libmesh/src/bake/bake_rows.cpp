@@ -237,7 +237,7 @@ class Piece {
         } else if (state == TexelState::missed) {
             ++counts_.missed;
             report_.add("texel missed by its rays", "texel", map_index(texel),
-                        "is filled from its neighbours");
+                        "is filled from its neighbors");
             describe_missed(texel);
         }
         rows_.states[at] = state;

@@ -94,7 +94,7 @@ BakeMeasurement BakeBenchmark::measure(const BakeSampling& way,
         trial.errors.push_back(sum.error.summary());
         const auto codes = static_cast<std::size_t>(BakeStage::quantization);
         trial.quantization.push_back(sum.stages[codes].summary());
-        trial.centre.push_back(sum.center.summary());
+        trial.center.push_back(sum.center.summary());
     }
     if (!sums.empty()) {
         const auto samples = static_cast<std::size_t>(BakeStage::sampling);

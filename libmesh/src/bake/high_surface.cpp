@@ -119,14 +119,14 @@ void report_missing(const Mesh& mesh, const HighMaterials* detail, std::size_t i
                     const BakeLayers& layers, Report& report) {
     if (layers.colors && mesh.colors.empty() &&
         (detail == nullptr || (detail->materials.empty() && !detail->otherwise)))
-        report.add("high mesh without colours", "mesh", index, "is white");
+        report.add("high mesh without colors", "mesh", index, "is white");
     if (!mesh.texcoords.empty() || detail == nullptr) return;
     if (layers.normals && has_normal_map(detail))
         report.add("normal map without texture coordinates", "mesh", index, "is left out");
     if (!layers.colors || !detail->color_texcoords.empty()) return;
     for (const HighMaterial& material : detail->materials) {
         if (!material.color_texture) continue;
-        report.add("colour texture without texture coordinates", "mesh", index, "is left out");
+        report.add("color texture without texture coordinates", "mesh", index, "is left out");
         break;
     }
 }
@@ -191,7 +191,7 @@ void check(const HighMaterials& detail) {
     std::vector<HighMaterial> all = detail.materials;
     if (detail.otherwise) all.push_back(*detail.otherwise);
     for (const HighMaterial& material : all) {
-        if (material.color_texture) check(*material.color_texture, 1, "a colour texture");
+        if (material.color_texture) check(*material.color_texture, 1, "a color texture");
         if (material.normal_map) check(material.normal_map->texture, 3, "a normal map");
     }
     const std::size_t vertices = detail.mesh->positions.size();

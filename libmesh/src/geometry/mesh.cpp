@@ -87,7 +87,7 @@ void validate(const Mesh& mesh) {
     check_length(mesh, mesh.normals.size(), "normals");
     check_length(mesh, mesh.texcoords.size(), "texture coordinates");
     check_length(mesh, mesh.tangents.size(), "tangents");
-    check_length(mesh, mesh.colors.size(), "colours");
+    check_length(mesh, mesh.colors.size(), "colors");
     check_triangles(mesh.triangles, mesh.positions.size());
     check_ranges(mesh);
     if (!mesh.smoothing_groups.empty() && mesh.smoothing_groups.size() != mesh.triangles.size()) {

@@ -120,7 +120,7 @@ void check(const Image& image, HeightChannel channel) {
         throw InvalidInput("the image has no alpha channel to take heights from");
     const bool is_color = channel == HeightChannel::green || channel == HeightChannel::blue;
     if (is_color && is_gray(image))
-        throw InvalidInput(fmt::format("a grey image has no {} channel to take heights from",
+        throw InvalidInput(fmt::format("a gray image has no {} channel to take heights from",
                                        channel == HeightChannel::green ? "green" : "blue"));
 }
 
@@ -146,7 +146,7 @@ void take_alpha(const Image& image, HeightMap& map) {
 /// What the samples show of colors and of alpha, from texels in even distances.
 template <typename Sample>
 void take_shares(const Image& image, HeightMap& map) {
-    // JPEG leaves grey images this far from grey.
+    // JPEG leaves gray images this far from gray.
     constexpr double min_difference = 1.0 / 16.0;
     constexpr std::size_t analyzed = 10000;
     const std::span<const Sample> samples = image.as<Sample>();
@@ -233,7 +233,7 @@ struct Lattice {
     }
 };
 
-/// One sweep of the distance map: every texel from the neighbours that the sweep has visited.
+/// One sweep of the distance map: every texel from the neighbors that the sweep has visited.
 bool sweep(std::vector<std::uint32_t>& distance, const Lattice& lattice, int direction) {
     bool changed = false;
     const int rows = lattice.height;
@@ -245,10 +245,10 @@ bool sweep(std::vector<std::uint32_t>& distance, const Lattice& lattice, int dir
             std::uint32_t& own = distance[static_cast<std::size_t>(lattice.at(column, row))];
             const int visited[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
             for (const auto& step : visited) {
-                const std::ptrdiff_t neighbour =
+                const std::ptrdiff_t neighbor =
                     lattice.at(column + direction * step[0], row + direction * step[1]);
-                if (neighbour < 0) continue;
-                const std::uint32_t through = distance[static_cast<std::size_t>(neighbour)] + 1;
+                if (neighbor < 0) continue;
+                const std::uint32_t through = distance[static_cast<std::size_t>(neighbor)] + 1;
                 if (through >= own) continue;
                 own = through;
                 changed = true;

@@ -98,7 +98,7 @@ HeightDepth depth_of(const Heights<float>& heights) {
             if (are_on_levels(levels)) return {bits, 1.0 / levels};
         }
     }
-    // The mean of three colours of 8 bits.
+    // The mean of three colors of 8 bits.
     constexpr double mean_levels = 3 * 255;
     if (are_on_levels(mean_levels)) return {10, 1.0 / mean_levels};
     return {};
@@ -163,7 +163,7 @@ double height_noise(const Image& height) {
 
 namespace {
 
-/// The first lines of the pairs among `count` lines, and at the end the last line, whose neighbour
+/// The first lines of the pairs among `count` lines, and at the end the last line, whose neighbor
 /// across the seam is the first.
 template <typename Index>
 std::vector<Index> pairs_of(int count) {

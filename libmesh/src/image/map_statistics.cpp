@@ -201,7 +201,7 @@ struct SquareEvidence {
 };
 
 /// One row of a square, three rows of p and q being given: adds what each column shows. Plain
-/// loops over neighbours, with Sobel's weights, which halve the noise.
+/// loops over neighbors, with Sobel's weights, which halve the noise.
 void observe_row(const std::array<const float*, 3>& p, const std::array<const float*, 3>& q,
                  std::size_t count, float* agree, float* size) {
     for (std::size_t i = 1; i + 1 < count; ++i) {
@@ -220,7 +220,7 @@ void observe_row(const std::array<const float*, 3>& p, const std::array<const fl
     }
 }
 
-/// Over the texels of a square that have two neighbours on each side inside it.
+/// Over the texels of a square that have two neighbors on each side inside it.
 Observation observe(const Slopes& slopes) {
     const auto side = static_cast<std::size_t>(slopes.side);
     std::array<float, largest_square> agree{}, size{};

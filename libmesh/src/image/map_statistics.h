@@ -80,7 +80,7 @@ class MapVectors {
     std::vector<float> table_;
 };
 
-/// Sums over a map. A texel whose three samples are the same is black, white or grey, a background
+/// Sums over a map. A texel whose three samples are the same is black, white or gray, a background
 /// or a height, and no vector.
 struct MapStatistics {
     std::size_t texels = 0;   ///< That were looked at.
@@ -113,7 +113,7 @@ struct SurfaceEvidence {
 /// \param map  two channels at least; y as it is stored
 ///
 /// Texels that are not finite, face back or are steeper than 10 have no say, nor have their
-/// neighbours. The map is looked at as it is and averaged over 2, 4 and 8 texels, where the noise
+/// neighbors. The map is looked at as it is and averaged over 2, 4 and 8 texels, where the noise
 /// of few bits is less; of these the one counts that is surest.
 SurfaceEvidence surface_evidence(const Image& map, const SampleMeaning& meaning);
 

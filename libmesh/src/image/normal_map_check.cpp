@@ -33,8 +33,8 @@ constexpr std::array all_map_conditions = {
     MapConditionInfo{stored_through_srgb, "stored through the sRGB curve", "map", problem,
                      "too bright: flat is 188 of 255 instead of 128"},
     MapConditionInfo{decoded_from_srgb, "darkened by the sRGB curve", "map", problem,
-                     "read as colour and stored as light: flat is 55 of 255 instead of 128"},
-    MapConditionInfo{tagged_as_color, "tagged as a colour", "map", note,
+                     "read as color and stored as light: flat is 55 of 255 instead of 128"},
+    MapConditionInfo{tagged_as_color, "tagged as a color", "map", note,
                      "its file says sRGB or the like: programs that follow such tags bend the "
                      "normals (relief does not, nor does glTF)"},
     MapConditionInfo{signed_samples, "signed samples", "map", problem,
@@ -44,11 +44,11 @@ constexpr std::array all_map_conditions = {
                      "is (0,0,0) or all but that; what it is read as differs between programs"},
     MapConditionInfo{texel_facing_back, "texel facing back", "texel", problem,
                      "has z below 0, which no surface seen from outside has in tangent space"},
-    MapConditionInfo{texel_gray, "grey texel", "texel", note,
-                     "is black, white or grey: a background, which filtering mixes into its "
-                     "neighbours"},
+    MapConditionInfo{texel_gray, "gray texel", "texel", note,
+                     "is black, white or gray: a background, which filtering mixes into its "
+                     "neighbors"},
     MapConditionInfo{not_unit, "not of unit length", "map", problem,
-                     "lengths are off by more than 0.05 (RMS): programs that do not normalise "
+                     "lengths are off by more than 0.05 (RMS): programs that do not normalize "
                      "shade it wrong"},
     MapConditionInfo{not_quite_unit, "not quite of unit length", "map", note,
                      "lengths are off by more than 0.02 (RMS): filtered or compressed"},
@@ -136,7 +136,7 @@ bool are_tangent_normals(const MapStatistics& all) {
            std::abs(all.mean.y) <= 0.2;
 }
 
-/// Directions that face all ways: colours of that length do not.
+/// Directions that face all ways: colors of that length do not.
 bool are_object_normals(const MapStatistics& all) {
     return all.lengths.rms_deviation <= 0.12 && glm::length(all.mean) <= 0.6 &&
            all.share(all.upwards) <= 0.98;

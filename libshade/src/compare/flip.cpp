@@ -455,7 +455,7 @@ void check(const Image& reference, const Image& test, double pixels_per_degree) 
     for (const Image* image : {&reference, &test}) {
         if (image->empty()) throw InvalidInput("FLIP compares pictures, and one has no pixels");
         if (image->color_space == ColorSpace::data)
-            throw InvalidInput("FLIP compares colours, and one image holds data");
+            throw InvalidInput("FLIP compares colors, and one image holds data");
     }
     if (reference.width != test.width || reference.height != test.height) {
         throw InvalidInput(fmt::format("pictures of {} x {} and {} x {} pixels cannot be compared",

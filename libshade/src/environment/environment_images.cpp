@@ -103,7 +103,7 @@ void check_faces(std::span<const Image> faces, std::string_view name) {
         }
         if (face.bits() != first.bits() || face.channels != first.channels ||
             face.color_space != first.color_space) {
-            refuse("differs from face +x in channels, bits or colour space");
+            refuse("differs from face +x in channels, bits or color space");
         }
     }
 }

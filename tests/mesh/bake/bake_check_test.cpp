@@ -91,7 +91,7 @@ TEST(BakeCheck, NormalsTurnedByOneDegreeAreOneDegreeOff) {
     EXPECT_NEAR(check.error.mean, 1.0, 2e-6);
     EXPECT_NEAR(check.error.max, 1.0, 2e-5);
     EXPECT_NEAR(check.error.p99, 1.0, 0.02);
-    EXPECT_NEAR(check.centre.rms, 1.0, 2e-6);
+    EXPECT_NEAR(check.center.rms, 1.0, 2e-6);
     EXPECT_EQ(check.rebaked.max, 0.0);
     EXPECT_NEAR(stage(check, BakeStage::other).rms, 1.0, 2e-6);
     EXPECT_NEAR(stage(check, BakeStage::other).share, 1.0, 1e-9);
@@ -132,7 +132,7 @@ TEST(BakeCheck, QuantisationAloneIsWhatRoundingToCodesDoes) {
     EXPECT_EQ(std::abs(code(2) - 102.0), 0.5);
     const double rounded = degrees_between({code(0), code(1), code(2)}, {0.6, 0.0, 0.8});
     EXPECT_NEAR(check.error.rms, rounded, 1e-5);
-    EXPECT_NEAR(check.centre.rms, rounded, 1e-5);
+    EXPECT_NEAR(check.center.rms, rounded, 1e-5);
     EXPECT_NEAR(stage(check, BakeStage::quantization).rms, rounded, 1e-5);
     EXPECT_NEAR(stage(check, BakeStage::quantization).share, 1.0, 1e-3);
     EXPECT_NEAR(stage(check, BakeStage::other).rms, 0.0, 1e-9);
@@ -151,13 +151,13 @@ TEST(BakeCheck, SamplingAloneIsWhatOneSampleMissesOfTheMean) {
     const BakeCheck one = errors_of(1);
     EXPECT_EQ(one.reference_samples, 16);
     EXPECT_GT(one.error.rms, 5.0);
-    EXPECT_LT(one.centre.max, 1e-4);
+    EXPECT_LT(one.center.max, 1e-4);
     EXPECT_NEAR(stage(one, BakeStage::sampling).rms, one.error.rms, 1e-4);
     EXPECT_NEAR(stage(one, BakeStage::sampling).share, 1.0, 1e-4);
     const BakeCheck sixteen = errors_of(16);
     EXPECT_EQ(sixteen.reference_samples, 256);
     EXPECT_LT(sixteen.error.rms, 1.5);
-    EXPECT_GT(sixteen.centre.rms, 5.0);
+    EXPECT_GT(sixteen.center.rms, 5.0);
 }
 
 TEST(BakeCheck, BasisIsWhatASkewedFrameMakesOfRounding) {
@@ -268,7 +268,7 @@ TEST(BakeCheck, OfObjectSpaceNeedsNoFrames) {
     const Image map = baked_map(high, make_torus(), options, 16);
     const BakeCheck check = checked(high, make_torus(), options, map);
     EXPECT_EQ(check.error.count, 4096U);
-    EXPECT_LT(check.centre.max, 0.003);
+    EXPECT_LT(check.center.max, 0.003);
 }
 
 TEST(BakeCheck, RefusesWhatIsNoMapOfThatSize) {
@@ -341,7 +341,7 @@ TEST(BakeBenchmark, MoreSamplesAndBitsAreTruer) {
     EXPECT_LT(four.quantization[1].rms, 0.001);
     EXPECT_GT(four.quantization[0].rms, 0.05);
     // A map with one sample at the center is exact there.
-    EXPECT_LT(one.centre[1].max, 0.002);
+    EXPECT_LT(one.center[1].max, 0.002);
 }
 
 TEST(BakeBenchmark, ErrorMapsHoldTheErrorsOfEachTexel) {

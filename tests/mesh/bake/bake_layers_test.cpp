@@ -178,7 +178,7 @@ TEST(BakeLayers, ColorsOfVerticesAreMixedInLight) {
         EXPECT_NEAR(image.colors[3 * i], red, 1e-6);
         EXPECT_NEAR(image.colors[3 * i + 1], i < 8 ? 0.25 : 1.0, 1e-6);
     }
-    EXPECT_EQ(image.report.count("high mesh without colours"), 1U);
+    EXPECT_EQ(image.report.count("high mesh without colors"), 1U);
     EXPECT_EQ(image.report.findings()[0].first, (std::vector<std::size_t>{1}));
 }
 

@@ -63,7 +63,7 @@ TEST(BorderSample, StaysWhereItIsFarEnoughInside) {
     EXPECT_FALSE(moved_inside(right_triangle(), at(0.25F, 0.0F), 0.0));
 }
 
-TEST(BorderSample, GoesToTheCentreOfTheInscribedCircleOfATriangleThatIsTooSmall) {
+TEST(BorderSample, GoesToTheCenterOfTheInscribedCircleOfATriangleThatIsTooSmall) {
     const auto moved = moved_inside(right_triangle(), at(1.0F, 0.0F), 2.0);
     ASSERT_TRUE(moved);
     EXPECT_LT(glm::distance(place(right_triangle(), *moved), {1, 1, 0}), 1e-6);
@@ -176,9 +176,9 @@ TEST(OpenBorders, WhatIsReallyMissedStaysMissed) {
     // texel.
     const Mesh low = strip_of_one();
     Mesh high = low;
-    const glm::vec3 centre = (low.positions[0] + low.positions[1] + low.positions[2]) / 3.0F;
+    const glm::vec3 center = (low.positions[0] + low.positions[1] + low.positions[2]) / 3.0F;
     for (glm::vec3& position : high.positions)
-        position = centre + 0.999F * (position - centre);
+        position = center + 0.999F * (position - center);
     const BakedImage image = bake({high}, low, sized(64, 64));
     EXPECT_GT(image.result.coverage.touched, 50U);
     EXPECT_GE(image.result.texels_missed, image.result.coverage.touched);

@@ -60,7 +60,7 @@ TEST(Mesh, AnAttributeOfAnotherLengthIsNamed) {
     expect_invalid(mesh, "there are 1 tangents, but 4 positions");
     mesh = test::grid(1);
     mesh.colors.resize(2);
-    expect_invalid(mesh, "there are 2 colours, but 4 positions");
+    expect_invalid(mesh, "there are 2 colors, but 4 positions");
 }
 
 TEST(Mesh, MaterialRangesCoverAllTrianglesWithoutGapOrOverlap) {

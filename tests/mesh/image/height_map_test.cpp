@@ -40,7 +40,7 @@ Image rgba16(std::vector<std::uint16_t> samples) {
     return image;
 }
 
-TEST(HeightField, GreyIsItselfRgbItsMeanAndAlphaIsLeftOut) {
+TEST(HeightField, GrayIsItselfRgbItsMeanAndAlphaIsLeftOut) {
     Image gray = make_image(2, 1, 2, 8, ColorSpace::data);
     gray.samples = std::vector<std::uint8_t>{51, 7, 255, 0};
     EXPECT_THAT(samples_of<float>(height_field(gray)), ElementsAre(0.2F, 1.0F));
@@ -52,7 +52,7 @@ TEST(HeightField, GreyIsItselfRgbItsMeanAndAlphaIsLeftOut) {
     EXPECT_THAT(samples_of<float>(height_field(floats)), ElementsAre(2.0F));
 }
 
-TEST(HeightField, AGreyPictureStoredAsRgbGivesTheHeightsOfTheGreyOne) {
+TEST(HeightField, AGrayPictureStoredAsRgbGivesTheHeightsOfTheGrayOne) {
     Image gray = make_image(256, 1, 1, 8, ColorSpace::data);
     Image rgb = make_image(256, 1, 3, 8, ColorSpace::srgb);
     for (std::size_t code = 0; code < 256; ++code) {
@@ -75,7 +75,7 @@ TEST(HeightField, TakesTheChannelThatIsAskedFor) {
     EXPECT_THAT(samples_of<float>(height_field(image, HeightChannel::alpha)), ElementsAre(0.4F));
 }
 
-TEST(HeightField, LuminanceIsOfDecodedColours) {
+TEST(HeightField, LuminanceIsOfDecodedColors) {
     Image image = make_image(4, 1, 3, 8, ColorSpace::data);
     // Pure colors give the weights of Rec. 709. Gray of code 188 is half as bright as white.
     image.samples = std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 188, 188, 188};
@@ -88,7 +88,7 @@ TEST(HeightField, LuminanceIsOfDecodedColours) {
         << "float samples are linear already";
 }
 
-TEST(HeightField, GreyHasOneHeightWhateverIsAskedButNoColours) {
+TEST(HeightField, GrayHasOneHeightWhateverIsAskedButNoColors) {
     Image gray = make_image(1, 1, 2, 8, ColorSpace::data);
     gray.samples = std::vector<std::uint8_t>{51, 102};
     for (const HeightChannel channel :
@@ -96,13 +96,13 @@ TEST(HeightField, GreyHasOneHeightWhateverIsAskedButNoColours) {
         EXPECT_THAT(samples_of<float>(height_field(gray, channel)), ElementsAre(0.2F));
     EXPECT_THAT(samples_of<float>(height_field(gray, HeightChannel::alpha)), ElementsAre(0.4F));
     EXPECT_EQ(message_of<InvalidInput>([&] { height_field(gray, HeightChannel::blue); }),
-              "a grey image has no blue channel to take heights from");
+              "a gray image has no blue channel to take heights from");
     const Image rgb = make_image(1, 1, 3, 8, ColorSpace::data);
     EXPECT_EQ(message_of<InvalidInput>([&] { height_field(rgb, HeightChannel::alpha); }),
               "the image has no alpha channel to take heights from");
 }
 
-TEST(HeightMap, KeepsTheSamplesOfAGreyImage) {
+TEST(HeightMap, KeepsTheSamplesOfAGrayImage) {
     Image gray = make_image(2, 1, 1, 16, ColorSpace::data);
     gray.samples = std::vector<std::uint16_t>{1, 65535};
     const HeightMap map = height_map(std::move(gray));
@@ -461,7 +461,7 @@ TEST(Destaircase, CliffsAndLevelGroundStayAsTheyAre) {
     }
 }
 
-TEST(Destaircase, HolesStayAndTheirNeighboursAreSmoothedAllTheSame) {
+TEST(Destaircase, HolesStayAndTheirNeighborsAreSmoothedAllTheSame) {
     Image heights = heights_of(
         48, 40, [](int x, int y) { return std::round(3.0 + 0.21 * x + 0.11 * y) / 255.0; });
     const Image whole = destaircase(heights, {Wrap::clamp}).heights;

@@ -377,7 +377,7 @@ std::vector<std::uint8_t> overlapping(const std::vector<glm::vec2>& texcoords,
     return texture_overlap(texcoords, triangles).overlapping;
 }
 
-TEST(TextureOverlap, NeighboursDoNotAndFoldedOnesDo) {
+TEST(TextureOverlap, NeighborsDoNotAndFoldedOnesDo) {
     const std::vector<glm::vec2> square = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     EXPECT_THAT(overlapping(square, {{0, 1, 2}, {0, 2, 3}}), ElementsAre(0, 0));
     EXPECT_THAT(overlapping(square, {{0, 1, 2}, {0, 1, 3}}), ElementsAre(1, 1));
@@ -435,8 +435,8 @@ bool share_a_texel(const std::vector<glm::vec2>& t, const glm::uvec3& a, const g
     const glm::ivec2 end = glm::min(glm::ivec2(high) + 1, side);
     for (int row = begin.y; row < end.y; ++row) {
         for (int column = begin.x; column < end.x; ++column) {
-            const glm::dvec2 centre(column + 0.5, row + 0.5);
-            if (is_inside(a, centre) && is_inside(b, centre)) return true;
+            const glm::dvec2 center(column + 0.5, row + 0.5);
+            if (is_inside(a, center) && is_inside(b, center)) return true;
         }
     }
     return false;
@@ -450,9 +450,9 @@ TEST(TextureOverlap, MatchesASearchThroughAllPairs) {
     std::vector<glm::uvec3> triangles = {{0, 1, 2}, {0, 1, 3}};  // These triangles span the unit
                                                                  // square.
     for (std::uint32_t i = 0; i < 30; ++i) {
-        const glm::vec2 centre(anywhere(generator), anywhere(generator));
+        const glm::vec2 center(anywhere(generator), anywhere(generator));
         for (int k = 0; k < 3; ++k)
-            texcoords.push_back(centre + glm::vec2(near(generator), near(generator)));
+            texcoords.push_back(center + glm::vec2(near(generator), near(generator)));
         triangles.push_back(glm::uvec3(0, 1, 2) + 3 * i + 4U);
     }
     const TextureOverlap found = texture_overlap(texcoords, triangles);

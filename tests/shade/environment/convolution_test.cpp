@@ -226,7 +226,7 @@ TEST(EnvironmentBrdf, ATableOf64IsCloseBetweenItsTexels) {
     EXPECT_LT(worst, 3e-3);
 }
 
-double grey_at(const IrradianceSh& sh, const glm::dvec3& normal) {
+double gray_at(const IrradianceSh& sh, const glm::dvec3& normal) {
     return irradiance_over_pi(sh, normal).x;
 }
 
@@ -258,7 +258,7 @@ TEST(IrradianceSh, IsExactForLightUpToOrderTwo) {
         const double expected = 2.0 + 2.0 / 3.0 * glm::dot(a, n) +
                                 0.25 * (std::pow(glm::dot(b, n), 2.0) + glm::dot(b, b));
         // Radiance is constant within each of 64 x 64 texels.
-        EXPECT_NEAR(grey_at(sh, n), expected, 2e-4);
+        EXPECT_NEAR(gray_at(sh, n), expected, 2e-4);
     }
 }
 
@@ -267,7 +267,7 @@ TEST(IrradianceSh, OfAHemisphereIsExactToo) {
     const IrradianceSh sh =
         irradiance_sh(lobe(64, {0, 1, 0}, [](double cosine) { return cosine > 0 ? 1.0 : 0.0; }));
     for (const glm::dvec3& n : spread_directions(100))
-        EXPECT_NEAR(grey_at(sh, n), 0.5 * (1.0 + n.y), 1e-4);
+        EXPECT_NEAR(gray_at(sh, n), 0.5 * (1.0 + n.y), 1e-4);
 }
 
 TEST(IrradianceSh, OfACosineLobeIsOffByWhatOrderTwoLeavesOut) {
@@ -276,8 +276,8 @@ TEST(IrradianceSh, OfACosineLobeIsOffByWhatOrderTwoLeavesOut) {
             irradiance_sh(lobe(64, axis, [](double cosine) { return std::max(cosine, 0.0); }));
         // The coefficients of the lobe are those of the cosine: the sum of A_l^2 (2 l + 1) / (4
         // pi^2) is 127 / 192 = 0.6615. The integral is 2/3.
-        EXPECT_NEAR(grey_at(sh, axis), 127.0 / 192.0, 2e-4);
-        EXPECT_NEAR(grey_at(sh, -axis), 1.0 / 4 - 1.0 / 3 + 5.0 / 64, 2e-4) << "instead of 0";
+        EXPECT_NEAR(gray_at(sh, axis), 127.0 / 192.0, 2e-4);
+        EXPECT_NEAR(gray_at(sh, -axis), 1.0 / 4 - 1.0 / 3 + 5.0 / 64, 2e-4) << "instead of 0";
     }
 }
 
@@ -290,12 +290,12 @@ TEST(IrradianceSh, OfOneSmallLightIsNoWorseThanKnown) {
         faces[0].as<float>()[3 * (64 * 32 + 32) + c] = static_cast<float>(pi / cover);
     const IrradianceSh sh = irradiance_sh(faces);
     const glm::dvec3 towards = glm::normalize(face_direction(0, 1.0 / 64, 1.0 / 64));
-    EXPECT_NEAR(grey_at(sh, towards), 17.0 / 16.0, 1e-4);
+    EXPECT_NEAR(gray_at(sh, towards), 17.0 / 16.0, 1e-4);
     double lowest = 0.0;
     double worst = 0.0;
     for (const glm::dvec3& n : spread_directions(5000)) {
-        lowest = std::min(lowest, grey_at(sh, n));
-        worst = std::max(worst, std::abs(grey_at(sh, n) - std::max(glm::dot(n, towards), 0.0)));
+        lowest = std::min(lowest, gray_at(sh, n));
+        worst = std::max(worst, std::abs(gray_at(sh, n) - std::max(glm::dot(n, towards), 0.0)));
     }
     // With the cosine x, the polynomial is 3/32 + x/2 + 15/32 x^2. Its minimum is at -8/15, and its
     // largest distance from max(x, 0) is at 0.

@@ -254,7 +254,7 @@ TEST_P(CubeMaps, FacesThatDoNotFitTogetherAreRefusedByName) {
     EXPECT_EQ(error_of(faces), "cube map 'room': face -y has 8 x 8 texels, but face +x has 4 x 4");
     faces[3] = make_image(4, 4, 3, 8, ColorSpace::srgb);
     EXPECT_EQ(error_of(faces),
-              "cube map 'room': face -y differs from face +x in channels, bits or colour space");
+              "cube map 'room': face -y differs from face +x in channels, bits or color space");
     faces[0] = Image{};
     EXPECT_EQ(error_of(faces), "cube map 'room': face +x has no texels");
 }

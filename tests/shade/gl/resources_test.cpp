@@ -228,7 +228,7 @@ TEST_P(Textures, IntegersOfEveryFormatAndOddSizeComeBackExactly) {
     }
 }
 
-TEST_P(Textures, CodedColoursComeBackAsTheyAreCoded) {
+TEST_P(Textures, CodedColorsComeBackAsTheyAreCoded) {
     for (const Size size : texture_sizes) {
         for (const int channels : {3, 4}) {
             const Image image = random_image(size, channels, 8, ColorSpace::srgb);
@@ -278,30 +278,30 @@ TEST_P(Textures, LookUpWithRowZeroAtTZero) {
     }
 }
 
-TEST_P(Textures, GreyIsSeenAsGreyWithAlphaInItsPlace) {
+TEST_P(Textures, GrayIsSeenAsGrayWithAlphaInItsPlace) {
     Image gray = make_image(1, 1, 1, 8, ColorSpace::data);
     gray.samples = std::vector<std::uint8_t>{51};
-    const Image seen = look_up(api(), make_texture(api(), gray, "grey"), {1, 1});
+    const Image seen = look_up(api(), make_texture(api(), gray, "gray"), {1, 1});
     EXPECT_THAT(seen.samples, VariantWith<std::vector<float>>(
                                   Pointwise(FloatNear(rounding), {0.2F, 0.2F, 0.2F, 1.0F})));
     Image with_alpha = make_image(1, 1, 2, 16, ColorSpace::data);
     with_alpha.samples = std::vector<std::uint16_t>{13107, 52428};
-    const Image both = look_up(api(), make_texture(api(), with_alpha, "grey"), {1, 1});
+    const Image both = look_up(api(), make_texture(api(), with_alpha, "gray"), {1, 1});
     EXPECT_THAT(both.samples, VariantWith<std::vector<float>>(
                                   Pointwise(FloatNear(rounding), {0.2F, 0.2F, 0.2F, 0.8F})));
 }
 
-TEST_P(Textures, CodedGreyIsDecodedAndItsAlphaIsNot) {
+TEST_P(Textures, CodedGrayIsDecodedAndItsAlphaIsNot) {
     Image gray = make_image(1, 1, 2, 8, ColorSpace::srgb);
     gray.samples = std::vector<std::uint8_t>{188, 51};
-    const Image seen = look_up(api(), make_texture(api(), gray, "grey"), {1, 1});
+    const Image seen = look_up(api(), make_texture(api(), gray, "gray"), {1, 1});
     const float linear = linear_from_srgb(188.0F / 255.0F);
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(seen.as<float>()[i], linear, 2e-3F);
     EXPECT_NEAR(seen.as<float>()[3], 0.2F, rounding);
 }
 
-TEST_P(Textures, EveryCodedColourIsDecodedToWithinHalfAStep) {
+TEST_P(Textures, EveryCodedColorIsDecodedToWithinHalfAStep) {
     Image ramp = make_image(256, 1, 3, 8, ColorSpace::srgb);
     for (std::size_t i = 0; i < ramp.sample_count(); ++i) {
         ramp.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i / 3);
@@ -317,7 +317,7 @@ TEST_P(Textures, EveryCodedColourIsDecodedToWithinHalfAStep) {
     EXPECT_LT(worst, 0.5);
 }
 
-TEST_P(Textures, Coded16BitColoursBecomeLinearFloats) {
+TEST_P(Textures, Coded16BitColorsBecomeLinearFloats) {
     Image image = make_image(2, 1, 3, 16, ColorSpace::srgb);
     image.samples = std::vector<std::uint16_t>{0, 1, 1000, 30000, 65534, 65535};
     const Image expected = to_linear(image);
@@ -327,7 +327,7 @@ TEST_P(Textures, Coded16BitColoursBecomeLinearFloats) {
     }
 }
 
-TEST_P(Textures, MipmapsOfColoursAreAveragedInLinearLight) {
+TEST_P(Textures, MipmapsOfColorsAreAveragedInLinearLight) {
     Image checker = make_image(2, 2, 3, 8, ColorSpace::srgb);
     checker.samples = std::vector<std::uint8_t>{0, 0, 0, 255, 255, 255, 255, 255, 255, 0, 0, 0};
     // Half of the light has the code 187.5. The mean of the codes would be 127 or 128.
@@ -546,7 +546,7 @@ TEST_P(RenderTargets, DepthHidesWhatIsBehind) {
     EXPECT_THAT(picture.as<std::uint8_t>().subspan(0, 4), ElementsAre(255, 0, 0, 255));
 }
 
-TEST_P(RenderTargets, TheirColourServesAsATextureSampleBySample) {
+TEST_P(RenderTargets, TheirColorServesAsATextureSampleBySample) {
     for (const int samples : {1, 4}) {
         const RenderTarget first(api(), 5, 3, ColorFormat::rgba8, samples);
         test::cover(api(), coordinates_shader,

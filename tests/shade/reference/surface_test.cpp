@@ -154,7 +154,7 @@ TEST(ReferenceEdges, AreAtSilhouettesOnly) {
         scene.instances[0].world_from_object[3] = {0, 0, 0, 1};
         return edge_count(scene, 16);
     };
-    EXPECT_EQ(edges_of_a_square(1.0F), 0U) << "half-way between centres";
+    EXPECT_EQ(edges_of_a_square(1.0F), 0U) << "half-way between centers";
     const float pixel_width = 0.25F;
     // The outermost of the 10 x 10 pixels that the square covers, or almost covers.
     EXPECT_EQ(edges_of_a_square(1.125F + pixel_width / 64), 36U);

@@ -255,7 +255,7 @@ TEST_F(ForcedEffects, ThatAreTakenAwayDoChangeThePicture) {
         whole));
 }
 
-TEST_F(ForcedEffects, VertexColoursAreExactlyWhiteBetweenWhiteVertices) {
+TEST_F(ForcedEffects, VertexColorsAreExactlyWhiteBetweenWhiteVertices) {
     // A mask that accepts only full coverage, on a mesh with one transparent corner on the far
     // side.
     Scene scene = test::scene_of(test::sphere(24, 12), test::black_material());

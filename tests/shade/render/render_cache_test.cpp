@@ -137,7 +137,7 @@ Scene textured_scene() {
     return scene;
 }
 
-TEST_F(Cached, AnEditedColourUploadsNothing) {
+TEST_F(Cached, AnEditedColorUploadsNothing) {
     Scene scene = textured_scene();
     draw(scene);
     const RenderCache::Contents before = cache().contents();

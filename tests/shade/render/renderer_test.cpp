@@ -44,7 +44,7 @@ Material unlit_texture() {
 
 TEST_F(Rendering, ShowsTexturesUpright) {
     Scene scene = test::scene_of(test::facing_square(), unlit_texture());
-    scene.images = {{"four colours", four_colors()}};
+    scene.images = {{"four colors", four_colors()}};
     const Frame frame = render(scene, {32, 32, 1, OutputCoding::srgb});
     EXPECT_EQ(pixel(frame.image, 4, 4), glm::dvec4(255, 0, 0, 255));
     EXPECT_EQ(pixel(frame.image, 28, 4), glm::dvec4(0, 255, 0, 255));

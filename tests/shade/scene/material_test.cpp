@@ -103,7 +103,7 @@ TEST(PhongFromMetallicRoughness, OfARoughDielectricIsDiffuse) {
     EXPECT_LT(phong.grazing_reflectivity.x, 0.003F);
 }
 
-TEST(PhongFromMetallicRoughness, OfASmoothMetalIsAColouredMirror) {
+TEST(PhongFromMetallicRoughness, OfASmoothMetalIsAColoredMirror) {
     const Material phong = phong_from_metallic_roughness(surface(1, 0), {});
     expect_color(phong.diffuse, glm::vec3(0.0F));
     expect_color(phong.reflectivity, {0.8F, 0.5F, 0.2F}, 0.002F);
@@ -321,7 +321,7 @@ TYPED_TEST(SceneFields, HaveDefaultsWithinTheirRanges) {
 TEST(SceneField, HasALabelForMessages) {
     std::vector<std::string> labels;
     for_each_field<MetallicRoughness>([&](const auto& field) { labels.push_back(field.label()); });
-    EXPECT_THAT(labels, testing::ElementsAre("base colour", "metallic", "roughness",
+    EXPECT_THAT(labels, testing::ElementsAre("base color", "metallic", "roughness",
                                              "metallic-roughness texture"));
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }

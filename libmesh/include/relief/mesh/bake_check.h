@@ -78,7 +78,7 @@ struct BakeCheck {
     /// The error against the normal at the texel's center, which a map should show in a close view.
     /// A map of one sample per texel has only rounding errors here; a map of many samples differs
     /// by design.
-    AngleSummary centre;
+    AngleSummary center;
     /// The value of `error` for the codes that this bake produces now.
     AngleSummary rebaked;
     std::array<StageError, bake_stage_count> stages{};  ///< Indexed by BakeStage.

@@ -29,7 +29,7 @@ struct BakeMeasurement {
     /// By format, the error of rounding to codes alone, which more samples do not reduce.
     std::vector<AngleSummary> quantization;
     AngleSummary sampling;             ///< The error of sampling alone, which no format reduces.
-    std::vector<AngleSummary> centre;  ///< By format, against the normal at the texel's center.
+    std::vector<AngleSummary> center;  ///< By format, against the normal at the texel's center.
     std::size_t rays = 0;
     double cast_seconds = 0.0;         ///< The time of the bake without encoding.
     std::vector<double> code_seconds;  ///< The time of encoding, by format.

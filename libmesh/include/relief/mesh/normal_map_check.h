@@ -63,7 +63,7 @@ struct GreenEvidence {
 /// The conditions of a map.
 enum class MapCondition {
     // Content.
-    not_normals,   ///< MapContent::grey or other.
+    not_normals,   ///< MapContent::gray or other.
     object_space,  ///< MapContent::object_normals.
     z_missing,     ///< MapContent::xy_normals.
     z_constant,    ///< The third channel is constant, but close to the correct z.

@@ -44,7 +44,7 @@ class FrameReplacement {
     template <typename Vector>
     void replace(const char* name, const std::vector<Vector>& values);
     void carry_all();
-    void carry_neighbours(std::size_t accessor);
+    void carry_neighbors(std::size_t accessor);
     void replace_indices();
     void drop_draco();
     std::size_t add(Json accessor, const std::string& elements, int target) {
@@ -144,7 +144,7 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
     const auto accessor = index_in(primitive()["attributes"], name);
     if (values.empty()) {
         if (!accessor) return;
-        carry_neighbours(*accessor);
+        carry_neighbors(*accessor);
         retire(*accessor);
         primitive()["attributes"].erase(name);
         // Morph targets must not change an attribute that the primitive lacks.
@@ -158,7 +158,7 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
     if (accessor && is_stored(contents_, *accessor, sources_, values)) return;
     Json json = Json::object();
     if (accessor) {
-        carry_neighbours(*accessor);
+        carry_neighbors(*accessor);
         retire(*accessor);
         json = contents_.root["accessors"][*accessor];
         for (const char* key : {"normalized", "min", "max"})
@@ -195,7 +195,7 @@ void FrameReplacement::carry_all() {
 
 /// If the removed accessor is interleaved with others of this primitive, rewrites those, so that no
 /// gaps remain.
-void FrameReplacement::carry_neighbours(std::size_t accessor) {
+void FrameReplacement::carry_neighbors(std::size_t accessor) {
     if (!same_vertices_) return;  // In this case carry_all() rewrites everything.
     const Json& root = contents_.root;
     const auto view = index_in(root["accessors"][accessor], "bufferView");

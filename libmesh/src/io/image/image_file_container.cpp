@@ -89,7 +89,7 @@ void check_png_size(Bytes header, std::uint64_t compressed, std::uint64_t size,
     const std::uint64_t height = big32(header, 4);
     const std::uint32_t type = byte_at(header, 9);
     if (type >= channels_of_type.size() || channels_of_type[type] == 0)
-        throw FileError(name, fmt::format("PNG has no colour type {}", type));
+        throw FileError(name, fmt::format("PNG has no color type {}", type));
     // Width and height are below 2^32, so the bits of a row are below 2^32 * 64.
     const std::uint64_t row = (width * channels_of_type[type] * byte_at(header, 8) + 7) / 8;
     const std::uint64_t rows_possible =

@@ -95,9 +95,9 @@ void check_writable(const std::string& format, const ImageShape& shape,
     if (format == "hdr" && shape.channels != 3)
         throw InvalidInput(fmt::format("HDR holds 3 channels, not {}", shape.channels));
     if (shape.color_space == ColorSpace::linear && bits != 32)
-        throw InvalidInput("linear colour is stored as float; encode it with to_srgb first");
+        throw InvalidInput("linear color is stored as float; encode it with to_srgb first");
     if (shape.color_space == ColorSpace::srgb && bits == 32)
-        throw InvalidInput("sRGB-coded colour is stored in 8 or 16 bits; decode it with to_linear");
+        throw InvalidInput("sRGB-coded color is stored in 8 or 16 bits; decode it with to_linear");
 }
 
 /// \throws InvalidInput if a key is empty or too long for PNG

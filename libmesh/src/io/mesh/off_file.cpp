@@ -97,7 +97,7 @@ void read_vertex(TextScanner& text, const OffHeader& header, const glm::dvec3& o
         rest.resize(rest.size() - 2);
     }
     if (header.has_colors) {
-        if (rest.size() < 3) text.fail("a vertex has no colour");
+        if (rest.size() < 3) text.fail("a vertex has no color");
         mesh.colors.push_back(color_of(rest));
     }
 }

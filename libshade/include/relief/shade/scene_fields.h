@@ -174,7 +174,7 @@ inline constexpr auto fields_of<BumpMap> = std::tuple{
 template <>
 inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
     SceneField{
-        "base_color", &MetallicRoughness::base_color, {0, 1}, FieldUnit::color, "base colour"},
+        "base_color", &MetallicRoughness::base_color, {0, 1}, FieldUnit::color, "base color"},
     SceneField{"metallic", &MetallicRoughness::metallic, {0, 1}},
     SceneField{"roughness", &MetallicRoughness::roughness, {0, 1}},
     SceneField{"texture", &MetallicRoughness::texture, {}, {}, "metallic-roughness texture"}};

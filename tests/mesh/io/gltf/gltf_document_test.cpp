@@ -430,11 +430,11 @@ TEST_F(GltfDocumentTest, SparseElementsReplaceTheirBase) {
 TEST_F(GltfDocumentTest, QuantisedModelsLieWhereTheFloatOnesDo) {
     RELIEF_NEEDS_SHARED(folder, "data/models/gltf/Duck");
     const MeshFile exact = flattened(read(folder / "glTF-Binary/Duck.glb"));
-    const MeshFile quantised = flattened(read(folder / "glTF-Quantized/Duck.gltf"));
+    const MeshFile quantized = flattened(read(folder / "glTF-Quantized/Duck.gltf"));
     const Bounds a = bounds_of(exact.mesh);
-    const Bounds b = bounds_of(quantised.mesh);
+    const Bounds b = bounds_of(quantized.mesh);
     EXPECT_EQ(exact.mesh.triangles.size(), 4212U);
-    EXPECT_EQ(quantised.mesh.triangles.size(), 4212U);
+    EXPECT_EQ(quantized.mesh.triangles.size(), 4212U);
     // 14 bits over a length of 1.7.
     EXPECT_LT(glm::length(a.min - b.min), 1e-3F);
     EXPECT_LT(glm::length(a.max - b.max), 1e-3F);

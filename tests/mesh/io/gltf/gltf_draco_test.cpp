@@ -276,14 +276,14 @@ TEST_F(GltfDraco, EveryContradictionIsNamed) {
 /// triangles.
 float largest_distance(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.triangles.size(), b.triangles.size());
-    const auto centre = [](const Mesh& mesh, const glm::uvec3& t) {
+    const auto center = [](const Mesh& mesh, const glm::uvec3& t) {
         return (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0F;
     };
     float largest = 0.0F;
     for (const glm::uvec3& triangle : a.triangles) {
         float nearest = std::numeric_limits<float>::max();
         for (const glm::uvec3& other : b.triangles)
-            nearest = std::min(nearest, glm::length(centre(a, triangle) - centre(b, other)));
+            nearest = std::min(nearest, glm::length(center(a, triangle) - center(b, other)));
         largest = std::max(largest, nearest);
     }
     return largest;

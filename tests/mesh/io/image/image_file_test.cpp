@@ -107,7 +107,7 @@ TEST(ImageFile, ExrKeepsEveryFloatOfEveryChannelCountInItsPlace) {
     }
 }
 
-TEST(ImageFile, HdrKeepsColoursWithinOnePartIn128OfTheLargestChannel) {
+TEST(ImageFile, HdrKeepsColorsWithinOnePartIn128OfTheLargestChannel) {
     const TemporaryDirectory folder;
     Image colors = make_image(64, 4, 3, 32, ColorSpace::linear);
     for (std::size_t at = 0; at < colors.sample_count(); ++at)
@@ -135,7 +135,7 @@ TEST(ImageFile, JpegComesCloseToASmoothPicture) {
         EXPECT_NEAR(back.as<std::uint8_t>()[at], smooth.as<std::uint8_t>()[at], 4);
 }
 
-TEST(ImageFile, TheUseDecidesTheColourSpaceNotTheFile) {
+TEST(ImageFile, TheUseDecidesTheColorSpaceNotTheFile) {
     const TemporaryDirectory folder;
     Image srgb = pattern<std::uint8_t>(4, 4, 3, ColorSpace::srgb);
     write_image(folder / "a.png", srgb);
@@ -147,7 +147,7 @@ TEST(ImageFile, TheUseDecidesTheColourSpaceNotTheFile) {
     expect_same_image(read_back(folder / "a.exr", ImageUse::color), linear);
 }
 
-TEST(ImageFile, TransparentTexelsKeepTheirColour) {
+TEST(ImageFile, TransparentTexelsKeepTheirColor) {
     const TemporaryDirectory folder;
     Image image = make_image(2, 1, 4, 8, ColorSpace::data);
     image.samples = std::vector<std::uint8_t>{200, 100, 50, 64, 10, 20, 30, 0};
@@ -356,7 +356,7 @@ std::string jpeg_file(int channels) {
     return test::read_bytes(folder / "a.jpg");
 }
 
-TEST(PlainJpegs, GreyAndColouredReadAsTheModuleReadsThem) {
+TEST(PlainJpegs, GrayAndColoredReadAsTheModuleReadsThem) {
     for (const int channels : {1, 3}) {
         const std::string file = jpeg_file(channels);
         test::expect_same(directly(file), by_module(file), std::to_string(channels));
@@ -480,12 +480,12 @@ TEST(ImageContainer, APngThatAnnouncesMoreThanItHoldsIsRefused) {
     EXPECT_THAT(announcing(1000, 100, 16, 6), HasSubstr("cannot hold"));
     EXPECT_THAT(announcing(0xFFFFFFFF, 0xFFFFFFFF, 16, 6), HasSubstr("cannot hold"));
     EXPECT_THAT(announcing(0, 5, 8, 0), HasSubstr("is empty: 0 x 5 texels"));
-    EXPECT_THAT(announcing(5, 5, 8, 1), HasSubstr("PNG has no colour type 1"));
+    EXPECT_THAT(announcing(5, 5, 8, 1), HasSubstr("PNG has no color type 1"));
     EXPECT_THAT(complaint_about(png_start + unchecked_chunk("IDAT", "12345") + png_end),
                 HasSubstr("has no IHDR chunk"));
 }
 
-TEST(ImageContainer, JpegLosesItsMetadataButKeepsHowColoursAreCoded) {
+TEST(ImageContainer, JpegLosesItsMetadataButKeepsHowColorsAreCoded) {
     const std::string jfif = jpeg_segment('\xE0', "JFIF");
     const std::string adobe = jpeg_segment('\xEE', "Adobe");
     const std::string rest = jpeg_frame(8, 8) + jpeg_scan + "\xFF\xD0.." + "\xFF\xD9";

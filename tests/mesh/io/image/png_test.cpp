@@ -366,7 +366,7 @@ TEST(PlainPngs, WhatIsOddOrDamagedIsLeftToTheImageModule) {
     ASSERT_TRUE(directly(good.file()));
     Parts bad = good;
     bad.before_data = chunk("tRNS", "\0\1\0\2\0\3"s);
-    EXPECT_FALSE(directly(bad.file())) << "one transparent colour";
+    EXPECT_FALSE(directly(bad.file())) << "one transparent color";
     bad = good;
     bad.interlaced = 1;
     EXPECT_FALSE(directly(bad.file())) << "interlaced";
@@ -450,7 +450,7 @@ TEST(PngWriter, ChunksSayWhatTheImageIs) {
     EXPECT_THAT(encode_png(data, {}), testing::Not(HasSubstr("sRGB")));
 }
 
-TEST(PngFilter, PaethTakesTheNeighbourNearestToTheirPlane) {
+TEST(PngFilter, PaethTakesTheNeighborNearestToTheirPlane) {
     // Left 10, above 20, upper left 12: the plane gives 18, which is nearest to 20.
     const std::vector<std::uint8_t> above{12, 20}, row{10, 25};
     std::vector<std::uint8_t> filtered(2);
