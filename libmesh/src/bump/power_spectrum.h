@@ -66,9 +66,9 @@ class PowerSpectrum {
     /// noise.
     [[nodiscard]] double excess_over(const NoiseSpectrum& noise) const;
 
-    /// Detects grain, which is noise or fine detail that no continuous surface has: the power of a
-    /// fractal surface decreases at least with the inverse square of the frequency [Mandelbrot
-    /// 1982], and the power of grain decreases more slowly.
+    /// Detects grain, which is noise or fine detail that no continuous surface has. The power of a
+    /// fractal surface decreases at least with the inverse square of the frequency
+    /// [Mandelbrot 1982], and the power of grain decreases more slowly.
     ///
     /// \return the spectrum of the grain, extrapolated to the low frequencies where other detail is
     ///         stronger; nullopt if the power decreases like that of a surface at all frequencies
