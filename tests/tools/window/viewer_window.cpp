@@ -56,20 +56,29 @@ nlohmann::json ViewerWindow::wait_for_rest() {
 }
 
 void ViewerWindow::drag(int x, int y, int dx, int dy, int button) const {
-    std::string words = fmt::format("mousemove {} {} mousedown {}", x, y, button);
+    point_at(x, y);
+    std::string words = fmt::format("mousedown {}", button);
     for (int i = 0; i < 10; ++i)
         words += fmt::format(" mousemove {} {}", x + dx * (i + 1) / 10, y + dy * (i + 1) / 10);
-    display_.act(words + fmt::format(" mouseup {}", button));
+    display_.act(words);
+    // A window that handled the press together with later movements would take it for a click
+    // there.
+    wait_for_pointer(x + dx, y + dy);
+    display_.act(fmt::format("mouseup {}", button));
 }
 
-void ViewerWindow::point_at(int x, int y) const {
-    display_.act(fmt::format("mousemove {} {}", x, y));
+void ViewerWindow::wait_for_pointer(int x, int y) const {
     nlohmann::json now;
     const auto is_there = [&] {
         now = state();
         return now["pointer"] == nlohmann::json({x, y});
     };
     EXPECT_TRUE(eventually(is_there)) << "the pointer is at " << now["pointer"];
+}
+
+void ViewerWindow::point_at(int x, int y) const {
+    display_.act(fmt::format("mousemove {} {}", x, y));
+    wait_for_pointer(x, y);
 }
 
 void ViewerWindow::click(int x, int y) const {

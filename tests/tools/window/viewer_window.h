@@ -31,7 +31,8 @@ class ViewerWindow {
     nlohmann::json wait_for_rest();
 
     void key(const std::string& name) const { display_.act("key " + name); }
-    /// Drags the pointer in small steps.
+    /// Drags the pointer in small steps. Waits until the program has noticed the press and the last
+    /// step.
     void drag(int x, int y, int dx, int dy, int button = 1) const;
     /// Moves the pointer, and waits until the program has noticed.
     void point_at(int x, int y) const;
@@ -43,6 +44,8 @@ class ViewerWindow {
     [[nodiscard]] std::string error_output() const { return contents_of(streams_ / "error"); }
 
   private:
+    void wait_for_pointer(int x, int y) const;
+
     const Display& display_;
     TemporaryDirectory streams_;
     std::unique_ptr<ChildProcess> process_;
