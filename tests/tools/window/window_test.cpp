@@ -169,6 +169,11 @@ TEST_F(MovedWindow, MouseKeysAndTextMoveTheViewAndIdleCostsNothing) {
     RELIEF_NEEDS_WINDOW("data/vase.obj --camera 30,20");
     const json turned = drag_turns_camera();
     window().key("ctrl+c");
+    // Keys take effect in order, so the view is copied when the help page is seen.
+    window().key("h");
+    window().wait_for("help", [](const json& now) { return now["help"] == true; });
+    window().key("h");
+    window().wait_for("no help", [](const json& now) { return now["help"] == false; });
     double_click_aims_at_surface();
     window().key("1");
     window().wait_for("front", [](const json& now) { return now["camera"]["azimuth"] == 0.0; });
