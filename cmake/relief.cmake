@@ -14,18 +14,18 @@ if(RELIEF_WERROR)
     target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()
 # The libraries, which do the work, have the full optimization of the build type. Tools call them and tests check
-# them: with -O1 they compile in 60 % of the time and run as fast. (If a library and a test both hold an inline
-# function that was not inlined, the linker takes either.)
+# them: with -O1 they compile in 60 % of the time. (If a library and a test both hold an inline function that was
+# not inlined, the linker takes either.)
 set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
 set(is_tool $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tools,$<TARGET_PROPERTY:SOURCE_DIR>>)
 target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,$<OR:${is_test},${is_tool}>>:-O1>)
 if(RELIEF_SANITIZE)
     # Instrumented code is slow to compile, and two thirds of it was the tests' own. Tests are therefore
     # compiled with AddressSanitizer only, without optimization and line numbers, and the tools, which are thin,
-    # without optimization. The checks of UndefinedBehaviorSanitizer that AddressSanitizer makes as well
-    # (null pointers, accesses outside of objects) are off, and so is that of dynamic types, because there are
-    # no class hierarchies: compiling takes a quarter less time. GCC 12 warns of uninitialized parts of
-    # std::regex in instrumented code; other builds keep the warning.
+    # without optimization. Some checks of UndefinedBehaviorSanitizer are off, because AddressSanitizer reports
+    # the accesses that they predict (null pointers, sizes of objects, overflow of pointers) and there is hardly a
+    # class hierarchy (dynamic types): compiling takes a quarter less time. GCC 12 warns of uninitialized parts
+    # of std::regex in instrumented code; other builds keep the warning.
     set(undefined -fsanitize=undefined)
     foreach(check null object-size pointer-overflow vptr)
         list(APPEND undefined -fno-sanitize=${check})
