@@ -130,7 +130,7 @@ class SingleProcessor {
     SingleProcessor(const SingleProcessor&) = delete;
     SingleProcessor& operator=(const SingleProcessor&) = delete;
 
-    /// Whether the system allowed it; if not, nothing has changed.
+    /// Returns whether the system allowed it; if not, nothing has changed.
     [[nodiscard]] bool is_active() const { return is_active_; }
 
   private:

@@ -49,7 +49,7 @@ std::string table_row(const std::string& name, const std::vector<double>& ranks,
 /// The present text of a section. \throws std::runtime_error if the page has no such section
 std::string section_in(const std::string& page, const std::string& begin);
 
-/// Whether the arguments of a program are one path. An option such as --help is not a path.
+/// Returns whether the arguments of a program are one path. An option such as --help is not a path.
 inline bool is_one_path(int argc, const char* const* argv) {
     return argc == 2 && argv[1][0] != '-' && argv[1][0] != '\0';
 }

@@ -25,7 +25,7 @@ void write_noise(const std::filesystem::path& file, int size) {
     write_image(file, heights);
 }
 
-/// Whether something is being written beside.
+/// Returns whether something is being written beside.
 bool is_writing(const std::filesystem::path& folder) {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().filename().string().starts_with(".")) return true;

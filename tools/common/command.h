@@ -94,7 +94,7 @@ class Stages {
     /// Adds time to a step that was measured elsewhere.
     void book(const std::string& name, double milliseconds);
 
-    /// Whether progress is shown.
+    /// Returns whether progress is shown.
     [[nodiscard]] bool shows_progress() const { return show_; }
     /// Shows the completed fraction, 0 to 1, whenever the percentage changes.
     /// \param more  additional text: "3 s left"

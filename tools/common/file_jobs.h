@@ -45,7 +45,7 @@ struct JobList {
     std::vector<Job> jobs;
     /// The folder of -o, which need not exist.
     std::optional<std::filesystem::path> folder;
-    /// Whether the command line can only mean one job.
+    /// Returns whether the command line can only mean one job.
     [[nodiscard]] bool is_single() const { return jobs.size() == 1 && !folder && !has_tiles; }
     bool has_tiles = false;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the commands of relief-bake share: the list of commands, the conversion of one map or many,
-// and the storage of normal maps. Tests: tests/tools/relief_bake_bump_test.cpp,
+// Code that the commands of relief-bake share: the list of commands, the conversion of one map or
+// many, and the storage of normal maps. Tests: tests/tools/relief_bake_bump_test.cpp,
 // relief_bake_convert_test.cpp.
 #include "commands.h"
 
@@ -35,8 +35,8 @@ void check_jobs(const MapFiles& files, const MapWork& work, const JobList& list)
     require_folder_of(list.jobs.front().output);
 }
 
-/// Whether converting several maps at once would need too much memory. Each conversion uses all
-/// threads anyway; only the reading of small files gains from concurrency.
+/// Returns whether converting several maps at once would need too much memory. Each conversion uses
+/// all threads anyway; only the reading of small files gains from concurrency.
 bool are_large(const std::vector<Job>& jobs) {
     constexpr std::uintmax_t large_file = 32'000'000;
     return std::any_of(jobs.begin(), jobs.end(), [](const Job& job) {

@@ -421,7 +421,7 @@ void check_channels(const Job& job, const ConvertRequest& request, const InputMa
     throw failure(job.input, "has only 2 channels, and no z", "give --rebuild-z rg to compute z");
 }
 
-/// Whether only the axes change, so that the codes need not be decoded.
+/// Returns whether only the axes change, so that the codes need not be decoded.
 bool keeps_codes(const ConvertRequest& request, const InputMap& input,
                  const NormalMapFormat& format) {
     const bool same_codes =

@@ -62,7 +62,7 @@ class SampleSearch {
     /// Discards the measurements, which are of other texels than the next ones.
     void restart() { all_.clear(); }
 
-    /// Whether rounding alone exceeds the limit in all formats of the file.
+    /// Returns whether rounding alone exceeds the limit in all formats of the file.
     [[nodiscard]] bool is_bound_by_rounding() const {
         return std::ranges::all_of(all_, [&](const MeasuredBake& bake) {
             return !is_available(bake) || bound_.error(bake.rounding) > *bound_.degrees;

@@ -51,7 +51,8 @@ std::vector<BakePartName> names_of(const std::vector<PartObject>& objects) {
     return names;
 }
 
-/// Whether the objects of a low model have several pair names; otherwise there is nothing to pair.
+/// Returns whether the objects of a low model have several pair names; otherwise there is nothing
+/// to pair.
 bool has_several_names(const NamedModel& low) {
     std::set<std::string> names;
     for (const MapModelPart& part : low.model->parts) {

@@ -106,7 +106,7 @@ struct MeshBakeRequest {
     ErrorBound bound;
     bool compare = false;
 
-    /// Whether errors are measured before the bake.
+    /// Returns whether errors are measured before the bake.
     [[nodiscard]] bool needs_trials() const { return compare || bound.degrees.has_value(); }
 
     /// The limit of missed texels in percent: --max-missed or its default.

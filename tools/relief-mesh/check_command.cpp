@@ -190,7 +190,7 @@ CheckedModel check_model(const std::filesystem::path& file, bool for_baking) {
 /// A few corners may have the other sign: degenerate triangles, welded seams.
 constexpr double min_sign_share = 0.99;
 
-/// Whether the sign w matches the method: at all corners, at none, or at some.
+/// The share of the corners whose sign w matches the method: all, none or some.
 enum class Sign { correct, negated, mixed };
 
 Sign sign_of(const TangentAgreement& agreement) {

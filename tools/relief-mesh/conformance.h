@@ -48,7 +48,7 @@ struct Judgment {
     std::size_t corners = 0;  ///< In the mesh of the kit.
     std::size_t judged = 0;   ///< In the program's mesh, and not excluded by the kit.
     std::size_t missing = 0;  ///< Of triangles that are missing in the program's mesh.
-    /// Of missing triangles without area, which a program may omit.
+    /// The corners of missing triangles without area, which a program may omit.
     std::size_t omitted = 0;
     std::size_t extra = 0;  ///< Of triangles that are not in the kit's mesh.
 

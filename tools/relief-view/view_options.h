@@ -76,7 +76,7 @@ struct EffectChoices {
     std::optional<double> budget;  ///< Maximum milliseconds per frame.
     bool print_shaders = false;
 
-    /// Whether frames are drawn even without a picture.
+    /// Returns whether frames are drawn even without a picture.
     [[nodiscard]] bool measures() const { return benchmark || budget; }
 };
 
@@ -210,7 +210,7 @@ void refuse(bool useless, const std::string& option, const std::string& because,
 /// Completes the options after parsing, and rejects contradictions. \throws UsageError
 void settle(ViewOptions& options);
 
-/// Whether the output, or else the reference, stores linear radiance (.exr, .hdr).
+/// Returns whether the output, or else the reference, stores linear radiance (.exr, .hdr).
 bool is_linear_output(const ViewOptions& options);
 
 }  // namespace relief::tools

@@ -285,8 +285,9 @@ class FrequencySolver {
     FrequencySolver(int width, int height, const GradientKernel& kernel, Wraps wrap,
                     glm::dvec2 texel);
 
-    /// Whether `solve` is the exact inverse of "slopes, then their transpose": not at a clamped
-    /// border, which it takes for a mirrored one, nor where a kernel leans at a mirrored one.
+    /// Returns whether `solve` is the exact inverse of "slopes, then their transpose": not at a
+    /// clamped border, which it takes for a mirrored one, nor where a kernel leans at a mirrored
+    /// one.
     [[nodiscard]] bool is_exact() const { return is_exact_; }
 
     /// In place: what a SlopeOperator's transpose gave becomes heights of mean 0.
@@ -324,7 +325,7 @@ double squared_smoothing(const GradientKernel& kernel, double frequency) {
     return sum * sum;
 }
 
-/// Whether the kernel, turned round, is itself but for the sign.
+/// Returns whether the kernel, turned round, is itself but for the sign.
 bool is_symmetric(const GradientKernel& kernel) {
     return std::all_of(
         kernel.differences.begin(), kernel.differences.end(),

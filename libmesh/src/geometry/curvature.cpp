@@ -67,7 +67,7 @@ class Rings {
     std::vector<RingSpoke> spokes_;
 };
 
-/// Whether the ring goes round: each vertex around ends one triangle and begins one other.
+/// Returns whether the ring goes round: each vertex around ends one triangle and begins one other.
 bool is_closed(std::span<const RingSpoke> sorted, std::vector<std::uint32_t>& ends) {
     ends.clear();
     for (const RingSpoke& spoke : sorted)

@@ -68,7 +68,7 @@ HeightDepth depth_of(const Heights<Sample>& heights) {
     return {static_cast<int>(std::bit_width(levels)), divisor / heights.largest};
 }
 
-/// Whether all heights are multiples of a step, to within float's rounding.
+/// Returns whether all heights are multiples of a step, to within float's rounding.
 bool are_multiples(std::span<const float> heights, double step) {
     return std::all_of(heights.begin(), heights.end(), [step](float height) {
         if (!std::isfinite(height)) return true;

@@ -72,7 +72,7 @@ void encode(const Image& normals, const NormalMapFormat& format, Image& result, 
     });
 }
 
-/// Whether a texel holds only codes next to zero, where zero lies between two codes: its vector is
+/// True if a texel holds only codes next to zero, where zero lies between two codes: its vector is
 /// then no longer than rounding makes one. With FlatCode::middle such a texel decodes to exactly
 /// zero.
 template <typename Sample>

@@ -273,8 +273,8 @@ void find_texels(const NormalMapCheck& check, const MapStatistics& all, FoundCon
     found.if_so(rms > 0.02 && rms <= 0.05, MapCondition::not_quite_unit);
 }
 
-/// Whether flat texels have 127 while the file says that zero is 128. The other way round nothing
-/// can be told: maps with zero at 127.5 have 128 in flat texels too.
+/// Returns whether flat texels have 127 while the file says that zero is 128. In the other case
+/// nothing can be told: maps with zero at 127.5 have 128 in flat texels too.
 bool contradicts_flat_code(const Image& map, const std::map<std::string, std::string>& metadata) {
     return metadata.contains("relief:flat") &&
            detect_flat_code(map, metadata) == FlatCode::middle && flat_evidence(map).is_half();

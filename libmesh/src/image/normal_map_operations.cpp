@@ -216,7 +216,7 @@ Direction in_turned_frame(const Direction& b, const Direction& d) {
             -d.x * b.x - d.y * b.y + d.z * b.z};
 }
 
-/// Of two components, each as a color from 0 to 1.
+/// Blends two components, each as a color from 0 to 1.
 double overlay(double b, double d) {
     const double base = (b + 1.0) / 2.0;
     const double detail = (d + 1.0) / 2.0;

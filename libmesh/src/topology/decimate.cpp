@@ -201,8 +201,9 @@ std::uint32_t SeamQuadrics::wedge_at(int face, int vertex) const {
     return wedges_[index(face)][corner_of(face, vertex)];
 }
 
-/// Whether the edge between two triangles is a line as far as its end at `vertex` is concerned.
-/// What differs only at the other end, as at the pole of a sphere, does not bind this one.
+/// Returns whether the edge between two triangles is a line as far as its end at `vertex` is
+/// concerned. What differs only at the other end, as at the pole of a sphere, does not bind this
+/// one.
 bool SeamQuadrics::is_line(int left, int right, int vertex) const {
     return left < 0 || right < 0 || input_->parts[index(left)] != input_->parts[index(right)] ||
            wedge_at(left, vertex) != wedge_at(right, vertex);

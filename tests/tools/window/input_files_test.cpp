@@ -38,7 +38,7 @@ class Watching : public testing::Test {
         return files;
     }
     FileWatch& watch() { return watch_; }
-    /// Whether changes are reported for this purpose only.
+    /// Returns whether changes are reported for this purpose only.
     bool reports(Purpose purpose) {
         FileWatch::Changes changes{};
         const auto is_reported = [&] {

@@ -46,7 +46,7 @@ class ListeningDisplay {
     [[nodiscard]] bool is_listening() const { return is_listening_; }
     [[nodiscard]] std::string name() const { return fmt::format(":{}", number_); }
 
-    /// Whether any program has connected.
+    /// Returns whether any program has connected.
     [[nodiscard]] bool was_called() const { return was_called_; }
 
   private:

@@ -51,7 +51,7 @@ class ViewerWindow {
     std::unique_ptr<ChildProcess> process_;
 };
 
-/// Whether a state contains this effect.
+/// Returns whether a state contains this effect.
 bool has_effect(const nlohmann::json& state, const char* effect);
 
 /// The part of the screen that shows the view, at the upper right. \param view  "view" of the state

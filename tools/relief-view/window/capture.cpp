@@ -111,7 +111,7 @@ DrawTask capture_task(CaptureRequest request, std::shared_ptr<CaptureProgress> p
 
 namespace {
 
-/// Whether a file exists. A broken symbolic link counts as existing.
+/// Returns whether a file exists. A broken symbolic link counts as existing.
 bool is_taken(const std::filesystem::path& file) {
     std::error_code error;
     return std::filesystem::symlink_status(file, error).type() !=

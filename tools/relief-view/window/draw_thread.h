@@ -127,7 +127,7 @@ class DrawThread {
 
     [[nodiscard]] RenderedPicture drawn();
     [[nodiscard]] PictureExchange::Shown shown();
-    /// Whether a request is waiting or being drawn.
+    /// Returns whether a request is waiting or being drawn.
     [[nodiscard]] bool is_busy();
     /// Progress of preparing a renderer. Without a preparation, the stage is empty.
     [[nodiscard]] Progress::State progress();

@@ -117,7 +117,7 @@ namespace {
 
 using Purpose = FileWatch::Purpose;
 
-/// Whether a file is below $RELIEF_SHADER_DIR.
+/// Returns whether a file is below $RELIEF_SHADER_DIR.
 bool is_shader(const std::filesystem::path& file) {
     const char* const folder = std::getenv("RELIEF_SHADER_DIR");
     if (folder == nullptr) return false;

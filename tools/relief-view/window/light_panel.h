@@ -58,7 +58,7 @@ class LightRows {
     /// Replaces the lights of the scene, sorted by kind. New lights get an id.
     void set(Scene& scene, std::vector<LightRow> rows);
 
-    /// Whether any light rotates.
+    /// Returns whether any light rotates.
     [[nodiscard]] bool is_moving() const;
 
     /// Rotates the lights by the elapsed time.

@@ -30,7 +30,7 @@ struct MapSlot {
     /// Sets the texture, or removes it. A material has either a normal map or a bump map, so
     /// setting one removes the other. The scale and strength of a map stay.
     void (*set)(Material& material, const std::optional<Texture>& texture);
-    /// Whether the material's model uses this map.
+    /// Returns whether the material's model uses this map.
     bool (*is_used)(const Material& material);
 };
 

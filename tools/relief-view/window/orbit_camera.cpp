@@ -16,7 +16,7 @@ namespace {
 constexpr float half_turn = std::numbers::pi_v<float>;
 constexpr float pole = 0.5F * half_turn;
 constexpr float margin = 1.04F;  // Around the model, as in framed().
-// Of the far plane. A smaller near plane would reduce the depth precision.
+// The smallest ratio of the near to the far plane. A smaller one would reduce the depth precision.
 constexpr float min_near_share = 1e-4F;
 constexpr float zoom_step = 0.9F;      // Factor of the distance per step.
 constexpr float min_distance = 1e-4F;  // In radii of the sphere, limited by float precision.

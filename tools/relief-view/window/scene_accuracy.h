@@ -57,7 +57,7 @@ class SceneAccuracy {
     [[nodiscard]] bool is_working() const { return is_measuring() || computing_.is_running(); }
     [[nodiscard]] Progress::State progress() const { return measuring_.progress(); }
 
-    /// Whether the picture uses this method.
+    /// Returns whether the picture uses this method.
     [[nodiscard]] bool is_used(const Variant& variant, const ViewOptions& options) const;
 
     [[nodiscard]] nlohmann::ordered_json json(const ViewOptions& options) const;

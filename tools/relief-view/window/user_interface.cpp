@@ -107,7 +107,7 @@ int key_code(std::string_view name) {
     return name.empty() ? GLFW_KEY_UNKNOWN : static_cast<int>(name.back());
 }
 
-/// Whether a shortcut names this key with these modifiers.
+/// Returns whether a shortcut names this key with these modifiers.
 bool is_named(std::string_view name, int key, int modifiers) {
     constexpr std::string_view control = "Ctrl+";
     const bool needs_control = name.substr(0, control.size()) == control;
@@ -146,7 +146,7 @@ void install_callbacks(GLFWwindow* window) {
     });
 }
 
-/// Whether the action repeats while its key is held.
+/// Returns whether the action repeats while its key is held.
 bool is_repeating(Action action) {
     switch (action) {
         case Action::narrow_fov:

@@ -41,7 +41,7 @@ class UserInterface {
     void show_help() { is_help_open_ = !is_help_open_; }
     [[nodiscard]] bool is_help_open() const { return is_help_open_; }
 
-    /// Whether a text field has the keyboard focus.
+    /// Returns whether a text field has the keyboard focus.
     [[nodiscard]] static bool is_typing();
     /// The pointer position in pixels, if the pointer is inside the window.
     [[nodiscard]] static std::optional<glm::ivec2> pointer();

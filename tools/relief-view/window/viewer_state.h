@@ -139,7 +139,7 @@ class ViewerState {
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
     [[nodiscard]] const BoundingSphere& sphere() const { return sphere_; }
 
-    /// Whether the turntable or a light rotates.
+    /// Returns whether the turntable or a light rotates.
     [[nodiscard]] bool is_turning() const { return is_turning_ || light_rows_.is_moving(); }
     /// Advances the turntable and the rotation of lights. \return whether anything moved
     bool advance(double seconds);

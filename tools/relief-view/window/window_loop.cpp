@@ -219,7 +219,7 @@ class WindowLoop {
                             system_.pixels_to_unit());
     }
 
-    /// Whether two requests show the same picture, in any resolution.
+    /// Returns whether two requests show the same picture, in any resolution.
     static bool is_same(const DrawRequest& a, const DrawRequest& b) {
         return a.revision == b.revision && a.camera.world_from_view == b.camera.world_from_view &&
                a.camera.vertical_fov == b.camera.vertical_fov && a.instead == b.instead &&

@@ -72,7 +72,7 @@ struct AssetMeshOptions {
     /// mesh apply, else the crease angle that is inferred from its normals (inferred_creases.h),
     /// else no edge is hard.
     std::optional<double> crease_angle;
-    /// Of larger meshes, eight ranges of triangles are measured.
+    /// For larger meshes, eight ranges of triangles are measured.
     std::size_t max_triangles = std::size_t{1} << 20;
 };
 

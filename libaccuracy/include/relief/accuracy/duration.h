@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Formats numbers for reports.
+/// Formats times for reports.
 /// Tests: tests/tools/accuracy_report_test.cpp.
 #pragma once
 

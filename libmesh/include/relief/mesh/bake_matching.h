@@ -36,7 +36,7 @@ struct BakeNameGroup {
     std::string name;                    ///< Empty: parts without a pair name.
     std::vector<std::size_t> high, low;  ///< Indices of parts, ascending.
 
-    /// Whether it has a name and parts on both sides.
+    /// Returns whether it has a name and parts on both sides.
     [[nodiscard]] bool is_pair() const { return !name.empty() && !high.empty() && !low.empty(); }
 };
 

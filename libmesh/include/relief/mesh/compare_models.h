@@ -58,12 +58,12 @@ struct ModelComparison {
     std::size_t normals_in_one = 0;
     std::size_t tangents_in_one = 0;
 
-    /// Whether no matched corner differs by more than `degrees` or in its sign.
+    /// Returns whether no matched corner differs by more than `degrees` or in its sign.
     [[nodiscard]] bool is_within(double degrees) const;
-    /// Whether each triangle has exactly one possible partner, and all directions could be
+    /// Returns whether each triangle has exactly one possible partner, and all directions could be
     /// compared.
     [[nodiscard]] bool is_complete() const;
-    /// Whether the models have normals or tangents in common.
+    /// Returns whether the models have normals or tangents in common.
     [[nodiscard]] bool has_directions() const;
 };
 

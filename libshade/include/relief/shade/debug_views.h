@@ -112,7 +112,7 @@ struct Overlays {
     /// share of the scene's size (the diagonal of its box). Tangents need texture coordinates or
     /// stored tangents; missing ones are computed.
     std::optional<float> vertex_frames;
-    /// Such as those of health_markers.h.
+    /// The markers to draw, for example those of health_markers.h.
     std::shared_ptr<const std::vector<Marker>> markers;
 
     [[nodiscard]] bool any() const { return wireframe || vertex_frames || markers; }
