@@ -14,12 +14,12 @@
 
 #include "mesh/bumpy_sphere.h"
 #include "mesh/contenders.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/frame_encoding.h"
-#include "relief/mesh/split.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/threads.h"
 #include "relief/mesh/timing.h"
-#include "relief/shade/frame_timing.h"
+#include "relief/shade/renderer.h"
 #include "shade/typical_scenes.h"
 
 namespace relief::bench {

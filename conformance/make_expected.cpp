@@ -22,7 +22,7 @@
 
 #include "kit_meshes.h"
 #include "kit_shapes.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 
 extern "C" {
 #include <mikktspace.h>

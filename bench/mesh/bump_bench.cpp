@@ -15,7 +15,7 @@
 #include "mesh/triad.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::bench {

@@ -11,9 +11,9 @@
 #include <random>
 
 #include "mesh/bumpy_sphere.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/tangent_basis.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/tangents.h"
 
 namespace relief::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "mesh/bumpy_sphere.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::bench {
 namespace {

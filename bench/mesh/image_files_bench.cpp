@@ -13,9 +13,9 @@
 #include "mesh/contenders.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 
 namespace relief::bench {
 namespace {

@@ -8,12 +8,8 @@
 #include <vector>
 
 #include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/normal_blend.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/normal_map_operations.h"
-#include "relief/mesh/normal_mips.h"
-#include "relief/mesh/normal_resize.h"
-#include "relief/mesh/threads.h"
 #include "relief/mesh/timing.h"
 
 namespace {

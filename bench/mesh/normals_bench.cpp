@@ -13,8 +13,8 @@
 #include "mesh/contenders.h"
 #include "mesh/normal_peers.h"
 #include "mesh/triad.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/threads.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::bench {

@@ -14,8 +14,8 @@
 #include "mesh/contenders.h"
 #include "mesh/tangent_shapes.h"
 #include "mesh/triad.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/threads.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::bench {

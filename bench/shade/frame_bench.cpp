@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "gl/api.h"
-#include "relief/shade/effect_forcing.h"
-#include "relief/shade/frame_timing.h"
-#include "relief/shade/framing.h"
+#include "relief/shade/effects.h"
 #include "relief/shade/image_compare.h"
+#include "relief/shade/renderer.h"
+#include "relief/shade/scene.h"
 #include "shade/typical_scenes.h"
 
 namespace relief::bench {

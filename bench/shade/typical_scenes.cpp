@@ -4,7 +4,7 @@
 #include <random>
 #include <span>
 
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief::bench {
 namespace {

@@ -12,12 +12,10 @@
 
 #include "bump_experiments.h"
 #include "relief/accuracy/asset.h"
-#include "relief/mesh/angle_distribution.h"
-#include "relief/mesh/bake_trials.h"
-#include "relief/mesh/destaircase.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/height_statistics.h"
-#include "relief/mesh/image_part.h"
+#include "relief/mesh/bake_check.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/image.h"
 #include "report_names.h"
 #include "storage_experiments.h"
 

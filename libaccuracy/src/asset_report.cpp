@@ -16,7 +16,7 @@
 #include "relief/accuracy/duration.h"
 #include "relief/accuracy/recommend.h"
 #include "relief/mesh/frontier.h"
-#include "relief/mesh/mesh_part.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief {
 namespace {

@@ -18,7 +18,7 @@
 #include "relief/accuracy/measure.h"
 #include "relief/accuracy/passes.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 #include "report_names.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
-#include "relief/mesh/bake_trials.h"
+#include "relief/mesh/bake_check.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief {

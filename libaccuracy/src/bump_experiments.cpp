@@ -14,10 +14,10 @@
 #include "error_metrics.h"
 #include "experiment_driver.h"
 #include "relief/accuracy/passes.h"
+#include "relief/mesh/bump.h"
 #include "relief/mesh/bump_experiment.h"
-#include "relief/mesh/destaircase.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/gradient_kernel.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/report.h"
 #include "report_names.h"
 
 namespace relief {

@@ -10,10 +10,10 @@
 
 #include "experiment_driver.h"
 #include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/bump_fields.h"
+#include "relief/mesh/error_stats.h"
 
 namespace relief {
 

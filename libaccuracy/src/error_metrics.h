@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 
 namespace relief {

@@ -17,7 +17,7 @@
 #include "normals_experiments.h"
 #include "relief/accuracy/passes.h"
 #include "relief/accuracy/subjects.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "shading_experiments.h"
 #include "stability_experiments.h"
 #include "storage_experiments.h"

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "experiment_driver.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "tangent_methods.h"
 
 namespace relief {

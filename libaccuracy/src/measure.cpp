@@ -12,7 +12,7 @@
 
 #include "progress_stage.h"
 #include "relief/accuracy/passes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 namespace relief {
 namespace {

@@ -16,10 +16,9 @@
 #include "octahedral_code.h"
 #include "parallel.h"
 #include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/normal_map_operations.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

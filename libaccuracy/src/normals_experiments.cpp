@@ -10,7 +10,7 @@
 
 #include "experiment_driver.h"
 #include "relief/accuracy/passes.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "report_names.h"
 
 namespace relief {

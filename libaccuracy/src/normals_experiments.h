@@ -14,8 +14,8 @@
 
 #include "experiment_driver.h"
 #include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/angle_distribution.h"
-#include "relief/mesh/arithmetic.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
 

@@ -12,7 +12,7 @@
 #include "environment/environment_images.h"
 #include "parallel.h"
 #include "relief/accuracy/passes.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 
 namespace relief {

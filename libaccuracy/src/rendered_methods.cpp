@@ -14,9 +14,8 @@
 #include "error_metrics.h"
 #include "experiment_driver.h"
 #include "relief/accuracy/measure.h"
-#include "relief/mesh/shapes.h"
-#include "relief/shade/error.h"
-#include "relief/shade/frame_timing.h"
+#include "relief/mesh/mesh.h"
+#include "relief/shade/context.h"
 #include "relief/shade/reference.h"
 #include "relief/shade/renderer.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/arithmetic.h"
+#include "relief/mesh/execution.h"
 
 namespace relief {
 

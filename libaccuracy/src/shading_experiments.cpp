@@ -13,8 +13,8 @@
 #include "error_metrics.h"
 #include "experiment_driver.h"
 #include "relief/accuracy/passes.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/shapes.h"
 #include "rendered_methods.h"
 
 namespace relief {

@@ -12,7 +12,7 @@
 #include "error_metrics.h"
 #include "experiment_driver.h"
 #include "normals_experiments.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "report_names.h"
 #include "stability_inputs.h"
 #include "tangent_methods.h"

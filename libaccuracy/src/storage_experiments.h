@@ -13,7 +13,7 @@
 
 #include "experiment_driver.h"
 #include "relief/accuracy/experiment.h"
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/frame_encoding.h"
 #include "relief/mesh/image.h"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief {

@@ -13,7 +13,7 @@
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 #include "tangent_methods.h"
 

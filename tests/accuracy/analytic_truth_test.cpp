@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "report_names.h"
 
 namespace relief {

@@ -16,8 +16,8 @@
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bump_fields.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/report.h"
 #include "storage_experiments.h"
 #include "support/shapes.h"
 

@@ -13,8 +13,8 @@
 #include "experiment_checks.h"
 #include "experiment_driver.h"
 #include "normals_experiments.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "support/shapes.h"
 

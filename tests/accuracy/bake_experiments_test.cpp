@@ -11,8 +11,8 @@
 #include "error_metrics.h"
 #include "error_tables/bumpy_reference.h"
 #include "experiment_checks.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/normal_space.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/map_convention.h"
 #include "relief/mesh/normals.h"
 
 namespace relief {

@@ -14,7 +14,7 @@
 
 #include "experiment_checks.h"
 #include "relief/mesh/bump_experiment.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief::test {
 namespace {

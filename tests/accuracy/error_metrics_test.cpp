@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -12,7 +12,7 @@
 #include "relief/accuracy/measure.h"
 #include "relief/accuracy/passes.h"
 #include "relief/accuracy/subjects.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -14,10 +14,10 @@
 #include "error_metrics.h"
 #include "experiment_checks.h"
 #include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
 
 namespace relief::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "experiment_checks.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 #include "shading_experiments.h"
 #include "support/gl_environment.h"
 

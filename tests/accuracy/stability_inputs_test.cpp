@@ -12,9 +12,9 @@
 
 #include "bump_experiments.h"
 #include "experiment_checks.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/shapes.h"
 #include "relief/mesh/tangents.h"
 #include "stability_experiments.h"
 

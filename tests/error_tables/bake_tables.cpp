@@ -7,14 +7,13 @@
 
 #include "error_tables/bumpy_reference.h"
 #include "error_tables/error_tables.h"
-#include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/mip_levels.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/shapes.h"
 
 namespace relief::test {
 namespace {

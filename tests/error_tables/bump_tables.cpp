@@ -11,7 +11,7 @@
 #include "bump_experiments.h"
 #include "error_tables/error_tables.h"
 #include "relief/mesh/bump_experiment.h"
-#include "relief/mesh/destaircase.h"
+#include "relief/mesh/height_map.h"
 
 namespace relief::test {
 namespace {

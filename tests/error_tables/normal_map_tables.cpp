@@ -9,10 +9,7 @@
 
 #include "error_tables/error_tables.h"
 #include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/normal_blend.h"
-#include "relief/mesh/normal_map_operations.h"
-#include "relief/mesh/normal_mips.h"
-#include "relief/mesh/normal_resize.h"
+#include "relief/mesh/normal_map.h"
 #include "storage_experiments.h"
 #include "support/images.h"
 

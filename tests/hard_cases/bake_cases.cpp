@@ -12,11 +12,11 @@
 
 #include "hard_cases/hard_cases.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/map_tiles.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+#include "relief/mesh/texel_coverage.h"
 #include "support/peak_memory.h"
 
 namespace relief::test {

@@ -14,11 +14,10 @@
 #include "io/png/png_format.h"
 #include "relief/mesh/bump_fields.h"
 #include "relief/mesh/bump_file.h"
-#include "relief/mesh/destaircase.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/shared_data.h"
 

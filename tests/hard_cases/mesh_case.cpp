@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/shapes.h"
 #include "relief/mesh/tangents.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"

@@ -9,15 +9,11 @@
 #include "hard_cases/hard_cases.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/heights_from_normals.h"
-#include "relief/mesh/normal_blend.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/map_convention.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normal_map_check.h"
-#include "relief/mesh/normal_map_operations.h"
-#include "relief/mesh/normal_mips.h"
-#include "relief/mesh/normal_resize.h"
-#include "relief/mesh/normal_space.h"
-#include "relief/mesh/shapes.h"
 #include "support/images.h"
 
 namespace relief::test {

@@ -8,9 +8,9 @@
 
 #include "hard_cases/hard_cases.h"
 #include "hard_cases/mesh_case.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frame_encoding.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/hard_meshes.h"
 #include "support/shapes.h"
 

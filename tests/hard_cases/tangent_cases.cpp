@@ -11,11 +11,11 @@
 
 #include "hard_cases/hard_cases.h"
 #include "hard_cases/mesh_case.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
-#include "relief/mesh/shapes.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/threads.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 
 namespace relief::test {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gl/api.h"
-#include "relief/shade/error.h"
+#include "relief/shade/context.h"
 
 namespace relief {
 

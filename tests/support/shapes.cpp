@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/shapes.h"
 
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief::test {
 

@@ -17,7 +17,7 @@
 #include <string>
 #include <utility>
 
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
 #include "tools/refusal.h"
 #include "tools/report_sample.h"
 #include "tools/schema_page.h"

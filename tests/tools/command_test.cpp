@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "tools/help_pages.h"
 #include "tools/workplace.h"
 

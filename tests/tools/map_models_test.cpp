@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/false_color.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
 #include "tools/refusal.h"

@@ -7,11 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/image_channels.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/normal_map_operations.h"
 #include "support/images.h"
 #include "support/shared_data.h"
 #include "tools/refusal.h"

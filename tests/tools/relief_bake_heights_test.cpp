@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "tools/refusal.h"

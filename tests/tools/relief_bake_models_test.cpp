@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "tools/workplace.h"
 

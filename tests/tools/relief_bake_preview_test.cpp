@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/shapes.h"
-#include "relief/shade/default_view.h"
+#include "relief/mesh/mesh.h"
+#include "relief/shade/scene.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 

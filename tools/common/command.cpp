@@ -14,7 +14,7 @@
 
 #include "file_replacement.h"
 #include "near_names.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::tools {
 namespace {

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/timing.h"
 
 // <CLI/CLI.hpp> is a large header, so only few files include it.

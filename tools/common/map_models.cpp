@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "common/model_file.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/placed.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 
 namespace relief::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/command.h"
 #include "common/text.h"
 #include "parallel.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::tools {
 namespace {

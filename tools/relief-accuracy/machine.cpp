@@ -15,7 +15,6 @@
 
 #include "common/text.h"
 #include "relief/shade/context.h"
-#include "relief/shade/error.h"
 
 namespace relief::tools {
 namespace {

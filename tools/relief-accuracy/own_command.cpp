@@ -31,7 +31,6 @@
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_tags.h"
 #include "relief/mesh/normal_map_check.h"
 
 namespace relief::tools {

@@ -14,7 +14,7 @@
 #include "common/text.h"
 #include "file_replacement.h"
 #include "relief/accuracy/subjects.h"
-#include "relief/mesh/false_color.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "report_page.h"
 

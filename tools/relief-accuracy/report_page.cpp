@@ -28,7 +28,7 @@
 #include "common/text.h"
 #include "file_bytes.h"
 #include "html_text.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief::tools {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "bump.h"
-#include "relief/mesh/destaircase.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/report.h"
 
 namespace relief::tools {
 namespace {

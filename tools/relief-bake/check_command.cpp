@@ -13,10 +13,9 @@
 #include "common/findings.h"
 #include "common/text.h"
 #include "mesh_bake.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_tags.h"
 #include "relief/mesh/normal_map_check.h"
-#include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "common/choices.h"
 #include "common/text.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::tools {
 namespace {

@@ -15,9 +15,7 @@
 #include "common/normal_map_input.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/normal_blend.h"
-#include "relief/mesh/normal_map_operations.h"
-#include "relief/mesh/normal_resize.h"
+#include "relief/mesh/normal_map.h"
 
 namespace relief::tools {
 

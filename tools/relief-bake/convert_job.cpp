@@ -12,11 +12,10 @@
 #include "common/map_models.h"
 #include "common/text.h"
 #include "convert.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/image_channels.h"
-#include "relief/mesh/mip_levels.h"
-#include "relief/mesh/normal_mips.h"
-#include "relief/mesh/normal_space.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/map_convention.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
 
 namespace relief::tools {
 namespace {

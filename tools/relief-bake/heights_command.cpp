@@ -14,8 +14,8 @@
 #include "common/choices.h"
 #include "common/normal_map_input.h"
 #include "common/text.h"
-#include "relief/mesh/heights_from_normals.h"
-#include "relief/mesh/image_channels.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/normal_map_check.h"
 
 namespace relief::tools {

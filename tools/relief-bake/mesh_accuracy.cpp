@@ -7,9 +7,9 @@
 
 #include "common/text.h"
 #include "mesh_bake.h"
-#include "relief/mesh/bake_trials.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/bake_check.h"
 #include "relief/mesh/frontier.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::tools {

@@ -19,8 +19,8 @@
 #include "common/map_models.h"
 #include "common/normal_map_input.h"
 #include "mesh_request.h"
+#include "relief/mesh/bake.h"
 #include "relief/mesh/bake_check.h"
-#include "relief/mesh/high_materials.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {

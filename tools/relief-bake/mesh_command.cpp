@@ -11,7 +11,7 @@
 #include "common/model_file.h"
 #include "common/text.h"
 #include "mesh_bake.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::tools {
 namespace {

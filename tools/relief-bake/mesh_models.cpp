@@ -9,7 +9,7 @@
 #include "common/text.h"
 #include "mesh_bake.h"
 #include "relief/mesh/bake_matching.h"
-#include "relief/mesh/mesh_part.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief::tools {
 namespace {

@@ -7,7 +7,7 @@
 #include <cctype>
 
 #include "mesh_bake.h"
-#include "relief/mesh/map_tiles.h"
+#include "relief/mesh/texel_coverage.h"
 
 namespace relief::tools {
 namespace {

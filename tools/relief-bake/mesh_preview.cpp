@@ -10,15 +10,12 @@
 #include <cstddef>
 #include <numbers>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/image_channels.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_rows.h"
-#include "relief/shade/default_view.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
-#include "relief/shade/framing.h"
-#include "relief/shade/render_cache.h"
 #include "relief/shade/renderer.h"
+#include "relief/shade/scene.h"
 
 namespace relief::tools {
 namespace {

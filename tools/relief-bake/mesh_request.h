@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "commands.h"
-#include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/error_stats.h"
 
 namespace relief::tools {
 

@@ -12,8 +12,8 @@
 
 #include "common/text.h"
 #include "mesh_bake.h"
-#include "relief/mesh/false_color.h"
-#include "relief/mesh/image_rows.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::tools {

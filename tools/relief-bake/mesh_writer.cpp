@@ -12,7 +12,7 @@
 #include "common/text.h"
 #include "mesh_bake.h"
 #include "parallel.h"
-#include "relief/mesh/image_rows.h"
+#include "relief/mesh/image_file.h"
 
 namespace relief::tools {
 namespace {

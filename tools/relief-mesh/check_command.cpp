@@ -20,9 +20,9 @@
 #include "common/options.h"
 #include "common/text.h"
 #include "relief/mesh/diagnose.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/gltf_document.h"
-#include "relief/mesh/tangent_basis.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/tangents.h"
 
 namespace relief::tools {
 namespace {

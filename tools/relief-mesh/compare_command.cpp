@@ -18,8 +18,8 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "relief/mesh/compare_models.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/model.h"
 
 namespace relief::tools {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/command.h"
 #include "common/options.h"
 #include "relief/mesh/compare.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/gltf_document.h"
 
 namespace relief::tools {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief::tools {

@@ -23,8 +23,8 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
-#include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {

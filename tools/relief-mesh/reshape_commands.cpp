@@ -21,9 +21,9 @@
 #include "common/options.h"
 #include "common/text.h"
 #include "relief/mesh/decimate.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/subdivide.h"
-#include "relief/mesh/threads.h"
 
 namespace relief::tools {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "relief/shade/effects.h"
-#include "relief/shade/health_markers.h"
+#include "relief/shade/frame_settings.h"
 #include "view_options.h"
 
 namespace relief::tools {

@@ -8,7 +8,7 @@
 
 #include "common/command.h"
 #include "common/text.h"
-#include "relief/shade/planned_inputs.h"
+#include "relief/shade/effects.h"
 
 namespace relief::tools {
 namespace {

@@ -12,7 +12,6 @@
 #include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/scene.h"
-#include "relief/shade/shader_listing.h"
 #include "view_options.h"
 
 namespace relief::tools {

@@ -14,7 +14,7 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/name_materials.h"
+#include "relief/shade/scene.h"
 #include "scene_options.h"
 
 namespace relief::tools {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/false_color.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
 #include "variant.h"
 #include "window/orbit_camera.h"
 

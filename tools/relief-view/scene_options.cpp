@@ -12,9 +12,7 @@
 #include "field_options.h"
 #include "material_options.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/default_view.h"
-#include "relief/shade/environment_files.h"
-#include "relief/shade/framing.h"
+#include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
 #include "window/orbit_camera.h"
 

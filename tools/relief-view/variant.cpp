@@ -10,11 +10,11 @@
 #include "common/choices.h"
 #include "field_options.h"
 #include "material_options.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/image_source.h"
-#include "relief/shade/name_materials.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
+#include "relief/shade/scene_file.h"
 
 #include "view_options.h"
 

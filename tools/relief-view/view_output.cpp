@@ -9,11 +9,10 @@
 
 #include "common/model_file.h"
 #include "common/text.h"
-#include "relief/mesh/animated_png.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/scene_writer.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief::tools {
 namespace {

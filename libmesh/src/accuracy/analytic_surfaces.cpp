@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "random.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

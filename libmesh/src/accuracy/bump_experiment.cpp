@@ -11,11 +11,10 @@
 #include <limits>
 
 #include "parallel.h"
-#include "relief/mesh/destaircase.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/frontier.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "random.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

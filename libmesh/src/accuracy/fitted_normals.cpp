@@ -3,7 +3,7 @@
 // again. Object space, lengths in units of the neighborhood. Source: [Cazals and Pouget 2005];
 // unlike there, the polynomial goes through the vertex itself, and near vertices count more.
 // Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
-#include "relief/mesh/fitted_normals.h"
+#include "relief/mesh/normals.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 #include "geometry/smooth_fans.h"
 #include "geometry/weld.h"
 #include "parallel.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 
 namespace relief {
 namespace {

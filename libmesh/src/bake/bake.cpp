@@ -16,8 +16,8 @@
 #include "bake/edge_padding.h"
 #include "bake/layers.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/mesh_part.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -14,8 +14,8 @@
 #include "bake/texel_frame.h"
 #include "geometry/direction.h"
 #include "parallel.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

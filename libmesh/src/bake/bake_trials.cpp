@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors and times of bakes with several sample counts and encodings. The reference is baked once,
 // for bands spread over the map. Tests: tests/mesh/bake/bake_check_test.cpp.
-#include "relief/mesh/bake_trials.h"
+#include "relief/mesh/bake_check.h"
 
 #include <algorithm>
 #include <array>

@@ -20,7 +20,7 @@
 #include "bake/layers.h"
 #include "geometry/direction.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

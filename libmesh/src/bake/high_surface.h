@@ -10,7 +10,6 @@
 
 #include "bake/ray_scene.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/high_materials.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 

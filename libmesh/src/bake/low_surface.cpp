@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "geometry/direction.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normals.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -12,7 +12,7 @@
 #include "geometry/angle_sum.h"
 #include "geometry/direction.h"
 #include "parallel.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/tangents.h"
 
 namespace relief {

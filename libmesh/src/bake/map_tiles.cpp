@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assigns triangles to the texture tiles that they overlap. Texture space with v down, in double.
 // Tests: tests/mesh/bake/texel_coverage_test.cpp.
-#include "relief/mesh/map_tiles.h"
+#include "relief/mesh/texel_coverage.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <map>
 
 #include "geometry/check_triangles.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -2,7 +2,7 @@
 // Converts normal maps between tangent and object space, with the interpolated frame of the mesh at
 // each texel, in double. Texels without a frame become (0, 0, 1) and are reported. Tests:
 // tests/mesh/bake/map_convention_test.cpp.
-#include "relief/mesh/normal_space.h"
+#include "relief/mesh/map_convention.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <mutex>
 
 #include "bake/texel_frame.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -23,7 +23,7 @@
 
 #include "geometry/check_triangles.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -15,7 +15,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

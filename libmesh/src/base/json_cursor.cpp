@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "near_names.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

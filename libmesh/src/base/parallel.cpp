@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "progress_stage.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 
 #ifdef RELIEF_TSAN
 #include <sanitizer/tsan_interface.h>

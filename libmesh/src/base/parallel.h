@@ -19,7 +19,7 @@ namespace relief {
 ///
 /// The body may write only elements of its own piece, and read only what no piece writes. The
 /// result is then the same for any number of threads. If the operation has a Progress
-/// (relief/mesh/progress.h), pieces are smaller, and cancellation is checked between them.
+/// (relief/mesh/execution.h), pieces are smaller, and cancellation is checked between them.
 ///
 /// If a body throws, the loop throws after its threads have finished, and skips pieces after the
 /// failed one. The exception is that of the failed piece with the smallest index, and all pieces

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A thread-local variable holds the Progress of an operation; parallel loops pass it on to their
 // threads.
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 
 #include <sys/stat.h>
 

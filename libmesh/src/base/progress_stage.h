@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 
 namespace relief {
 

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

@@ -14,9 +14,9 @@
 #include "image/height_holes.h"
 #include "large_memory.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/kernel_choice.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

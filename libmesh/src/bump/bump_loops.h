@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "image/dither_tile.h"
-#include "relief/mesh/gradient_kernel.h"
+#include "relief/mesh/bump.h"
 #include "relief/mesh/normal_map.h"
 #include "vector_targets.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weights of gradient kernels, and their properties in closed form. Offsets are in texels,
 // frequencies in radians per texel.
-#include "relief/mesh/gradient_kernel.h"
+#include "relief/mesh/bump.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "geometry/portable_math.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

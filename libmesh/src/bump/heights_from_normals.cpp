@@ -14,7 +14,7 @@
 // The divisor is therefore increased by `damping` times shortness^4, where shortness is 1 for two
 // texels; at eight texels that is 5e-7 of the divisor. For clamped borders, conjugate gradients on
 // the normal equations refine the solution, with this solver as preconditioner [Shewchuk 1994].
-#include "relief/mesh/heights_from_normals.h"
+#include "relief/mesh/height_map.h"
 
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@
 #include "image/texel_loops.h"
 #include "parallel.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "bump/kernel_error_model.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

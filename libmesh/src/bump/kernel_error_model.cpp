@@ -21,7 +21,7 @@
 #include "image/height_holes.h"
 #include "parallel.h"
 #include "random.h"
-#include "relief/mesh/destaircase.h"
+#include "relief/mesh/height_map.h"
 
 namespace relief {
 namespace {

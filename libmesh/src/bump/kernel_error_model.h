@@ -11,7 +11,7 @@
 
 #include "bump/height_tile.h"
 #include "bump/power_spectrum.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/kernel_choice.h"
 
 namespace relief {

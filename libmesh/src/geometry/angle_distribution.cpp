@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Degrees in, their distribution out. Percentiles are values that occur (nearest rank). Linear
 // expected time. Tests: tests/mesh/accuracy/error_statistics_test.cpp.
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 
 namespace relief {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each vertex by itself, from its ring of triangles in an order of their vertices.
-#include "relief/mesh/curvature.h"
+#include "relief/mesh/normals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // Angles by atan2 in double, and their sums, in degrees. Unlike angle_distribution(), which counts
 // what is no angle apart, one NaN makes all three sums NaN: there is no place here to tell of it.
 // Tests: tests/mesh/accuracy/error_statistics_test.cpp.
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "geometry/angle_sum.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

@@ -18,7 +18,7 @@
 #include "geometry/unit_tolerance.h"
 #include "octahedral_code.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -13,9 +13,8 @@
 #include "geometry/direction.h"
 #include "geometry/unit_tolerance.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/split.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
 
 namespace relief {

@@ -2,7 +2,7 @@
 // Sorts edges by the angle between their triangles and finds the crease angle that separates hard
 // from smooth edges with the fewest errors. Edges with one triangle or with more than two are
 // ignored.
-#include "relief/mesh/inferred_creases.h"
+#include "relief/mesh/normals.h"
 
 #include <algorithm>
 #include <glm/trigonometric.hpp>
@@ -12,8 +12,8 @@
 #include "geometry/corners.h"
 #include "geometry/normal_sums.h"
 #include "geometry/weld.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

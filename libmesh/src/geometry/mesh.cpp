@@ -17,9 +17,7 @@
 
 #include "geometry/check_triangles.h"
 #include "geometry/direction.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/mesh_part.h"
-#include "relief/mesh/placed.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,

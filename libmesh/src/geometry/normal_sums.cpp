@@ -27,7 +27,7 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 #include "vector_targets.h"
 
 namespace relief {

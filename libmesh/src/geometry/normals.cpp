@@ -33,7 +33,6 @@
 #include "geometry/smooth_fans.h"
 #include "geometry/weld.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

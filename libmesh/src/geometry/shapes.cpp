@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simple shapes, computed in double and rounded once. Object space, y up. Seams repeat their first
 // positions exactly. Counts out of range throw InvalidInput.
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "geometry/portable_math.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -3,7 +3,7 @@
 // the smallest stays with the vertex, each further one makes a copy, so that neither how many
 // copies there are nor which comes first depends on the order of triangles. Linear but for the
 // sorting.
-#include "relief/mesh/split.h"
+#include "relief/mesh/frames.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "geometry/check_triangles.h"
 #include "geometry/corners.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares stored tangents with those of every known method, corner by corner, in degrees in the
 // plane of the normal. Corners whose direction is not certain are left out and counted.
-#include "relief/mesh/tangent_basis.h"
+#include "relief/mesh/tangents.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,6 @@
 #include "geometry/portable_math.h"
 #include "geometry/texture_gradient.h"
 #include "parallel.h"
-#include "relief/mesh/tangents.h"
 
 namespace relief {
 namespace {

@@ -3,7 +3,7 @@
 // that of rounding [Lepski 1991], and the result is then limited to half a step around the stored
 // code. Heights are in steps during the computation. Holes remain; their filled values serve their
 // neighbors. An invalid image or step throws.
-#include "relief/mesh/destaircase.h"
+#include "relief/mesh/height_map.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,7 @@
 #include "image/height_holes.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thresholds of dither.h: Bayer's recursive matrix, and blue noise by the void-and-cluster
+// The thresholds of image.h: Bayer's recursive matrix, and blue noise by the void-and-cluster
 // method. All ranks are computed from integers, and ties go to the first in reading order, so the
 // tiles are the same on every machine.
 #include "image/dither_tile.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Tiles of thresholds for dither.h, by rows.
+/// Tiles of thresholds for image.h, by rows.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <vector>
 
-#include "relief/mesh/dither.h"
+#include "relief/mesh/image.h"
 
 namespace relief {
 

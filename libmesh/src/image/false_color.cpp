@@ -8,8 +8,8 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/false_color.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

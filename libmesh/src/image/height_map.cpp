@@ -22,8 +22,8 @@
 #include "image/texel_loops.h"
 #include "large_memory.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/image_channels.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -2,7 +2,7 @@
 // Statistics of height maps, and of their seams. Heights are relative to white = 1. Texels that are
 // not finite are left out; an invalid image throws. Seams are compared with at most 256 pairs of
 // adjacent lines inside, evenly distributed.
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@
 #include "image/seam_survey.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -19,9 +19,7 @@
 #include "image/texel_loops.h"
 #include "large_memory.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/image_channels.h"
-#include "relief/mesh/image_part.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mip levels with a box filter, see mip_levels.h. 8-bit codes are converted to 16-bit light (or
+// Mip levels with a box filter, see image.h. 8-bit codes are converted to 16-bit light (or
 // 16-bit numbers), which stays the format of all levels, and are encoded again for the result;
 // floats stay floats. Even sizes, which are usual, average four texels. An odd size distributes its
 // 2m + 1 texels over m, which takes three texels with weights that sum to 1.
-#include "relief/mesh/mip_levels.h"
+#include "relief/mesh/image.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <type_traits>
 
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

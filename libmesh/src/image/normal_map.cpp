@@ -17,8 +17,7 @@
 #include "image/dither_tile.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/normal_map_operations.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

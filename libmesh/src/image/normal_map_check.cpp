@@ -13,7 +13,7 @@
 
 #include "image/map_statistics.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -4,7 +4,7 @@
 // All formulas are computed in double precision and rounded once. The blending formulas are those
 // of [Barré-Brisebois and Hill 2012], normalized at the end. An undefined direction becomes flat,
 // or the base's own direction when blending, and is counted.
-#include "relief/mesh/normal_map_operations.h"
+#include "relief/mesh/normal_map.h"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,7 @@
 
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/normal_blend.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

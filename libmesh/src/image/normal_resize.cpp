@@ -6,7 +6,7 @@
 // the columns. Weights are double, sums are float, in the order of the texels, so the bits are the
 // same for any number of threads. Mip levels average vectors, never codes, and normalize only the
 // result; its length before that gives the variance.
-#include "relief/mesh/normal_resize.h"
+#include "relief/mesh/normal_map.h"
 
 #include <fmt/format.h>
 
@@ -18,9 +18,8 @@
 
 #include "geometry/portable_math.h"
 #include "image/texel_loops.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/mip_levels.h"
-#include "relief/mesh/normal_mips.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
 
 namespace relief {
 

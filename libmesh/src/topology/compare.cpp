@@ -8,7 +8,7 @@
 
 #include "geometry/corners.h"
 #include "parallel.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 
 namespace relief {
 namespace {

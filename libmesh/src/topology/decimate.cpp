@@ -28,8 +28,8 @@
 
 #include "geometry/direction.h"
 #include "geometry/weld.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/split.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/report.h"
 #include "topology/openmesh.h"
 #include "topology/topology.h"
 

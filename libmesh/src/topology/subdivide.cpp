@@ -21,7 +21,7 @@
 
 #include "geometry/direction.h"
 #include "geometry/weld.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "topology/openmesh.h"
 #include "topology/topology.h"
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
 
 namespace relief {

@@ -13,9 +13,8 @@
 #include <span>
 
 #include "parallel.h"
-#include "relief/mesh/angle_distribution.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

@@ -2,7 +2,7 @@
 // Debug views: their names and descriptions, and the plan that shows one: the features of each
 // draw, or the reason why it has nothing to show. Pure. Tests:
 // tests/shade/effects/effects_test.cpp.
-#include "relief/shade/debug_views.h"
+#include "relief/shade/frame_settings.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,8 @@
 #include <array>
 
 #include "effects/features.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
-#include "relief/shade/labels.h"
 
 namespace relief {
 

@@ -2,7 +2,7 @@
 // Forces effects on and off: looks up their names, changes the features of each draw, checks what
 // canonical() leaves of them against the request, and rewrites the reasons. Pure. Unknown names and
 // impossible sets throw InvalidInput. Tests: tests/shade/effects/effects_test.cpp.
-#include "relief/shade/effect_forcing.h"
+#include "relief/shade/effects.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 
 #include "effects/effect_table.h"
 #include "near_names.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

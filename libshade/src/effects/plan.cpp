@@ -9,7 +9,7 @@
 #include "effects/effect_table.h"
 #include "effects/features.h"
 #include "relief/shade/effects.h"
-#include "relief/shade/labels.h"
+#include "relief/shade/frame_settings.h"
 
 namespace relief {
 

@@ -18,7 +18,7 @@
 #include <system_error>
 
 #include "progress_stage.h"
-#include "relief/shade/error.h"
+#include "relief/shade/context.h"
 
 namespace relief {
 

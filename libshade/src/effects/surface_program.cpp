@@ -8,7 +8,7 @@
 #include "effects/features.h"
 #include "effects/light_rows.h"
 #include "effects/surface_program.h"
-#include "relief/shade/shader_listing.h"
+#include "relief/shade/effects.h"
 
 namespace relief {
 

@@ -19,7 +19,7 @@
 #include "environment/environment_images.h"
 #include "environment/ggx.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

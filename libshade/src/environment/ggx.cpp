@@ -14,7 +14,7 @@
 #include <numbers>
 
 #include "parallel.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <utility>
 
-#include "relief/shade/error.h"
+#include "relief/shade/context.h"
 
 namespace relief::gl {
 

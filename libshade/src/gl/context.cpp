@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "gl/platform_context.h"
-#include "relief/shade/error.h"
 
 namespace relief {
 

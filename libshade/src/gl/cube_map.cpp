@@ -17,8 +17,8 @@
 #include "environment/environment_images.h"
 #include "gl/program.h"
 #include "gl/resources.h"
-#include "relief/mesh/error.h"
-#include "relief/shade/error.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/context.h"
 
 namespace relief::gl {
 

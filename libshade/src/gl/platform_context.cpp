@@ -21,7 +21,7 @@
 #include <span>
 #include <string_view>
 
-#include "relief/shade/error.h"
+#include "relief/shade/context.h"
 
 namespace relief::gl {
 

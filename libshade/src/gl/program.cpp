@@ -8,7 +8,7 @@
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "relief/shade/error.h"
+#include "relief/shade/context.h"
 
 namespace relief::gl {
 

@@ -9,9 +9,9 @@
 #include <array>
 #include <cassert>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/mip_levels.h"
-#include "relief/shade/error.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/context.h"
 
 namespace relief::gl {
 

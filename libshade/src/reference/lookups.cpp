@@ -11,8 +11,8 @@
 #include "environment/environment_images.h"
 #include "environment/ggx.h"
 #include "geometry/direction.h"
-#include "relief/mesh/error.h"
-#include "relief/shade/image_source.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief::reference {
 

@@ -15,7 +15,7 @@
 #include "reference/shading.h"
 #include "reference/surface.h"
 #include "reference/visibility.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

@@ -12,10 +12,10 @@
 #include <set>
 
 #include "geometry/direction.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
-#include "relief/shade/image_source.h"
+#include "relief/shade/scene_file.h"
 #include "render/textures.h"
 
 namespace relief::reference {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-#include "relief/shade/effect_forcing.h"
-#include "relief/shade/frame_timing.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/renderer.h"
 
 namespace relief {
 

@@ -14,7 +14,7 @@
 #include "gl/resources.h"
 #include "parallel.h"
 #include "progress_stage.h"
-#include "relief/shade/image_source.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief {
 

@@ -13,7 +13,7 @@
 #include "gl/resources.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/shared.h"
+#include "relief/shade/scene.h"
 #include "render/program_cache.h"
 
 namespace relief {

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
 #include "render/draw_values.h"
 #include "scene/is_finite.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Overlays on a finished picture: wireframe, vertex frames, markers (debug_views.h).
+/// Overlays on a finished picture: wireframe, vertex frames, markers (frame_settings.h).
 /// Tests: tests/shade/render/overlays_test.cpp, draw_values_test.cpp.
 #pragma once
 

@@ -11,8 +11,8 @@
 #include <span>
 
 #include "effects/surface_program.h"
-#include "relief/mesh/error.h"
-#include "relief/shade/picture_exchange.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/renderer.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Descriptions of the attributes, textures and passes of a plan, from the tables that drawing uses.
 // Tests: tests/shade/render/draw_values_test.cpp.
-#include "relief/shade/planned_inputs.h"
+#include "relief/shade/effects.h"
 
 #include <fmt/format.h>
 

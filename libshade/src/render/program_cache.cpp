@@ -12,7 +12,7 @@
 
 #include "effects/surface_program.h"
 #include "relief/mesh/timing.h"
-#include "relief/shade/error.h"
+#include "relief/shade/context.h"
 
 namespace relief {
 

@@ -14,9 +14,8 @@
 #include <utility>
 
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/timing.h"
-#include "relief/shade/render_cache.h"
 #include "render/draw_values.h"
 #include "render/environment.h"
 #include "render/gpu_mesh.h"

@@ -16,9 +16,9 @@
 
 #include "parallel.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
-#include "relief/shade/image_source.h"
-#include "relief/shade/labels.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/frame_settings.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras that see a whole scene, and default lights that go with them. World space, radians.
 // Vertices that are not finite are ignored.
-#include "relief/shade/framing.h"
+#include "relief/shade/scene.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "relief/mesh/error.h"
-#include "relief/shade/default_view.h"
+#include "relief/mesh/report.h"
 #include "scene/graph.h"
 
 namespace relief {

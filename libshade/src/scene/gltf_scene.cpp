@@ -20,9 +20,9 @@
 
 #include "parallel.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
-#include "relief/shade/image_source.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene_file.h"
 #include "scene/scene_import.h"
 
 namespace relief {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <variant>
 
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 #include "relief/shade/scene.h"
 
 namespace relief {

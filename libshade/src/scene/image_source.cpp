@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The images of a scene: decoding, which happens here only; the test whether an image is unchanged;
 // and the six faces of a cube map in a folder.
-#include "relief/shade/image_source.h"
+#include "relief/shade/scene_file.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,7 @@
 #include <utility>
 
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
-#include "relief/shade/environment_files.h"
+#include "relief/mesh/report.h"
 #include "scene/image_identity.h"
 
 namespace relief {

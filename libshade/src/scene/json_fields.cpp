@@ -7,9 +7,9 @@
 
 #include <cstdlib>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/image.h"
-#include "relief/shade/environment_files.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief {
 

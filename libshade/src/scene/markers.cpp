@@ -10,9 +10,9 @@
 #include <map>
 #include <string_view>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/shapes.h"
-#include "relief/shade/health_markers.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene_graph.h"
 #include "scene/is_finite.h"
 

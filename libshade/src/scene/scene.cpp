@@ -8,8 +8,7 @@
 #include <algorithm>
 
 #include "relief/shade/effects.h"
-#include "relief/shade/labels.h"
-#include "relief/shade/name_materials.h"
+#include "relief/shade/frame_settings.h"
 #include "scene/is_finite.h"
 
 namespace relief {

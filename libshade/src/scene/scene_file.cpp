@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "file_bytes.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/report.h"
 #include "scene/scene_import.h"
 
 namespace relief {

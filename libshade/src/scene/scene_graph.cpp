@@ -13,7 +13,7 @@
 #include <numbers>
 #include <utility>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "scene/graph.h"
 
 namespace relief {

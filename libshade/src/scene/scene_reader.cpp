@@ -9,11 +9,9 @@
 #include <map>
 
 #include "file_bytes.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/shapes.h"
-#include "relief/shade/default_view.h"
-#include "relief/shade/framing.h"
-#include "relief/shade/name_materials.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
 #include "scene/graph.h"
 #include "scene/json_fields.h"
 #include "scene/scene_import.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the differences from the scene as its file gives it. Materials and lights are compared as
 // JSON, the form in which they are written.
-#include "relief/shade/scene_writer.h"
+#include "relief/shade/scene_file.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 
 #include "file_bytes.h"
 #include "file_replacement.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/name_materials.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
 #include "scene/json_fields.h"
 
 namespace relief {

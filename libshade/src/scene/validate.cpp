@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "relief/mesh/error.h"
-#include "relief/shade/labels.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene_fields.h"
 #include "scene/graph.h"
 #include "scene/is_finite.h"

@@ -10,10 +10,10 @@
 
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/fitted_normals.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/normals.h"
+#include "relief/mesh/report.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -15,8 +15,8 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/bump_fields.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 
 namespace relief {

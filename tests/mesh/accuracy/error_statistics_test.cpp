@@ -11,10 +11,9 @@
 
 #include "geometry/angle_sum.h"
 #include "random.h"
-#include "relief/mesh/angle_distribution.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/frontier.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/timing.h"
 #include "support/message_of.h"
 

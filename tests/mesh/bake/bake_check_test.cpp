@@ -10,14 +10,12 @@
 #include <numeric>
 
 #include "mesh/bake/bake_support.h"
-#include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/bake_check.h"
-#include "relief/mesh/bake_trials.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 
 namespace relief {

@@ -9,11 +9,10 @@
 
 #include "bake/layers.h"
 #include "mesh/bake/bake_support.h"
-#include "relief/mesh/bake_layers.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 
 namespace relief {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "relief/mesh/bake.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/mesh.h"
 #include "support/peak_memory.h"
 #include "support/shared_data.h"
 

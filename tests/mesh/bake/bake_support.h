@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "relief/mesh/bake.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief::test {
 

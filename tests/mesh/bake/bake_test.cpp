@@ -9,13 +9,13 @@
 
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 
 namespace relief {

@@ -12,10 +12,10 @@
 #include <string>
 
 #include "mesh/bake/bake_support.h"
-#include "relief/mesh/bake_layers.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 
 namespace relief {

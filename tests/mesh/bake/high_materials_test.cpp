@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures and normal maps of high meshes, with hand-computed lookups and in whole bakes.
-#include "relief/mesh/high_materials.h"
+#include "relief/mesh/bake.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 #include "bake/high_surface.h"
 #include "mesh/bake/bake_support.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 
 namespace relief {

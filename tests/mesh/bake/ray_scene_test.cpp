@@ -10,7 +10,7 @@
 
 #include "bake/projection.h"
 #include "bake/ray_scene.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief {
 namespace {

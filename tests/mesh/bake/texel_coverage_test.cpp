@@ -9,11 +9,10 @@
 #include <limits>
 #include <random>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/map_tiles.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/texel_coverage.h"
-#include "relief/mesh/threads.h"
 #include "support/message_of.h"
 
 namespace relief {

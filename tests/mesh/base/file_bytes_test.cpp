@@ -14,7 +14,7 @@
 #include "file_bytes.h"
 #include "file_replacement.h"
 #include "large_memory.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
 

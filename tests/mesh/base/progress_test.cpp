@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Progress reports, cancellation, and the list of files that were read.
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,10 +12,9 @@
 
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/gradient_kernel.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 
 namespace relief {

@@ -10,11 +10,11 @@
 #include <numbers>
 
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/images.h"

@@ -9,10 +9,9 @@
 #include <numbers>
 
 #include "mesh/geometry/normal_samples.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/inferred_creases.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/split.h"
+#include "relief/mesh/report.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/shapes.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mean curvature against surfaces in closed form, and vertices without curvature.
-#include "relief/mesh/curvature.h"
+#include "relief/mesh/normals.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <functional>
 #include <limits>
 
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/mesh.h"
 
 namespace relief {
 namespace {

@@ -11,10 +11,10 @@
 #include <set>
 #include <string>
 
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/frame_encoding.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/random_frames.h"

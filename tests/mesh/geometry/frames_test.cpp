@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"

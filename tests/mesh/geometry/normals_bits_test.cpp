@@ -7,10 +7,10 @@
 #include <cstdlib>
 
 #include "mesh/geometry/normal_samples.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/shapes.h"

@@ -9,11 +9,11 @@
 #include <random>
 
 #include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/tangent_basis.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+#include "relief/mesh/tangents.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

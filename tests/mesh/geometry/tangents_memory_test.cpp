@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "relief/mesh/execution.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/threads.h"
 #include "support/shapes.h"
 
 namespace {

@@ -10,10 +10,10 @@
 
 #include "geometry/tangent_groups.h"
 #include "mesh/geometry/normal_samples.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/threads.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/shapes.h"

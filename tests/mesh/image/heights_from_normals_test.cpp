@@ -10,9 +10,9 @@
 
 #include "image/fft.h"
 #include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/heights_from_normals.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/message_of.h"
 

@@ -10,13 +10,9 @@
 #include <random>
 #include <vector>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/false_color.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
-#include "relief/mesh/image_channels.h"
-#include "relief/mesh/image_part.h"
-#include "relief/mesh/mip_levels.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/message_of.h"
 

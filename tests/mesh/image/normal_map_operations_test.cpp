@@ -10,12 +10,10 @@
 #include <limits>
 
 #include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/normal_blend.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/normal_map_operations.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/message_of.h"
 

@@ -10,12 +10,11 @@
 #include <set>
 
 #include "relief/mesh/bump.h"
-#include "relief/mesh/direction_error.h"
-#include "relief/mesh/dither.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/normal_map_operations.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "support/angle.h"
 #include "support/images.h"
 

@@ -10,11 +10,9 @@
 #include <map>
 #include <numbers>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/normal_map_operations.h"
-#include "relief/mesh/normal_mips.h"
-#include "relief/mesh/normal_resize.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/message_of.h"
 

@@ -12,7 +12,7 @@
 
 #include "relief/mesh/compare.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 #include "support/shapes.h"
 
 namespace relief {

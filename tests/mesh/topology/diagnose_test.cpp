@@ -12,9 +12,9 @@
 #include <set>
 
 #include "relief/mesh/diagnose.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/shapes.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/hard_meshes.h"
 #include "support/shapes.h"
 #include "topology/texture_overlap.h"

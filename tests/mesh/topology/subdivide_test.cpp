@@ -14,7 +14,7 @@
 
 #include "geometry/weld.h"
 #include "mesh/topology/boundary_edges.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/subdivide.h"
 #include "support/angle.h"
 #include "support/message_of.h"

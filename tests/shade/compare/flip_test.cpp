@@ -11,9 +11,9 @@
 #include <numbers>
 #include <vector>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
 
 namespace relief::test {

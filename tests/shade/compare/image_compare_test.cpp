@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
 
 namespace relief {

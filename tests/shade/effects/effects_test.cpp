@@ -8,9 +8,9 @@
 
 #include "effects/features.h"
 #include "effects/surface_program.h"
-#include "relief/mesh/error.h"
-#include "relief/shade/debug_views.h"
-#include "relief/shade/effect_forcing.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/frame_settings.h"
 #include "shade/effects/feature_sets.h"
 #include "support/message_of.h"
 #include "support/shapes.h"

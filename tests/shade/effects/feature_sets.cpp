@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "relief/shade/framing.h"
+#include "relief/shade/scene.h"
 #include "support/shapes.h"
 
 namespace relief::test {

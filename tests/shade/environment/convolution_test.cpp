@@ -12,9 +12,9 @@
 
 #include "environment/convolution.h"
 #include "environment/ggx.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/report.h"
 #include "shade/environment/test_environments.h"
 #include "support/shared_data.h"
 

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "environment/environment_images.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
 #include "support/shared_data.h"
 
 namespace relief {

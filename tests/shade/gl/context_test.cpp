@@ -17,7 +17,6 @@
 
 #include "gl/resources.h"
 #include "relief/shade/context.h"
-#include "relief/shade/error.h"
 #include "support/gl_environment.h"
 
 namespace relief {

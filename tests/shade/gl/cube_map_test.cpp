@@ -15,9 +15,9 @@
 
 #include "gl/cube_map.h"
 #include "gl/resources.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/error.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/context.h"
 #include "relief/shade/image_compare.h"
 #include "shade/environment/test_environments.h"
 #include "support/angle.h"

@@ -12,7 +12,6 @@
 #include "gl/program.h"
 #include "gl/resources.h"
 #include "relief/shade/context.h"
-#include "relief/shade/error.h"
 #include "support/gl_environment.h"
 
 namespace {

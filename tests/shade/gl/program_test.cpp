@@ -15,7 +15,7 @@
 #include "gl/program.h"
 #include "gl/resources.h"
 #include "relief/mesh/frame_encoding.h"
-#include "relief/shade/error.h"
+#include "relief/shade/context.h"
 #include "support/angle.h"
 #include "support/gl_environment.h"
 #include "support/images.h"

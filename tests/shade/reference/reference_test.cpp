@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
 #include "relief/shade/reference.h"
 #include "shade/reference/traced.h"

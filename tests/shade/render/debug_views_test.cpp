@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Debug views as pictures against reference values: squares and spheres in closed form, normals and
 // light terms from the CPU reference.
-#include "relief/shade/debug_views.h"
+#include "relief/shade/frame_settings.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 
 #include "effects/surface_program.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/reference.h"
 #include "render/program_cache.h"
 #include "shade/effects/feature_sets.h"

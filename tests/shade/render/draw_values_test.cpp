@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "relief/shade/effects.h"
-#include "relief/shade/planned_inputs.h"
 #include "render/draw_values.h"
 #include "render/gpu_mesh.h"
 #include "render/overlays.h"

@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/effect_costs.h"
-#include "relief/shade/effect_forcing.h"
-#include "relief/shade/framing.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
 #include "shade/effects/feature_sets.h"
 #include "shade/render/draw_support.h"

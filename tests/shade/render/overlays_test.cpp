@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "shade/render/draw_support.h"
 #include "support/message_of.h"
 #include "support/shapes.h"

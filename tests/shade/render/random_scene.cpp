@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "environment/environment_images.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
 #include "shade/render/draw_support.h"
 #include "support/shapes.h"
 

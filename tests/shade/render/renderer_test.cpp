@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
 #include "shade/render/draw_support.h"
 #include "support/shapes.h"

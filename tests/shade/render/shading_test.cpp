@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/reference.h"
 #include "shade/render/draw_support.h"
 #include "support/angle.h"

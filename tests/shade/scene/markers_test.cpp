@@ -8,10 +8,9 @@
 #include <limits>
 #include <set>
 
-#include "relief/mesh/error.h"
-#include "relief/shade/default_view.h"
-#include "relief/shade/framing.h"
-#include "relief/shade/health_markers.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/frame_settings.h"
+#include "relief/shade/scene.h"
 #include "relief/shade/scene_graph.h"
 #include "support/angle.h"
 #include "support/shapes.h"

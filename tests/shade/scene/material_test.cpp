@@ -11,7 +11,7 @@
 #include <numbers>
 #include <set>
 
-#include "relief/shade/labels.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_fields.h"
 #include "relief/shade/scene_file.h"

@@ -10,15 +10,12 @@
 #include <memory>
 #include <vector>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/shapes.h"
-#include "relief/shade/environment_files.h"
-#include "relief/shade/image_source.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
-#include "relief/shade/shared.h"
 #include "scene/scene_import.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"

@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
 #include "scene/graph.h"
 #include "support/shapes.h"

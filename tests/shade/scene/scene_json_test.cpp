@@ -8,9 +8,9 @@
 #include <iterator>
 #include <numbers>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"

@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -9,7 +9,7 @@
 #include <regex>
 
 #include "html_text.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "tools/accuracy_page/sample_report.h"
 

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "gl/platform_context.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "support/gl_environment.h"
 #include "support/shapes.h"
 #include "tools/window/display.h"

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
 #include "tools/workplace.h"
 

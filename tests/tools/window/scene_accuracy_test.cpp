@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/analytic_surfaces.h"
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "tools/window/display.h"
 
 namespace relief::tools {

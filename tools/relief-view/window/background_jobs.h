@@ -15,9 +15,9 @@
 #include <thread>
 #include <utility>
 
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/timing.h"
-#include "relief/shade/health_markers.h"
+#include "relief/shade/frame_settings.h"
 #include "scene_options.h"
 #include "view_options.h"
 

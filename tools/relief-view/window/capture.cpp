@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "relief/mesh/image_channels.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/scene_writer.h"
+#include "relief/shade/scene_file.h"
 #include "view_output.h"
 #include "window/controls.h"
 #include "window/draw_thread.h"

@@ -11,8 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "relief/shade/effect_forcing.h"
-#include "relief/shade/render_cache.h"
+#include "relief/shade/effects.h"
 #include "relief/shade/renderer.h"
 #include "window/background_jobs.h"
 #include "window/draw_thread.h"

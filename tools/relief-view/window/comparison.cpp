@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "relief/mesh/false_color.h"
+#include "relief/mesh/image.h"
 #include "window/controls.h"
 #include "window/panels.h"
 

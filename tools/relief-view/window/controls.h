@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::tools {
 

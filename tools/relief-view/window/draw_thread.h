@@ -18,12 +18,10 @@
 #include <string>
 #include <thread>
 
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/effect_forcing.h"
+#include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
-#include "relief/shade/picture_exchange.h"
-#include "relief/shade/render_cache.h"
 #include "relief/shade/renderer.h"
 
 namespace relief::tools {

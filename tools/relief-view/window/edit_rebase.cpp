@@ -7,7 +7,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "relief/shade/labels.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene_fields.h"
 
 namespace relief::tools {

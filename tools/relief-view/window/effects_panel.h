@@ -14,7 +14,6 @@
 
 #include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
-#include "relief/shade/shader_listing.h"
 #include "window/capture.h"
 #include "window/draw_thread.h"
 

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "relief/mesh/progress.h"
+#include "relief/mesh/execution.h"
 #include "view_options.h"
 #include "window/background_jobs.h"
 #include "window/draw_thread.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "relief/mesh/image_file.h"
-#include "relief/shade/labels.h"
+#include "relief/shade/frame_settings.h"
 #include "window/controls.h"
 #include "window/panels.h"
 

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "relief/shade/name_materials.h"
 #include "relief/shade/scene.h"
 
 namespace relief::tools {

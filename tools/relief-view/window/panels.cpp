@@ -14,7 +14,7 @@
 
 #include "common/text.h"
 #include "debug_options.h"
-#include "relief/shade/labels.h"
+#include "relief/shade/frame_settings.h"
 #include "window/controls.h"
 
 namespace relief::tools {

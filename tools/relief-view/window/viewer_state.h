@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "relief/shade/effect_forcing.h"
-#include "relief/shade/health_markers.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene_graph.h"
 #include "scene_options.h"
 #include "window/background_jobs.h"

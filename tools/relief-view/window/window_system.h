@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/context.h"
 
 struct GLFWwindow;

@@ -4,7 +4,7 @@
 /// meshes (the asset report), and recommends a method. No exact result is known: each experiment
 /// states its reference and the limits of that reference. Large inputs are measured in part, and
 /// the experiment says so. A ProgressScope receives progress and can cancel
-/// (relief/mesh/progress.h).
+/// (relief/mesh/execution.h).
 /// Tests: tests/accuracy/asset_mesh_test.cpp, own_maps_test.cpp, own_bake_test.cpp.
 #pragma once
 
@@ -62,14 +62,14 @@ struct AssetExperiment {
 
 /// The reference for averaged normals.
 enum class NormalReference {
-    surface,  ///< A smooth surface that is fitted to the vertices: fitted_normals.h.
+    surface,  ///< A smooth surface that is fitted to the vertices: normals.h.
     file,     ///< The stored normals of the mesh.
 };
 
 struct AssetMeshOptions {
     NormalReference ground_truth = NormalReference::surface;
     /// The crease angle in radians: sharper edges are hard. If absent, the smoothing groups of the
-    /// mesh apply, else the crease angle that is inferred from its normals (inferred_creases.h),
+    /// mesh apply, else the crease angle that is inferred from its normals (normals.h),
     /// else no edge is hard.
     std::optional<double> crease_angle;
     /// For larger meshes, eight ranges of triangles are measured.

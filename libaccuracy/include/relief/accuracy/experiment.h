@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/timing.h"

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 
 namespace relief {

@@ -2,9 +2,11 @@
 /// \file
 /// Bakes maps for a low-poly mesh from high-poly meshes: normals, and optionally heights,
 /// occlusion, curvature, positions and colors. Part of the library relief::bake.
-/// Tests: tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_layers_test.cpp.
+/// Tests: tests/mesh/bake/bake_layers_test.cpp, tests/mesh/bake/high_materials_test.cpp,
+/// tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_layers_test.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -16,15 +18,97 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/bake_layers.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/high_materials.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/map_convention.h"
 #include "relief/mesh/mesh.h"
-#include "relief/mesh/normal_space.h"
+#include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/texel_coverage.h"
 
 namespace relief {
+
+// Options of the layers that a bake computes from the same rays: normals, heights, occlusion,
+// curvature, positions and colors. A layer that is not requested costs no time and no memory, and
+// layers do not affect each other.
+
+/// Options of ambient occlusion: the share of rays from a point that hit nothing. Rays are
+/// cosine-distributed about the normal, like light from a uniform sky.
+struct OcclusionOptions {
+    /// Rays per texel, 1 to 65536, divided evenly among its samples. The error decreases by a
+    /// factor of about 2^-0.75 for each doubling.
+    int rays = 64;
+    /// The length of the rays in the unit of the meshes. If absent, half of the longest side of the
+    /// high meshes' bounding box.
+    std::optional<double> distance{};
+};
+
+/// The layers to bake. Each value is the mean over those samples of a texel that hit; all layers
+/// are padded in the same way.
+struct BakeLayers {
+    bool normals = true;
+    /// The height of the high surface above the low mesh along the ray, in the unit of the meshes.
+    bool heights = false;
+    /// Ambient occlusion from 0 to 1, by the high meshes alone. Rays are distributed about the
+    /// interpolated normal; those below the plane of their triangle are ignored. Back faces occlude
+    /// too.
+    std::optional<OcclusionOptions> occlusion{};
+    /// Mean curvature in one over the unit of the meshes; convex is positive (normals.h).
+    bool curvature = false;
+    /// Positions, transformed by `position_from_mesh`.
+    bool positions = false;
+    /// Linear RGB: vertex colors times the material's color and texture.
+    bool colors = false;
+    glm::dmat4 position_from_mesh{1.0};  ///< For `positions`.
+};
+
+/// Upper bounds of the absolute values of layers, for integer storage.
+struct LayerBounds {
+    double height = 0.0;         ///< The length of the rays.
+    double curvature = 0.0;      ///< Over all vertices of the high meshes.
+    double curvature_p99 = 0.0;  ///< Over 99% of their area.
+    double position = 0.0;       ///< Over all coordinates, transformed by `position_from_mesh`.
+};
+
+// Describes the materials of the high meshes of a bake: colors, color textures and normal maps.
+
+/// An image on a mesh. It is sampled at full resolution, bilinearly or nearest, as `filter` says; a
+/// map that is coarser than the image needs several samples per texel.
+struct SurfaceTexture {
+    const Image* image = nullptr;  ///< One to four channels; it must outlive the bake.
+    TextureWrap wrap_u = TextureWrap::repeat;
+    TextureWrap wrap_v = TextureWrap::repeat;
+    TextureFilter filter = TextureFilter::linear;
+    GltfTextureTransform transform{};
+};
+
+/// A normal map and its conventions.
+struct SurfaceNormalMap {
+    SurfaceTexture texture;  ///< Three or four channels.
+    float scale = 1.0F;      ///< Multiplies x and y.
+    Green green = Green::up;
+    FlatCode flat = FlatCode::half;  ///< The formula of glTF.
+    /// The codes of x and y that are decoded as exactly flat, see flat_texel_codes(). Only for
+    /// FlatCode::half.
+    std::optional<std::array<std::uint16_t, 2>> flat_codes{};
+};
+
+struct HighMaterial {
+    glm::vec3 color{1.0F};  ///< Linear; multiplied by the texture and the vertex colors.
+    /// Gray or RGB; sRGB or linear, as the image says. Its alpha is ignored.
+    std::optional<SurfaceTexture> color_texture;
+    std::optional<SurfaceNormalMap> normal_map;
+};
+
+/// The materials of a high mesh.
+struct HighMaterials {
+    const Mesh* mesh = nullptr;           ///< A high mesh of the bake, identified by its address.
+    std::vector<HighMaterial> materials;  ///< Indexed by the mesh's material ranges.
+    /// The texture coordinates of color textures, by vertex. If empty, those of the mesh. Normal
+    /// maps always use those of the mesh, with its tangents or MikkTSpace's.
+    std::vector<glm::vec2> color_texcoords;
+    std::optional<HighMaterial> otherwise{};  ///< The material of triangles without a material.
+};
 
 /// The space of the normals of a map.
 enum class BakeSpace {
@@ -130,7 +214,7 @@ enum class TexelState : std::uint8_t {
     padded,  ///< Filled from the nearest baked texels. The texel may have been missed.
 };
 
-/// The rows of a map. Spans of layers that were not requested (bake_layers.h) are empty. Spans are
+/// The rows of a map. Spans of layers that were not requested are empty. Spans are
 /// valid during the call that receives them.
 struct BakedRows {
     int first_row = 0;

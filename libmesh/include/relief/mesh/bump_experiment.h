@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/angle_distribution.h"
 #include "relief/mesh/bump_fields.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/timing.h"
@@ -25,7 +25,7 @@ struct BumpMethod {
     int gaussian_radius = 2;  ///< The radius of Kernel::gaussian.
     Arithmetic arithmetic = Arithmetic::float32;
     int bits = 16;  ///< Bits per channel of the stored map.
-    /// The heights are smoothed by destaircase() first (destaircase.h).
+    /// The heights are smoothed by destaircase() first (height_map.h).
     bool destaircased = false;
 
     bool operator==(const BumpMethod&) const = default;

@@ -15,10 +15,8 @@
 
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_part.h"
-#include "relief/mesh/image_rows.h"
 
 namespace relief {
 

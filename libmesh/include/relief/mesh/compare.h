@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "relief/mesh/angle_distribution.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "relief/mesh/direction_error.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

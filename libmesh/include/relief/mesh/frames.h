@@ -1,17 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Computes the normals and tangents of a mesh, and splits vertices where corners differ.
-/// Tests: tests/mesh/geometry/frames_test.cpp.
+/// Tests: tests/mesh/geometry/mesh_test.cpp, tests/mesh/geometry/frames_test.cpp.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
+
+// Converts values at triangle corners to values at vertices, with the minimum number of additional
+// vertices.
+
+/// The source of every new vertex, and the triangles over the new vertices.
+///
+/// The first entries are the old vertices in their order, including isolated ones; the copies
+/// follow. Any data by vertex can be carried along with `source_vertex`.
+struct VertexSplit {
+    std::vector<std::uint32_t> source_vertex;
+    std::vector<glm::uvec3> triangles;
+};
+
+/// Splits vertices until all corners that share a vertex also share a value, with as few copies as
+/// possible.
+///
+/// \param corner_values  three per triangle, in corner order. They are compared as numbers: -0
+///         equals +0; NaNs are equal if their bits are
+/// \return the smallest value of a vertex stays with it, the others go to copies in ascending
+///         order, so that the vertices do not depend on the order of triangles
+/// \throws InvalidInput if a triangle names a vertex that does not exist, or the lengths differ
+VertexSplit split_where_corners_differ(std::size_t vertex_count,
+                                       std::span<const glm::uvec3> triangles,
+                                       std::span<const glm::vec4> corner_values);
+VertexSplit split_where_corners_differ(std::size_t vertex_count,
+                                       std::span<const glm::uvec3> triangles,
+                                       std::span<const glm::vec3> corner_values);
+
+/// Returns a vertex attribute after a split; an absent (empty) one stays absent.
+template <typename T>
+std::vector<T> carried(std::span<const T> values, const VertexSplit& split) {
+    std::vector<T> result;
+    if (values.empty()) return result;
+    result.reserve(split.source_vertex.size());
+    for (const std::uint32_t vertex : split.source_vertex) {
+        assert(vertex < values.size());
+        result.push_back(values[vertex]);
+    }
+    return result;
+}
+
+/// Returns a mesh after a split, with all vertex attributes, new triangles and the same ranges.
+/// `split` may select any vertices.
+Mesh carried(const Mesh& mesh, const VertexSplit& split);
 
 /// The source of normals.
 enum class NormalMode {
@@ -67,7 +114,7 @@ struct FrameOptions {
 struct FramedMesh {
     Mesh mesh;
     /// For every vertex of `mesh`, the vertex of the input that it copies. The input's vertices
-    /// come first, in order. Use it to carry other vertex data along (split.h).
+    /// come first, in order. Use it to carry other vertex data along.
     std::vector<std::uint32_t> source_vertex;
     /// Number of vertices that NormalMode::automatic weighted by area (see ChosenNormals).
     std::size_t normals_by_area = 0;

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Extracts heights from images, and finds the texels that have none.
-/// Tests: tests/mesh/image/height_map_test.cpp.
+/// Height maps: extracts heights from images, analyzes them, removes their quantization steps, and
+/// integrates normal maps.
+/// Tests: tests/mesh/image/height_map_test.cpp, tests/mesh/image/heights_from_normals_test.cpp.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <vector>
 
+#include "relief/mesh/bump.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
+
+// Extracts heights from images, and finds the texels that have none.
 
 /// The channel that holds the heights. For mean, luminance and red of a gray image it is the only
 /// one, without decoding. For colors, only `luminance` decodes sRGB.
@@ -53,5 +60,146 @@ struct HeightMap {
 /// \param image  is consumed; the samples of gray images are moved, not copied
 /// \throws InvalidInput as height_field()
 HeightMap height_map(Image&& image, HeightChannel channel = HeightChannel::mean);
+
+// Analyzes a height map: whether it tiles, how many bits it uses, and how noisy it is.
+
+/// The continuity of a map across the seams between its last and first column, and last and first
+/// row.
+struct Tiling {
+    /// RMS change across the seam, divided by the maximum RMS change between adjacent columns or
+    /// rows inside (of at most 256 pairs). 0 if the seam has no change; infinite if only the seam
+    /// has one.
+    double seam_x = 0.0;
+    double seam_y = 0.0;
+
+    /// Maximum value for a map that tiles.
+    static constexpr double max_seam = 1.25;
+    [[nodiscard]] bool tiles_x() const { return seam_x <= max_seam; }
+    [[nodiscard]] bool tiles_y() const { return seam_y <= max_seam; }
+    /// Wrap::repeat for axes along which the map tiles, else Wrap::clamp.
+    [[nodiscard]] Wraps wraps() const {
+        return {tiles_x() ? Wrap::repeat : Wrap::clamp, tiles_y() ? Wrap::repeat : Wrap::clamp};
+    }
+};
+
+/// Measures the seams of a height map.
+///
+/// \param height  one channel of 8, 16 or 32 bits; texels that are not finite are ignored
+/// \throws InvalidInput if the image is empty or has more than one channel
+///
+/// Maps of pure noise, and maps with a constant border, also count as tiling.
+Tiling detect_tiling(const Image& height);
+
+/// The quantization of a height map.
+struct HeightDepth {
+    /// The smallest n for which every height is a multiple of 1 / (2^n - 1), or of 1 / 2^n, up to
+    /// float rounding: 1 to 16. 10 for multiples of 1 / 765, the means of three 8-bit colors. 0 if
+    /// there is none (float maps).
+    int bits = 0;
+    /// The step between the values that occur, in the unit of heights (1.0 is white): 257 / 65535
+    /// for 8 bits stored in 16. 0 if `bits` is 0.
+    double step = 0.0;
+};
+
+/// Detects the quantization of a height map.
+///
+/// \param height  one channel of 8, 16 or 32 bits; texels that are not finite are ignored
+/// \throws InvalidInput if the image is empty or has more than one channel
+///
+/// For a constant map, `bits` is 1 and `step` is the height, or 1 for height 0.
+HeightDepth height_depth(const Image& height);
+
+/// Estimates the standard deviation of the noise in a height map, in the unit of heights. The
+/// estimate includes fine detail: it is an upper bound for smooth maps, and meaningless for maps
+/// with detail of 2 or 3 texels.
+///
+/// \return 0 for maps of fewer than 3 texels a side
+///
+/// Source: [Immerkaer 1996].
+double height_noise(const Image& height);
+
+// Removes the quantization steps of 8-bit height maps. No height changes by more than its rounding
+// error.
+
+struct DestaircaseOptions {
+    Wraps wrap;
+    /// The step between adjacent codes, where 1.0 is white. 0: height_depth() determines it.
+    double step = 0.0;
+};
+
+struct Destaircased {
+    Image heights;      ///< One float channel.
+    double step = 0.0;  ///< 0 if the map has no steps; its heights are unchanged then.
+};
+
+/// Estimates the heights before they were quantized.
+///
+/// \param height  one channel of 8, 16 or 32 bits
+/// \return for every texel a height within half a step of the stored one, so that rounding
+///         reproduces the map. Planes and smooth curves become smooth; edges of several steps and
+///         constant maps do not change. Non-finite heights do not change either, and their
+///         neighbors are smoothed as if the hole were filled, as in normals_from_height(); beyond
+///         the border `wrap` applies. The same bits for any number of threads
+/// \throws InvalidInput if the image is empty or has more than one channel, or the step is negative
+///         or not finite
+///
+/// Each texel takes the value of a smoothed surface. The scale of smoothing grows, up to a standard
+/// deviation of 37 texels, as long as the mean squared deviation from the surrounding codes does
+/// not exceed that of rounding, which is 1/12 of the squared step (the choice of scale is that of
+/// [Lepski 1991]). The value is then clamped to half a step around the code. Texels farther away
+/// than 400 have no effect.
+Destaircased destaircase(const Image& height, const DestaircaseOptions& options = {});
+
+// Integrates a normal map: computes the height field whose slopes have the least squared
+// difference from those of the normals.
+
+struct IntegrationOptions {
+    /// The kernel whose slopes are matched: the one with which normals_from_height() will be
+    /// called.
+    Kernel kernel = Kernel::central7;
+    int gaussian_radius = 2;  ///< The radius of Kernel::gaussian in texels.
+    Wraps wrap;
+    glm::dvec2 texel{1.0, 1.0};  ///< As in BumpOptions; heights have its unit.
+    /// Maximum length of a slope. Steeper normals, and normals that face sideways or back, are
+    /// clamped to it. The default is 86 degrees; there, one 8-bit code of z already changes the
+    /// slope by one sixteenth.
+    double max_slope = 16.0;
+    /// Subtracts the mean slope first. If flat texels have an error of one 8-bit code, the mean
+    /// slope is 0.8%, which adds up to large heights in maps with clamped borders.
+    bool level = false;
+};
+
+struct IntegratedHeights {
+    Image heights;         ///< One float channel in the unit of the texel; the minimum is 0.
+    double highest = 0.0;  ///< The maximum height.
+    /// The RMS of the remaining difference of slopes over both axes, which no height field can
+    /// have. 0 if the map was made from heights by the same kernel.
+    double residual_slope = 0.0;
+    DirectionError residual;  ///< The remaining angles between the normals, in degrees.
+    double rms_slope = 0.0;   ///< The RMS slope of the map, for comparison.
+    /// The mean slope of the map to the right and upwards, before `level` is applied.
+    glm::dvec2 mean_slope{};
+    int rounds = 1;  ///< Number of iterations; 1 unless a wrap is clamp.
+};
+
+/// Computes heights by least squares: no other height field has slopes, by the kernel, that are
+/// closer to those of the normals.
+///
+/// \param normals  three float channels, y up, as from decode_normal_map(); any length
+/// \param report  counts texels whose normal is not finite or zero (read as flat), faces sideways
+///         or back, or is steeper than `steepest` (clamped)
+/// \return heights from which normals_from_height() with the same kernel, wrap and texel reproduces
+///         the normals as closely as possible. Waves shorter than 3 texels, to which kernels hardly
+///         respond, keep small amplitudes, with relative slope errors of up to 1e-3. A map without
+///         slopes gives 0 everywhere. The same bits for any number of threads
+/// \throws InvalidInput if the image is empty or not three float channels, or if the texel, the
+///         radius or `steepest` (1e-3 to 1e6) is out of range
+///
+/// If both wraps are repeat or mirror and the kernel is symmetric, the solution is computed
+/// directly by fast transforms; otherwise by conjugate gradients with these transforms as the
+/// preconditioner. Memory beside normals and result: 8 bytes per texel, or 40 if a wrap is clamp.
+/// Source: [Frankot and Chellappa 1988], with the response of the kernel instead of the derivative.
+IntegratedHeights heights_from_normals(const Image& normals, const IntegrationOptions& options,
+                                       Report& report);
 
 }  // namespace relief

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Defines images in memory and conversions of their sample type and color space.
-/// Tests: tests/mesh/image/image_test.cpp.
+/// Images in memory: samples, color spaces, channels, rectangles, mip levels, dithering and false
+/// colors.
+/// Tests: tests/mesh/image/image_test.cpp, tests/mesh/image/normal_map_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -96,5 +97,90 @@ struct Wraps {
     constexpr Wraps(Wrap along_x, Wrap along_y) : x(along_x), y(along_y) {}
     bool operator==(const Wraps&) const = default;
 };
+
+// Extracts single channels of images, and adds or removes alpha.
+
+/// Extracts one channel as float; integer samples are divided by their maximum.
+/// \throws InvalidInput if there is no such channel
+Image channel_of(const Image& image, int channel);
+
+/// Adds a fourth channel to an image of three channels.
+///
+/// \param alpha  one float channel of the same size. For images of 8 and 16 bits it is clamped to
+///         [0,1] (NaN becomes 0) and rounded to the nearest code
+/// \throws InvalidInput if the images have other formats or differ in size
+Image with_alpha(const Image& image, const Image& alpha);
+
+/// Removes the fourth channel. \throws InvalidInput if the image does not have four channels
+void drop_alpha(Image& image);
+
+// Extracts rectangles of images.
+
+/// A rectangle of texels; x points right, y down.
+struct ImagePart {
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
+
+    friend bool operator==(const ImagePart&, const ImagePart&) = default;
+};
+
+/// Extracts a rectangle as an image of the same format.
+/// \throws InvalidInput if the rectangle is empty or not inside of the image
+Image part_of(const Image& image, const ImagePart& part);
+
+// Computes the mip levels of an image.
+
+/// Computes the mip levels below the image itself, down to one texel. Each level has half the width
+/// and height of the previous one, rounded down, but at least 1.
+///
+/// \param image  8, 16 or 32 bits, 1 to 4 channels
+/// \return images of the same format. A texel is the mean of the area that it covers in the
+///         previous level, with weights by covered area for odd sizes. sRGB colors are averaged in
+///         linear light; alpha is averaged separately and does not weight colors. Integer samples
+///         keep 16 bits between levels and are rounded to their own bits only in the result. An
+///         image of one texel has no levels below it
+/// \throws InvalidInput if the image is empty
+///
+/// The result is the same bits for any number of threads. Drivers of GPUs use different filters.
+std::vector<Image> mip_levels(const Image& image);
+
+// Dithering: rounds values up or down by a fixed pattern, so that the mean over a few texels is
+// more accurate than single codes. The threshold of a texel depends only on its coordinates, so
+// results do not depend on the order of computation or the number of threads.
+
+/// The rounding of values between two codes.
+enum class Dither {
+    none,  ///< To the nearest code: the error is at most half a code, but constant over flat areas.
+    ordered,     ///< By a Bayer matrix of 16 x 16: the shortest period, but a visible pattern.
+    blue_noise,  ///< By a tile of 64 x 64 without low frequencies: least visible.
+};
+
+/// Returns the threshold of a texel: a value between two codes is rounded up if its fraction
+/// exceeds the threshold.
+///
+/// \param dither  not `none`
+/// \param x, y  coordinates in the whole image, not negative
+/// \param channel  0 to 2; each channel uses the same tile with another offset. With blue noise,
+///         the errors of the channels are almost uncorrelated
+/// \return (k + 0.5) / n, where n is 256 or 4096 and each k from 0 to n - 1 occurs once in a tile.
+///         It is never 0, so a value that equals a code gets that code: flat texels stay flat,
+///         without noise
+///
+/// The tiles are computed on first use in integer arithmetic, with the same result on every
+/// machine. Source: [Bayer 1973], [Ulichney 1993].
+float dither_threshold(Dither dither, int x, int y, int channel);
+
+// Renders values as a false-color image.
+
+/// Renders values as an 8-bit sRGB image with a color map from black over violet and orange to pale
+/// yellow, whose brightness increases with the value.
+///
+/// \param values  one float channel
+/// \param brightest  the value of the brightest color, above 0. Larger values have the same color,
+///         values of at most 0 are black, and NaN is pure green
+/// \throws InvalidInput if the image is empty or has another format, or brightest is not positive
+Image false_color_image(const Image& values, double brightest);
 
 }  // namespace relief

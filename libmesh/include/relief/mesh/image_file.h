@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Reads and writes image files: PNG, JPEG, TIFF, EXR, HDR and other formats of OpenImageIO.
+/// Reads and writes image files, whole or by rows: PNG, JPEG, TIFF, EXR, HDR and other formats of
+/// OpenImageIO.
 ///
 /// Common PNG and JPEG files are decoded directly. OpenImageIO is in a module that is loaded by the
 /// first image that needs it, because loading it takes 0.2 s and 120 MB. The module is searched in
@@ -8,8 +9,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +21,14 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+
+// Reads the color tags of image files. relief does not use them: ImageUse decides.
+
+/// Returns the tag by which a program would interpret the samples of a PNG file as colors: "sRGB",
+/// "gamma 0.45455", "ICC profile" or "coding-independent code points"; the first one in the file.
+/// Empty for a gamma of 1, for files without tags, and for other formats.
+/// \throws FileError if the file cannot be read
+std::string color_tag(const std::filesystem::path& file);
 
 /// The purpose of an image; the tags of files are not reliable.
 enum class ImageUse {
@@ -105,5 +116,133 @@ void write_image(const std::filesystem::path& file, const Image& image,
 void write_image(const std::filesystem::path& file, const Image& image,
                  const std::map<std::string, std::string>& metadata,
                  const ImageWriteOptions& options, Report& report);
+
+// Reads and writes image files by rows, so that images may be larger than memory.
+//
+// Samples and errors are those of whole images. Memory holds a band of rows of
+// about 16 MiB, or one row of tiles if that is larger, and the rows of the caller.
+
+/// Largest image that is read or written by rows, in samples. A row may have at most
+/// max_image_samples.
+inline constexpr std::size_t max_streamed_samples = std::size_t{1} << 40;
+
+/// Reads the rows of an image file in order from the top.
+///
+/// PNG, TIFF and EXR files are decoded on demand from the file, which must not change meanwhile.
+/// All other formats, interlaced PNG files, and PNG files with a single transparent color are
+/// decoded completely by the constructor; they are limited to max_image_samples, as for
+/// read_image().
+class ImageRowReader {
+  public:
+    /// Opens a file and reads its header.
+    /// \throws FileError as read_image() does, for any problem that the header shows
+    explicit ImageRowReader(const std::filesystem::path& file);
+    ~ImageRowReader();
+    ImageRowReader(ImageRowReader&&) noexcept;
+    ImageRowReader& operator=(ImageRowReader&&) noexcept;
+
+    /// Size, channels, bits (8, 16 or 32 for float) and text of the whole image.
+    [[nodiscard]] const ImageInfo& info() const;
+    /// width * channels * bits / 8.
+    [[nodiscard]] std::size_t row_bytes() const;
+    /// The next row; the height after the last one.
+    [[nodiscard]] int next_row() const;
+    /// Returns true if rows are decoded on demand; otherwise the whole image is in memory.
+    [[nodiscard]] bool is_streamed() const;
+
+    /// Reads the next rows, tightly packed, in native byte order, as from read_image().
+    /// \param rows  whole rows, aligned for the samples' type: std::as_writable_bytes() of a span
+    /// \throws InvalidInput if it is not a whole number of rows, or has more than are left;
+    ///         FileError if rows are damaged, after which the reader cannot be used
+    void read(std::span<std::byte> rows);
+
+    /// Skips rows. TIFF and EXR do not decode them, so errors in them are not noticed. \throws as
+    /// read()
+    void skip(int rows);
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// The properties of an image, without its samples.
+struct ImageShape {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    int bits = 0;  ///< 8, 16 or 32: the type of the samples for write().
+    ColorSpace color_space = ColorSpace::data;
+    /// Names of the channels, for images of up to 8 channels that are not colors: EXR and TIFF
+    /// only, and only EXR stores the names. Empty for gray, RGB and alpha.
+    std::vector<std::string> channel_names{};
+};
+
+/// Writes an image file in order from the top.
+///
+/// The file replaces an old one in finish(). Without finish(), the destructor removes the new file,
+/// and the old one is not changed. The same samples give the same bytes, independent of the number
+/// of rows per call and of threads.
+class ImageRowWriter {
+  public:
+    /// \throws FileError, InvalidInput as write_image() does
+    ImageRowWriter(const std::filesystem::path& file, const ImageShape& shape,
+                   const std::map<std::string, std::string>& metadata = {},
+                   const ImageWriteOptions& options = {});
+    ~ImageRowWriter();
+    ImageRowWriter(ImageRowWriter&&) noexcept;
+    ImageRowWriter& operator=(ImageRowWriter&&) noexcept;
+
+    /// width * channels * bits / 8.
+    [[nodiscard]] std::size_t row_bytes() const;
+
+    /// Writes the next rows, tightly packed, in native byte order.
+    /// \param rows  whole rows, aligned for the samples' type: std::as_bytes() of a span
+    /// \throws InvalidInput if it is not a whole number of rows, or has more than are left;
+    ///         FileError if rows cannot be written, after which writing is no longer possible
+    void write(std::span<const std::byte> rows);
+
+    /// Writes remaining rows and closes the temporary file, which stays beside the old file until
+    /// finish().
+    /// \param report  gets "texel beyond half's range" for EXR files of halves
+    /// \throws InvalidInput if rows are missing; FileError
+    void complete(Report& report);
+
+    /// Calls complete() if needed, and renames the file.
+    /// \param report  gets "texel beyond half's range" for EXR files of halves
+    /// \throws InvalidInput if rows are missing; FileError
+    void finish(Report& report);
+    void finish();
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+// Writes animated PNG files (APNG) frame by frame. Browsers play them; other readers show the
+// first frame. Source: the APNG chunks of [PNG 3], section 11.3.6.
+
+/// Writes an animated PNG file. The file replaces an old one in finish().
+class AnimatedPng {
+  public:
+    /// \param frames   number of frames, at least 1; the animation repeats forever
+    /// \param seconds  duration of a frame, from 0 to 65
+    /// \throws FileError if the file cannot be written, InvalidInput if a number is out of range
+    AnimatedPng(const std::filesystem::path& file, std::uint32_t frames, double seconds);
+    ~AnimatedPng();
+    AnimatedPng(const AnimatedPng&) = delete;
+    AnimatedPng& operator=(const AnimatedPng&) = delete;
+
+    /// Adds a frame of 8 or 16 bits, sRGB-coded or data. Only one frame is held in memory.
+    /// \throws InvalidInput if its size, channels or bits differ from the first frame's, or if
+    ///         there are too many frames; FileError
+    void add(const Image& frame);
+
+    /// Completes the file. \throws InvalidInput if frames are missing; FileError
+    void finish();
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace relief

@@ -12,9 +12,8 @@
 #include <vector>
 
 #include "relief/mesh/bump.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
-#include "relief/mesh/image_part.h"
 
 namespace relief {
 
@@ -105,7 +104,7 @@ std::vector<ImagePart> parts_to_analyze(int width, int height);
 /// \param parts  of one map, as from parts_to_analyze() or others; one channel, all with the same
 ///         number of bits
 /// \param options  strength and texel as in the conversion; the other options are ignored
-/// \param destaircased  selects for the map after destaircase() (destaircase.h)
+/// \param destaircased  selects for the map after destaircase() (height_map.h)
 /// \param grain  interpretation of uniform grain: variation that no continuous surface has, because
 ///         its power decreases more slowly than the inverse square of the frequency
 /// \return the same result for the same parts on any machine and with any number of threads. A

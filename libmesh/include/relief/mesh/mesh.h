@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Defines indexed triangle meshes in plain arrays, in the layout of GPU buffers.
+/// Indexed triangle meshes in plain arrays, in the layout of GPU buffers.
 ///
 /// Right-handed object space, any unit of length; triangles are counter-clockwise seen from
 /// outside. Texture coordinates are those of glTF: (0,0) is the upper left corner of the stored
@@ -12,6 +12,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,5 +68,50 @@ Bounds bounds_of(const Mesh& mesh);
 ///
 /// \throws InvalidInput naming the first error: "triangle 7 names vertex 12, but there are only 8"
 void validate(const Mesh& mesh);
+
+// Extracts triangles of a mesh as a new mesh.
+
+/// Extracts triangles in the given order, with their smoothing groups and materials, and the
+/// vertices that they use, in their order and with all attributes. The name is kept.
+/// \throws InvalidInput if there is no such triangle, or the mesh is not valid
+Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles);
+
+// Transforms meshes.
+
+/// Transforms the positions, normals and tangents of a mesh.
+///
+/// \param world_from_object  affine; computed in double precision
+/// \return a mesh whose normals are transformed by the inverse transpose and normalized, and whose
+///         tangents are transformed and normalized, but not made perpendicular again (after a shear
+///         they lean). If the transform mirrors, the winding of triangles is reversed, so that they
+///         stay counter-clockwise, and the w of tangents is negated, so that bitangents still point
+///         up in the image. A direction that would become zero does not change
+Mesh placed(Mesh mesh, const glm::mat4& world_from_object);
+
+// Generates simple shapes around the origin with normals and texture coordinates. Object space,
+// right-handed, y up.
+
+/// Creates the square from -1 to 1 in the xy plane, facing +z, with cells x cells cells; the image
+/// is upright. \throws InvalidInput unless there are 1 to 4096 cells
+Mesh make_quad(int cells = 1);
+
+/// Creates the unit sphere by longitude and latitude: u runs eastwards from +z, v down from the
+/// north pole (+y), with a seam and two poles. Normals equal positions.
+/// \throws InvalidInput unless slices are 3 to 4096 and stacks 2 to 4096
+Mesh make_sphere(int slices = 64, int stacks = 32);
+
+/// Creates the cube from -1 to 1 with 24 vertices: every face has its own four, with its normal and
+/// the whole image upright.
+Mesh make_cube();
+
+/// Creates a torus about the y axis whose tube is centered at distance 1: u runs along the tube
+/// eastwards from +z, v around the tube from its inner side over the top. \throws InvalidInput
+/// unless tube_radius is within (0, 1], and slices and sides are 3 to 4096
+Mesh make_torus(float tube_radius = 0.4F, int slices = 96, int sides = 48);
+
+/// Creates a closed cylinder about the y axis with radius 1, from y = -1 to 1: u runs eastwards
+/// from +z, v down from the upper rim. The caps show the image upright, with +x to the right.
+/// \throws InvalidInput unless slices are 3 to 4096
+Mesh make_cylinder(int slices = 64);
 
 }  // namespace relief

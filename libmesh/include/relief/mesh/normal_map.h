@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Encodes unit normals as normal maps and decodes them.
-/// Tests: tests/mesh/image/normal_map_test.cpp.
+/// Encodes and decodes normal maps, and blends, filters and resizes them.
+///
+/// docs/normal-maps.md has the errors of the methods.
+/// Tests: tests/mesh/image/normal_map_test.cpp, tests/mesh/image/normal_map_operations_test.cpp,
+/// tests/mesh/image/normal_resize_test.cpp.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "relief/mesh/dither.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
+
+// Encodes unit normals as normal maps and decodes them.
 
 /// The direction of the green channel.
 enum class Green {
@@ -94,5 +100,230 @@ FlatCode detect_flat_code(const Image& map,
 /// Returns text entries that describe a map: "relief:content", "relief:green" = "up" or "down",
 /// "relief:flat" = the code of zero: "128", "127.5", "32768", "32767.5", or "0.5" for float.
 std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format);
+
+// Applies per-texel operations to normals: axis permutations, reconstruction of z, length
+// statistics, and scaling of slopes.
+
+/// One of the axes x, y, z, or its opposite.
+struct SignedAxis {
+    int axis = 0;  ///< 0 to 2.
+    bool is_negative = false;
+    bool operator==(const SignedAxis&) const = default;
+};
+
+/// A signed permutation of axes: the sources of x, y and z.
+using AxisMapping = std::array<SignedAxis, 3>;
+inline constexpr AxisMapping same_axes = {{{0, false}, {1, false}, {2, false}}};
+
+/// Permutes and negates the stored components of a map, without decoding them.
+///
+/// \param map  three or four channels; the fourth does not change
+/// \param flat  for 8 and 16 bits
+/// \param report  counts samples of code 0 under FlatCode::middle that are negated. They stand for
+///         -1, as code 1 does, and become the maximum code; the inverse mapping returns 1
+/// \throws InvalidInput if the image has fewer than three channels, or if an axis occurs twice
+///
+/// Except for these, a mapping followed by its inverse restores every code; float samples are
+/// restored within 2^-24.
+void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat, Report& report);
+
+/// The same for decoded normals, without rounding: three float channels.
+void map_normal_axes(Image& normals, const AxisMapping& mapping);
+
+/// The channels of an image that hold x and y.
+struct XyChannels {
+    int x = 0;
+    int y = 1;
+};
+
+/// Reconstructs unit normals from x and y; z is the positive value that makes them unit.
+///
+/// \param map  two to four channels; FlatTexels::exact needs the whole map
+/// \param report  counts texels whose x and y are longer than 1, as lossy compression causes (z
+///         becomes 0, and they are normalized), and texels that are not finite (read as flat)
+/// \return three float channels, unit, y up
+/// \throws InvalidInput if the image is empty or lacks one of the channels
+Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
+                    Report& report, FlatTexels texels = FlatTexels::as_coded);
+
+/// The lengths of the vectors of a map.
+struct LengthRange {
+    double least = 0.0;
+    double mean = 0.0;
+    double greatest = 0.0;
+};
+
+/// Measures the lengths of a map's vectors without changing it; decode_normal_map() normalizes
+/// them.
+///
+/// \param report  counts vectors whose length deviates from 1 by more than rounding or dithering to
+///         the map's codes causes (sqrt(3) codes; 0.001 for float, because of half floats)
+/// \return statistics of finite lengths
+/// \throws InvalidInput if the image is empty or has fewer than three channels
+LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report);
+
+/// Multiplies the slopes of unit normals, in place, as if the heights had been multiplied.
+///
+/// \param normals  three float channels, unit
+/// \param strength  within +-1e6; negative values turn bumps into dents, 0 makes all flat
+/// \param report  counts normals whose z is not positive, which have no slope: their x and y are
+///         multiplied anyway; and results without direction, which become flat
+/// \throws InvalidInput if the image is not three float channels, or the strength is out of range
+void scale_slopes(Image& normals, double strength, Report& report);
+
+/// The maximum slope, 89.94 degrees; useful height maps have no steeper ones.
+inline constexpr double largest_slope = 1024.0;
+
+/// Converts unit normals to slopes: two float channels, dh/dx to the right and dh/dy upwards, as
+/// from slopes_from_height().
+///
+/// \param report  counts normals that are steeper than largest_slope or do not face outwards: their
+///         slope keeps its direction and gets the maximum length (or 0 for (0,0,-1))
+/// \throws InvalidInput if the image is not three float channels
+Image slopes_from_normals(const Image& normals, Report& report);
+
+/// Converts slopes to unit normals. \throws InvalidInput if the image is not two float channels
+Image normals_from_slopes(const Image& slopes, Report& report);
+
+// Blends a detail normal map into a base normal map. docs/normal-maps.md has the error of each
+// method.
+
+/// Blending methods for unit normals: base b and detail d, with z out of the surface. Every result
+/// is normalized.
+enum class NormalBlend {
+    /// d, rotated by the shortest rotation from (0,0,1) to b: the detail is carved into the base.
+    /// [Barré-Brisebois and Hill 2012]
+    reoriented,
+    /// The sum of slopes, (b.xy d.z + d.xy b.z, b.z d.z): exactly that of two added height fields.
+    partial_derivative,
+    whiteout,  ///< (b.xy + d.xy, b.z d.z): slightly less steep than the sum of slopes.
+    udn,       ///< (b.xy + d.xy, b.z): fast; the detail fades on slopes.
+    unity,     ///< d in a frame whose axes are b rotated by 90 degrees about x and y.
+    linear,    ///< b + d: both have half their slope.
+    /// The Overlay mode of image editors on (n + 1) / 2: distorts all normals that are not nearly
+    /// flat.
+    overlay,
+};
+
+inline constexpr NormalBlend all_normal_blends[] = {
+    NormalBlend::reoriented, NormalBlend::partial_derivative,
+    NormalBlend::whiteout,   NormalBlend::udn,
+    NormalBlend::unity,      NormalBlend::linear,
+    NormalBlend::overlay};
+
+/// Blends a detail map into a base map, in place.
+///
+/// \param base  three float channels, unit, y up; it becomes the result, unit
+/// \param detail  three float channels, unit, y up, of any size; repeated from the upper left
+///         corner. To scale it, see fitted_detail()
+/// \param report  counts texels whose result has no direction or, for reoriented, whose base normal
+///         is (0,0,-1): they keep the base's normal; and texels whose result by reoriented or unity
+///         faces back while the base does not, because both slopes are steep
+/// \throws InvalidInput if an image is empty or not three float channels
+///
+/// A flat detail does not change the base, up to rounding, except for `linear` and `overlay`. A
+/// flat base gives the detail, except for these two and `udn`, whose result is steeper than the
+/// detail.
+void blend_normals(Image& base, const Image& detail, NormalBlend method, Report& report);
+
+// Computes mip levels of normal maps, and converts the shortening of averaged normals to slope
+// variance and roughness.
+
+/// Computes the levels of a normal map down to one texel, with the sizes and weights of
+/// mip_levels().
+///
+/// \param normals  three float channels, unit
+/// \return mean vectors with a length of at most 1: each texel is the mean of the area that it
+///         covers in the map itself, without normalization in between
+/// \throws InvalidInput if the image is empty or not three float channels
+std::vector<Image> normal_mip_levels(const Image& normals);
+
+/// Normalizes mean vectors, in place.
+///
+/// \param report  counts vectors of length 0 (below 1e-6, because of rounding), such as those of a
+///         peak whose sides cancel: they become flat
+/// \return their previous lengths, from 0 to 1: one float channel
+Image split_lengths(Image& means, Report& report);
+
+/// Returns the slope variance per axis (the mean of both axes) of unit normals whose mean has this
+/// length: (1 / length^2 - 1) / 2. It is exact if all normals have the same angle to the mean, and
+/// otherwise too small: 95% of the variance of normally distributed slopes with standard deviation
+/// 0.2, 82% with 0.5.
+///
+/// \param length  clamped to [1e-3, 1]
+double slope_variance_of_length(double length);
+
+/// Returns the factor for a Phong or Blinn-Phong exponent for normals whose mean has this length:
+/// length / (length + exponent (1 - length)). Source: [Toksvig 2005].
+double toksvig_factor(double length, double exponent);
+
+/// Adds a slope variance to a roughness (of glTF: alpha = roughness^2): alpha'^2 = alpha^2 + 2
+/// variance, at most 1.
+///
+/// The slopes of Beckmann's distribution have the variance alpha^2 / 2 along each axis, and
+/// variances add [Olano and Baker 2010]. Those of GGX have no finite variance; it uses the same
+/// alpha by convention.
+double roughness_with_variance(double roughness, double variance);
+
+/// Computes the roughness of each texel of a level: one float channel.
+///
+/// \param lengths  as from split_lengths()
+/// \param roughness  of the map itself, 0 to 1
+/// \throws InvalidInput if the image is not one float channel, or the roughness is out of range
+Image roughness_from_lengths(const Image& lengths, double roughness);
+
+// Resizes normal maps. docs/normal-maps.md has the errors of the filters.
+
+/// The filter kernel. When an image is reduced, the kernel is widened by the same factor.
+enum class ResizeFilter {
+    /// The texels that the new one covers, weighted by area; for enlargement the nearest texel.
+    box,
+    triangle,  ///< Linear interpolation.
+    cubic,     ///< The Catmull-Rom spline, which interpolates the texels.
+    lanczos,   ///< Three lobes: the sharpest.
+    /// The filter with the smallest error along each axis: lanczos to reduce, cubic to enlarge.
+    best,
+};
+
+/// The quantity that is averaged.
+enum class ResizeDomain {
+    slopes,   ///< Slopes: the result has the normals of the filtered surface.
+    vectors,  ///< The normals themselves, with normalization; steep texels have less weight.
+};
+
+/// The maximum slope for averaging slopes, 86.4 degrees. Steeper normals would dominate their
+/// neighborhood; where they contribute, vectors are averaged instead.
+inline constexpr float max_averaged_slope = 16.0F;
+
+struct ResizeOptions {
+    ResizeFilter filter = ResizeFilter::best;
+    ResizeDomain domain = ResizeDomain::slopes;
+    Wraps wrap;
+    /// Number of repetitions of the map in the result along each axis, above 0.
+    glm::dvec2 repeat{1.0, 1.0};
+};
+
+/// Resizes normals. Slopes do not change: the size of texels changes, not the surface.
+///
+/// \param normals  three float channels, unit
+/// \param width, height  positive
+/// \param report  counts texels whose mean vector has no direction, which become flat; with
+///         ResizeDomain::slopes also normals that are too steep for averaging slopes
+/// \throws InvalidInput if the image is not three float channels, or a size or repeat is not
+///         positive
+///
+/// At the same size and with one repetition, the result is bitwise equal to the input.
+Image resize_normals(const Image& normals, int width, int height, const ResizeOptions& options,
+                     Report& report);
+
+/// Resizes any float samples, channel by channel, such as the alpha that belongs to normals.
+/// \throws InvalidInput as resize_normals() does. options.domain is ignored
+Image resize_samples(const Image& image, int width, int height, const ResizeOptions& options);
+
+/// Resizes a detail map as blend_normals() needs it for a base of this size, so that it repeats
+/// `options.repeat` times across the base. The result is one period if the base's size is a
+/// multiple of it, else the whole area. It always wraps around; options.wrap is ignored.
+Image fitted_detail(const Image& detail, int base_width, int base_height,
+                    const ResizeOptions& options, Report& report);
 
 }  // namespace relief

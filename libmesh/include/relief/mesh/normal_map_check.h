@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "relief/mesh/diagnose.h"
-#include "relief/mesh/height_statistics.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map.h"
 
@@ -146,7 +146,7 @@ struct NormalMapCheck {
 /// \param map  any number of channels and bits
 /// \param metadata  text entries of its file; "relief:green" and "relief:flat" are compared with
 ///         the texels
-/// \param color_tag  the result of color_tag() for its file (image_tags.h)
+/// \param color_tag  the result of color_tag() for its file (image_file.h)
 /// \throws InvalidInput if the image is empty
 ///
 /// Conditions that require a surface (green, alpha) are checked only for tangent-space normals. The

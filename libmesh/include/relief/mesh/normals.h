@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Computes normals of vertices, corners and triangles from positions.
+/// Computes normals of vertices, corners and triangles from positions, infers hard edges from
+/// normals, and computes the curvature at vertices.
 ///
 /// docs/normals.md has the error and time of each weighting.
-/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp.
+/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp,
+/// tests/mesh/accuracy/analytic_surfaces_test.cpp, tests/mesh/geometry/corner_normals_test.cpp,
+/// tests/mesh/geometry/curvature_test.cpp.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "relief/mesh/arithmetic.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -113,8 +118,8 @@ struct CornerNormals {
 /// \throws InvalidInput as vertex_normals(); if the angle is not within 0 to pi; if there are
 ///         groups, but not one for each triangle
 ///
-/// Vertices whose corners differ must be split: see split.h. The same input gives the same bits, as
-/// for vertex_normals().
+/// Vertices whose corners differ must be split: see frames.h. The same input gives the same bits,
+/// as for vertex_normals().
 CornerNormals corner_normals(std::span<const glm::vec3> positions,
                              std::span<const glm::uvec3> triangles,
                              std::optional<NormalWeight> weight, const NormalOptions& options,
@@ -127,5 +132,86 @@ CornerNormals corner_normals(std::span<const glm::vec3> positions,
 /// \throws InvalidInput if a triangle names a vertex that does not exist
 std::vector<glm::vec3> triangle_normals(std::span<const glm::vec3> positions,
                                         std::span<const glm::uvec3> triangles, Report& report);
+
+// Estimates reference normals of a mesh without a known formula: the normals of a smooth surface
+// that is fitted through its vertices.
+
+/// Reference normals at corners, one for each smooth fan (a vertex, or one side of a hard edge at
+/// it).
+struct FittedNormals {
+    std::vector<std::uint32_t> corners;  ///< 3 * triangle + (0, 1 or 2), ascending.
+    std::vector<glm::dvec3> normals;     ///< The normals at these corners; unit, object space.
+    std::size_t places = 0;              ///< Number of examined fans.
+    std::size_t fans = 0;                ///< Number of fans of the mesh.
+    /// The uncertainty of the reference in degrees: the RMS angle between it and a fit of lower
+    /// degree, over all corners. Smaller errors are not significant.
+    double reference_degrees = 0.0;
+};
+
+struct FitOptions {
+    HardEdges hard_edges;           ///< The fitted surfaces end at hard edges.
+    std::size_t max_places = 8192;  ///< Maximum number of examined fans, which are evenly spread.
+    /// Fans whose two fits differ by more than this many degrees are omitted, because no smooth
+    /// surface fits (noise, an unmarked hard edge, triangles as large as the shape).
+    double max_fit_difference = 2.0;
+    /// Fans with a triangle that deviates by more than this many degrees from the fit are omitted
+    /// too.
+    double max_fit_angle = 45.0;
+};
+
+/// Fits a polynomial of degree 4 to each vertex and its three rings of neighbors, and returns its
+/// normals [Cazals and Pouget 2005]. The second fit has degree 3 and two rings.
+///
+/// \param mesh  positions and triangles; vertices at equal positions count as one
+/// \return no normal for fans with too few neighbors, or whose two fits differ too much
+/// \throws InvalidInput if the mesh is not valid
+///
+/// On a smooth surface the error decreases with the fourth power of the triangle size, that of
+/// averaged normals at best with the second power. The fit assumes that the surface passes through
+/// the vertices and is smooth between hard edges. It is not a valid reference for meshes whose
+/// vertices do not lie on the intended surface, such as control cages of subdivision surfaces and
+/// strongly decimated models. Computed in double precision; the same for any number of threads.
+FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options);
+
+// Infers the hard edges of a mesh from its normals, and the crease angle that best separates them
+// from smooth edges.
+
+struct InferredCreases {
+    std::size_t edges = 0;  ///< Number of edges between two triangles with area.
+    /// Number of these edges with different normals of the two triangles at one of its ends.
+    std::size_t hard = 0;
+    /// The crease angle in radians, as HardEdges::crease_angle, with the fewest misclassified
+    /// edges, halfway between the angles of the two closest edges; pi if no edge is hard.
+    double crease_angle = std::numbers::pi;
+    std::size_t misclassified = 0;  ///< Number of edges that this angle misclassifies.
+};
+
+/// Infers the hard edges of a mesh.
+///
+/// \param mesh  with normals; vertices at equal positions count as one, and normals that differ by
+///         less than half a degree as equal
+/// \throws InvalidInput if the mesh is not valid or has no normals
+InferredCreases inferred_creases(const Mesh& mesh);
+
+// Computes the mean curvature of a mesh at its vertices.
+
+/// Computes the mean curvature at every vertex: the mean of the two principal curvatures, positive
+/// for convex surfaces. A sphere of radius r has 1/r, a cylinder 1/(2r).
+///
+/// \param positions  in any unit; vertices at equal positions count as one
+/// \param triangles  vertex indices; counter-clockwise seen from outside
+/// \param report  counts triangles without area, which are ignored; vertices on open, non-manifold
+///         or inconsistently wound edges, which get the mean of their regular neighbors, or 0 if
+///         there is none; and vertices whose triangles give no finite value, which get 0
+/// \return in one over the unit of the positions; 0 for vertices without a triangle
+/// \throws InvalidInput if a triangle names a vertex that does not exist
+///
+/// The value is half of the cotangent Laplacian of the positions, divided by the mixed area of the
+/// vertex, along the angle-weighted normal [Meyer et al. 2003]. At a hard edge it is proportional
+/// to the dihedral angle divided by the width of the adjacent triangles, so it grows with finer
+/// triangulation. Computed in double precision; the same bits for any order of triangles and number
+/// of threads. A million triangles take about 0.1 s on two threads.
+std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
+                                   std::span<const glm::uvec3> triangles, Report& report);
 
 }  // namespace relief

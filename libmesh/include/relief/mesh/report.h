@@ -1,19 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Reports the problems that library functions find in their input, and the fallbacks that they
-/// use.
-///
-/// Functions with fallbacks have a parameter of type Report& and add to it. Results are usable even
-/// if the caller ignores the report.
+/// The exceptions of relief, and reports of problems in the input and of fallbacks.
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace relief {
+
+// The exceptions of relief. Bad data always throws; programming errors assert.
+//
+// A message names the object, its value and the limit: "triangle 7 names vertex 12, but there are
+// only 8". Nothing is repaired silently: a repair is a Finding in a Report.
+
+/// The base class of all exceptions that relief throws.
+class Error : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Data or options that are contradictory or out of range.
+class InvalidInput : public Error {
+  public:
+    using Error::Error;
+};
+
+/// A file that cannot be read or written; the message is "FILE: REASON".
+class FileError : public Error {
+  public:
+    FileError(const std::filesystem::path& file, const std::string& reason)
+        : Error(file.string() + ": " + reason) {}
+};
+
+// Reports the problems that library functions find in their input, and the fallbacks that they
+// use.
+//
+// Functions with fallbacks have a parameter of type Report& and add to it. Results are usable even
+// if the caller ignores the report.
 
 /// A problem of one kind, over all affected elements.
 struct Finding {

@@ -20,7 +20,7 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "io/gltf/gltf_accessor.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

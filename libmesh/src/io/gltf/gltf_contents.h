@@ -23,8 +23,8 @@
 #include <utility>
 #include <vector>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 

@@ -17,7 +17,7 @@
 
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_check.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -24,9 +24,9 @@
 #include "io/gltf/gltf_check.h"
 #include "io/gltf/gltf_contents.h"
 #include "io/gltf/gltf_edit.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
-#include "relief/mesh/split.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -18,9 +18,9 @@
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_edit.h"
 #include "io/gltf/gltf_uri.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
-#include "relief/mesh/placed.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

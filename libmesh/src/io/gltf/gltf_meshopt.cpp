@@ -19,7 +19,7 @@
 
 #include "io/gltf/gltf_edit.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -16,7 +16,7 @@
 #include "io/gltf/gltf_compression.h"
 #include "io/gltf/gltf_uri.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstdint>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

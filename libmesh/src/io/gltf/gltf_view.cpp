@@ -20,7 +20,7 @@
 #include "geometry/portable_math.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_uri.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -29,7 +29,7 @@
 #include "io/gltf/gltf_check.h"
 #include "io/gltf/gltf_contents.h"
 #include "io/gltf/gltf_uri.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -21,8 +21,7 @@
 #include "io/image/image_file_direct.h"
 #include "io/image/image_module_client.h"
 #include "io/image/row_codec.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/image_tags.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -15,7 +15,7 @@
 #include <string_view>
 
 #include "file_bytes.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "file_bytes.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

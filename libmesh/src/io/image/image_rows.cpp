@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading and writing image files by rows: checks of what formats can hold, selection of a decoder
 // or encoder, and ImageRowReader, ImageRowWriter and write_image() on top of them.
-#include "relief/mesh/image_rows.h"
+#include "relief/mesh/image_file.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@
 #include "io/image/row_codec.h"
 #include "io/png/png_decoder.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_rows.h"
 
 namespace relief {
 

@@ -23,8 +23,8 @@
 #include "image/texel_loops.h"
 #include "io/maps/height_bands.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/kernel_choice.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/timing.h"
 
 namespace relief {

@@ -16,7 +16,7 @@
 #include "image/height_holes.h"
 #include "image/seam_survey.h"
 #include "relief/mesh/bump_file.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

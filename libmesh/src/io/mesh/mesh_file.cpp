@@ -14,7 +14,7 @@
 
 #include "file_bytes.h"
 #include "io/mesh/mesh_formats.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -14,7 +14,7 @@
 #include "io/mesh/mesh_text.h"
 #include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -32,7 +32,7 @@
 #include "io/mesh/polygon_mesh.h"
 #include "io/mesh/vertex_dedup.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

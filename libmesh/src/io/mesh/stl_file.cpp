@@ -16,7 +16,7 @@
 #include "io/mesh/mesh_text.h"
 #include "io/mesh/vertex_dedup.h"
 #include "progress_stage.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

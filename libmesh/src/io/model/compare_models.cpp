@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relief/mesh/compare_models.h"
+#include "relief/mesh/model.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
-#include "relief/mesh/error.h"
-#include "relief/mesh/placed.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

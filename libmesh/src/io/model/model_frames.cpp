@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/model.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

@@ -2,9 +2,9 @@
 #include <cassert>
 #include <utility>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/model.h"
-#include "relief/mesh/split.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

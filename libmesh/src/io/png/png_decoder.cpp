@@ -22,9 +22,8 @@
 #include "io/png/png_format.h"
 #include "large_memory.h"
 #include "parallel.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_rows.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

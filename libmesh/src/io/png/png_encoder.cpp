@@ -28,8 +28,8 @@
 #include "io/png/inflate.h"
 #include "io/png/png_format.h"
 #include "parallel.h"
-#include "relief/mesh/animated_png.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {

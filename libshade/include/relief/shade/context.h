@@ -6,7 +6,16 @@
 #include <memory>
 #include <string>
 
+#include "relief/mesh/report.h"
+
 namespace relief {
+
+/// OpenGL is missing, too old or out of memory, or refuses a shader. The message contains that of
+/// the driver.
+class GpuError : public Error {
+  public:
+    using Error::Error;
+};
 
 /// The library that provides the context. Libraries are loaded at run time, independently of each
 /// other.

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "relief/shade/frame_timing.h"
 #include "relief/shade/image_compare.h"
+#include "relief/shade/renderer.h"
 
 namespace relief {
 

@@ -5,11 +5,13 @@
 /// Every draw (one material range of one instance) gets a Features value. It names everything that
 /// its program, vertex streams and textures contain; an omitted effect has no code, no uniform, no
 /// memory and no time. Omitting an effect never changes a pixel, because an effect is omitted only
-/// if its contribution is exactly zero (effect_forcing.h can add it anyway).
-/// Tests: tests/shade/effects/, tests/shade/render/forced_effects_test.cpp.
+/// if its contribution is exactly zero (force_effects() can add it anyway).
+/// Tests: tests/shade/effects/, tests/shade/render/forced_effects_test.cpp,
+/// tests/shade/effects/effects_test.cpp, tests/shade/effects/shader_source_test.cpp.
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -174,5 +176,98 @@ PlannedInterface planned_interface(const Features& features);
 
 /// The material of meshes that name no material.
 const Material& default_material();
+
+// Forces effects on or off by name, independent of the scene. Pure: no OpenGL, no files.
+//
+// An effect that is forced on without anything to show is neutral: its values are zero, its
+// texture is white, its lights are black, and the picture does not change by a bit. Effects
+// without a neutral form are properties of the scene and are refused: the reflection model and
+// interpolation (unlit, metallic-roughness, Gouraud, flat), the meaning of maps (object-space
+// normal maps, derivative frames, antialiasing of an existing map), blending, the falloff of
+// existing lights, the exact Fresnel term of an existing reflection, tone curves, and whether the
+// environment is visible or lights surfaces. Any effect can be forced off, which changes the
+// picture.
+
+/// The effects before single ones are forced.
+enum class EffectBase {
+    planned,      ///< The effects that the scene requires.
+    all_neutral,  ///< These, and on every draw all effects that change no pixel there.
+    nothing,      ///< No effects; effects that are forced on have the values of the scene.
+};
+
+/// One effect by name (effects(), or a frame-wide one of FramePlan::reasons). Case and separators
+/// do not matter: "normal map", "Normal-Map".
+struct ForcedEffect {
+    std::string name;
+    bool on = true;
+};
+
+struct EffectRequest {
+    EffectBase base = EffectBase::planned;
+    std::vector<ForcedEffect> forced;
+};
+
+/// Forces effects on and off on every draw of a plan, and updates their reasons.
+///
+/// \param plan  of this scene and these settings
+/// \return a plan for Renderer. An effect that is forced on shows on every draw that can have it;
+///         the reasons of the other draws explain why they cannot
+/// \throws InvalidInput if there is no effect of a name (similar names are suggested), one name is
+///         forced both ways, two effects exclude each other, or no draw can have an effect: the
+///         message names effect, material and reason
+FramePlan force_effects(const Scene& scene, const FrameSettings& settings, FramePlan plan,
+                        const EffectRequest& requests);
+
+/// Returns the effects that are on in any draw of a plan, and "skybox": those that can be forced
+/// off.
+std::vector<std::string> effects_in(const FramePlan& plan);
+
+// Lists the inputs of a plan with reasons: vertex attributes, textures with their mip chains, and
+// the passes of a frame. It needs no OpenGL and decodes no image.
+
+/// One stream of vertices.
+struct PlannedAttribute {
+    std::string name;     ///< GLSL: "tangent_object".
+    bool stored = false;  ///< Otherwise it is computed, or a constant.
+    std::string reason;
+};
+
+/// One texture that a draw samples.
+struct PlannedTexture {
+    std::string sampler;     ///< GLSL: "normal_texture".
+    std::string image;       ///< The name of its source; empty for relief's own.
+    bool mip_chain = false;  ///< It has smaller levels for minification.
+    std::string reason;
+};
+
+struct DrawInputs {
+    std::vector<PlannedAttribute> attributes;
+    std::vector<PlannedTexture> textures;
+};
+
+/// Returns the inputs of a draw's program: the attributes and samplers of planned_interface().
+DrawInputs planned_inputs(const Scene& scene, const DrawPlan& draw);
+
+/// A pass of a frame, with its reason.
+struct PlannedPass {
+    std::string name;
+    std::string reason;
+};
+std::vector<PlannedPass> planned_passes(const FramePlan& plan);
+
+// Lists the shader source of the programs of a plan, as the driver gets it. Pure: no OpenGL.
+
+/// One program, assembled from the files in shaders/.
+struct ShaderListing {
+    Features features;
+    std::vector<std::size_t> draws;  ///< Indices of the draws that use it.
+    std::string vertex;              ///< GLSL.
+    std::string fragment;
+    std::vector<std::string> files;  ///< Parts of both stages, such as "light.glsl#point"; sorted.
+};
+
+/// Returns one entry per program, in the order of the first draw that uses it.
+/// \throws GpuError if a file of $RELIEF_SHADER_DIR includes a missing part
+std::vector<ShaderListing> shader_listings(const FramePlan& plan);
 
 }  // namespace relief

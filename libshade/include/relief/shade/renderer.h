@@ -1,19 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Draws scenes with OpenGL.
+/// Draws scenes with OpenGL, caches resources between renderers, and measures frame times.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/timing.h"
 #include "relief/shade/context.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
-#include "relief/shade/render_cache.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
+
+// Caches the resources that renderers share, so that an edited scene is redrawn quickly.
+
+/// Programs, vertex buffers, textures, environment maps and render targets of one context.
+///
+/// A renderer with a cache reuses its contents: programs by their Features, meshes and images that
+/// are the same Shared value, image files of the same name, size and time of change, and
+/// environments likewise. It draws the same pixels as a renderer without a cache. The cache must
+/// outlive its renderers, and the context the cache.
+class RenderCache {
+  public:
+    explicit RenderCache(const Context& context);
+    ~RenderCache();
+    RenderCache(const RenderCache&) = delete;
+    RenderCache& operator=(const RenderCache&) = delete;
+
+    /// Frees resources that no renderer uses. Programs are kept, because they are small and slow to
+    /// create.
+    void drop_unused();
+
+    /// Removes all programs because their sources changed. Existing renderers keep theirs.
+    void drop_programs();
+
+    struct Contents {
+        std::size_t programs = 0;
+        std::size_t meshes = 0;
+        std::size_t textures = 0;
+        std::size_t environments = 0;
+        std::size_t targets = 0;
+    };
+    [[nodiscard]] Contents contents() const;
+
+    struct Implementation;
+    [[nodiscard]] Implementation& implementation() { return *implementation_; }
+
+  private:
+    std::unique_ptr<Implementation> implementation_;
+};
+
+// Draws scenes with OpenGL.
 
 namespace gl {
 class RenderTarget;
@@ -99,5 +142,55 @@ class Renderer {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
+
+// Passes pictures from the drawing thread to the thread that shows them.
+
+/// A triple buffer of textures: one is shown, one is the next, one is free for the next copy.
+///
+/// The contexts of both threads share textures (a window library creates them). The drawing thread
+/// owns this object and calls put(); the other thread calls get(), which never waits for a frame
+/// and never returns an incomplete one.
+class PictureExchange {
+  public:
+    explicit PictureExchange(const Context& context);
+    ~PictureExchange();
+    PictureExchange(const PictureExchange&) = delete;
+    PictureExchange& operator=(const PictureExchange&) = delete;
+
+    /// Copies the last picture of the renderer, which must have 8 bits, and waits for the copy.
+    /// \param beside  a second picture that is passed on together with the first
+    void put(const Renderer& renderer, const Renderer* beside = nullptr);
+
+    /// Passes on another picture: 8-bit RGB or RGBA, sRGB.
+    void put(const Image& picture);
+
+    struct Shown {
+        unsigned texture = 0;  ///< 0 before the first. Row 0 at the bottom, sRGB codes.
+        int width = 0;
+        int height = 0;
+        unsigned beside = 0;  ///< The second picture, of the same size; 0 if there is none.
+    };
+    /// Returns the newest picture; its texture does not change until the next call.
+    Shown get();
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+// Measures frame times: renderers draw interleaved, the first frames are dropped, and the wall
+// clock is read around finished work, because the timer queries of software drivers are wrong.
+
+/// Milliseconds of each counted frame of one renderer, in the order in which they were drawn.
+struct FrameSeries {
+    std::vector<double> draw;
+    std::vector<double> read_back;
+    std::vector<double> frame;  ///< Their sum.
+};
+
+/// Measures one series for each renderer, interleaved and without warm-up frames.
+/// \throws as Renderer::draw() does
+std::vector<FrameSeries> time_frames(std::span<Renderer* const> renderers, const Camera& camera,
+                                     const Repeats& repeats);
 
 }  // namespace relief

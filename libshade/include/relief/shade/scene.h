@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Defines scenes as plain data: meshes, materials (material.h), lights (lights.h), a camera, an
-/// environment. No OpenGL.
+/// Defines scenes as plain data: meshes, materials (material.h), lights, a camera, an environment;
+/// and computes default cameras and lights. No OpenGL.
 ///
 /// World space is right-handed, y up. Colors are linear. Angles are radians. Images are named here
 /// and decoded only if the effect plan (effects.h) needs them. scene_fields.h has the name and
@@ -10,20 +10,117 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
-#include "relief/shade/lights.h"
 #include "relief/shade/material.h"
-#include "relief/shade/shared.h"
 
 namespace relief {
+
+// Implements copy-on-write values, so that copying a scene with millions of triangles is cheap.
+
+/// A value that copies share until one of them is edited.
+///
+/// Several threads may read without a lock, also while another thread edits its own copy.
+template <typename T>
+class Shared {
+    struct Held {
+        T value;
+        std::uint64_t edits = 0;
+    };
+
+  public:
+    Shared() : held_(std::make_shared<Held>()) {}
+    // The conversions are implicit, so that a Shared<T> can be used like a T.
+    Shared(T value) : held_(std::make_shared<Held>(Held{std::move(value)})) {}  // NOLINT
+
+    const T& operator*() const { return held_->value; }
+    const T* operator->() const { return &held_->value; }
+    operator const T&() const { return held_->value; }  // NOLINT
+
+    /// The value for editing. It is copied first if other copies share it.
+    T& edit() {
+        if (held_.use_count() > 1) held_ = std::make_shared<Held>(*held_);
+        ++held_->edits;
+        return held_->value;
+    }
+
+    /// Identifies an unedited value without keeping it in memory.
+    class Identity {
+      public:
+        explicit Identity(const Shared& shared)
+            : held_(shared.held_), edits_(shared.held_->edits) {}
+
+        /// Returns true if this is the same object, not only an equal one, and has not been edited
+        /// since.
+        [[nodiscard]] bool is(const Shared& shared) const {
+            const bool is_other =
+                held_.owner_before(shared.held_) || shared.held_.owner_before(held_);
+            return !is_other && edits_ == shared.held_->edits;
+        }
+
+      private:
+        std::weak_ptr<const Held> held_;
+        std::uint64_t edits_;
+    };
+    [[nodiscard]] Identity identity() const { return Identity(*this); }
+
+  private:
+    std::shared_ptr<Held> held_;
+};
+
+// Defines directional, point and spot lights as plain data in world space.
+//
+// Intensities are irradiances over pi: a white surface that faces a directional light of
+// irradiance 1 has radiance 1.
+
+/// Light from infinitely far away.
+struct DirectionalLight {
+    /// The direction in which light travels; any length but 0.
+    glm::vec3 direction_world{0.0F, -1.0F, 0.0F};
+    /// Irradiance over pi of a surface that faces the light: the radiance of a white surface.
+    glm::vec3 irradiance{1.0F};
+    /// The irradiance for highlights, if different; metallic-roughness ignores it.
+    std::optional<glm::vec3> highlight_irradiance = std::nullopt;
+};
+
+/// The decrease of light with distance.
+enum class Falloff {
+    inverse_square,
+    none,  ///< The same at every distance, as in introductory courses.
+};
+
+/// Light from a point. Its own position gets no light, and no surface gets more than max_light.
+struct PointLight {
+    glm::vec3 position_world{0.0F};
+    glm::vec3 intensity{1.0F};  ///< Irradiance over pi at distance 1.
+    /// The light fades to 0 at this distance (KHR_lights_punctual).
+    std::optional<float> range = std::nullopt;
+    Falloff falloff = Falloff::inverse_square;
+    /// The intensity for highlights, if different; metallic-roughness ignores it.
+    std::optional<glm::vec3> highlight_intensity = std::nullopt;
+};
+
+/// A point light within a cone.
+struct SpotLight {
+    PointLight point;
+    glm::vec3 direction_world{0.0F, -1.0F, 0.0F};  ///< The cone's axis; any length but 0.
+    float inner_cone = 0.0F;          ///< Full intensity within; radians from the axis.
+    float outer_cone = 0.785398163F;  ///< No light beyond; above inner_cone, at most pi / 2.
+};
+
+/// The maximum irradiance, intensity and ambient radiance of a scene, and of a surface by one light
+/// at any distance. Products with it stay finite.
+inline constexpr float max_light = 1e18F;
 
 /// The source of an image: a file, an encoded file in memory, or a decoded image.
 struct ImageSource {
@@ -138,5 +235,47 @@ void validate_transforms(const Scene& scene);
 
 /// Checks a camera alone.
 void validate(const Camera& camera);
+
+// Adds the default material to the list of materials.
+
+/// Adds the default material to the list and assigns it to every triangle without a material, so
+/// that it can be edited. Meshes that change are copied.
+void name_default_material(Scene& scene);
+
+/// Returns true if a triangle has no material.
+bool uses_default_material(const Scene& scene);
+
+// Defines the default camera and lights of a model without its own. World space; angles in
+// radians.
+
+/// The direction and field of view of the camera.
+inline constexpr float default_azimuth = 0.523598776F;       // 30 degrees
+inline constexpr float default_elevation = 0.34906585F;      // 20 degrees
+inline constexpr float default_vertical_fov = 0.610865238F;  // 35 degrees
+
+/// #1e2126, linear, opaque.
+inline constexpr glm::vec4 default_background{0.01299F, 0.01521F, 0.01938F, 1.0F};
+
+/// Adds a warm key light from the upper left of the viewer, at an angle that shows relief, and a
+/// dim cool light from the right, and sets a small ambient light.
+void add_default_lights(Scene& scene, const Camera& camera);
+
+// Computes cameras that show a scene as large as possible. World space; angles in radians.
+
+/// Computes a camera that sees every finite vertex of a scene, with a small margin. It is closer
+/// than framed() of the scene's box, whose corners are mostly empty.
+///
+/// \param azimuth  radians from +z towards +x, to the position of the camera
+/// \param elevation  radians above the horizon
+/// \param aspect  width / height of the picture
+/// \param distance_factor  multiplies the distance from the center of the scene's box
+/// \return a valid camera. A scene without extent is seen from distance 1, multiplied by the factor
+/// \throws InvalidInput as framed() of a box does, and if the factor is not positive and finite
+Camera framed(const Scene& scene, float azimuth, float elevation, float vertical_fov, float aspect,
+              float distance_factor = 1.0F);
+
+/// Moves a camera along its line of sight: its distance from `target` is multiplied by `factor`.
+/// The depth range moves along and still contains the same objects.
+Camera at_distance(Camera camera, const glm::vec3& target, float factor);
 
 }  // namespace relief

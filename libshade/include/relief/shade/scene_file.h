@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Reads scenes from model files and scene files.
+/// Reads scenes from model files and scene files, saves edited scenes, and decodes their images.
 #pragma once
 
 #include <filesystem>
+#include <glm/vec2.hpp>
+#include <string>
 
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
+#include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_graph.h"
 
 namespace relief {
+
+// Reads scenes from model files and scene files.
 
 /// Options of load_scene_graph.
 struct SceneOptions {
@@ -93,5 +100,51 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
 /// 1e6 counts as 1e6, Ni is clamped to [1, 1000]; colors below 0 count as 0. Source: the MTL
 /// format's illumination models (Blinn's half vector for all highlights).
 Material phong_from_mtl(const MtlMaterial& material);
+
+// Saves an edited scene as a scene file (docs/scene-files.md) that draws the same pixels.
+
+/// A scene that was read from a file, with a camera and a picture size.
+struct SceneToSave {
+    std::filesystem::path source;  ///< The model or scene file.
+    const Scene& scene;            ///< The edited scene: lights, environment, materials.
+    Camera camera;
+    glm::ivec2 size{1024, 1024};
+};
+
+/// Writes a scene file that names the model, or repeats the scene file, with the differences:
+/// fields of materials, all lights if any changed, the environment and the camera.
+///
+/// Changed lights do not move any more. Images in memory (a converted height map) are written
+/// beside the file as PNG: NAME-image-1.png, and so on.
+/// \throws FileError if the source cannot be read again, or a file cannot be written or exists
+///         already; InvalidInput if a scene file cannot express the change: meshes were moved or
+///         added, a scene file is written to another folder, or an environment is no file
+void save_scene(const std::filesystem::path& file, const SceneToSave& saved);
+
+// Finds the images of environment maps in folders.
+
+/// Finds six images in a folder by the ends of their names: posx, negx, posy, negy, posz, negz.
+/// \throws FileError naming the first missing face, or two files for one face
+CubeFaces cube_faces_in(const std::filesystem::path& folder);
+
+// Decodes the images of a scene.
+
+/// Decodes an image.
+/// \return the image; a decoded image keeps its samples, and for ImageUse::data its color space is
+///         ignored
+/// \throws FileError as read_image() does, and with the fault of the source if it has one
+Image decode(const ImageSource& source, ImageUse use);
+
+/// Returns the message of an error in decoding an image, after the file that names the image,
+/// unless the message begins with that file: "vase.gltf: bricks.png: no such file".
+std::string with_origin(const ImageSource& source, const std::string& error);
+
+/// Records that a picture depends on a file (relief/mesh/execution.h), even if the file is not
+/// decoded again.
+void note_image_file(const ImageSource& source);
+
+/// Returns the code of zero in a normal map: that of the file's metadata, otherwise 127.5, see
+/// detect_flat_code(). \param image  decoded from the source
+FlatCode detected_flat_code(const ImageSource& source, const Image& image);
 
 }  // namespace relief

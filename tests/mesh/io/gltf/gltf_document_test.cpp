@@ -13,8 +13,8 @@
 
 #include "io/gltf/gltf_uri.h"
 #include "mesh/io/gltf/gltf_support.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/report.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

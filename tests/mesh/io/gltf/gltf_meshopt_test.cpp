@@ -15,8 +15,8 @@
 #include "io/gltf/gltf_compression.h"
 #include "io/gltf/gltf_reader.h"
 #include "mesh/io/gltf/gltf_support.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/report.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -11,8 +11,8 @@
 #include "io/gltf/gltf_check.h"
 #include "io/gltf/gltf_reader.h"
 #include "io/gltf/gltf_uri.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/report.h"
 
 namespace relief::test {
 namespace {

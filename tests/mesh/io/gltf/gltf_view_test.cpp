@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "mesh/io/gltf/gltf_support.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/gltf_document.h"
-#include "relief/mesh/shapes.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/angle.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"

@@ -11,8 +11,8 @@
 
 #include "io/maps/height_bands.h"
 #include "relief/mesh/bump_file.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"

@@ -18,9 +18,8 @@
 #include "io/image/image_file_direct.h"
 #include "io/png/png_format.h"
 #include "mesh/io/image/module_reference.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_tags.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
 

@@ -19,9 +19,8 @@
 #include <vector>
 
 #include "mesh/io/image/module_reference.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/image_rows.h"
+#include "relief/mesh/report.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The peak memory for images that are read and written by rows. The program is separate, because
 // its peak includes libraries and all threads.
-#include "relief/mesh/image_rows.h"
+#include "relief/mesh/image_file.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
 #include "support/peak_memory.h"
 #include "support/shared_data.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images read and written by rows have the same samples and errors as whole images, for every
 // division into rows.
-#include "relief/mesh/image_rows.h"
+#include "relief/mesh/image_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "mesh/io/image/module_reference.h"
-#include "relief/mesh/error.h"
-#include "relief/mesh/threads.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
 

@@ -10,7 +10,7 @@
 #include "io/png/deflate_encoder.h"
 #include "io/png/inflate.h"
 #include "io/png/png_format.h"
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 #include "support/shared_data.h"
 
 namespace relief::test {

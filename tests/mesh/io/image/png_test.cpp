@@ -20,9 +20,8 @@
 #include "io/png/png_decoder.h"
 #include "io/png/png_format.h"
 #include "mesh/io/image/module_reference.h"
-#include "relief/mesh/animated_png.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
 #include "support/shared_data.h"
 
 namespace relief {

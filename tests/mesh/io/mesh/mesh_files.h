@@ -9,8 +9,8 @@
 #include <fstream>
 #include <string>
 
-#include "relief/mesh/error.h"
 #include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
 

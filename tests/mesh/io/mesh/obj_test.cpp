@@ -14,8 +14,8 @@
 
 #include "io/mesh/obj_parser.h"
 #include "mesh/io/mesh/mesh_files.h"
-#include "relief/mesh/error.h"
 #include "relief/mesh/mesh_file.h"
+#include "relief/mesh/report.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

@@ -1,20 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Progress reporting and cancellation for long operations, and a record of the files that they
-/// read.
-///
-///     Progress progress;
-///     // Worker thread:
-///     const ProgressScope scope(progress);
-///     MeshFile mesh = read_mesh(file, report);  // May throw Cancelled.
-///     // Another thread, meanwhile:
-///     show(progress.state());
-///     progress.cancel();
-///
-/// Functions have no parameter of type Progress: everything that a thread calls during the lifetime
-/// of a ProgressScope reports to it, including parallel loops. Without a scope nothing is counted,
-/// and nothing is slower. Readers of meshes, glTF and images, normals, tangents, and the
-/// preparation of a Renderer report progress.
+/// How functions run: precision, number of threads, progress and cancellation.
 /// Tests: tests/mesh/base/progress_test.cpp, tests/mesh/io/mesh/mesh_file_test.cpp.
 #pragma once
 
@@ -29,9 +15,39 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/error.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
+
+// Defines the floating-point precision of computations that offer a choice.
+
+/// The floating-point type of a computation. Each option of this type documents its accuracy and
+/// time.
+enum class Arithmetic { float64, float32 };
+
+// Limits the number of threads of parallel loops.
+
+/// Sets the maximum number of threads of relief's parallel loops in this process, including the
+/// calling thread. Results do not depend on it.
+///
+/// \param count  at least 1; 0 means the number of hardware threads
+void set_thread_limit(unsigned count);
+
+// Progress reporting and cancellation for long operations, and a record of the files that they
+// read.
+//
+//     Progress progress;
+//     // Worker thread:
+//     const ProgressScope scope(progress);
+//     MeshFile mesh = read_mesh(file, report);  // May throw Cancelled.
+//     // Another thread, meanwhile:
+//     show(progress.state());
+//     progress.cancel();
+//
+// Functions have no parameter of type Progress: everything that a thread calls during the lifetime
+// of a ProgressScope reports to it, including parallel loops. Without a scope nothing is counted,
+// and nothing is slower. Readers of meshes, glTF and images, normals, tangents, and the
+// preparation of a Renderer report progress.
 
 /// Thrown after Progress::cancel(). The operation has no effect: nothing is written, and existing
 /// data is unchanged.
