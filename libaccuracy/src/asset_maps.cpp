@@ -88,9 +88,10 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
     how.repeats = {0, 0};
     const BumpExperiment result = measure_bump(sample, methods, how);
     Experiment& experiment = asset.experiment;
-    experiment.question = "Which kernel is truest on this map, and what does it cost?";
+    experiment.question = "Which kernel is most accurate on this map, and what does it cost?";
     experiment.ground_truth =
-        fmt::format("The map's own best: {}. {}.", result.reference.words, choice.reason);
+        fmt::format("The most accurate conversion that is known for this map: {}. {}.",
+                    result.reference.words, choice.reason);
     experiment.reference_error = result.reference.reference_degrees;
     experiment.input = result.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
                                        : fmt::format("{} texels in nine parts of {} x {}",
@@ -144,7 +145,7 @@ AssetMethod as_it_is(const NormalMapStorage& file, std::size_t texels,
         {"layout", "as it is"}, {"bits", fmt::format("{} bit", file.bits)}, {"rounding", "none"}};
     method.measured.stored_bytes = file.channels * file.bits / 8.0;
     method.measured.error = figures_of(angle_distribution(std::vector<float>(texels, 0.0F)));
-    method.measured.note = "every code is kept; no time of its own";
+    method.measured.note = "Every code is kept; there is no work to time.";
     method.command = fmt::format("relief-bake convert {} OUT{}", options.arguments, file.extension);
     return method;
 }
@@ -163,8 +164,8 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
         experiment.items += static_cast<double>(part.width) * part.height;
     experiment.question = "In how few bits can these normals be stored?";
     experiment.ground_truth = fmt::format(
-        "The normals as the file holds them, in {} bits. What was lost before it was written is "
-        "unknown, but for the rounding to these bits.",
+        "The normals as stored in the file, in {} bits. The error of the file is unknown, except "
+        "for its rounding to these bits.",
         file.bits);
     if (file.bits < 32) experiment.reference_error = rounding_degrees(file.bits);
     experiment.input = fmt::format("{} x {} texels", normals.width, normals.height);
@@ -242,9 +243,9 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
     Experiment& experiment = asset.experiment;
     experiment.question = "How many samples and bits does a map of these meshes need?";
     experiment.ground_truth = fmt::format(
-        "The mean of {} samples a texel of the high mesh's normals, in the low mesh's tangent "
-        "space: what a map of this size can show at best. It says nothing of what a larger map "
-        "would show, nor whether the rays find the right surface.",
+        "The mean of {} samples per texel of the normals of the high mesh, in the tangent space of "
+        "the low mesh. This is the best result that a map of this size can have. It does not show "
+        "the effect of a larger map, nor whether the rays hit the intended surface.",
         trials.reference_samples());
     experiment.input =
         fmt::format("{} x {} texels{}; {} triangles of the low mesh", size, size,

@@ -44,12 +44,13 @@ CreaseRule by_normals(const Mesh& mesh) {
     if (stored.hard == 0) return none;
     const double degrees = std::round(glm::degrees(stored.crease_angle));
     if (degrees < min_degrees_of_normals) {
-        none.words += " (its own normals are those of facets, which says nothing)";
+        none.words += " (the mesh has face normals, which do not show hard edges)";
         return none;
     }
-    return by_angle(degrees, fmt::format(", which tells {:.3g}% of the edges as its own normals do",
-                                         100.0 * (1.0 - static_cast<double>(stored.misclassified) /
-                                                            static_cast<double>(stored.edges))));
+    return by_angle(degrees,
+                    fmt::format(", which agrees with the stored normals at {:.3g}% of the edges",
+                                100.0 * (1.0 - static_cast<double>(stored.misclassified) /
+                                                   static_cast<double>(stored.edges))));
 }
 
 }  // namespace
@@ -95,10 +96,10 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
     CornerGroundTruth ground_truth;
     ground_truth.words = fmt::format(
         "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). "
-        "Known at {} of {} places looked at; at the others there are too few neighbors, or no "
-        "smooth surface. Where it is known, it has an expected error of {:.2g} degrees itself. It "
-        "takes the vertices for points of the surface, and cannot judge models whose vertices are "
-        "not.",
+        "It is known at {} of {} examined places; the others have too few neighbors or no smooth "
+        "surface. Its own expected error is {:.2g} degrees. It assumes that the vertices lie on "
+        "the "
+        "surface, and is not valid for models whose vertices do not.",
         creases.words, fitted.corners.size(), fitted.places, fitted.reference_degrees);
     constexpr std::size_t fewest = 16;
     ground_truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.places / 10);
@@ -117,8 +118,8 @@ CornerGroundTruth by_file(const Mesh& mesh, const CreaseRule& creases) {
     if (mesh.normals.empty()) throw InvalidInput("the mesh has no normals to compare with");
     CornerGroundTruth ground_truth;
     ground_truth.words = fmt::format(
-        "The normals that the file holds ({}). They tell which method comes nearest to whatever "
-        "made them, not which is nearest to a surface.",
+        "The normals of the file ({}). They show which method is closest to the one that computed "
+        "them, not which is closest to a surface.",
         creases.words);
     std::vector<unsigned char> is_seen(mesh.positions.size(), 0);
     for (std::uint32_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
@@ -200,8 +201,8 @@ void add_caveats(AssetExperiment& asset, const CornerGroundTruth& ground_truth,
     constexpr double min_share_reported = 0.05;
     if (ground_truth.unjudged < min_share_reported) return;
     words += fmt::format(
-        "; {:.0f} % of the vertices are not judged, as no smooth surface goes "
-        "through them",
+        "; {:.0f} % of the vertices are not judged, because no smooth surface fits "
+        "them",
         100.0 * ground_truth.unjudged);
     if (!creases.has_any()) words += " (if the mesh has hard edges, try --crease 40)";
 }
@@ -216,9 +217,9 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
     const CornerGroundTruth ground_truth =
         is_file ? by_file(mesh, creases) : by_surface(mesh, creases);
     Experiment& experiment = asset.experiment;
-    experiment.question = is_file ? "Which weighting comes nearest to the normals of this file?"
+    experiment.question = is_file ? "Which weighting is closest to the normals of this file?"
                                   : "Which weighting is closest to the normals of the surface that "
-                                    "this mesh stands for, and what does it cost?";
+                                    "this mesh approximates, and what does it cost?";
     experiment.ground_truth = ground_truth.words;
     experiment.input = fmt::format("{} triangles{}", mesh.triangles.size(), whole);
     experiment.item = "triangle";
@@ -228,7 +229,7 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
         methods.push_back({{.name = "the file's own",
                             .choices = {{"weighting", "file"}},
                             .error = errors_of(mesh.normals, false, mesh, ground_truth),
-                            .note = "as they are stored; no time"},
+                            .note = "The stored normals; there is no work to time."},
                            {}});
     }
     if (!ground_truth.is_enough) {
@@ -241,8 +242,8 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
         add_caveats(asset, ground_truth, creases);
     } else {
         asset.recommendation.words =
-            "no recommendation: the mesh is too coarse, or too rough, for a smooth surface to be "
-            "fitted through it; its own normals can be the measure (--truth file)";
+            "no recommendation: the mesh is too coarse or too rough to fit a smooth surface; "
+            "--truth file compares with its stored normals instead";
     }
     set_finding(asset);
     return asset;
@@ -326,7 +327,7 @@ AssetMethod method_of(const Basis& basis, std::vector<float> degrees) {
                        .choices = {{"basis", basis.name}},
                        .error = figures_of(angle_distribution(std::move(degrees))),
                        .work = basis.work,
-                       .note = basis.work ? "" : "no time of its own"};
+                       .note = basis.work ? "" : "There is no work to time."};
     method.command = basis.command;
     return method;
 }
@@ -337,7 +338,7 @@ void describe(Experiment& experiment, const Mesh& mesh, const SamplePoints& poin
         fmt::format("{} triangles{}; four points in {} of them", mesh.triangles.size(), whole,
                     points.triangles - points.left_out);
     if (points.left_out > 0)
-        experiment.input += fmt::format(" ({} have no direction in the image)", points.left_out);
+        experiment.input += fmt::format(" ({} have no texture gradient)", points.left_out);
     experiment.item = "triangle";
     experiment.items = static_cast<double>(mesh.triangles.size());
 }
@@ -348,11 +349,11 @@ AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases
                                const AssetOptions& options) {
     AssetExperiment asset = asset_experiment(Subject::tangents, "tangents", "Tangents", options);
     Experiment& experiment = asset.experiment;
-    experiment.question = "How far do averaged tangents turn from where the image runs?";
+    experiment.question = "How much do averaged tangents differ from the texture gradient?";
     experiment.ground_truth =
-        "Where u grows on each triangle, by its own texture coordinates, in the plane of the "
-        "interpolated normal. It tells what averaging does to the frame, not which basis a normal "
-        "map was baked in: that one must be taken, whatever it errs here.";
+        "The direction of increasing u on each triangle, in the plane of the interpolated normal. "
+        "It shows the effect of averaging on the frame, not the basis in which a normal map was "
+        "baked: use that basis regardless of its error here.";
     describe(experiment, mesh, points, whole);
     std::vector<AssetMethod> methods;
     for (const Basis& basis : bases) {
@@ -371,8 +372,8 @@ AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases
     if (asset.recommendation.method) {
         const Measurement& taken = experiment.measurements[*asset.recommendation.method];
         asset.recommendation.words = fmt::format(
-            "mikktspace: {:.3g} degrees RMS; bakers and renderers agree on it, and no "
-            "other average is worth a seam",
+            "mikktspace: {:.3g} degrees RMS; bakers and renderers agree on it, and another "
+            "average would show seams",
             taken.error.rms);
         set_finding(asset);
     }
@@ -386,10 +387,11 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
     AssetExperiment asset =
         asset_experiment(Subject::tangents, "tangent-basis", "Tangent basis", options);
     Experiment& experiment = asset.experiment;
-    experiment.question = "What does a normal map baked for MikkTSpace show in another basis?";
+    experiment.question =
+        "What is the error of a normal map that was baked for MikkTSpace in another basis?";
     experiment.ground_truth =
-        "The normals that texels tilted by 30 degrees stand for in MikkTSpace's frames, which is "
-        "what most bakers write. A map baked in another basis is right in that one instead.";
+        "The normals of texels tilted by 30 degrees in MikkTSpace's frames, for which most bakers "
+        "write maps. A map that was baked in another basis is exact in that basis instead.";
     describe(experiment, mesh, points, whole);
     const Basis& convention = bases.front();
     std::vector<AssetMethod> methods;
@@ -414,7 +416,7 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
     }
     if (asset.recommendation.method && nearest != nullptr) {
         asset.recommendation.words = fmt::format(
-            "mikktspace for a map that was baked so; {} shows it {:.2g} degrees off, "
+            "mikktspace for a map that was baked for it; {} has an error of {:.2g} degrees RMS, "
             "{:.2g} at most",
             nearest->method, nearest->error.rms, nearest->error.max);
         set_finding(asset);
@@ -448,7 +450,8 @@ AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
     Experiment& experiment = asset.experiment;
     experiment.question = "How many bytes do this mesh's tangent frames need?";
     experiment.ground_truth =
-        "The mesh's normals and MikkTSpace's tangents in double, right- and left-handed by turns.";
+        "The mesh's normals and MikkTSpace's tangents in double, alternately right- and "
+        "left-handed.";
     experiment.input = fmt::format("{} frames", frames.normals.size());
     experiment.item = "frame";
     experiment.items = static_cast<double>(frames.normals.size());
@@ -500,7 +503,7 @@ std::vector<AssetExperiment> measure_asset_mesh(const Mesh& mesh,
     const std::string whole =
         part.triangles.size() == mesh.triangles.size()
             ? ""
-            : fmt::format(", eight runs of the mesh's {}", mesh.triangles.size());
+            : fmt::format(", eight ranges of the {} of the mesh", mesh.triangles.size());
     std::vector<AssetExperiment> all;
     all.push_back(measure_normals(part, whole, mesh_options, options));
     if (!mesh.texcoords.empty()) {

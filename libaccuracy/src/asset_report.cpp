@@ -176,8 +176,8 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
             all, [](const Candidate& a, const Candidate& b) { return a.bounded < b.bounded; });
         if (!(least->bounded <= *request.max_error)) {
             std::string text = fmt::format(
-                "no method is within {:g} {}: the least is {:.3g}, with {}", *request.max_error,
-                experiment.error_unit, least->bounded, name(*least));
+                "no method is within {:g} {}: the smallest error is {:.3g}, with {}",
+                *request.max_error, experiment.error_unit, least->bounded, name(*least));
             if (experiment.reference_error && *experiment.reference_error > 0.0)
                 text += fmt::format(" ({} {:.3g})", rule.reference, *experiment.reference_error);
             return text;
@@ -186,10 +186,10 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
         error_alone.max_seconds.reset();
         const std::vector<Candidate> accurate_enough = kept_of(all, error_alone, rule.cost);
         const Candidate* cheapest = first_of(accurate_enough, is_cheaper);
-        return fmt::format("no method is within {:g} {} and {}: that error takes {}, with {}",
-                           *request.max_error, experiment.error_unit,
-                           format_seconds(*request.max_seconds), format_seconds(cheapest->cost),
-                           name(*cheapest));
+        return fmt::format(
+            "no method is within {:g} {} and {}: the fastest with that error takes {}, with {}",
+            *request.max_error, experiment.error_unit, format_seconds(*request.max_seconds),
+            format_seconds(cheapest->cost), name(*cheapest));
     }
     const Candidate* cheapest = first_of(all, is_cheaper);
     return fmt::format("no method is within {}: the fastest takes {}, with {}",

@@ -248,7 +248,7 @@ Image picture_of(const Scene& scene) {
 void add_error_maps(const BumpyBake& bake, std::span<const BakedMap> maps, double brightest,
                     Experiment& experiment) {
     for (const BakedMap& map : maps) {
-        experiment.heat_maps.push_back({"Where the map is off", name_of(map),
+        experiment.heat_maps.push_back({"Error of the map", name_of(map),
                                         bake.trials().error_map(map.way, map.format), brightest});
     }
 }
@@ -263,8 +263,8 @@ void add_renderings(const BumpyBake& bake, std::span<const BakedMap> maps, Exper
             bumpy_scene(bake.baker().low(), glossy_plastic(), bake.map_by(map.way, map.format));
         low.camera = high.camera;
         experiment.pictures.push_back(image_pair(
-            fmt::format("{} triangles with a map of {} x {} texels, and the {} that it was "
-                        "baked from",
+            fmt::format("{} triangles with a map of {} x {} texels, and the {} triangles from "
+                        "which it was baked",
                         bake.baker().low().triangles.size(), bake.map().width, bake.map().height,
                         bake.high().mesh().triangles.size()),
             name_of(map), to_srgb(picture_of(low), 8), ground_truth));
@@ -290,8 +290,8 @@ Experiment measured(const BumpyBake& bake, std::span<const BakeSampling> ways,
     Experiment experiment{
         .subject = Subject::bake,
         .ground_truth = fmt::format(
-            "the mean of {} rays a texel, not rounded to codes; a test holds bakes to the formula "
-            "of the surface, without the baker's rays",
+            "The mean of {} rays per texel, not rounded to codes. A test verifies bakes by the "
+            "formula of the surface, without the baker's rays.",
             bake.trials().reference_samples()),
         .input = bake.description(),
         .error_unit = "degrees",
@@ -305,7 +305,7 @@ Experiment measured(const BumpyBake& bake, std::span<const BakeSampling> ways,
                  .choices = {{"rays", name_of(ways[i])}, {"depth", depth_name(depth.bits)}},
                  .error = figures_of(results[i].trial.errors[format]),
                  .cost = nominal_cost(results[i], format),
-                 .note = fmt::format("{:.2f} rays a texel.", rays_per_texel(results[i], bake))});
+                 .note = fmt::format("{:.2f} rays per texel.", rays_per_texel(results[i], bake))});
         }
     }
     mark_pareto_optimal(experiment);
@@ -328,8 +328,9 @@ std::string speed_of(const BakeWayResult& result) {
     const auto millions = [&](const Timing& timing) {
         return 1e-6 * static_cast<double>(result.trial.rays) / timing.spread().median;
     };
-    return fmt::format(" It cast {:.2g} million rays a second on one thread, {:.2g} on all.",
-                       millions(result.one_thread.back()), millions(result.all_threads.back()));
+    return fmt::format(
+        " It casts {:.2g} million rays per second on one thread, {:.2g} on all threads.",
+        millions(result.one_thread.back()), millions(result.all_threads.back()));
 }
 
 Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
@@ -342,7 +343,7 @@ Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
     experiment.question = "How many rays does a texel need, and how many bits?";
     Chart chart{.id = "rays",
                 .title = "Error by rays",
-                .x_label = "rays a texel",
+                .x_label = "rays per texel",
                 .y_label = "RMS error, degrees"};
     for (const std::size_t format : formats)
         chart.curves.push_back(
@@ -360,9 +361,9 @@ Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
     };
     const std::size_t last = ways.size() - 1;
     experiment.finding = fmt::format(
-        "{} a texel leaves {:.3f} degrees (RMS), {} {:.3f} and {} {:.4f}, if the map is not "
-        "rounded. 8 bits alone are {:.3f} off, 16 bits {:.4f}: with {} the former make {:.3f}, the "
-        "latter {:.4f}.{}",
+        "Without rounding, {} per texel has an error of {:.3f} degrees (RMS), {} {:.3f} and {} "
+        "{:.4f}. Rounding alone has an error of {:.3f} degrees in 8 bits and {:.4f} in 16 bits; "
+        "with {} the error is {:.3f} in 8 bits and {:.4f} in 16 bits.{}",
         name_of(ways[0]), rms(0, 2), name_of(ways[1]), rms(1, 2), name_of(ways[last]), rms(last, 2),
         results[0].trial.quantization[0].rms, results[0].trial.quantization[1].rms,
         name_of(ways[last]), rms(last, 0), rms(last, 1), speed_of(results[last]));
@@ -381,10 +382,10 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
     constexpr std::array<std::size_t, 1> formats = {2};
     Experiment experiment = measured(bake, ways, results, formats);
     experiment.id = "bake/adaptive";
-    experiment.question = "Does it pay to cast more rays only where the first differ?";
+    experiment.question = "Does it pay to cast more rays only where the first rays differ?";
     Chart rays{.id = "rays",
                .title = "Error by rays",
-               .x_label = "rays a texel",
+               .x_label = "rays per texel",
                .y_label = "RMS error, degrees",
                .curves = {curve_of("more where they differ", bake,
                                    {results.begin(), results.begin() + adaptive}, 2),
@@ -392,7 +393,7 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
                                    {results.begin() + adaptive, results.end()}, 2)}};
     Chart thresholds{.id = "threshold",
                      .title = "Error by threshold",
-                     .x_label = "degrees that the first rays may differ by",
+                     .x_label = "limit of the angle between the first rays, degrees",
                      .y_label = "RMS error, degrees",
                      .curves = {{.method = "more where they differ"}}};
     for (std::ptrdiff_t i = adaptive - 1; i >= 0; --i) {
@@ -406,9 +407,10 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
     add_error_maps(bake, maps, 0.5, experiment);
     const BakeWayResult& chosen = results[2];
     experiment.finding = fmt::format(
-        "Where only texels whose first rays differ by more than {:g} degrees get all {}, a texel "
-        "takes {:.1f} rays and the error is {:.4f} degrees (RMS), against {:.4f} with {} "
-        "everywhere and {:.4f} with all.",
+        "If only texels whose first rays differ by more than {:g} degrees get all {} rays, the "
+        "mean "
+        "is {:.1f} rays per texel and the error is {:.4f} degrees (RMS), compared with {:.4f} with "
+        "{} rays everywhere and {:.4f} with all rays everywhere.",
         *ways[2].sample_degrees, max_rays, rays_per_texel(chosen, bake), chosen.trial.errors[2].rms,
         results[results.size() - 2].trial.errors[2].rms, max_rays / 4,
         results.back().trial.errors[2].rms);

@@ -223,17 +223,17 @@ Experiment of_texels(const std::string& id, double texels) {
     return experiment;
 }
 
-/// "gaussian 4, float64 is closest, 0.32 degrees RMS, where sobel3 is 0.99 off. ..."
+/// "gaussian 4, float64 has the smallest error, 0.32 degrees RMS (sobel3: 0.99). ..."
 std::string bump_finding(const Experiment& experiment) {
     const Measurement& best = *most_accurate(experiment);
     std::string text =
-        fmt::format("{} is closest, {:.2g} degrees RMS", best.method, best.error.rms);
+        fmt::format("{} has the smallest error, {:.2g} degrees RMS", best.method, best.error.rms);
     const auto& all = experiment.measurements;
     const auto usual = std::find_if(all.begin(), all.end(), [](const Measurement& one) {
         return value_of(one, "kernel") == "sobel3";
     });
     if (value_of(best, "kernel") != "sobel3")
-        text += fmt::format(", where sobel3 is {:.2g} off", usual->error.rms);
+        text += fmt::format(" (sobel3: {:.2g})", usual->error.rms);
     return text + ". " + arithmetic_finding(experiment, {"kernel", "steps"}, "kernels");
 }
 
@@ -245,11 +245,11 @@ Experiment on_wave(int bits, const RunOptions& options) {
         of_texels(fmt::format("bump/wave-{}", bits == 32 ? "float" : std::to_string(bits)),
                   static_cast<double>(side) * side);
     experiment.question =
-        fmt::format("Which kernel finds the normals of a wave, by its length, from heights in {}?",
+        fmt::format("Which kernel is most accurate on a wave, by its length, with heights in {}?",
                     depth_name(bits));
     experiment.ground_truth =
-        "The wave's slopes in closed form; a kernel's response in closed form gives the same "
-        "errors, which a test checks.";
+        "The slopes of the wave in closed form. A test verifies the errors by the closed-form "
+        "frequency response of each kernel.";
     experiment.input =
         fmt::format("{} x {} texels of a wave {} texels long, slope 1, heights in {}", side, side,
                     wavelength, depth_name(bits));
@@ -308,8 +308,8 @@ Experiment on_recipe(const std::string& id, const FieldRecipe& recipe, int side,
     const BumpField field = make_bump_field(recipe, side, side);
     Experiment experiment = of_texels(id, static_cast<double>(side) * side);
     experiment.ground_truth =
-        "The field's normals in closed form, before noise and rounding came to its heights; tests "
-        "differentiate it numerically as well.";
+        "The normals of the field in closed form, without the noise and rounding of its heights. "
+        "Tests verify them by numerical differentiation.";
     const int bits = recipe.coding == FieldCoding::float32 ? 32 : 16;
     experiment.input = fmt::format("{} x {} texels, {}; the normal map in {}", side, side,
                                    recipe.name, depth_name(bits));
@@ -332,7 +332,7 @@ Experiment on_recipe(const std::string& id, const FieldRecipe& recipe, int side,
     }
     measure_methods(measured, options, costs, experiment);
     experiment.finding =
-        fmt::format("{} On this map --kernel auto takes {}.", bump_finding(experiment),
+        fmt::format("{} On this map --kernel auto selects {}.", bump_finding(experiment),
                     name_of(result.choice.kernel, result.choice.gaussian_radius));
     return experiment;
 }
@@ -346,7 +346,7 @@ void add_heat_maps(const FieldRecipe& recipe, int side, Experiment& experiment) 
         const Image normals = normals_from_height(
             field.heights, with_kernel(field.options, kernel, Arithmetic::float64), report);
         experiment.heat_maps.push_back(
-            {fmt::format("Where {} errs on waves that are long at the sides and short in the "
+            {fmt::format("Error of {} on waves that are long at the sides and short in the "
                          "middle",
                          kernel.name),
              fmt::format("{}, float64", kernel.name), angles_of(normals, field.normals), 10.0});
@@ -380,8 +380,7 @@ Experiment on_field(const FieldCase& one, const RunOptions& options) {
         on_recipe("bump/" + one.id, recipe, side,
                   {.one_thread = true, .all_threads = true, .memory = false}, options);
     experiment.question = fmt::format(
-        "Which kernel makes the truest normals of such a map ({}), and what does it cost?",
-        one.recipe);
+        "Which kernel is most accurate on such a map ({}), and what does it cost?", one.recipe);
     if (one.has_heat_maps) add_heat_maps(recipe, side, experiment);
     return experiment;
 }
@@ -391,7 +390,7 @@ Experiment on_large_map(const RunOptions& options) {
     Experiment experiment =
         on_recipe("bump/large", recipe_named("smooth, 16 bit"), side, {}, options);
     experiment.question =
-        "What does a large normal map cost, in time and in memory, and what do finer texels bring?";
+        "How much time and memory does a large normal map cost, and how much do finer texels help?";
     experiment.charts.push_back(
         computed_once(options, [&] { return resolution_chart(options.is_quick); }));
     return experiment;

@@ -96,7 +96,7 @@ std::string arithmetic_finding(const Experiment& experiment,
         }
     }
     std::string text =
-        fmt::format("float32 changes no RMS by more than {:.2g} degrees", difference);
+        fmt::format("float32 changes no RMS error by more than {:.2g} degrees", difference);
     if (!ratios.empty())
         text += fmt::format(" and takes {:.2f} times as long (median of the {})",
                             time_statistics(ratios).median, plural);

@@ -44,8 +44,8 @@ double median_seconds(const Measurement& measurement);
 /// The value of a choice such as "arithmetic", or an empty text.
 std::string value_of(const Measurement& measurement, const std::string& choice);
 
-/// "float32 changes no RMS by more than 0.01 degrees and takes 0.70 times as long (median of the
-/// kernels)." Compares the measurements in both arithmetics whose other choices are equal.
+/// "float32 changes no RMS error by more than 0.01 degrees and takes 0.70 times as long (median of
+/// the kernels)." Compares the measurements in both arithmetics whose other choices are equal.
 ///
 /// \param other_choices  names of the choices that must be equal
 /// \param plural         what these choices select: "kernels"

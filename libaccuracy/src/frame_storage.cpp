@@ -104,7 +104,7 @@ MeasuredMethod FrameCode::measured(const SampleFrames& frames) const {
     method.error = figures_of(errors.both);
     method.stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding));
     if (errors.flipped_frames > 0)
-        method.note = fmt::format("{} frames changed hands", errors.flipped_frames);
+        method.note = fmt::format("The handedness of {} frames changed.", errors.flipped_frames);
     return method;
 }
 
@@ -119,7 +119,7 @@ std::vector<FrameCode> all_frame_codes() {
 
 namespace {
 
-/// "A frame of floats takes 28 bytes; in 4 bytes 'angle10, best' has the least error, ..."
+/// "A frame of floats needs 28 bytes; in 4 bytes 'angle10, best' has the smallest error, ..."
 std::string frame_code_finding(const Experiment& experiment) {
     std::vector<std::string> parts;
     for (const double bytes : {4.0, 8.0}) {
@@ -129,14 +129,14 @@ std::string frame_code_finding(const Experiment& experiment) {
             if (best == nullptr || one.error.rms < best->error.rms) best = &one;
         }
         if (best == nullptr) continue;
-        parts.push_back(
-            fmt::format("in {} bytes '{}' has the least error, {:.2g} degrees RMS, {:.2g} at most",
-                        bytes, best->method, best->error.rms, best->error.max));
+        parts.push_back(fmt::format(
+            "in {} bytes '{}' has the smallest error, {:.2g} degrees RMS, {:.2g} at most", bytes,
+            best->method, best->error.rms, best->error.max));
     }
-    return fmt::format("A frame of floats takes 28 bytes; {}.", fmt::join(parts, "; "));
+    return fmt::format("A frame of floats needs 28 bytes; {}.", fmt::join(parts, "; "));
 }
 
-/// "Searching for the best codes changes ...: octahedral8 0.44 to 0.35 and takes 3 times as long"
+/// "Searching for the best codes changes ...: octahedral8 0.44 to 0.35 in 3 times the time"
 std::string price_of_best(const Experiment& experiment) {
     std::vector<std::string> parts;
     const auto& all = experiment.measurements;
@@ -147,7 +147,7 @@ std::string price_of_best(const Experiment& experiment) {
         std::string part = fmt::format("{} {:.2g} to {:.2g}", value_of(all[i], "encoding"),
                                        all[i].error.rms, all[i + 1].error.rms);
         const double times = median_seconds(all[i + 1]) / median_seconds(all[i]);
-        if (times > 0.0) part += fmt::format(" and takes {:.1f} times as long", times);
+        if (times > 0.0) part += fmt::format(" in {:.1f} times the time", times);
         parts.push_back(std::move(part));
     }
     return fmt::format(
@@ -159,7 +159,7 @@ Experiment on_even_frames(std::size_t count) {
     Experiment experiment;
     experiment.subject = Subject::storage;
     experiment.ground_truth =
-        "The frames in double, before they were stored: perpendicular and unit by construction.";
+        "The frames in double before encoding, which are orthonormal by construction.";
     experiment.input = fmt::format("{} frames spread evenly over the sphere", count);
     experiment.error_unit = "degrees";
     experiment.item = "frame";
@@ -177,7 +177,8 @@ Experiment frame_reading_experiment(const RunOptions& options) {
     const SampleFrames frames = even_frames(count_of(options));
     Experiment experiment = on_even_frames(frames.normals.size());
     experiment.id = "storage/frames";
-    experiment.question = "How many bytes does a tangent frame need, and what does reading take?";
+    experiment.question =
+        "How many bytes does a tangent frame need, and how long does decoding take?";
     std::vector<MeasuredMethod> measured;
     for (const FrameCode& code : all_frame_codes()) {
         Report report;
@@ -200,8 +201,8 @@ Experiment frame_writing_experiment(const RunOptions& options) {
     Experiment experiment = on_even_frames(frames.normals.size());
     experiment.id = "storage/frames-written";
     experiment.question =
-        "What does writing tangent frames take, and is looking for the best "
-        "codes worth it?";
+        "How long does encoding tangent frames take, and does the search for the best codes pay "
+        "off?";
     std::vector<MeasuredMethod> measured;
     for (const FrameCode& code : all_frame_codes()) {
         MeasuredMethod method = code.measured(frames);

@@ -319,7 +319,8 @@ Experiment of_texels(const std::string& id, std::size_t texels) {
     return experiment;
 }
 
-/// "The least errors: in 2 bytes 'octahedral 2 x 8 bit, best', 0.32 degrees RMS, 0.66 at most; ..."
+/// "The smallest errors: in 2 bytes 'octahedral 2 x 8 bit, best', 0.32 degrees RMS, 0.66 at most;
+/// ..."
 std::string best_by_size(const Experiment& experiment) {
     std::vector<std::string> parts;
     for (const double bytes : {2.0, 3.0, 4.0, 6.0}) {
@@ -331,7 +332,7 @@ std::string best_by_size(const Experiment& experiment) {
         parts.push_back(fmt::format("in {} bytes '{}', {:.2g} degrees RMS, {:.2g} at most", bytes,
                                     best->method, best->error.rms, best->error.max));
     }
-    return fmt::format("The least errors: {}.", fmt::join(parts, "; "));
+    return fmt::format("The smallest errors: {}.", fmt::join(parts, "; "));
 }
 
 /// "8 bits with zero at 128 have an error of 0.18 degrees RMS if they are read so, but of 0.37 ..."
@@ -343,9 +344,11 @@ std::string error_by_decoder(const Experiment& experiment) {
         return std::numeric_limits<double>::quiet_NaN();
     };
     return fmt::format(
-        " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are read so, but of "
-        "{:.2g} by the decoder of glTF and engines, whose zero is 127.5; codes with that zero have "
-        "{:.2g} there.",
+        " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are decoded that "
+        "way, "
+        "but of {:.2g} by the decoder of glTF and engines, whose zero is 127.5; codes with that "
+        "zero "
+        "have an error of {:.2g} there.",
         rms_of("xyz 8 bit, zero at 128"), rms_of("xyz 8 bit, zero at 128, read as glTF does"),
         rms_of("xyz 8 bit"));
 }
@@ -388,8 +391,9 @@ Experiment normal_reading_experiment(const RunOptions& options) {
     const Image normals = image_of_normals(directions, side);
     const std::vector<NormalCode> codes = normal_codes();
     Experiment experiment = of_texels("storage/normals", directions.size());
-    experiment.question = "How near does a stored normal come back, by layout and bits?";
-    experiment.ground_truth = "The directions in double: unit by construction, evenly spread.";
+    experiment.question = "What is the error of a stored normal, by layout and bits?";
+    experiment.ground_truth =
+        "The directions in double, which are unit by construction and evenly distributed.";
     experiment.input = fmt::format(
         "{} directions spread evenly over the half sphere above a surface", directions.size());
     std::vector<MeasuredMethod> measured;
@@ -413,10 +417,12 @@ Experiment normal_writing_experiment(const RunOptions& options) {
     const std::vector<NormalCode> codes = normal_codes();
     Experiment experiment = of_texels("storage/smooth-surface", surface.size());
     experiment.question =
-        "What does writing a smooth surface take, and does dither keep the mean of a patch?";
+        "How long does encoding a smooth surface take, and does dithering preserve the mean of a "
+        "patch?";
     experiment.ground_truth =
-        "The surface's normals in closed form, single and summed over patches; a test "
-        "differentiates its heights numerically.";
+        "The normals of the surface in closed form, single and summed over patches. A test "
+        "verifies "
+        "them by numerical differentiation of the heights.";
     experiment.input = fmt::format("{} x {} texels of waves of 128 texels and more", side, side);
     std::vector<MeasuredMethod> measured;
     for (const NormalCode& code : codes) {
@@ -429,8 +435,9 @@ Experiment normal_writing_experiment(const RunOptions& options) {
                     experiment);
     Chart chart = patches_chart(ground_truth, codes);
     experiment.finding = fmt::format(
-        "In 8 bits a texel is {:.2g} degrees off and the mean of 16 x 16 still {:.2g}; blue noise "
-        "makes them {:.2g} and {:.2g}.",
+        "In 8 bits a texel has an error of {:.2g} degrees RMS, and the mean of 16 x 16 texels "
+        "still "
+        "{:.2g}; with blue noise the errors are {:.2g} and {:.2g}.",
         error_at(chart, "xyz 8 bit", 1.0), error_at(chart, "xyz 8 bit", 16.0),
         error_at(chart, "xyz 8 bit, blue-noise", 1.0),
         error_at(chart, "xyz 8 bit, blue-noise", 16.0));

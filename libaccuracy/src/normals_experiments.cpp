@@ -166,7 +166,7 @@ Chart cells_chart(const Case& one, bool is_quick) {
     return chart;
 }
 
-/// "max, float64 is closest, 0.453 degrees RMS; area, float64 is farthest, 1.28."
+/// "max has the smallest error, 0.453 degrees RMS; area has the largest, 1.28."
 std::string normals_finding(const Experiment& experiment) {
     const Measurement& best = *most_accurate(experiment);
     const auto& all = experiment.measurements;
@@ -174,9 +174,9 @@ std::string normals_finding(const Experiment& experiment) {
         return a.error.rms < b.error.rms;
     };
     const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
-    std::string text = fmt::format("{} is closest, {:.3g} degrees RMS; {} is farthest, {:.3g}.",
-                                   value_of(best, "weighting"), best.error.rms,
-                                   value_of(worst, "weighting"), worst.error.rms);
+    std::string text = fmt::format(
+        "{} has the smallest error, {:.3g} degrees RMS; {} has the largest, {:.3g}.",
+        value_of(best, "weighting"), best.error.rms, value_of(worst, "weighting"), worst.error.rms);
     return text + " " + arithmetic_finding(experiment, {"weighting"}, "weightings");
 }
 
@@ -186,8 +186,8 @@ Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
     experiment.id = id;
     experiment.subject = Subject::normals;
     experiment.ground_truth =
-        "The surface's own normals in closed form, at its inner vertices before they were rounded "
-        "to float; tests differentiate the surface numerically as well.";
+        "The exact normals of the surface in closed form, at its inner vertices before rounding to "
+        "float. Tests verify them by numerical differentiation of the surface.";
     experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
     experiment.error_unit = "degrees";
     experiment.item = "triangle";
@@ -215,7 +215,7 @@ Experiment on_case(const Case& one, const RunOptions& options) {
                             cells_of_normal_tables),
                 {.one_thread = true, .all_threads = true, .memory = false}, options);
     experiment.question = fmt::format(
-        "Which weighting is closest to the normals of a surface ({}), and what does it cost?",
+        "Which weighting has the smallest error on this surface ({}), and what does it cost?",
         name_of(one));
     experiment.charts.push_back(
         computed_once(options, [&] { return cells_chart(one, options.is_quick); }));
@@ -229,7 +229,7 @@ Experiment normals_on_large_mesh(const RunOptions& options) {
     Experiment experiment =
         on_mesh("normals/large", ground_truth,
                 fmt::format("torus, jittered, {} x {} cells", cells, cells), {}, options);
-    experiment.question = "What do normals of a large mesh cost, in time and in memory?";
+    experiment.question = "How much time and memory do the normals of a large mesh cost?";
     return experiment;
 }
 
@@ -240,10 +240,10 @@ Experiment on_fans(const RunOptions& options) {
     experiment.id = "normals/fans";
     experiment.subject = Subject::normals;
     experiment.question =
-        "How close is each weighting around a single vertex, by the number of its neighbors?";
+        "What is the error of each weighting at a single vertex, by its number of neighbors?";
     experiment.ground_truth =
-        "The normal of a random cubic at the origin, (0, 0, 1) by construction [Max 1999]; a test "
-        "fits the cubic to its fan and differentiates it numerically.";
+        "The normal of a random cubic surface at the origin, (0, 0, 1) by construction [Max 1999]. "
+        "A test verifies it by fitting the cubic to its fan and differentiating it numerically.";
     experiment.input =
         fmt::format("{} fans of random cubic surfaces, {} neighbors each", fans, usual_valence);
     experiment.error_unit = "degrees";
@@ -272,8 +272,9 @@ Experiment on_fans(const RunOptions& options) {
     measure_methods(measured, options, {}, experiment);
     experiment.charts.push_back(std::move(chart));
     const Measurement& best = *most_accurate(experiment);
-    experiment.finding = fmt::format("With {} neighbors {} is closest, {:.3g} degrees RMS.",
-                                     usual_valence, value_of(best, "weighting"), best.error.rms);
+    experiment.finding =
+        fmt::format("With {} neighbors {} has the smallest error, {:.3g} degrees RMS.",
+                    usual_valence, value_of(best, "weighting"), best.error.rms);
     return experiment;
 }
 

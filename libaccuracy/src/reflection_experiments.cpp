@@ -148,12 +148,12 @@ Experiment reflection_experiment(const GlDevice& device, const RunOptions& optio
         .id = "shading/cube-map-size",
         .question = "How large must a cube map be for a mirror?",
         .ground_truth =
-            fmt::format("the formula of the surroundings in the directions that a ball in "
-                        "closed form mirrors, mean of {} rays a pixel; a test draws the same "
-                        "with the reference shader",
+            fmt::format("The formula of the environment in the directions that an exact ball "
+                        "reflects, mean of {} rays per pixel. A test verifies it by the reference "
+                        "shader.",
                         rays * rays),
-        .input = fmt::format("mirroring ball, surroundings with details of 3 degrees, {0} x {0} "
-                             "pixels, about 0.7 degrees of the surroundings in each",
+        .input = fmt::format("mirror ball, environment with details of 3 degrees, {0} x {0} "
+                             "pixels, about 0.7 degrees of the environment in each",
                              size),
         .error_unit = "FLIP",
         .item = "pixel",
@@ -181,13 +181,13 @@ Experiment reflection_experiment(const GlDevice& device, const RunOptions& optio
                           .y_label = "FLIP",
                           .curves = {std::move(curve)}}};
     for (const std::size_t i : {1U, 3U}) {
-        add_images("The surroundings in a mirror", methods[i], pictures[i], ground_truth, 0.5,
+        add_images("The environment in a mirror", methods[i], pictures[i], ground_truth, 0.5,
                    experiment);
     }
     const auto& measured = experiment.measurements;
     experiment.finding = fmt::format(
-        "The mirror is FLIP {:.3f} (RMS) off with {} a face, {:.3f} with {} and {:.3f} with {}, "
-        "which take {:.2g}, {:.2g} and {:.2g} MB.",
+        "The mirror has a FLIP error of {:.3f} (RMS) with {} per face, {:.3f} with {} and {:.3f} "
+        "with {}, which need {:.2g}, {:.2g} and {:.2g} MB.",
         measured[1].error.rms, methods[1].name, measured[3].error.rms, methods[3].name,
         measured.back().error.rms, methods.back().name, methods[1].stored_bytes * 1e-6,
         methods[3].stored_bytes * 1e-6, methods.back().stored_bytes * 1e-6);
@@ -249,11 +249,11 @@ Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) 
     constexpr double shown = 0.3;
     Experiment experiment{
         .id = "shading/glossy-levels",
-        .question = "How well do a few blurred levels stand for a rough mirror?",
+        .question = "How accurate are rough mirrors with a few blurred mip levels?",
         .ground_truth =
-            "the reference shader in double, mean of 1024 facets of GGX for each pixel; tests "
-            "hold it to constant surroundings, and to linear ones, whose blur has a closed "
-            "form",
+            "The reference shader in double, mean of 1024 facets of GGX for each pixel. Tests "
+            "verify it by constant environments, and by linear ones, whose blur has a closed "
+            "form.",
         .input = fmt::format("ball of roughness {0}, {1} x {1} pixels", shown, size),
         .error_unit = "FLIP",
         .item = "pixel",
@@ -271,11 +271,11 @@ Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) 
         experiment.pictures.push_back(
             image_pair("A rough mirror", methods[i].name, pictures[i].picture, ground_truth));
     }
-    experiment.heat_maps.push_back({"Where it is seen", methods[2].name, pictures[2].errors, 0.2});
+    experiment.heat_maps.push_back({"FLIP error", methods[2].name, pictures[2].errors, 0.2});
     const auto& measured = experiment.measurements;
     experiment.finding = fmt::format(
-        "At roughness {}, 6 levels are FLIP {:.4f} (RMS) off, 5 levels {:.4f}, and a mirror that "
-        "is not blurred {:.3f}.",
+        "At roughness {}, 6 levels have a FLIP error of {:.4f} (RMS), 5 levels {:.4f}, and a "
+        "mirror without blur {:.3f}.",
         shown, measured[2].error.rms, measured[1].error.rms, measured[0].error.rms);
     experiment.finding += frame_times(
         {{"6 levels", measured[2]}, {"5 levels", measured[1]}, {"not blurred", measured[0]}});

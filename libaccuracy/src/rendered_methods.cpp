@@ -95,9 +95,11 @@ std::vector<Timing> frame_timings(std::span<const std::unique_ptr<Renderer>> ren
 
 std::string note_of(const RenderedMethod& method, const GlDevice& device) {
     const std::string where = fmt::format(
-        "Drawn by {}; not counted: reading the picture back.{}", device.context().renderer_name(),
-        device.context().is_software() ? " One thread is the driver's threads on one processor."
-                                       : "");
+        "Rendered by {}; the time excludes reading the image back.{}",
+        device.context().renderer_name(),
+        device.context().is_software()
+            ? " The time on one thread is that of all threads of the driver on one processor."
+            : "");
     return method.note.empty() ? where : method.note + " " + where;
 }
 
@@ -113,7 +115,7 @@ GlDevice::GlDevice(Backend backend) {
 
 bool GlDevice::is_available_for(Experiment& experiment) const {
     if (!context_)
-        experiment.finding = "Not measured: this needs OpenGL, and there is none: " + absence_;
+        experiment.finding = "Not measured: this needs OpenGL, which is not available: " + absence_;
     return context_ != nullptr;
 }
 
@@ -164,13 +166,13 @@ double rendered_error(const GlDevice& device, const RenderedMethod& method,
 
 PicturePair image_pair(const std::string& title, const std::string& method, const Image& picture,
                        const Image& ground_truth) {
-    return {title, method, "as it should be", picture, to_srgb(ground_truth, 8)};
+    return {title, method, "reference", picture, to_srgb(ground_truth, 8)};
 }
 
 void add_images(const std::string& title, const RenderedMethod& method, const RenderedImage& image,
                 const Image& ground_truth, double brightest, Experiment& experiment) {
     experiment.pictures.push_back(image_pair(title, method.name, image.picture, ground_truth));
-    experiment.heat_maps.push_back({"Where it is seen", method.name, image.errors, brightest});
+    experiment.heat_maps.push_back({"FLIP error", method.name, image.errors, brightest});
 }
 
 std::string frame_times(std::initializer_list<NamedMeasurement> methods) {

@@ -56,8 +56,8 @@ std::string interpolation_finding(const Experiment& experiment) {
         return method_in(experiment, name_on_torus(lighting_choices.at(choice).name, around));
     };
     return fmt::format(
-               "With {} triangles, flat shading is off by FLIP {:.3f} (RMS), Gouraud's by {:.3f} "
-               "and Phong's by {:.3f}; Gouraud's needs {} triangles to come to {:.3f}.",
+               "With {} triangles, flat shading has a FLIP error of {:.3f} (RMS), Gouraud shading "
+               "{:.3f} and Phong shading {:.3f}; Gouraud shading needs {} triangles for {:.3f}.",
                torus_triangles(24), at(0, 24).error.rms, at(1, 24).error.rms, at(2, 24).error.rms,
                torus_triangles(96), at(1, 96).error.rms) +
            frame_times({{"flat", at(0, 24)}, {"Gouraud", at(1, 24)}, {"Phong", at(2, 24)}});
@@ -70,12 +70,11 @@ Experiment interpolation_experiment(const GlDevice& device, const RunOptions& op
     Experiment experiment{
         .id = "shading/interpolation",
         .question =
-            "How many triangles does it take until it no longer shows where light is "
-            "computed?",
+            "How many triangles make the error of per-face and per-vertex lighting invisible?",
         .ground_truth = fmt::format(
-            "the reference shader in double on a torus of {} triangles with the true normals, one "
-            "ray through the center of each pixel; a test holds that shader to the closed form of "
-            "a lit sphere",
+            "The reference shader in double on a torus of {} triangles with the exact normals, one "
+            "ray through the center of each pixel. A test verifies that shader by the closed form "
+            "of a lit sphere.",
             torus_triangles(smooth_torus_slices)),
         .input = fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size),
         .error_unit = "FLIP",
@@ -92,8 +91,8 @@ Experiment interpolation_experiment(const GlDevice& device, const RunOptions& op
         names.emplace_back(choice.name);
     experiment.charts = {torus_chart(experiment, names, lighting_slices)};
     for (std::size_t i = 1; i < methods.size(); i += lighting_slices.size()) {
-        add_images("Where light is computed", methods[i], pictures[i], ground_truth, 0.5,
-                   experiment);
+        add_images("Lighting per face, vertex and pixel", methods[i], pictures[i], ground_truth,
+                   0.5, experiment);
     }
     experiment.finding = interpolation_finding(experiment);
     return experiment;
@@ -187,12 +186,15 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
     constexpr double roughness = 0.4;
     Experiment experiment{
         .id = "shading/highlights",
-        .question = "How near do Phong's and Blinn's highlights come to those of a rough metal?",
+        .question =
+            "How accurately do Phong and Blinn-Phong highlights approximate those of a rough "
+            "metal?",
         .ground_truth =
-            "a metal of GGX facets, by the reference shader in double, one ray through the "
-            "center of each pixel; tests hold its GGX to the closed form in another notation, and "
-            "its facets to how many there are within 45 degrees",
-        .input = fmt::format("torus of roughness {0} under two lamps, one behind it, {1} x {1} "
+            "A metal of GGX facets, by the reference shader in double, one ray through the "
+            "center of each pixel. Tests verify its GGX by the closed form in another notation, "
+            "and "
+            "its facets by their number within 45 degrees.",
+        .input = fmt::format("torus of roughness {0} under two lights, one behind it, {1} x {1} "
                              "pixels; exponent {2:.0f}",
                              roughness, size, exponent_of(roughness)),
         .error_unit = "FLIP",
@@ -211,10 +213,9 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
     }
     const auto rms = [&](std::size_t i) { return experiment.measurements[i].error.rms; };
     experiment.finding = fmt::format(
-        "Both lack the glow around GGX's highlights: Blinn's are FLIP {:.3f} (RMS) off those of "
-        "the metal, Phong's of the same width {:.3f}. An exponent taken over from the other model "
-        "without the factor of 4 makes "
-        "{:.3f} of Blinn's and {:.3f} of Phong's.",
+        "Both lack the long tails of GGX highlights: Blinn-Phong has a FLIP error of {:.3f} (RMS), "
+        "Phong with highlights of the same width {:.3f}. With the exponent of the other model, "
+        "without the factor of 4, the error is {:.3f} for Blinn-Phong and {:.3f} for Phong.",
         rms(2), rms(0), rms(3), rms(1));
     experiment.finding += frame_times({{"Phong", experiment.measurements[0]},
                                        {"Blinn-Phong", experiment.measurements[2]},
@@ -324,10 +325,12 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
     constexpr double shown = 8.0;
     Experiment experiment{
         .id = "shading/specular-antialiasing",
-        .question = "What keeps highlights right where many texels of a normal map share a pixel?",
+        .question =
+            "Which method keeps highlights accurate where many texels of a normal map share a "
+            "pixel?",
         .ground_truth =
-            fmt::format("the reference shader in double with the normal map at full size, "
-                        "mean of {} rays a pixel in linear light",
+            fmt::format("The reference shader in double with the normal map at full size, "
+                        "mean of {} rays per pixel in linear light.",
                         rays * rays),
         .input = fmt::format("shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
                              "pixels",
@@ -348,13 +351,14 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
         return distance_chart(device, map, options.is_quick ? size / 2 : size, rays);
     })};
     for (const std::size_t i : {0U, 4U}) {
-        add_images("Highlights from afar", methods[i], pictures[i], ground_truth, 0.5, experiment);
+        add_images("Highlights at a distance", methods[i], pictures[i], ground_truth, 0.5,
+                   experiment);
     }
     const auto& measured = experiment.measurements;
     experiment.finding = fmt::format(
-        "At {} texels along a pixel, averaged normals alone are FLIP {:.3f} (RMS) off, widened "
-        "highlights {:.3f}. Drawing 16 pixels for each brings the former to {:.3f}; multisampling, "
-        "which looks at edges only, to {:.3f}.",
+        "At {} texels along a pixel, averaged normals alone have a FLIP error of {:.3f} (RMS), "
+        "widened highlights {:.3f}. Rendering 16 pixels for each pixel reduces the former to "
+        "{:.3f}; multisampling, which affects only edges, to {:.3f}.",
         shown, measured[0].error.rms, measured[4].error.rms, measured[3].error.rms,
         measured[1].error.rms);
     experiment.finding +=
@@ -395,10 +399,10 @@ Experiment edge_experiment(const GlDevice& device, const RunOptions& options) {
     const int rays = options.is_quick ? 8 : 16;
     Experiment experiment{
         .id = "shading/edges",
-        .question = "What do smooth edges cost?",
+        .question = "How much does antialiasing of edges cost?",
         .ground_truth =
-            fmt::format("the reference shader in double, mean of {} rays a pixel in linear "
-                        "light; a test holds its coverage to the closed form of a disc",
+            fmt::format("The reference shader in double, mean of {} rays per pixel in linear "
+                        "light. A test verifies its coverage by the closed form of a disc.",
                         rays * rays),
         .input = fmt::format("ring and cube before a dark background, {0} x {0} pixels", size),
         .error_unit = "FLIP",
@@ -414,11 +418,11 @@ Experiment edge_experiment(const GlDevice& device, const RunOptions& options) {
     }
     const auto& measured = experiment.measurements;
     experiment.finding = fmt::format(
-        "Multisampling of 4 brings FLIP from {:.4f} (RMS) to {:.4f}; 4 pixels drawn for each bring "
-        "it to {:.4f}, 16 to {:.4f}.",
+        "4x multisampling reduces the FLIP error from {:.4f} (RMS) to {:.4f}; rendering 4 pixels "
+        "for each pixel reduces it to {:.4f}, 16 pixels to {:.4f}.",
         measured[0].error.rms, measured[1].error.rms, measured[2].error.rms, measured[4].error.rms);
     experiment.finding += frame_times({{"none", measured[0]},
-                                       {"multisampling of 4", measured[1]},
+                                       {"4x multisampling", measured[1]},
                                        {"4 pixels", measured[2]},
                                        {"16 pixels", measured[4]}});
     return experiment;

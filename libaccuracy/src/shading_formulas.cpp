@@ -220,10 +220,12 @@ Chart index_chart(std::span<const float> cosines) {
 }
 
 Experiment described(const Boundary& boundary, std::size_t angles) {
-    return {.question = "What does Schlick's fit give away, and what does Fresnel's formula cost?",
+    return {.question =
+                "What is the error of Schlick's approximation, and what does Fresnel's formula "
+                "cost?",
             .ground_truth =
-                "Fresnel's formulas for unpolarized light in double; tests hold them to "
-                "normal incidence, Brewster's angle and grazing incidence in closed form",
+                "Fresnel's formulas for unpolarized light in double. Tests verify them by the "
+                "closed forms of normal incidence, Brewster's angle and grazing incidence.",
             .input = fmt::format("{}: {} angles from 0 to 90 degrees", boundary.name, angles),
             .error_unit = "reflectance",
             .item = "angle",
@@ -251,9 +253,10 @@ Experiment glass_experiment(const RunOptions& options) {
     const std::vector<float> cosines = cosines_of_angles(901);
     experiment.charts = {chart_by_incidence(), index_chart(cosines)};
     experiment.finding = fmt::format(
-        "For glass, Schlick's fit is {} off, the reflectance of normal incidence taken everywhere "
-        "{}. The fit is made for indices around 1.5: at 2.42 it is off by up to {:.2g}, at 3.5 by "
-        "up to {:.2g}.",
+        "For glass, Schlick's approximation has an error of {}, the reflectance at normal "
+        "incidence "
+        "{}. The approximation is meant for indices around 1.5: at 2.42 its maximum error is "
+        "{:.2g}, at 3.5 it is {:.2g}.",
         figures(experiment, "Schlick"), figures(experiment, "constant"),
         schlick_error(2.42, cosines).max, schlick_error(3.5, cosines).max);
     return experiment;
@@ -263,9 +266,10 @@ Experiment metal_experiment(const RunOptions& options) {
     Experiment experiment = measured(boundaries[6], options);
     experiment.id = "shading/fresnel-metal";
     experiment.finding = fmt::format(
-        "For iron, Schlick's fit is {} off: metals dim towards grazing angles before they "
-        "brighten, which it cannot show. One more number, by which it is right at 82 degrees, "
-        "leaves {}.",
+        "For iron, Schlick's approximation has an error of {}: metals darken towards grazing "
+        "angles "
+        "before they brighten, which it cannot represent. With a third parameter, which makes it "
+        "exact at 82 degrees, the error is {}.",
         figures(experiment, "Schlick"), figures(experiment, "Schlick, right at 82 degrees"));
     return experiment;
 }
@@ -404,12 +408,12 @@ Experiment unit_normal_experiment(const RunOptions& options) {
     const NormalSamples samples(degrees, 96);
     Experiment experiment{
         .id = "shading/unit-normal",
-        .question = "Does the interpolated normal have to be made unit?",
+        .question = "Is it necessary to normalize the interpolated normal?",
         .ground_truth =
-            "the same light in double, from the normal made unit; tests hold it to a formula in "
-            "angles, and the length in the triangle's middle to its closed form",
-        .input = fmt::format("{} places on a triangle whose corners' normals are {} degrees apart; "
-                             "diffuse light and a highlight of shininess 40, lamp of irradiance 1",
+            "The same lighting in double, from the normalized normal. Tests verify it by a formula "
+            "in angles, and the length in the middle of the triangle by its closed form.",
+        .input = fmt::format("{} points on a triangle whose corner normals are {} degrees apart; "
+                             "diffuse light and a highlight of shininess 40, light of irradiance 1",
                              samples.count(), degrees),
         .error_unit = "radiance",
         .item = "place",
@@ -417,10 +421,9 @@ Experiment unit_normal_experiment(const RunOptions& options) {
     measure_formulas(unit_normal_methods(samples), samples.exact_radiances(), options, experiment);
     experiment.charts = {chart_by_turn()};
     experiment.finding = fmt::format(
-        "Where corners' normals are {} degrees apart, the interpolated normal without "
-        "normalization gives light with an RMS error of {:.2g} (at most {:.2g}), where the "
-        "brightest light is {:.2g}; one Newton step reduces the RMS error to {:.2g}, a square root "
-        "to {:.1g}.",
+        "If corner normals are {} degrees apart, shading with the interpolated normal without "
+        "normalization has an RMS error of {:.2g} (at most {:.2g}), while the maximum radiance is "
+        "{:.2g}; one Newton step reduces the RMS error to {:.2g}, a square root to {:.1g}.",
         degrees, experiment.measurements[0].error.rms, experiment.measurements[0].error.max,
         samples.brightest(), experiment.measurements[1].error.rms,
         experiment.measurements[2].error.rms);

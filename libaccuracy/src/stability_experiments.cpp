@@ -104,7 +104,9 @@ void measure_swept(std::vector<Swept<MeasuredMethod>> methods, const Sweeps& swe
         const bool is_textbook = methods[i].is_textbook;
         method.error = sweeps.figures(i);
         method.choices.emplace_back("guarded", is_textbook ? "no" : "yes");
-        if (is_textbook) method.note = "Not of relief: what plain code does, for contrast.";
+        if (is_textbook)
+            method.note =
+                "Textbook code without guards, which is not part of relief, for contrast.";
     }
     experiment.error_unit = "degrees";
     measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
@@ -114,8 +116,8 @@ void measure_swept(std::vector<Swept<MeasuredMethod>> methods, const Sweeps& swe
 }
 
 constexpr const char* torus_ground_truth =
-    "the torus's own normals in closed form, which neither scale nor place change; tests "
-    "differentiate the surface numerically as well";
+    "The exact normals of the torus in closed form, which do not depend on scale and position. "
+    "Tests verify them by numerical differentiation of the surface.";
 constexpr std::uint32_t torus_seed = 1;
 constexpr std::uint32_t needles_seed = 1;
 
@@ -218,11 +220,12 @@ Experiment normals_by_scale(const RunOptions& options) {
     sweeps.add("larger", "Larger", "times larger than radius 1", 30, 2, scaled(true));
     Experiment experiment{
         .id = "stability/normals-scale",
-        .question = "In which units may a mesh be, before its normals are wrong?",
+        .question = "At which scales of a mesh are its normals accurate?",
         .ground_truth = torus_ground_truth,
-        .input = fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; errors of all "
-                             "together, times at scale 1",
-                             ground_truth.mesh.triangles.size())};
+        .input =
+            fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; the errors are "
+                        "those of all together, the times those at scale 1",
+                        ground_truth.mesh.triangles.size())};
     measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
     return experiment;
 }
@@ -239,16 +242,15 @@ Experiment normals_by_offset(const RunOptions& options) {
                });
     Experiment experiment{
         .id = "stability/normals-offset",
-        .question = "How far from the origin may a mesh be, before its normals are wrong?",
+        .question = "At which distances of a mesh from the origin are its normals accurate?",
         .ground_truth = torus_ground_truth,
-        .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; errors of all "
-                             "together, times without one",
+        .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; the errors are "
+                             "those of all together, the times those at the origin",
                              ground_truth.mesh.triangles.size())};
     measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
     experiment.finding +=
-        " float64 is exact for the positions that it is given: what it errs is what rounding these "
-        "to float has done, which no method can undo. Move meshes to the origin before they are "
-        "stored.";
+        " float64 is exact for the given positions: its error is that of rounding the positions to "
+        "float, which no method can undo. Move meshes to the origin before storing them.";
     return experiment;
 }
 
@@ -264,13 +266,14 @@ Experiment normals_of_needles(const RunOptions& options) {
     const Needles wide = make_needles(count, 1.0, needles_seed);
     Experiment experiment{
         .id = "stability/normals-needles",
-        .question = "How narrow may a triangle be, before its normal is wrong?",
+        .question = "At which widths of a triangle is its normal accurate?",
         .ground_truth =
-            "the cross product of the float corners in double, of two of which lie so near "
-            "the origin that nothing cancels; a test has the same from integers",
-        .input = fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; "
-                             "errors of all together, times at width 1",
-                             count)};
+            "The cross product of the float corners in double; two of them are so near to the "
+            "origin that nothing cancels. A test verifies it in integers.",
+        .input =
+            fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; the "
+                        "errors are those of all together, the times those at width 1",
+                        count)};
     measure_normals(methods, sweeps, wide.mesh, options, experiment);
     return experiment;
 }
@@ -280,24 +283,26 @@ Experiment normals_beside_hard_triangles(const RunOptions& options) {
     const std::vector<SweptNormals> methods = swept_normal_methods();
     Sweeps sweeps(names_of(methods), broken_degrees);
     for (const HardTriangleName& one : hard_triangle_names) {
-        sweeps.add(
-            one.id, one.title, "how many of them", 3, 1, [&](std::size_t method, double count) {
-                const Mesh mesh = with_hard_triangles(ground_truth.mesh, one.kind,
-                                                      static_cast<std::size_t>(count));
-                return normal_degrees(methods[method].method.normals(mesh), ground_truth.normals);
-            });
+        sweeps.add(one.id, one.title, "number of hard triangles", 3, 1,
+                   [&](std::size_t method, double count) {
+                       const Mesh mesh = with_hard_triangles(ground_truth.mesh, one.kind,
+                                                             static_cast<std::size_t>(count));
+                       return normal_degrees(methods[method].method.normals(mesh),
+                                             ground_truth.normals);
+                   });
     }
     Experiment experiment{
         .id = "stability/normals-hard-triangles",
         .question =
-            "How many triangles of the hard-case catalogue may a mesh have, before the "
-            "normals around them are wrong?",
+            "With how many triangles of the hard-case catalogue are the normals around them "
+            "accurate?",
         .ground_truth =
-            fmt::format("{}; what is added has no area, no place or two sides, and so is no "
-                        "part of the surface",
+            fmt::format("{} The added triangles have no area, no position or two sides, and are "
+                        "therefore not part of the surface.",
                         torus_ground_truth),
-        .input = fmt::format("torus of {} triangles with 1 to 1000 hard ones more, of five kinds; "
-                             "errors of all together, times without them",
+        .input = fmt::format("torus of {} triangles with 1 to 1000 added hard triangles of five "
+                             "kinds; the errors are those of all together, the times those without "
+                             "them",
                              ground_truth.mesh.triangles.size())};
     measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
     return experiment;
@@ -352,8 +357,8 @@ void measure_tangents(const std::vector<SweptTangents>& methods, const Sweeps& s
                       const TexturedMesh& ground_truth, const RunOptions& options,
                       Experiment& experiment) {
     experiment.ground_truth =
-        "the directions along which the image lies on the torus, in closed form, which neither "
-        "scale nor place change; tests differentiate the surface numerically as well";
+        "The exact tangents of the textured torus in closed form, which do not depend on scale and "
+        "position. Tests verify them by numerical differentiation of the surface.";
     std::vector<Swept<MeasuredMethod>> swept;
     for (const auto& [method, is_textbook] : methods) {
         swept.push_back(
@@ -389,12 +394,10 @@ Experiment tangents_by_scale(const RunOptions& options) {
     add("larger-image", "Larger texture coordinates", "times larger than one image", true, true);
     Experiment experiment{
         .id = "stability/tangents-scale",
-        .question =
-            "In which units may a mesh and its texture coordinates be, before tangents are "
-            "wrong?",
+        .question = "At which scales of a mesh and its texture coordinates are tangents accurate?",
         .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
-                             "31 scales each from 1e-30 to 1e30; errors of all together, times at "
-                             "scale 1",
+                             "31 scales each from 1e-30 to 1e30; the errors are those of all "
+                             "together, the times those at scale 1",
                              ground_truth.mesh.triangles.size())};
     measure_tangents(methods, sweeps, ground_truth, options, experiment);
     return experiment;
@@ -415,12 +418,13 @@ Experiment tangents_by_offset(const RunOptions& options) {
     Experiment experiment{
         .id = "stability/tangents-offset",
         .question =
-            "How far from the origin may a mesh and its texture coordinates be, before "
-            "tangents are wrong?",
-        .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
-                             "9 distances each from 1 to 1e8; errors of all together, times "
-                             "without one",
-                             ground_truth.mesh.triangles.size())};
+            "At which distances of a mesh and its texture coordinates from the origin are "
+            "tangents accurate?",
+        .input =
+            fmt::format("torus of {} triangles, its positions and its texture coordinates at "
+                        "9 distances each from 1 to 1e8; the errors are those of all together, "
+                        "the times those at the origin",
+                        ground_truth.mesh.triangles.size())};
     measure_tangents(methods, sweeps, ground_truth, options, experiment);
     return experiment;
 }
@@ -526,12 +530,13 @@ Experiment bump_by_steepness(const RunOptions& options) {
     });
     Experiment experiment{
         .id = "stability/bump-steepness",
-        .question = "How steep or flat may a height map be, before its normals are wrong?",
+        .question = "At which slopes of a height map are its normals accurate?",
         .ground_truth =
-            "the wave's slopes in closed form, times the same factor; tests differentiate it "
-            "numerically as well",
+            "The slopes of the wave in closed form, multiplied by the same factor. Tests verify "
+            "them by numerical differentiation.",
         .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
-                             "to 1e30; errors of all together, times at slope 1",
+                             "to 1e30; the errors are those of all together, the times those at "
+                             "slope 1",
                              map_side(options), swept_wavelength)};
     measure_slopes(methods, sweeps, wave, options, experiment);
     return experiment;
@@ -547,18 +552,19 @@ Experiment bump_by_offset(const RunOptions& options) {
                });
     Experiment experiment{
         .id = "stability/bump-offset",
-        .question = "How far above zero may heights lie, before their normals are wrong?",
+        .question = "At which distances of the heights from zero are their normals accurate?",
         .ground_truth =
-            "the wave's slopes in closed form, which its zero does not change; tests "
-            "differentiate it numerically as well",
+            "The slopes of the wave in closed form, which do not depend on an added constant. "
+            "Tests verify them by numerical differentiation.",
         .input =
             fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
-                        "heights from 1 to 1e8; errors of all together, times at 0",
+                        "heights from 1 to 1e8; the errors are those of all together, the times "
+                        "those at 0",
                         map_side(options), swept_wavelength)};
     measure_slopes(methods, sweeps, wave, options, experiment);
     experiment.finding +=
-        " What double errs is what rounding these heights to float has done, which no method can "
-        "undo: store heights from their own zero.";
+        " The error of float64 is that of rounding these heights to float, which no method can "
+        "undo: store heights relative to a zero within their range.";
     return experiment;
 }
 
@@ -575,7 +581,7 @@ std::vector<Experiment> stability_experiments(const RunOptions& options) {
     std::vector<Experiment> experiments = run_planned(plan, options);
     for (Experiment& experiment : experiments) {
         experiment.subject = Subject::stability;
-        experiment.finding += " Single hard inputs, each with its outcome: docs/hard-cases.md.";
+        experiment.finding += " docs/hard-cases.md lists single hard inputs and their outcomes.";
     }
     return experiments;
 }

@@ -30,12 +30,13 @@ struct HardTriangleName {
     const char* title;
 };
 inline constexpr std::array hard_triangle_names = {
-    HardTriangleName{HardTriangle::collapsed, "collapsed", "Triangles that name a vertex twice"},
+    HardTriangleName{HardTriangle::collapsed, "collapsed",
+                     "Triangles that refer to a vertex twice"},
     HardTriangleName{HardTriangle::coinciding, "coinciding",
-                     "Triangles with two corners at one place"},
+                     "Triangles with two corners at the same position"},
     HardTriangleName{HardTriangle::needle, "needle", "Needles along an edge"},
-    HardTriangleName{HardTriangle::nowhere, "nowhere", "Triangles with a corner that is no number"},
-    HardTriangleName{HardTriangle::back, "back", "Triangles with another on their back"},
+    HardTriangleName{HardTriangle::nowhere, "nowhere", "Triangles with a corner that is NaN"},
+    HardTriangleName{HardTriangle::back, "back", "Triangles with another one on their back side"},
 };
 
 /// Adds `count` hard triangles, spread evenly over the mesh; with HardTriangle::back at most one

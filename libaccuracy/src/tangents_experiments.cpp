@@ -81,7 +81,7 @@ std::vector<RenderedMethod> frame_methods() {
         1,
         1,
         12.0,
-        "What a frame takes before there is a map to read."};
+        "The time of a frame without a normal map, for comparison."};
     smooth.scene.materials.front().normal_map.reset();
     all.push_back(std::move(smooth));
     return all;
@@ -92,8 +92,8 @@ std::string frames_finding(const Experiment& experiment) {
         return method_in(experiment, name_on_torus(frames, around));
     };
     return fmt::format(
-               "With {} triangles pictures are off by FLIP {:.3f} (RMS) with stored frames and "
-               "{:.3f} with derived ones, with {} by {:.3f} and {:.3f}.",
+               "With {} triangles the images have a FLIP error of {:.3f} (RMS) with stored frames "
+               "and {:.3f} with derived ones, with {} triangles {:.3f} and {:.3f}.",
                torus_triangles(rendered_slices[0]), at("stored", rendered_slices[0]).error.rms,
                at("derived", rendered_slices[0]).error.rms, torus_triangles(rendered_slices[2]),
                at("stored", rendered_slices[2]).error.rms,
@@ -112,10 +112,12 @@ Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& 
     Experiment experiment{
         .id = "tangents/drawn",
         .subject = Subject::tangents,
-        .question = "What do frames that shaders derive cost, where stored ones cost memory?",
+        .question =
+            "Which tangent frames cost less in rendering: stored ones, or ones that shaders "
+            "derive?",
         .ground_truth = fmt::format(
-            "the reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
-            "one ray through the center of each pixel; tests hold that shader to closed forms",
+            "The reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
+            "one ray through the center of each pixel. Tests verify that shader by closed forms.",
             torus_triangles(smooth_torus_slices)),
         .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size),
         .error_unit = "FLIP",
@@ -144,8 +146,8 @@ namespace {
 
 constexpr int cells_of_tangent_tables = 64;  ///< The same number as in docs/tangents.md.
 constexpr const char* ground_truth_text =
-    "The surface's own frames in closed form, by which its image is laid on it; tests "
-    "differentiate the surface numerically as well.";
+    "The exact frames of the textured surface in closed form. Tests verify them by numerical "
+    "differentiation of the surface.";
 
 /// All methods; the first one also with a shader that normalizes its vectors.
 std::vector<TangentMethod> compared_tangent_methods() {
@@ -178,7 +180,9 @@ MeasuredMethod exact_frames(const TexturedMesh& ground_truth) {
     method.error = figures_of(
         texel_errors(ground_truth, exact_tangents(ground_truth), ShaderBasis::as_interpolated));
     method.stored_bytes = 28.0;
-    method.note = "No method: true frames at the vertices. What is left is interpolation's.";
+    method.note =
+        "Not a method: the exact frames at the vertices. The error that remains is that of "
+        "interpolation.";
     return method;
 }
 
@@ -195,8 +199,8 @@ std::vector<MeasuredMethod> measured_on(const TexturedMesh& ground_truth) {
             one.work = [tangents = method.tangents, &ground_truth] { tangents(ground_truth.mesh); };
         else
             one.note =
-                "Nothing to compute for the mesh: shaders derive frames for each pixel. What that "
-                "takes, tangents/drawn measures.";
+                "No work for the mesh: shaders derive the frame of each pixel. tangents/drawn "
+                "measures the time of that.";
         measured.push_back(std::move(one));
     }
     return measured;
@@ -250,11 +254,11 @@ Chart bevels_chart() {
     Chart chart = chart_over(meshes);
     chart.id = "bevels";
     chart.title = "Wider bevels";
-    chart.x_label = "width of the bevels, half the plate's being 1";
+    chart.x_label = "width of the bevels (half the width of the plate is 1)";
     return chart;
 }
 
-/// "Of stored frames mikktspace is closest, ...; frames derived in the shader are ... off."
+/// "Of the stored frames, mikktspace has the smallest error, ... degrees RMS (...)."
 /// \param experiment  has the measurement of the exact frames first, then those of the methods
 std::string tangents_finding(const Experiment& experiment) {
     const Measurement* best = nullptr;
@@ -267,8 +271,8 @@ std::string tangents_finding(const Experiment& experiment) {
         if (best == nullptr || one.error.rms < best->error.rms) best = &one;
     }
     return fmt::format(
-        "Of stored frames {} is closest, {:.3g} degrees RMS, where the surface's own would leave "
-        "{:.3g}; frames derived in the shader are {:.3g} off.",
+        "Of the stored frames, {} has the smallest error, {:.3g} degrees RMS (the exact frames of "
+        "the surface: {:.3g}); frames derived in the shader have an error of {:.3g}.",
         best->method, best->error.rms, experiment.measurements.front().error.rms,
         derived->error.rms);
 }
@@ -299,7 +303,7 @@ Experiment on_case(const TexturedCase& one, const RunOptions& options) {
         on_mesh("tangents/" + one.id, input, ground_truth,
                 {.one_thread = true, .all_threads = true, .memory = false}, options);
     experiment.question = fmt::format(
-        "Where does a texel tilted by 30 degrees point, by each way of getting frames ({})?",
+        "What is the error of the normal of a texel tilted by 30 degrees, by frame method ({})?",
         one.name);
     experiment.charts.push_back(computed_once(options, [&] {
         return one.triangulation ? cells_chart(one, options.is_quick) : bevels_chart();
@@ -314,7 +318,7 @@ Experiment tangents_on_large_mesh(const RunOptions& options) {
     Experiment experiment =
         on_mesh("tangents/large", fmt::format("torus, jittered, {} x {} cells", cells, cells),
                 ground_truth, {}, options);
-    experiment.question = "What do tangents of a large mesh cost, in time and in memory?";
+    experiment.question = "How much time and memory do the tangents of a large mesh cost?";
     return experiment;
 }
 
@@ -325,9 +329,10 @@ Experiment mismatches(const RunOptions& options) {
     Experiment experiment;
     experiment.id = "tangents/mismatch";
     experiment.subject = Subject::tangents;
-    experiment.question = "What does a map show that is baked in one basis and read in another?";
+    experiment.question =
+        "What is the error of a map that is baked in one basis and read in another?";
     experiment.ground_truth =
-        "The normal that was baked: in a basis of its own it comes back exactly.";
+        "The normal that was baked. Reading it in the same basis restores it exactly.";
     experiment.input =
         fmt::format("normals tilted by 30 degrees on a jittered torus of {} triangles",
                     ground_truth.mesh.triangles.size());
@@ -350,8 +355,9 @@ Experiment mismatches(const RunOptions& options) {
     const auto& all = experiment.measurements;
     const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
     experiment.finding = fmt::format(
-        "A map read in its own basis is exact to {:.1g} degrees; the worst pair is off by {:.3g} "
-        "RMS, {:.3g} at most: {}.",
+        "A map that is read in the basis of its bake is exact to {:.1g} degrees. The worst pair "
+        "has "
+        "an error of {:.3g} degrees RMS, {:.3g} at most: {}.",
         most_accurate(experiment)->error.rms, worst.error.rms, worst.error.max, worst.method);
     return experiment;
 }

@@ -59,7 +59,7 @@ TEST(AssetHeights, AreThoseOfTheBumpExperiment) {
     EXPECT_THAT(own.recommendation.words, HasSubstr("central7, float64, 32 bit: "));
     EXPECT_THAT(own.command(), HasSubstr("relief-bake bump map.png OUT.exr --strength "));
     EXPECT_THAT(own.command(), HasSubstr(" --kernel central7 --precision float64 --wrap repeat"));
-    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("nothing can know exactly"));
+    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("the exact normals are unknown"));
     EXPECT_EQ(own.experiment.reference_error, same.reference.reference_degrees);
     const ExpectedError expected = found(own, "sobel3, float32, 8 bit").expected.value();
     EXPECT_EQ(expected.map, same.reference.reference_degrees);
@@ -86,7 +86,8 @@ TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     // Methods are within half a degree of the reference, but the reference has a larger error.
     EXPECT_LT(most_accurate(own.experiment)->error.rms, 0.5);
     EXPECT_EQ(own.recommendation.method, std::nullopt);
-    EXPECT_THAT(own.recommendation.words, HasSubstr("no method is within 0.5 degrees: the least "));
+    EXPECT_THAT(own.recommendation.words,
+                HasSubstr("no method is within 0.5 degrees: the smallest error "));
     EXPECT_THAT(own.recommendation.words, HasSubstr(" (the map itself "));
 }
 

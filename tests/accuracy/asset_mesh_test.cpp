@@ -168,9 +168,10 @@ TEST(CreaseRule, AreTheOnesToldOrThoseOfTheFile) {
     Mesh mesh = test::cube();
     const CreaseRule by_normals = crease_rule(mesh, std::nullopt);
     EXPECT_NEAR(by_normals.edges.crease_angle.value(), glm::radians(45.0), 1e-9);
-    EXPECT_EQ(by_normals.words,
-              "edges sharper than 45 degrees are hard, which tells 100% of the edges as its own "
-              "normals do");
+    EXPECT_EQ(
+        by_normals.words,
+        "edges sharper than 45 degrees are hard, which agrees with the stored normals at 100% of "
+        "the edges");
     EXPECT_EQ(by_normals.option, " --crease 45");
     EXPECT_EQ(crease_rule(mesh, glm::radians(30.0)).option, " --crease 30");
     EXPECT_FALSE(crease_rule(mesh, std::numbers::pi).has_any());

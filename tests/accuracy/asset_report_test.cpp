@@ -98,7 +98,8 @@ TEST(Recommended, KeepsWithinAnError) {
     rule.request.max_error = 0.01;
     const Recommendation none = recommended(usual(), rule);
     EXPECT_EQ(none.method, std::nullopt);
-    EXPECT_EQ(none.words, "no method is within 0.01 degrees: the least is 0.12, with best");
+    EXPECT_EQ(none.words,
+              "no method is within 0.01 degrees: the smallest error is 0.12, with best");
 }
 
 TEST(Recommended, KeepsWithinATime) {
@@ -112,8 +113,10 @@ TEST(Recommended, KeepsWithinATime) {
               "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
     rule.request.max_seconds = 0.1;
     rule.request.max_error = 0.045;
-    EXPECT_EQ(recommended(usual(), rule).words,
-              "no method is within 0.045 degrees and 100 ms: that error takes 123 ms, with best");
+    EXPECT_EQ(
+        recommended(usual(), rule).words,
+        "no method is within 0.045 degrees and 100 ms: the fastest with that error takes 123 ms, "
+        "with best");
 }
 
 TEST(Recommended, LeavesOutWhatCannotBeTaken) {
@@ -161,9 +164,10 @@ TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
     rule.request.max_error = 0.125;
     found = recommended(experiment, rule);
     EXPECT_EQ(found.method, std::nullopt);
-    EXPECT_EQ(found.words,
-              "no method is within 0.125 degrees: the least is 0.126, with best (the map itself "
-              "0.12)");
+    EXPECT_EQ(
+        found.words,
+        "no method is within 0.125 degrees: the smallest error is 0.126, with best (the map itself "
+        "0.12)");
     // As an invisible error, it reduces the value of the accurate methods.
     experiment.reference_error = 2.0;
     EXPECT_EQ(recommended(experiment, {}).method, 0U);

@@ -267,11 +267,12 @@ TEST(BumpExperiments, HaveTheErrorsOfThePage) {
     EXPECT_NEAR(measurement_of(detailed, "central7, float64").error.rms, 2.3, 0.05);
     EXPECT_NEAR(measurement_of(detailed, "scharr3, float64, steps smoothed away").error.rms, 1.4,
                 0.05);
-    EXPECT_THAT(detailed.finding, HasSubstr("is closest, 1.3 degrees RMS. float32 changes"));
-    EXPECT_THAT(detailed.finding, HasSubstr("On this map --kernel auto takes sobel3."));
+    EXPECT_THAT(detailed.finding,
+                HasSubstr("has the smallest error, 1.3 degrees RMS. float32 changes"));
+    EXPECT_THAT(detailed.finding, HasSubstr("On this map --kernel auto selects sobel3."));
     const Experiment noisy = quick("Bump: noise 0.03, float");
     EXPECT_EQ(noisy.measurements.size(), 26U);
-    EXPECT_THAT(noisy.finding, HasSubstr(", where sobel3 is 0.99 off. "));
+    EXPECT_THAT(noisy.finding, HasSubstr(" (sobel3: 0.99). "));
     EXPECT_NEAR(measurement_of(noisy, "gaussian 4, float64").error.rms, 0.32, 0.005);
     EXPECT_NEAR(measurement_of(noisy, "central3, float32").error.rms, 1.6, 0.05);
 }

@@ -101,9 +101,9 @@ TEST(FrameExperiments, ErrorsAreThoseOfTheEncodings) {
     EXPECT_GT(floats.error.max, 1e-7) << "float has an error too";
     EXPECT_EQ(floats.cost.stored_bytes, 28.0);
     EXPECT_THAT(experiment.finding,
-                HasSubstr("in 4 bytes 'angle10, best' has the least error, 0.082 degrees"));
+                HasSubstr("in 4 bytes 'angle10, best' has the smallest error, 0.082 degrees"));
     EXPECT_THAT(experiment.finding,
-                HasSubstr("in 8 bytes 'quaternion16, best' has the least error, 0.0005"));
+                HasSubstr("in 8 bytes 'quaternion16, best' has the smallest error, 0.0005"));
 }
 
 TEST(FrameExperiments, WritingSaysWhatTheBestCodesBring) {

@@ -268,9 +268,10 @@ TEST(NormalCodeExperiments, HaveTheErrorsOfThePage) {
     EXPECT_NEAR(curve_of(chart, "xyz 8 bit, blue-noise").points[4].error, 0.01101, 5e-6);
     EXPECT_NEAR(curve_of(chart, "xyz 16 bit").points[0].error, 0.00071, 5e-6);
     EXPECT_NEAR(measurement_of(surface, "xyz 8 bit").error.rms, 0.18230, 5e-6);
-    EXPECT_THAT(surface.finding,
-                HasSubstr("a texel is 0.18 degrees off and the mean of 16 x 16 still 0.025; blue "
-                          "noise makes them 0.26 and 0.011."));
+    EXPECT_THAT(
+        surface.finding,
+        HasSubstr("a texel has an error of 0.18 degrees RMS, and the mean of 16 x 16 texels "
+                  "still 0.025; with blue noise the errors are 0.26 and 0.011."));
 }
 
 TEST(NormalCodeExperiments, SayWhatIsNearestInSoManyBytes) {

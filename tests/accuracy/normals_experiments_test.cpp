@@ -121,7 +121,9 @@ TEST(NormalsExperiments, HaveTheErrorsOfThePage) {
     EXPECT_NEAR(measurement_of(torus, "max, float64").error.max, 2.027, 5e-4);
     EXPECT_NEAR(measurement_of(torus, "area, float64").error.rms, 1.279, 5e-4);
     EXPECT_EQ(torus.items, 2.0 * 64 * 64);
-    EXPECT_THAT(torus.finding, HasSubstr("max is closest, 0.453 degrees RMS; area is farthest"));
+    EXPECT_THAT(torus.finding,
+                HasSubstr("max has the smallest error, 0.453 degrees RMS; area has the "
+                          "largest"));
     const Experiment folded = quick("Normals: cubic, folded");
     EXPECT_NEAR(measurement_of(folded, "auto, float64").error.rms, 0.654, 5e-4);
     EXPECT_NEAR(measurement_of(folded, "max, float64").error.max, 180.0, 5e-2);

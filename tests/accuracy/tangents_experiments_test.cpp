@@ -33,11 +33,13 @@ TEST(TangentsExperiments, HaveTheErrorsOfThePage) {
     EXPECT_NEAR(measurement_of(torus, "area-weighted").error.max, 1.066, 5e-4);
     EXPECT_NEAR(measurement_of(torus, "screen-space").error.rms, 0.561, 5e-4);
     EXPECT_EQ(measurement_of(torus, "screen-space").cost.stored_bytes, 12.0);
-    EXPECT_THAT(torus.finding, HasSubstr("Of stored frames mikktspace is closest, 0.1 degrees"));
+    EXPECT_THAT(torus.finding,
+                HasSubstr("Of the stored frames, mikktspace has the smallest error, 0.1 "
+                          "degrees"));
     const Experiment plate = quick("Tangents: plate with thin bevels, image sheared on those");
     EXPECT_NEAR(measurement_of(plate, "mikktspace").error.rms, 5.353, 5e-4);
     EXPECT_NEAR(measurement_of(plate, "area-weighted").error.rms, 0.114, 5e-4);
-    EXPECT_THAT(plate.finding, HasSubstr("area-weighted is closest"));
+    EXPECT_THAT(plate.finding, HasSubstr("area-weighted has the smallest error"));
 }
 
 /// The slope between two neighboring points on logarithmic axes.

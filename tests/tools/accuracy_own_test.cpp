@@ -104,7 +104,7 @@ TEST(AccuracyOwn, ABoundThatNothingKeepsIsExitOne) {
     EXPECT_EQ(workplace.run(line + "90").exit_code, 0);
     const ProgramResult strict = workplace.run(line + "0");
     EXPECT_EQ(strict.exit_code, 1);
-    EXPECT_THAT(strict.out, HasSubstr("no method is within 0 degrees: the least is "));
+    EXPECT_THAT(strict.out, HasSubstr("no method is within 0 degrees: the smallest error is "));
 }
 
 TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {

@@ -622,7 +622,7 @@ TEST(BumpAccuracyCommand, ComparesAllMethodsOnTheMap) {
     const ProgramResult result = workplace.run("relief-bake bump h.png out/n.png --compare" +
                                                strength_of(field) + " --report out/r.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_THAT(result.out, HasSubstr("measured on all of the map, against the kernel chosen"));
+    EXPECT_THAT(result.out, HasSubstr("measured on all of the map, against the kernel selected"));
     EXPECT_THAT(result.out, HasSubstr("MPixel/s\n"));
     EXPECT_THAT(result.out, HasSubstr("* no other method is both faster and more accurate\n"));
     const json report = json::parse(workplace.read("out/r.json"));

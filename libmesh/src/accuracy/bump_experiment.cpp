@@ -110,9 +110,9 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
     reference.upper_degrees = best.upper_rms_degrees;
     reference.upper_max_degrees = best.upper_max_degrees;
     reference.words = fmt::format(
-        "the kernel chosen for this map in float64{}; itself expected to be about {:.2g} degrees "
-        "off what the map was made of, which nothing can know exactly",
-        destaircased ? ", its steps smoothed away" : "", best.rms_degrees);
+        "the kernel selected for this map in float64{}, with an expected error of about {:.2g} "
+        "degrees itself; the exact normals are unknown",
+        destaircased ? " after smoothing its steps" : "", best.rms_degrees);
     return reference;
 }
 
@@ -310,7 +310,7 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
     options.bump = field.options;
     BumpExperiment experiment;
     experiment.choice = choose_kernel(field.heights, options.bump);
-    experiment.reference.words = "the true normals of the field";
+    experiment.reference.words = "the exact normals of the field";
     Trial trial;
     trial.bump = options.bump;
     trial.heights.push_back(field.heights);

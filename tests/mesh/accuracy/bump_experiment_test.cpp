@@ -286,7 +286,7 @@ TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
     EXPECT_TRUE(experiment.reference.method->destaircased);
     EXPECT_EQ(experiment.reference.method->arithmetic, Arithmetic::float64);
     EXPECT_GT(experiment.reference.reference_degrees, 0.01);
-    EXPECT_THAT(experiment.reference.words, HasSubstr("its steps smoothed away"));
+    EXPECT_THAT(experiment.reference.words, HasSubstr("after smoothing its steps"));
     // The result is more accurate than the choice for the unchanged map.
     BumpOptions plain = field.options;
     plain.kernel = experiment.choice.kernel;
