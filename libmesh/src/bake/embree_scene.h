@@ -71,7 +71,7 @@ struct alignas(64) RayPacket {
     [[nodiscard]] bool is_blocked(std::size_t lane) const { return blocked[lane]; }
 };
 
-/// How thoroughly a scene is built. It does not change the hits.
+/// The effort of building a scene. It does not change the hits.
 enum class SceneBuild {
     thorough,  ///< For many rays.
     fast,      ///< Takes two thirds of the build time; rays take up to 5% longer.

@@ -32,7 +32,7 @@ class JsonCursor {
     /// an error.
     static JsonCursor parse(std::string_view text);
 
-    /// The root of a document.
+    /// Makes the root of a document.
     explicit JsonCursor(nlohmann::json&& document, Wording wording);
 
     [[nodiscard]] bool is_object() const;
@@ -41,41 +41,41 @@ class JsonCursor {
     [[nodiscard]] bool is_number() const;
     [[nodiscard]] bool is_null() const;
 
-    /// A member of an object; nullopt if it is absent.
+    /// Returns a member of an object; nullopt if it is absent.
     [[nodiscard]] std::optional<JsonCursor> find(std::string_view key) const;
-    /// A member of an object; nullopt if it is absent or null.
+    /// Returns a member of an object; nullopt if it is absent or null.
     [[nodiscard]] std::optional<JsonCursor> find_value(std::string_view key) const;
-    /// A member of an object, which must exist.
+    /// Returns a member of an object, which must exist.
     [[nodiscard]] JsonCursor at(std::string_view key) const;
-    /// The keys of an object, sorted.
+    /// Returns the keys of an object, sorted.
     [[nodiscard]] std::vector<std::string> keys() const;
-    /// The members of an object, sorted by key.
+    /// Returns the members of an object, sorted by key.
     [[nodiscard]] std::vector<std::pair<std::string, JsonCursor>> members() const;
     /// Throws if the value is not an object or has other keys.
     void allow(std::span<const std::string> keys) const;
     void allow(std::initializer_list<const char*> keys) const;
-    /// The elements of an array.
+    /// Returns the elements of an array.
     [[nodiscard]] std::vector<JsonCursor> elements() const;
 
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] const std::string& text() const;
     [[nodiscard]] float number(float min = std::numeric_limits<float>::lowest(),
                                float max = std::numeric_limits<float>::max()) const;
-    /// A number within the range of float, not rounded to float.
+    /// Returns a number within the range of float, not rounded to float.
     [[nodiscard]] double exact_number() const;
-    /// Any number.
+    /// Returns any number.
     [[nodiscard]] double double_number() const;
-    /// Any number; null gives NaN.
+    /// Returns any number; null gives NaN.
     [[nodiscard]] double number_or_nan() const;
     [[nodiscard]] int whole_number(int min, int max) const;
     [[nodiscard]] std::uint64_t unsigned_number() const;
-    /// An array of `count` finite numbers.
+    /// Returns an array of `count` finite numbers.
     [[nodiscard]] std::vector<float> numbers(std::size_t count) const;
     [[nodiscard]] glm::vec3 vector() const;
 
     /// \throws InvalidInput "LOCATION: problem"
     [[noreturn]] void fail(const std::string& problem) const;
-    /// Fails with "is 'lamp', but must be one of ...; did you mean ...?".
+    /// Fails with "is 'tree', but must be one of ...; did you mean ...?".
     [[noreturn]] void fail_unknown(std::string_view value,
                                    std::span<const std::string> known) const;
 

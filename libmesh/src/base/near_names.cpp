@@ -10,7 +10,7 @@ namespace relief {
 
 namespace {
 
-/// Lower case, with blanks for all separators.
+/// Returns the name in lower case, with blanks for all separators.
 std::string plain(std::string_view name) {
     std::string result;
     for (const char c : name) {
@@ -20,7 +20,7 @@ std::string plain(std::string_view name) {
     return result;
 }
 
-/// The edit distance: letters to insert, remove or change.
+/// Returns the edit distance: the number of letters to insert, remove or change.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j)

@@ -38,7 +38,7 @@
 namespace relief {
 namespace {
 
-/// A weight at a place.
+/// A sample and its weight.
 struct Weighted {
     int place;
     double weight;
@@ -47,15 +47,16 @@ struct Weighted {
 /// A linear map from n samples of a line to n others.
 class LineOperator {
   public:
-    /// What a clamped line goes on as: what is differentiated, point-reflected, so that planes stay
-    /// planes; what is averaged, as its last sample.
+    /// The continuation of a line beyond a clamped border. Differences use the point reflection, so
+    /// that planes stay planes; averages repeat the last sample.
     enum class Beyond { reflected, last };
 
-    /// \param taps  of a sample: offsets and weights; beyond the border by `wrap` (bump.h)
+    /// \param taps  offsets from a sample and their weights; `wrap` (bump.h) defines samples beyond
+    ///              the border
     LineOperator(int count, std::span<const Weighted> taps, Wrap wrap, Beyond clamped);
     [[nodiscard]] LineOperator transposed() const;
 
-    /// Of one result: the samples that it comes from.
+    /// Returns the samples that contribute to one result.
     [[nodiscard]] std::span<const Weighted> entries(int row) const {
         return {entries_.data() + starts_[static_cast<std::size_t>(row)],
                 entries_.data() + starts_[static_cast<std::size_t>(row) + 1]};
@@ -71,22 +72,22 @@ class LineOperator {
     int count_;
     std::vector<std::size_t> starts_;
     std::vector<Weighted> entries_;
-    /// Rows [inside_begin_, inside_end_) all have the entries of the first, moved along.
+    /// Rows [inside_begin_, inside_end_) all have the entries of the first one, shifted.
     int inside_begin_ = 0, inside_end_ = 0;
 };
 
-/// Slopes along x and along y (upwards) of the rows of an image.
+/// Computes slopes along x and along y (upwards) of the rows of an image.
 class SlopeOperator {
   public:
     SlopeOperator(int width, int height, const GradientKernel& kernel, Wraps wrap,
                   glm::dvec2 texel);
 
-    /// Slopes of one row of heights.
+    /// Computes the slopes of one row of heights.
     void slopes(const double* heights, int row, double* along_x, double* along_y) const;
 
-    /// Rows of slopes, from wherever they are.
+    /// Provides one row of slopes.
     using SlopeRows = std::function<void(int row, double* along_x, double* along_y)>;
-    /// The transpose of `slopes`: one number for each height.
+    /// Applies the transpose of `slopes`, which gives one number for each height.
     void transpose(const SlopeRows& slopes, double* heights) const;
 
     [[nodiscard]] int width() const { return width_; }
@@ -104,7 +105,7 @@ constexpr int rows_at_once = 32;
 
 using Beyond = LineOperator::Beyond;
 
-/// Adds `weight` times the sample at a place that may lie beyond the border.
+/// Adds `weight` times a sample whose index may lie beyond the border.
 void add_at(std::map<int, double>& sum, int place, double weight, int count, Wrap wrap,
             Beyond clamped) {
     const bool is_inside = (place >= 0 && place < count) || count == 1;
@@ -112,7 +113,7 @@ void add_at(std::map<int, double>& sum, int place, double weight, int count, Wra
         sum[place_within(place, count, wrap)] += weight;
         return;
     }
-    // As by reflected() in border.h.
+    // This is the rule of reflected() in image/texel_loops.h.
     const int edge = place < 0 ? 0 : count - 1;
     sum[edge] += 2.0 * weight;
     add_at(sum, 2 * edge - place, -weight, count, wrap, clamped);
@@ -212,7 +213,7 @@ SlopeOperator::SlopeOperator(int width, int height, const GradientKernel& kernel
       height_(height),
       difference_x_(width, difference_taps(kernel, texel.x), wrap.x, Beyond::reflected),
       smoothing_x_(width, smoothing_taps(kernel), wrap.x, Beyond::last),
-      // Rows count downwards, slopes upwards.
+      // Rows count downwards, but slopes are positive upwards.
       difference_y_(height, difference_taps(kernel, -texel.y), wrap.y, Beyond::reflected),
       smoothing_y_(height, smoothing_taps(kernel), wrap.y, Beyond::last),
       difference_x_t_(difference_x_.transposed()),
@@ -250,7 +251,7 @@ void SlopeOperator::transpose(const SlopeRows& slopes, double* heights) const {
 void SlopeOperator::transpose_band(const SlopeRows& slopes, double* heights, int begin,
                                    int end) const {
     const auto width = static_cast<std::size_t>(width_);
-    // The rows of slopes that the band needs, each made once.
+    // The rows of slopes that the band needs; each is computed once.
     std::map<int, std::size_t> place_of_row;
     for (int row = begin; row < end; ++row) {
         for (const LineOperator* across : {&smoothing_y_t_, &difference_y_t_}) {
@@ -285,16 +286,16 @@ class FrequencySolver {
     FrequencySolver(int width, int height, const GradientKernel& kernel, Wraps wrap,
                     glm::dvec2 texel);
 
-    /// Returns whether `solve` is the exact inverse of "slopes, then their transpose": not at a
-    /// clamped border, which it takes for a mirrored one, nor where a kernel leans at a mirrored
-    /// one.
+    /// Returns whether `solve` is the exact inverse of the slopes followed by their transpose. It
+    /// is not at a clamped border, which it treats as mirrored, nor at a mirrored border if the
+    /// kernel is asymmetric.
     [[nodiscard]] bool is_exact() const { return is_exact_; }
 
-    /// In place: what a SlopeOperator's transpose gave becomes heights of mean 0.
+    /// Transforms the result of SlopeOperator::transpose() into heights of mean 0, in place.
     void solve(double* values) const;
 
   private:
-    /// Squared responses along an axis, by frequency.
+    /// The squared responses along an axis, by frequency.
     struct Axis {
         RealTransform transform;
         std::vector<double> difference, smoothing, shortness;
@@ -325,7 +326,7 @@ double squared_smoothing(const GradientKernel& kernel, double frequency) {
     return sum * sum;
 }
 
-/// Returns whether the kernel, turned round, is itself but for the sign.
+/// Returns whether the reversed kernel is the kernel with the opposite sign.
 bool is_symmetric(const GradientKernel& kernel) {
     return std::all_of(
         kernel.differences.begin(), kernel.differences.end(),
@@ -412,9 +413,9 @@ void FrequencySolver::solve_columns(double* values) const {
 using Field = std::vector<double>;
 
 constexpr int max_solver_rounds = 24;
-constexpr double enough = 1e-10;  // Of the first error, squared.
+constexpr double enough = 1e-10;  // Relative to the first error, squared.
 
-/// The slopes of a normal, and what was wrong with it.
+/// The slopes of a normal, and its problem.
 struct Slope {
     double x = 0.0, y = 0.0;
     enum class Trouble { none, no_direction, faces_away, too_steep } problem = Trouble::none;
@@ -431,7 +432,7 @@ Slope slope_of(const float* normal, double max_slope) {
     return {-x / across * max_slope, -y / across * max_slope, problem};
 }
 
-/// Rows of the map's slopes less `mean`; no findings.
+/// Returns the rows of the map's slopes minus `mean`. Problems are not reported here.
 SlopeOperator::SlopeRows slopes_of(const Image& normals, double max_slope, glm::dvec2 mean) {
     return [&normals, max_slope, mean](int row, double* along_x, double* along_y) {
         const auto width = static_cast<std::size_t>(normals.width);
@@ -468,7 +469,7 @@ void report_trouble(const Image& normals, double max_slope, Report& report) {
         });
 }
 
-/// Adds up sum(row) in order, rows in parallel.
+/// Adds up sum(row) in the order of the rows. Rows are computed in parallel.
 template <typename Sum>
 double sum_over_rows(int rows, const Sum& sum) {
     Field sums(static_cast<std::size_t>(rows));
@@ -518,7 +519,7 @@ void scale_and_add(const Field& from, double factor, const Field& other, Field& 
     });
 }
 
-/// Solves transpose(slopes(heights)) = `right` to within `enough`. \return rounds
+/// Solves transpose(slopes(heights)) = `right` to within `enough`. \return the number of rounds
 int refine(const SlopeOperator& slopes, const FrequencySolver& solver, Field& right,
            Field& heights) {
     const int rows = slopes.height();
@@ -553,7 +554,7 @@ int refine(const SlopeOperator& slopes, const FrequencySolver& solver, Field& ri
 void measure_residual(const SlopeOperator& slopes, const SlopeOperator::SlopeRows& wanted,
                       const Field& heights, IntegratedHeights& result) {
     struct Row {
-        double slope = 0.0, rest = 0.0;  // Squares of slopes, which are no angles.
+        double slope = 0.0, rest = 0.0;  // Squares of slopes, not of angles.
         AngleMoments angles;
     };
     const auto width = static_cast<std::size_t>(slopes.width());
@@ -584,7 +585,7 @@ void measure_residual(const SlopeOperator& slopes, const SlopeOperator::SlopeRow
     result.residual = {all.angles.rms(), all.angles.mean(), all.angles.max(), all.angles.count()};
 }
 
-/// Floats above the lowest.
+/// Stores the heights above the lowest one as floats.
 void store(const Field& heights, IntegratedHeights& result) {
     const auto [least, greatest] = std::minmax_element(heights.begin(), heights.end());
     const double lowest = *least;

@@ -11,7 +11,8 @@
 namespace relief {
 namespace {
 
-/// The smallest value that `percent` of 100 of the values do not exceed. Reorders them.
+/// Returns the smallest value that `percent` of 100 of the values do not exceed. It reorders the
+/// values.
 double percentile(std::vector<float>& values, std::size_t percent) {
     const std::size_t rank = (values.size() * percent + 99) / 100;
     const auto place =

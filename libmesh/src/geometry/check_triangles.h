@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The one check that triangles name vertices that exist. Linear; done before anything is computed.
+/// The check that triangles refer to existing vertices, in linear time. It runs before any
+/// computation.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +11,12 @@
 
 namespace relief {
 
-/// Index of the first corner (3 per triangle) that refers to a vertex that does not exist.
+/// Returns the first corner (3 per triangle) that refers to a vertex that does not exist.
 std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
                                          std::size_t vertex_count);
 
-/// \throws InvalidInput if the corners are too many for 32-bit indices, or for the first invalid
-/// index: "triangle 7 names vertex 12, but there are only 8"
+/// \throws InvalidInput if there are too many corners for 32-bit indices, or for the first invalid
+///         index: "triangle 7 names vertex 12, but there are only 8"
 void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
 
 }  // namespace relief

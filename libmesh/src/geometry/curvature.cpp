@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each vertex by itself, from its ring of triangles in an order of their vertices.
+// Computes the curvature of each vertex separately, from the ring of its triangles in the order of
+// their vertices.
 #include "relief/mesh/normals.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace {
 
 constexpr std::size_t curvature_grain = 1 << 14;
 
-/// A triangle seen from one of its corners: the vertices that follow, counter-clockwise.
+/// A triangle seen from one of its corners: the other two vertices, counter-clockwise.
 struct RingSpoke {
     std::uint32_t next, last;
 
@@ -54,7 +55,7 @@ class Rings {
     [[nodiscard]] std::span<const RingSpoke> around(std::size_t vertex) const {
         return std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }
-    /// Sorted by the vertices around.
+    /// Returns the triangles around a vertex, sorted by their vertices.
     [[nodiscard]] std::span<RingSpoke> sorted(std::size_t vertex) {
         const auto ring =
             std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
@@ -67,7 +68,7 @@ class Rings {
     std::vector<RingSpoke> spokes_;
 };
 
-/// Returns whether the ring goes round: each vertex around ends one triangle and begins one other.
+/// Returns whether the ring is closed: each vertex around ends one triangle and begins another one.
 bool is_closed(std::span<const RingSpoke> sorted, std::vector<std::uint32_t>& ends) {
     ends.clear();
     for (const RingSpoke& spoke : sorted)
@@ -79,13 +80,13 @@ bool is_closed(std::span<const RingSpoke> sorted, std::vector<std::uint32_t>& en
     return true;
 }
 
-/// What comes together at a vertex; the names are [Meyer et al. 2003]'s.
+/// The sums over the triangles at a vertex, with the names of [Meyer et al. 2003].
 struct VertexSum {
     glm::dvec3 laplacian{0.0};  ///< Sum of (cot a + cot b)(x_i - x_j), (8) without its area.
     glm::dvec3 normal{0.0};
     double mixed_area = 0.0;
 
-    /// A triangle with an area: `b` and `c` are where its other corners are from here.
+    /// Adds a triangle with an area. `b` and `c` are its other corners relative to the vertex.
     void add(const glm::dvec3& b, const glm::dvec3& c) {
         const glm::dvec3 cross = glm::cross(b, c);
         const double area2 = glm::length(cross);
@@ -112,7 +113,7 @@ bool has_area(const glm::dvec3& b, const glm::dvec3& c) {
     return area2 > 0.0 && std::isfinite(area2);
 }
 
-/// Absent: nothing gives a number.
+/// Returns the curvature, or none if it is undefined.
 std::optional<double> curvature_at(std::span<const glm::vec3> positions, std::size_t vertex,
                                    std::span<const RingSpoke> sorted) {
     VertexSum sum;
@@ -129,7 +130,7 @@ std::optional<double> curvature_at(std::span<const glm::vec3> positions, std::si
 
 enum class RingKind : std::uint8_t { none, closed, open };
 
-/// Of the vertices around whose rings are closed.
+/// Returns the mean of the adjacent vertices with closed rings.
 std::optional<double> mean_around(std::span<const RingSpoke> sorted,
                                   const std::vector<RingKind>& kinds,
                                   const std::vector<float>& values,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Numbers in sets that only ever grow together; near-constant time a step.
+/// Disjoint sets of numbers that can be joined, in nearly constant time per operation.
 #pragma once
 
 #include <algorithm>

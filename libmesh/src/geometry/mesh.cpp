@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every index against the number of vertices. First the largest, which reads as fast as memory
-// gives; only where that is too large, one by one.
-// Checking a mesh, and its bounds.
+// Checks of meshes, bounds, parts, and transformed meshes.
 //
-// Positions, normals and tangents of a mesh in another space. Source: the matrix of cofactors is
-// the inverse transpose but for a factor, and defined where that is not.
+// The check of indices first finds the largest one, which is as fast as reading memory, and
+// searches only if it is too large. Normals are transformed by the matrix of cofactors, which is
+// the inverse transpose except for a factor, and exists for singular matrices too.
 #include "relief/mesh/mesh.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splitting vertices by the values at their corners. Per vertex the different values are sorted;
-// the smallest stays with the vertex, each further one makes a copy, so that neither how many
-// copies there are nor which comes first depends on the order of triangles. Linear but for the
-// sorting.
+// Splits vertices by the values at their corners. The different values at a vertex are sorted: the
+// smallest stays with the vertex, and each other one gets a copy. So the number and the order of
+// copies do not depend on the order of triangles. The time is linear except for sorting.
 #include "relief/mesh/frames.h"
 
 #include <fmt/format.h>

@@ -35,21 +35,21 @@ inline bool takes_part(Gradient gradient) {
     return gradient <= Gradient::none;
 }
 
-/// Along which position changes with u and with v up, on one triangle: the gradients times `area`,
-/// which is twice the triangle's area in the image, negative where that is mirrored.
+/// The directions of increasing u and v (up) on one triangle: the gradients times `area`, which is
+/// twice the triangle's area in the image, negative if mirrored.
 struct TextureAxes {
     std::array<float, 3> u;
     std::array<float, 3> v;
     float area;
 };
 
-/// \param d1,d2  edges from the first corner to the second and third, object space
-/// \param s1,s2  the same in the image, v up
+/// \param d1,d2  edges from the first corner to the second and third, in object space
+/// \param s1,s2  the same edges in the image, v up
 ///
-/// In float, with the operations of the reference implementation in their order. Where float
-/// decides anything here, it has to decide the same: on slivers its rounding is the result. The
-/// sign of the area is nevertheless exact, since rounding keeps the order of the two products; it
-/// is 0 where they round to the same.
+/// The arithmetic is in float, with the operations of the reference implementation in their order:
+/// on slivers, the rounding of float determines the result. The sign of the area is nevertheless
+/// exact, because rounding preserves the order of the two products; it is 0 if they round to the
+/// same number.
 RELIEF_INLINE TextureAxes texture_axes(const std::array<float, 3>& d1,
                                        const std::array<float, 3>& d2,
                                        const std::array<float, 2>& s1,
@@ -63,23 +63,24 @@ RELIEF_INLINE TextureAxes texture_axes(const std::array<float, 3>& d1,
     return axes;
 }
 
-/// One triangle's answer.
+/// The texture gradient of one triangle.
 struct TriangleGradient {
     Gradient kind = Gradient::none;
-    glm::vec3 along_u{0.0F};  ///< Unit, in the triangle's plane; zero where there is none.
+    glm::vec3 along_u{0.0F};  ///< Unit, in the triangle's plane; zero if undefined.
     glm::vec3 along_v{0.0F};  ///< The same for v, upwards in the image.
     double stretch = 0.0;     ///< Length in space of a unit of u.
 };
 
-/// \param texcoords  upper left origin, v down; the gradient is that of the upright image, v up
+/// \param texcoords  origin at the upper left, v down; the gradient is that of the upright image, v
+///                   up
 ///
-/// Edges are taken from the triangle's first corner, as the reference implementation does: rotating
-/// the corners changes the last bits.
+/// Edges start at the triangle's first corner, as in the reference implementation: rotating the
+/// corners changes the last bits.
 TriangleGradient triangle_gradient(std::span<const glm::vec3> positions,
                                    std::span<const glm::vec2> texcoords,
                                    const glm::uvec3& triangle);
 
-/// The kinds alone, of all triangles.
+/// Returns only the kinds, of all triangles.
 std::vector<Gradient> gradient_kinds(std::span<const glm::vec3> positions,
                                      std::span<const glm::vec2> texcoords,
                                      std::span<const glm::uvec3> triangles);

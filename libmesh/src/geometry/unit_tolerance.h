@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How far the length of a stored direction may be from 1, and a tangent from the plane of its
-/// normal.
+/// Tolerances of stored directions: their length, and the angle between a tangent and its normal.
 #pragma once
 
 namespace relief {
 
-/// What 8-bit storage, the coarsest in use, leaves (half a step of 1/127 in each of three
-/// components), and no more.
+/// The largest deviation from unit length by 8-bit storage, the coarsest in use: half a step of
+/// 1/127 in each of three components.
 constexpr double unit_tolerance = 0.007;
 
-/// Of the cosine between a normal and its tangent: 8-bit storage leaves up to 0.014, so that more
-/// than this is what somebody meant.
+/// The largest cosine between a normal and its tangent that counts as rounding. 8-bit storage
+/// causes up to 0.014; larger values are intentional.
 constexpr double leaning_tolerance = 0.02;
 
 }  // namespace relief

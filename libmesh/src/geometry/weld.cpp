@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact welding by open-addressed hash tables, one for each value of the hash's upper bits.
-// Vertices enter them in ascending order, so that the first of a class, the one that stays in the
-// table, is the one with the smallest index.
-// A grid of cells so small that all within one are near each other: a cell is joined as a whole,
-// and two cells at the first pair of vertices that is near. Cells are told apart by whole numbers
-// held in double, which stay apart for as long as floats do.
+// Exact welding uses open-addressed hash tables, one for each value of the hash's upper bits.
+// Vertices enter them in ascending order, so the first vertex of a class, which stays in the table,
+// has the smallest index.
+//
+// Welding with a tolerance uses a grid of cells so small that all vertices in one are near each
+// other. A cell is joined as a whole, and two cells are joined at the first pair of near vertices.
+// Cells are identified by integers in double, which are distinct as long as floats are.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -26,15 +27,15 @@ namespace {
 
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
-/// The multiply-and-shift mixer of [Steele et al. 2014]: every bit of the input moves every bit of
-/// the result, so that regular grids of floats do not pile up in the table.
+/// The multiply-and-shift mixer of [Steele et al. 2014]: every bit of the input affects every bit
+/// of the result, so that regular grids of floats do not collide.
 std::uint64_t mixed(std::uint64_t bits) {
     bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
     bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
     return bits ^ (bits >> 31);
 }
 
-/// A hash that is equal for equal keys: adding +0 turns -0 into +0.
+/// Returns a hash that is equal for equal keys: adding +0 turns -0 into +0.
 template <std::size_t N>
 std::uint64_t hash_of(const std::array<float, N>& key) {
     std::uint64_t hash = 0;
@@ -46,7 +47,7 @@ std::uint64_t hash_of(const std::array<float, N>& key) {
     return hash;
 }
 
-/// The same for keys that are equal where their bits are.
+/// The same for keys that are equal if their bits are.
 template <std::size_t N>
 std::uint64_t hash_of(const std::array<std::uint32_t, N>& key) {
     std::uint64_t hash = 0;
@@ -64,8 +65,8 @@ struct BucketEntry {
     std::uint32_t vertex;
 };
 
-/// Vertices by the upper bits of their hashes, ascending within each bucket: what is the same is in
-/// the same bucket, and a bucket's table stays in the cache.
+/// Vertices by the upper bits of their hashes, ascending within each bucket. Equal vertices are in
+/// the same bucket, and the table of a bucket fits the cache.
 class Buckets {
   public:
     explicit Buckets(std::span<const std::uint32_t> hashes)
@@ -102,7 +103,7 @@ class Buckets {
     std::vector<BucketEntry> entries_;
 };
 
-/// `key_of(i)` gives the numbers of vertex i as an array of floats.
+/// \param key_of  key_of(i) returns the numbers of vertex i as an array
 template <typename KeyOf>
 std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
     constexpr std::size_t grain = 8192;
@@ -112,7 +113,7 @@ std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto key = key_of(i);
-            // A NaN equals nothing: by a hash of the index they do not pile up.
+            // A NaN equals no other value; a hash of the index avoids collisions.
             hashes[i] = static_cast<std::uint32_t>(key == key ? hash_of(key) : mixed(i + 1));
         }
     });
@@ -126,7 +127,7 @@ std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
             const std::size_t slots = std::bit_ceil(2 * bucket.size() + 1);
             table.assign(slots, {0, no_vertex});
             for (const BucketEntry& entry : bucket) {
-                // Positions are far apart in memory: they are looked at only where hashes agree.
+                // Positions are far apart in memory, so they are compared only if hashes are equal.
                 std::size_t slot = entry.hash & (slots - 1);
                 while (table[slot].vertex != no_vertex &&
                        (table[slot].hash != entry.hash ||
@@ -219,7 +220,7 @@ struct HashOfCell {
     }
 };
 
-/// Cells in order of their first vertex, and what is in them.
+/// Cells in the order of their first vertex, with their vertices.
 struct Cells {
     std::unordered_map<CellKey, std::uint32_t, HashOfCell> index;
     std::vector<CellKey> keys;
@@ -254,9 +255,9 @@ bool any_near(std::span<const glm::vec3> positions, std::span<const std::uint32_
     });
 }
 
-/// Half of the cells that may hold something near, so that each pair is looked at once.
+/// Returns half of the neighboring cells within the tolerance, so that each pair is tested once.
 std::vector<CellKey> offsets_onwards() {
-    constexpr int reach = 2;  // The tolerance is sqrt(3) cells long.
+    constexpr int reach = 2;  // The tolerance equals sqrt(3) cells.
     std::vector<CellKey> offsets;
     for (int x = -reach; x <= reach; ++x) {
         for (int y = -reach; y <= reach; ++y) {
@@ -273,7 +274,8 @@ std::vector<CellKey> offsets_onwards() {
 
 std::vector<std::uint32_t> weld_near_positions(std::span<const glm::vec3> positions,
                                                double tolerance) {
-    // A little less than sqrt(3) to the tolerance, so that rounding joins none that are too far.
+    // The cell is slightly smaller than tolerance / sqrt(3), so that rounding joins no vertices
+    // beyond the tolerance.
     const double size = tolerance / 1.7320509;
     const Cells cells = cells_of(positions, size);
     DisjointSets sets(positions.size());

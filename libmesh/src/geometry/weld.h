@@ -21,16 +21,16 @@ std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
                                          std::span<const glm::vec3> normals,
                                          std::span<const glm::vec2> texcoords);
 
-/// For every value, the smallest index of one with the same bits: NaN equals itself there, and +0
-/// does not equal -0. For glm::vec2, glm::vec3 and seven floats.
+/// For every value, the smallest index of a value with the same bits: a NaN equals the same NaN,
+/// and +0 does not equal -0. Values are glm::vec2, glm::vec3 and seven floats.
 template <typename Value>
 std::vector<std::uint32_t> weld_bits(std::span<const Value> values);
 
-/// Groups of two and more, by what the functions above say.
+/// The classes with at least two members.
 struct Groups {
-    /// Where each group begins; one more at the end.
+    /// The index of each group's first member, and the end.
     std::vector<std::uint32_t> first;
-    /// Ascending within a group, as groups are by their first.
+    /// Members are ascending within a group, and groups are in the order of their first members.
     std::vector<std::uint32_t> members;
 
     [[nodiscard]] std::size_t count() const { return first.empty() ? 0 : first.size() - 1; }
@@ -44,14 +44,14 @@ Groups groups_of(std::span<const std::uint32_t> representatives);
 std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
                                          std::span<const std::uint32_t> representatives);
 
-/// For every vertex, the smallest index of one that it is joined with.
+/// For every vertex, the smallest index of the vertices that it is joined with.
 ///
-/// Vertices are joined if they are no further apart than `tolerance`, or joined with the same one:
-/// so a chain of near ones is all one, whatever order they come in. Those that are not finite
-/// are alone. Distances are taken in double.
+/// Vertices are joined if their distance is at most `tolerance`, or if both are joined with a third
+/// one. A chain of near vertices is therefore one class, for any order of the input. Vertices that
+/// are not finite are not joined. Distances are computed in double.
 ///
-/// Time: near-linear where few vertices lie within a tolerance of each other, as a tolerance for
-/// seams should have it; quadratic in those that crowd at just that distance.
+/// The time is nearly linear if few vertices are within the tolerance of each other, as for
+/// tolerances of seams. It is quadratic in the number of vertices that are close to that distance.
 /// \param tolerance  finite and above 0
 std::vector<std::uint32_t> weld_near_positions(std::span<const glm::vec3> positions,
                                                double tolerance);

@@ -19,14 +19,15 @@
 namespace relief {
 namespace {
 
-/// Scales, each twice the one before; the widest has a deviation of 37 texels.
+/// The number of scales, each twice as wide as the one before; the widest has a deviation of 37
+/// texels.
 constexpr int scales = 6;
-/// Just less than half a step, so that rounding to float leaves the bound.
+/// Slightly less than half a step, so that rounding to float does not exceed the limit.
 constexpr float bound = 0.49F;
-/// Rounding has a mean square error of 1/12. A smooth surface that is this far from the codes in
-/// the mean is believed, ...
+/// Rounding has a mean square error of 1/12. A smooth surface with this mean square distance from
+/// the codes is trusted completely, ...
 constexpr float believed = 1.0F / 12.0F;
-/// ... and one that is so far is none of theirs.
+/// ... and one with this distance is not trusted at all.
 constexpr float refused = 1.7F / 12.0F;
 
 struct Plane {
@@ -51,15 +52,17 @@ void for_rows(const Plane& plane, const WithRows& with_rows) {
                  });
 }
 
-/// Five weights of the binomial (1 4 6 4 1) / 16 over rows, then over columns, `spacing` apart.
+/// Smooths with the binomial (1 4 6 4 1) / 16 over rows, then over columns. Taps are `spacing`
+/// apart.
 class Binomial {
   public:
     Binomial(int width, int spacing) : width_(width), spacing_(spacing) {
         line_.resize(static_cast<std::size_t>(width + 4 * spacing));
     }
 
-    /// \param rows    at y - 2 s, y - s, y, y + s, y + 2 s
-    /// \param beyond  the value at a column outside, from the line of those inside
+    /// \param rows    the rows y - 2 s, y - s, y, y + s and y + 2 s
+    /// \param beyond  returns the value of a column beyond the border, from the line of columns
+    ///                inside
     template <typename Beyond>
     void row(const std::array<const float*, 5>& rows, const Beyond& beyond, float* result) {
         const std::ptrdiff_t s = spacing_;
@@ -84,7 +87,7 @@ class Binomial {
     std::vector<float> line_;
 };
 
-/// Low frequencies of the next scale.
+/// Computes the low frequencies of the next scale.
 void smooth(const Plane& from, const Wraps& wrap, int spacing, Plane& to) {
     for_rows(from, [&](int begin, int end) {
         Binomial binomial(from.width, spacing);
@@ -112,12 +115,12 @@ void smooth(const Plane& from, const Wraps& wrap, int spacing, Plane& to) {
     });
 }
 
-/// A smooth surface of one scale without the bend that smoothing adds to curved ground: what two
-/// scales agree upon [Richardson 1911].
+/// A smooth surface of one scale. Smoothing bends curved ground; the difference of two scales
+/// removes that bend [Richardson 1911].
 struct Surface {
     const Plane& low;
     const Plane& lower;
-    float share;  ///< Of their difference.
+    float share;  ///< The share of the difference that is added.
 
     void row(int y, float* to) const {
         const float* const a = low.row(y);
@@ -127,11 +130,13 @@ struct Surface {
     }
 };
 
-/// Goes to the surface as far as it is believed: where it is as far from the codes as rounding is.
+/// Moves the heights towards the surface by its trust, which is full where its distance from the
+/// codes is that of rounding.
 void follow(const Surface& surface, const Plane& codes, const Wraps& wrap, int spacing,
             Plane& trust, Plane& heights) {
     const int width = codes.width;
-    // A power goes on beyond a clamped border as itself, not as its reflection.
+    // A power continues beyond a clamped border with its mirror image, not with its point
+    // reflection.
     const Wrap x_rule = wrap.x == Wrap::clamp ? Wrap::mirror : wrap.x;
     const Wrap y_rule = wrap.y == Wrap::clamp ? Wrap::mirror : wrap.y;
     for_rows(codes, [&](int begin, int end) {
@@ -163,7 +168,7 @@ void follow(const Surface& surface, const Plane& codes, const Wraps& wrap, int s
             for (std::ptrdiff_t x = 0; x < width; ++x) {
                 const float share =
                     (refused - power[static_cast<std::size_t>(x)]) * (1.0F / (refused - believed));
-                // Who is not believed at one scale is not at the next.
+                // A texel that is not trusted at one scale is not trusted at wider ones.
                 trusted[x] = std::max(0.0F, std::min(share, trusted[x]));
                 height[x] += trusted[x] * (own[static_cast<std::size_t>(x)] - height[x]);
             }
@@ -188,12 +193,12 @@ Destaircased destaircase(const Image& height, const DestaircaseOptions& options)
     result.step = options.step;
     if (result.step == 0.0) {
         const HeightDepth depth = height_depth(height);
-        // A constant map has one "step" only, and nothing to smooth.
+        // A constant map has only one "step", and there is nothing to smooth.
         result.step = depth.bits > 0 ? depth.step : 0.0;
     }
     if (result.step == 0.0) return result;
 
-    Report holes;  // Counted where the heights are used.
+    Report holes;  // The caller counts holes when it uses the heights.
     Plane codes{height.width, height.height, filled_holes(result.heights, options.wrap, holes)};
     if (codes.values.empty()) codes.values.assign(stored.begin(), stored.end());
     const auto per_step = static_cast<float>(1.0 / result.step);
@@ -205,7 +210,7 @@ Destaircased destaircase(const Image& height, const DestaircaseOptions& options)
     Plane low = codes;
     Plane lower = codes;
     smooth(codes, options.wrap, 1, low);
-    float variance = 1.0F;  // Of the smoothing so far, in texels squared.
+    float variance = 1.0F;  // The variance of the smoothing so far, in squared texels.
     for (int scale = 0; scale < scales; ++scale) {
         const int spacing = 1 << scale;
         const float more = 4.0F * static_cast<float>(spacing) * static_cast<float>(spacing);
@@ -220,7 +225,7 @@ Destaircased destaircase(const Image& height, const DestaircaseOptions& options)
         for (std::size_t texel = begin; texel < end; ++texel) {
             const float code = codes.values[texel];
             const float moved = std::min(std::max(now.values[texel], code - bound), code + bound);
-            // What has not moved stays to the bit.
+            // Unchanged heights keep their bits.
             if (std::isfinite(heights[texel]) && moved != code) heights[texel] = moved * step;
         }
     });

@@ -14,14 +14,15 @@ namespace {
 
 DitherTile tile_of_ranks(std::size_t side, const std::vector<std::uint32_t>& ranks) {
     DitherTile tile{side, std::vector<float>(ranks.size())};
-    const auto all = static_cast<float>(ranks.size());  // A power of two: all is exact.
+    const auto all =
+        static_cast<float>(ranks.size());  // The count is a power of two, so the result is exact.
     for (std::size_t i = 0; i < ranks.size(); ++i)
         tile.thresholds[i] = (static_cast<float>(ranks[i]) + 0.5F) / all;
     return tile;
 }
 
-/// [Bayer 1973]: the rank's bits are those of x ^ y and y in turns, the lowest bit of the place
-/// being the highest of the rank.
+/// Returns the tile of [Bayer 1973]: the bits of a rank alternate between x ^ y and y, and the
+/// lowest bit of the position is the highest of the rank.
 DitherTile bayer_tile() {
     constexpr std::uint32_t bits = 4;
     constexpr std::uint32_t side = 1U << bits;
@@ -37,8 +38,8 @@ DitherTile bayer_tile() {
     return tile_of_ranks(side, ranks);
 }
 
-/// The pattern of [Ulichney 1993] while points are put in and taken out: for every place, how
-/// crowded it is, on a torus.
+/// The pattern of [Ulichney 1993] on a torus, with the crowding of every position: the sum of
+/// weights of the points around it. Points can be added and removed.
 class Crowd {
   public:
     static constexpr int side = 64;
@@ -57,19 +58,20 @@ class Crowd {
     void put(std::size_t place) { change(place, true); }
     void take(std::size_t place) { change(place, false); }
 
-    /// The free place that is least crowded.
+    /// Returns the free position with the least crowding.
     [[nodiscard]] std::size_t void_place() const {
         constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
         return best([&](std::size_t i) { return taken_[i] ? most : crowding_[i]; });
     }
-    /// The taken place that is most crowded.
+    /// Returns the occupied position with the most crowding.
     [[nodiscard]] std::size_t cluster_place() const {
         constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
         return best([&](std::size_t i) { return taken_[i] ? most - crowding_[i] : most; });
     }
 
   private:
-    static constexpr int reach = 9;  // Beyond, a weight is less than 1e-7 of the greatest.
+    static constexpr int reach =
+        9;  // Weights at larger distances are less than 1e-7 of the largest.
 
     template <typename Key>
     static std::size_t best(const Key& key) {
@@ -102,8 +104,8 @@ class Crowd {
     std::vector<std::uint8_t> taken_;
 };
 
-/// Scattered points, a tenth of all places, evened out: the most crowded one moves to the largest
-/// void until that is where it came from.
+/// Returns evenly distributed points on a tenth of all positions: the most crowded one moves to the
+/// largest void until it returns to its own position.
 Crowd even_points(std::uint32_t count) {
     Crowd crowd;
     std::vector<std::uint8_t> used(Crowd::places, 0);
@@ -125,8 +127,9 @@ Crowd even_points(std::uint32_t count) {
     }
 }
 
-/// [Ulichney 1993]. His third phase, which takes out clusters of free places once these are few,
-/// asks for the same places as the second: crowding by points and by free places has one sum.
+/// The third phase of [Ulichney 1993] removes clusters of free positions. It selects the same
+/// positions as the second phase, because the crowding by points and by free positions has a
+/// constant sum.
 DitherTile blue_noise_tile() {
     constexpr std::uint32_t first_points = Crowd::places / 10;
     const Crowd start = even_points(first_points);
@@ -146,8 +149,8 @@ DitherTile blue_noise_tile() {
     return tile_of_ranks(Crowd::side, ranks);
 }
 
-/// How far a channel's tile is moved. Thresholds of blue noise have next to no correlation then;
-/// those of a Bayer matrix always have.
+/// Offsets of the tiles of the three channels. For blue noise, the thresholds of the channels then
+/// have almost no correlation; for a Bayer matrix they always have some.
 constexpr std::array<std::size_t, 3> shifts_x = {0, 21, 43};
 constexpr std::array<std::size_t, 3> shifts_y = {0, 38, 11};
 

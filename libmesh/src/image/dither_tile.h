@@ -11,19 +11,19 @@
 
 namespace relief {
 
-/// Thresholds in (0,1), repeated in both directions. Its side is a power of two.
+/// Thresholds in (0,1), repeated in both directions. The side is a power of two.
 struct DitherTile {
     std::size_t side = 1;
     std::vector<float> thresholds;
 };
 
-/// \param dither  not `none`
+/// \param dither  any but `none`
 const DitherTile& dither_tile(Dither dither);
 
 /// The thresholds along a row of an image, for each of the three channels.
 class DitherRow {
   public:
-    /// \param dither  not `none`
+    /// \param dither  any but `none`
     DitherRow(Dither dither, int y);
 
     [[nodiscard]] float at(std::size_t x, std::size_t channel) const {

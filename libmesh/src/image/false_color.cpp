@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values as colors: 8-bit sRGB, interpolated between five colors from black to pale yellow that
-// follow matplotlib's map "magma". NaN is green, which no other value uses.
+// Maps values to 8-bit sRGB colors: interpolated between five colors from black to pale yellow that
+// follow matplotlib's map "magma". NaN becomes green, which no other value has.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ const std::array<glm::dvec3, 5> heat{
     {{0, 0, 4}, {81, 18, 124}, {183, 55, 121}, {252, 137, 97}, {252, 253, 191}}};
 const glm::dvec3 no_number{0, 255, 0};
 
-/// \param share  of the brightest value
+/// \param share  the ratio to the brightest value
 glm::dvec3 color_of(double share) {
     if (std::isnan(share)) return no_number;
     const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(heat.size() - 1);

@@ -19,19 +19,21 @@
 #include "vector_targets.h"
 
 namespace relief {
-/// One pass: `count` groups of `radix` samples at a distance, each sample `stride` lanes wide.
+/// One pass: `count` groups of `radix` samples at a distance. Each sample is `stride` lanes wide.
 struct ComplexFft::Pass {
     std::size_t radix, groups, stride;
-    std::vector<double> cosines, sines;  ///< Of group g to the power k, at g * radix + k.
+    std::vector<double> cosines, sines;  ///< Of group g to the power k, at index g * radix + k.
 };
 
-/// What turns a transform of any length into two of a power of two.
+/// The data of Bluestein's algorithm, which computes a transform of any length by two transforms of
+/// a power-of-two length.
 struct ComplexFft::Chirp {
     explicit Chirp(std::size_t padded) : fft(padded), padded_length(padded) {}
     ComplexFft fft;
     std::size_t padded_length;
-    std::vector<double> cosines, sines;            ///< exp(-pi i j^2 / n)
-    std::vector<double> filter_real, filter_imag;  ///< Its transform, over the padded length.
+    std::vector<double> cosines, sines;  ///< exp(-pi i j^2 / n)
+    std::vector<double> filter_real,
+        filter_imag;  ///< The transform of the chirp, over the padded length.
 };
 
 namespace {
@@ -39,7 +41,7 @@ namespace {
 constexpr std::size_t lanes = ComplexFft::lanes;
 constexpr std::array<std::size_t, 7> radices = {4, 2, 3, 5, 7, 11, 13};
 
-/// What each of these is a multiple of, in order; empty if another factor is left.
+/// Returns the prime factors in the order of `radices`; empty if another factor remains.
 std::vector<std::size_t> factors_of(std::size_t length) {
     std::vector<std::size_t> factors;
     for (const std::size_t radix : radices) {
@@ -107,7 +109,7 @@ RELIEF_INLINE void pass_of_4(const PassArguments& a) {
     }
 }
 
-/// Any radix, by the definition of the transform.
+/// Computes a pass of any radix by the definition of the transform.
 template <std::size_t Radix>
 RELIEF_INLINE void pass_of(const PassArguments& a) {
     std::array<double, Radix> unit_cos{}, unit_sin{};
@@ -167,8 +169,7 @@ RELIEF_TARGET_512 void pass_512(std::size_t radix, const PassArguments& argument
     any_pass(radix, arguments);
 }
 
-/// Each sample of every lane times a complex number of its own; `conjugate` turns the result
-/// round.
+/// Multiplies sample j of every lane by the j-th complex number.
 void multiply(ComplexRows rows, std::size_t count, const double* real, const double* imag) {
     for (std::size_t j = 0; j < count; ++j) {
         for (std::size_t i = j * lanes; i < (j + 1) * lanes; ++i) {
@@ -202,7 +203,7 @@ ComplexFft::ComplexFft(std::size_t length) : length_(length) {
     const std::size_t padded = chirp_->padded_length;
     std::vector<double> real(padded * lanes), imag(padded * lanes);
     for (std::size_t j = 0; j < length; ++j) {
-        // j^2 modulo 2n, so that the angle keeps its digits.
+        // j^2 modulo 2n keeps the precision of the angle.
         const auto angle = std::numbers::pi * static_cast<double>(j * j % (2 * length)) /
                            static_cast<double>(length);
         chirp_->cosines.push_back(portable::cos(angle));
@@ -266,7 +267,8 @@ namespace {
 constexpr std::size_t half_lanes = ComplexFft::lanes;
 static_assert(RealTransform::lanes == 2 * half_lanes);
 
-/// Where sample j of a row stands among the even ones followed by the odd ones backwards.
+/// Returns the position of sample j of a row in the order of even samples followed by odd samples
+/// in reverse.
 std::size_t place_of(std::size_t j, std::size_t length) {
     return j % 2 == 0 ? j / 2 : length - 1 - j / 2;
 }
@@ -286,7 +288,7 @@ double RealTransform::frequency(std::size_t k) const {
     return (kind_ == TransformKind::hartley ? 2.0 : 1.0) * std::numbers::pi * turns;
 }
 
-/// The rows taken apart into real and imaginary parts, in the scratch.
+/// Copies the rows to real and imaginary parts in the scratch memory.
 ComplexRows RealTransform::unpacked(const double* samples, std::vector<double>& scratch) const {
     const std::size_t count = length_ * half_lanes;
     scratch.resize(2 * count + fft_.scratch_size());
@@ -329,7 +331,7 @@ void RealTransform::forward(double* samples, std::vector<double>& scratch) const
 void RealTransform::inverse(double* samples, std::vector<double>& scratch) const {
     const double scale = 1.0 / static_cast<double>(length_);
     if (kind_ == TransformKind::hartley) {
-        // Its own inverse, but for a factor.
+        // The transform is its own inverse except for a factor.
         forward(samples, scratch);
         for (std::size_t i = 0; i < length_ * lanes; ++i)
             samples[i] *= scale;

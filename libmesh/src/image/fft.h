@@ -27,9 +27,10 @@ class ComplexFft {
     ComplexFft(const ComplexFft&) = delete;
     ComplexFft& operator=(const ComplexFft&) = delete;
 
-    /// How many doubles of scratch a call needs.
+    /// Returns the number of doubles of scratch memory for a call.
     [[nodiscard]] std::size_t scratch_size() const;
-    /// In place; the inverse, without the division by n, by exchanging real and imaginary parts.
+    /// Transforms in place. The inverse, without the division by n, results from exchanging the
+    /// real and imaginary parts.
     void transform(ComplexRows rows, double* scratch) const;
 
   private:
@@ -48,20 +49,20 @@ enum class TransformKind {
 
 class RealTransform {
   public:
-    /// Rows that are transformed at once, their samples side by side: sample j of lane i is at
-    /// j * lanes + i.
+    /// The number of rows that are transformed at once, interleaved: sample j of lane i is at j *
+    /// lanes + i.
     static constexpr std::size_t lanes = 8;
 
     /// \param length  at least 1
     RealTransform(TransformKind kind, std::size_t length);
 
-    /// In place, length * lanes samples. `inverse` undoes `forward`. The scratch is any vector of
-    /// the thread's own, made as large as needed.
+    /// Transforms length * lanes samples in place. `inverse` undoes `forward`. The scratch memory
+    /// is a vector of the thread, which grows as needed.
     void forward(double* samples, std::vector<double>& scratch) const;
     void inverse(double* samples, std::vector<double>& scratch) const;
 
     [[nodiscard]] std::size_t length() const { return length_; }
-    /// Radians a sample that coefficient k stands for.
+    /// Returns the radians per sample of coefficient k.
     [[nodiscard]] double frequency(std::size_t k) const;
 
   private:
@@ -70,7 +71,8 @@ class RealTransform {
     TransformKind kind_;
     std::size_t length_;
     ComplexFft fft_;
-    std::vector<double> cosines_, sines_;  ///< Of pi k / (2n), for the cosine transform.
+    std::vector<double> cosines_,
+        sines_;  ///< Cosines and sines of pi k / (2n), for the cosine transform.
 };
 
 }  // namespace relief

@@ -11,21 +11,23 @@
 
 namespace relief {
 
-/// Texels that are no part of the surface.
+/// Texels that are not part of the surface.
 struct Transparency {
-    std::span<const unsigned char> texels{};  ///< 1 for each such texel; or none at all.
-    /// How far from the surface they get a height, so that a kernel finds one there; 0 beyond.
+    std::span<const unsigned char>
+        texels{};  ///< 1 for each transparent texel; empty if there are none.
+    /// Transparent texels up to this distance from the surface get a height, because a kernel reads
+    /// them; texels farther away become 0.
     int reach = 0;
 };
 
-/// The heights of an image with every non-finite one replaced, and those of transparent texels.
+/// Replaces all non-finite heights of an image, and those of transparent texels.
 ///
 /// \param height  one float channel
 /// \param report  counts non-finite heights
-/// \return empty where all heights are finite already (the common case takes no memory); else a
+/// \return empty if all heights are finite, so that the common case needs no memory; otherwise a
 ///         copy in which each hole is the mean of the finite heights in the smallest square around
-///         it that has any (beyond the border by `wrap`: the tiled plane, or nothing), or 0 where
-///         no height of the image is finite
+///         it that has any, or 0 if the image has no finite height. `wrap` defines what lies beyond
+///         the border: the tiled plane, or nothing.
 std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& report,
                                 const Transparency& transparency = {});
 

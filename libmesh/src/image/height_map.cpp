@@ -32,7 +32,7 @@ bool is_gray(const Image& image) {
     return image.channels < 3;
 }
 
-/// Makes every height by height(first sample of the texel).
+/// Computes every height by height(first sample of the texel).
 template <typename Sample, typename Height>
 std::vector<float> make_heights(const Image& image, const Height& height) {
     const std::span<const Sample> samples = image.as<Sample>();
@@ -48,7 +48,7 @@ std::vector<float> make_heights(const Image& image, const Height& height) {
     return heights;
 }
 
-/// The number of channels is a constant, for the loop to become vector instructions.
+/// The number of channels is a template argument, so that the loop is vectorized.
 template <std::size_t channels, typename Sample>
 std::vector<float> mean_of_colors(std::span<const Sample> samples) {
     std::vector<float> heights;
@@ -67,7 +67,7 @@ std::vector<float> mean_of_colors(std::span<const Sample> samples) {
     return heights;
 }
 
-/// Rec. 709's luminance; `linear(sample)` decodes.
+/// Computes the luminance of Rec. 709; `linear(sample)` decodes a sample.
 template <typename Sample, typename Linear>
 std::vector<float> luminance_by(const Image& image, const Linear& linear) {
     return make_heights<Sample>(image, [&linear](const Sample* texel) {
@@ -124,7 +124,7 @@ void check(const Image& image, HeightChannel channel) {
                                        channel == HeightChannel::green ? "green" : "blue"));
 }
 
-/// Alpha in the depth of the image, and where it is 0.
+/// Takes alpha in the depth of the image, and the texels where it is 0.
 template <typename Sample>
 void take_alpha(const Image& image, HeightMap& map) {
     const auto channels = static_cast<std::size_t>(image.channels);
@@ -143,16 +143,16 @@ void take_alpha(const Image& image, HeightMap& map) {
     map.alpha = {image.width, image.height, 1, ColorSpace::data, std::move(alpha)};
 }
 
-/// What the samples show of colors and of alpha, from texels in even distances.
+/// Estimates the shares of colored texels and of partial alpha from evenly spaced texels.
 template <typename Sample>
 void take_shares(const Image& image, HeightMap& map) {
-    // JPEG leaves gray images this far from gray.
+    // JPEG changes gray images by up to this difference.
     constexpr double min_difference = 1.0 / 16.0;
     constexpr std::size_t analyzed = 10000;
     const std::span<const Sample> samples = image.as<Sample>();
     const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t texels = samples.size() / channels;
-    // An odd distance does not fall into step with the columns of most images.
+    // An odd distance is not a multiple of most image widths.
     const std::size_t distance = texels / analyzed | 1U;
     double count = 0.0;
     double colored = 0.0;
@@ -211,7 +211,7 @@ HeightMap height_map(Image&& image, HeightChannel channel) {
 
 namespace {
 
-/// A lattice of texels with what lies beyond its border.
+/// A grid of texels and its continuation beyond the border.
 struct Lattice {
     int width = 0;
     int height = 0;
@@ -221,7 +221,7 @@ struct Lattice {
         return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     }
 
-    /// The texel at a place, or -1 where there is nothing.
+    /// Returns the texel at a position, or -1 if there is none.
     [[nodiscard]] std::ptrdiff_t at(int column, int row) const {
         const auto is_beyond = [](int place, int count, Wrap rule) {
             return rule == Wrap::clamp && (place < 0 || place >= count);
@@ -233,7 +233,8 @@ struct Lattice {
     }
 };
 
-/// One sweep of the distance map: every texel from the neighbors that the sweep has visited.
+/// Performs one sweep of the distance map: every texel is updated from the neighbors that the sweep
+/// has visited. \return whether a distance changed
 bool sweep(std::vector<std::uint32_t>& distance, const Lattice& lattice, int direction) {
     bool changed = false;
     const int rows = lattice.height;
@@ -258,8 +259,8 @@ bool sweep(std::vector<std::uint32_t>& distance, const Lattice& lattice, int dir
     return changed;
 }
 
-/// Chessboard distance of every texel to the nearest finite height. Two sweeps do for a bounded
-/// image; a tiled one takes another round or two until nothing changes.
+/// Computes the chessboard distance of every texel to the nearest finite height. Two sweeps suffice
+/// for a bounded image; a tiled one needs one or two more rounds until nothing changes.
 std::vector<std::uint32_t> distance_to_finite(std::span<const float> heights,
                                               const Lattice& lattice) {
     constexpr std::uint32_t far = std::uint32_t{1} << 31;
@@ -275,7 +276,7 @@ std::vector<std::uint32_t> distance_to_finite(std::span<const float> heights,
     return distance;
 }
 
-/// The mean of the finite heights on the rim of a square.
+/// Returns the mean of the finite heights on the rim of a square.
 float rim_mean(std::span<const float> heights, const Lattice& lattice, int column, int row,
                int radius) {
     double sum = 0.0;
@@ -302,8 +303,8 @@ float rim_mean(std::span<const float> heights, const Lattice& lattice, int colum
 bool all_finite(std::span<const float> heights) {
     std::atomic<bool> finite = true;
     parallel_for(heights.size(), texels_per_piece, [&](std::size_t begin, std::size_t end) {
-        // On the bits, since that loop is vectorised: infinities and NaN have all exponent bits
-        // set.
+        // The loop tests bits, because it is then vectorized: infinities and NaN have all exponent
+        // bits set.
         constexpr std::uint32_t exponent = 0x7F800000U;
         std::uint32_t found = 0;
         for (std::size_t texel = begin; texel < end; ++texel) {
@@ -315,7 +316,7 @@ bool all_finite(std::span<const float> heights) {
     return finite;
 }
 
-/// The heights, with NaN where there is none.
+/// Returns the heights, with NaN for transparent texels.
 std::vector<float> without_transparent(std::span<const float> heights,
                                        std::span<const unsigned char> transparent) {
     std::vector<float> result(heights.begin(), heights.end());

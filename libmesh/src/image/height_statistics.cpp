@@ -22,7 +22,7 @@
 namespace relief {
 namespace {
 
-/// The heights of a map by place, in double.
+/// Access to the heights of a map by column and row, in double.
 template <typename Sample>
 class Heights {
   public:
@@ -43,7 +43,7 @@ class Heights {
     std::span<const Sample> samples_;
 };
 
-/// Calls with_heights(Heights) of the image's type.
+/// Calls with_heights(Heights) for the sample type of the image.
 template <typename WithHeights>
 auto on_heights(const Image& image, const WithHeights& with_heights) {
     if (image.empty()) throw InvalidInput("an empty height field has no statistics");
@@ -68,7 +68,7 @@ HeightDepth depth_of(const Heights<Sample>& heights) {
     return {static_cast<int>(std::bit_width(levels)), divisor / heights.largest};
 }
 
-/// Returns whether all heights are multiples of a step, to within float's rounding.
+/// Returns whether all heights are multiples of a step within the rounding of float.
 bool are_multiples(std::span<const float> heights, double step) {
     return std::all_of(heights.begin(), heights.end(), [step](float height) {
         if (!std::isfinite(height)) return true;
@@ -87,7 +87,7 @@ HeightDepth depth_of(const Heights<float>& heights) {
     }
     if (!(least < greatest))
         return {1, std::isfinite(least) && least != 0.0 ? std::abs(least) : 1.0};
-    // Floats beyond 2^24 steps are multiples of them whatever they stand for.
+    // Every float beyond 2^24 steps is a multiple of the step, whatever its origin.
     constexpr double max_steps = 0x1p24;
     const double largest = std::max(std::abs(least), std::abs(greatest));
     const auto are_on_levels = [&](double levels) {
@@ -98,13 +98,13 @@ HeightDepth depth_of(const Heights<float>& heights) {
             if (are_on_levels(levels)) return {bits, 1.0 / levels};
         }
     }
-    // The mean of three colors of 8 bits.
+    // The mean of three colors of 8 bits has these levels.
     constexpr double mean_levels = 3 * 255;
     if (are_on_levels(mean_levels)) return {10, 1.0 / mean_levels};
     return {};
 }
 
-/// The sum of the mask's absolute values in one row, and how many are finite.
+/// The sum of the mask's absolute values in one row, and the number of finite ones.
 struct RowOfNoise {
     double sum = 0.0;
     std::size_t count = 0;
@@ -117,7 +117,7 @@ double noise_of(const Heights<Sample>& heights) {
     parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const int row = static_cast<int>(i) + 1;
-            // 1 -2 1 along the row of what 1 -2 1 makes of each column.
+            // The mask applies (1 -2 1) to each column, and then along the row.
             const auto bend = [&](int column) {
                 return heights.at(column, row - 1) - 2.0 * heights.at(column, row) +
                        heights.at(column, row + 1);
@@ -136,7 +136,8 @@ double noise_of(const Heights<Sample>& heights) {
         all.sum += row.sum;
         all.count += row.count;
     }
-    // The mask's squares add up to 36; the mean of |x| of a Gaussian is sqrt(2 / pi) deviations.
+    // The squares of the mask's weights add up to 36; the mean of |x| of a Gaussian is sqrt(2 / pi)
+    // deviations.
     if (all.count == 0) return 0.0;
     return std::sqrt(std::numbers::pi / 2.0) * all.sum / (6.0 * static_cast<double>(all.count));
 }
@@ -163,8 +164,8 @@ double height_noise(const Image& height) {
 
 namespace {
 
-/// The first lines of the pairs among `count` lines, and at the end the last line, whose neighbor
-/// across the seam is the first.
+/// Returns the first line of each pair among `count` lines, followed by the last line, whose
+/// neighbor across the seam is line 0.
 template <typename Index>
 std::vector<Index> pairs_of(int count) {
     constexpr int max_pairs = 256;
@@ -208,7 +209,7 @@ void SeamSurvey::add_row(std::span<const Sample> row) {
     for (std::size_t i = 0; i < columns_.size(); ++i)
         across_columns_[i].add(at((columns_[i] + 1) % row.size()) - at(columns_[i]));
 
-    // Rows are wanted only where a pair begins or ends, and the first for the seam.
+    // Only rows at which a pair begins or ends are needed, and row 0 for the seam.
     const std::size_t pair = across_rows_.size();
     const bool ends_pair = pair + 1 < row_pairs_.size() && row_pairs_[pair] == rows_ - 1;
     const std::size_t next = pair + (ends_pair ? 1 : 0);

@@ -26,8 +26,8 @@ namespace {
 
 constexpr std::size_t samples_per_piece = 1 << 14;
 
-// The constants as the standard prints them. The two branches do not quite meet: between the codes
-// 0.04045 and its light 0.0031308 lies a step of 1e-7, which no 16-bit code can see.
+// The constants are those of the standard. The two branches differ by 1e-7 at the code 0.04045
+// (light 0.0031308), which no 16-bit code resolves.
 double decoded(double coded) {
     return coded <= 0.04045 ? coded / 12.92 : portable::pow((coded + 0.055) / 1.055, 2.4);
 }
@@ -36,7 +36,7 @@ double encoded(double light) {
     return light <= 0.0031308 ? 12.92 * light : 1.055 * portable::pow(light, 1.0 / 2.4) - 0.055;
 }
 
-/// Light of every 8- or 16-bit code.
+/// Returns the linear value of every 8- or 16-bit code.
 template <typename Code>
 std::vector<float> decoding_table() {
     constexpr std::size_t largest = std::numeric_limits<Code>::max();
@@ -70,7 +70,7 @@ float unit_of(float value) {
     return value;
 }
 
-/// A value as a code; NaN fails every comparison and so becomes 0.
+/// Returns a value as a code. NaN fails every comparison and so becomes 0.
 template <typename Code>
 Code code_of(double value) {
     constexpr double largest = std::numeric_limits<Code>::max();
@@ -78,7 +78,7 @@ Code code_of(double value) {
     return static_cast<Code>(std::min(value, 1.0) * largest + 0.5);
 }
 
-/// Every sample through `color`, but alpha samples through `alpha`.
+/// Applies `alpha` to samples of the alpha channel, and `color` to all others.
 template <typename To, typename From, typename Color, typename Alpha>
 std::vector<To> converted(const Image& image, const std::vector<From>& from, Color color,
                           Alpha alpha) {

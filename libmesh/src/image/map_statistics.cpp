@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::size_t statistics_texels_per_piece = 1 << 15;
 constexpr float longest_without_direction = 1.0F / 16.0F;
-constexpr float facing_back = -0.02F;  // Beyond what rounding to 8 bits makes of 0.
+constexpr float facing_back = -0.02F;  // Rounding to 8 bits decodes 0 to values above this one.
 
 constexpr std::size_t listed_at_most = 8;
 
@@ -36,7 +36,7 @@ void note(MapConditionCount& found, std::size_t texel) {
     if (found.count++ < listed_at_most) found.first.push_back(texel);
 }
 
-/// Those of a later part of the map.
+/// Adds the texels of a later part of the map.
 void append(MapConditionCount& found, const MapConditionCount& later) {
     found.count += later.count;
     for (const std::size_t texel : later.first) {
@@ -44,7 +44,7 @@ void append(MapConditionCount& found, const MapConditionCount& later) {
     }
 }
 
-/// Sums, before they are divided.
+/// The sums before division.
 struct Sums {
     MapStatistics counts;
     double length = 0.0;
@@ -151,18 +151,19 @@ MapStatistics map_statistics(const Image& map, const SampleMeaning& meaning, std
 
 namespace {
 
-constexpr int scales = 4;  ///< 1, 2, 4, 8 texels.
+constexpr int scales = 4;  ///< Averages over 1, 2, 4 and 8 texels.
 constexpr int largest_square = 64;
 constexpr int least_square = 8;
 constexpr float max_slope = 10.0F;
 
-// What makes a correlation count. Of 24 real maps, those of surfaces have 0.39 to 0.998 at 7.5
-// deviations and more; ripples, flakes, noise and isolated wires up to 0.08, or 0.2 at 2.7.
+// The limits of a significant correlation. Of 24 real maps, those of surfaces have 0.39 to 0.998 at
+// 7.5 deviations or more; ripples, flakes, noise and isolated wires have up to 0.08, or 0.2 at 2.7.
 constexpr double min_correlation = 0.15;
 constexpr double min_sureness = 5.0;  // In standard deviations.
-constexpr double min_squares = 4.0;   // That carry the weight: fewer have no spread to speak of.
+constexpr double min_squares =
+    4.0;  // The effective number of squares. Fewer have no meaningful deviation.
 
-/// Slopes of a square at one scale; NaN where a texel has no say.
+/// The slopes of a square at one scale; NaN for texels that do not contribute.
 struct Slopes {
     int side = 0;
     std::vector<float> p, q;
@@ -189,7 +190,7 @@ void halve(const std::vector<float>& from, int side, std::vector<float>& to) {
     }
 }
 
-/// What one square shows at one scale.
+/// The sums of one square at one scale.
 struct Observation {
     double agree = 0.0;
     double size = 0.0;
@@ -200,8 +201,8 @@ struct SquareEvidence {
     double alpha_slopes = 0.0, alpha_alpha = 0.0, slopes_slopes = 0.0;
 };
 
-/// One row of a square, three rows of p and q being given: adds what each column shows. Plain
-/// loops over neighbors, with Sobel's weights, which halve the noise.
+/// Adds the terms of each column of one row, from three rows of p and q. The derivatives use
+/// Sobel's weights, which halve the noise.
 void observe_row(const std::array<const float*, 3>& p, const std::array<const float*, 3>& q,
                  std::size_t count, float* agree, float* size) {
     for (std::size_t i = 1; i + 1 < count; ++i) {
@@ -213,14 +214,14 @@ void observe_row(const std::array<const float*, 3>& p, const std::array<const fl
         const float weight = 1.0F / (1.0F + p[1][i] * p[1][i] + q[1][i] * q[1][i]);
         const float squared = weight * weight;
         const float of_size = 0.5F * squared * (p_in_y * p_in_y + q_in_x * q_in_x);
-        // Where a slope has no say, all of this is NaN, which is not below anything.
+        // If a slope is NaN, so are all of these, and the comparison is false.
         const bool counts = of_size < std::numeric_limits<float>::max();
         agree[i] += counts ? squared * p_in_y * q_in_x : 0.0F;
         size[i] += counts ? of_size : 0.0F;
     }
 }
 
-/// Over the texels of a square that have two neighbors on each side inside it.
+/// Returns the sums over all texels of a square that have two neighbors on each side inside it.
 Observation observe(const Slopes& slopes) {
     const auto side = static_cast<std::size_t>(slopes.side);
     std::array<float, largest_square> agree{}, size{};
@@ -271,7 +272,8 @@ class Squares {
     }
 
   private:
-    /// The slopes of a square; of a map smaller than that, NaN beyond its border.
+    /// Returns the slopes of a square. If the map is smaller than a square, slopes beyond its
+    /// border are NaN.
     [[nodiscard]] Slopes slopes_of(std::size_t square) const {
         const int first_column =
             static_cast<int>(square % static_cast<std::size_t>(columns_)) * side_;
@@ -297,7 +299,7 @@ class Squares {
         return slopes;
     }
 
-    /// Sums of products of the slopes along x: the normals' and alpha's.
+    /// Adds the products of the slopes of the normals and of alpha, both along x.
     void compare_alpha(std::size_t square, const Slopes& slopes, SquareEvidence& evidence) const {
         const std::size_t first = texel_of(square);
         for (int row = 0; row < side_; ++row) {
@@ -317,7 +319,7 @@ class Squares {
         }
     }
 
-    /// The first texel of a square.
+    /// Returns the first texel of a square.
     [[nodiscard]] std::size_t texel_of(std::size_t square) const {
         const auto columns = static_cast<std::size_t>(columns_);
         const auto side = static_cast<std::size_t>(side_);
@@ -328,7 +330,7 @@ class Squares {
     int width_, height_, side_ = 0, columns_ = 0, rows_ = 0;
 };
 
-/// The evidence of one scale, `green` being absent unless it is sure.
+/// Returns the evidence of one scale. `green` is absent unless it is significant.
 GreenEvidence judged(const std::vector<SquareEvidence>& squares, std::size_t scale) {
     GreenEvidence evidence;
     evidence.scale = 1 << scale;
@@ -346,7 +348,7 @@ GreenEvidence judged(const std::vector<SquareEvidence>& squares, std::size_t sca
             square.green[scale].agree - evidence.correlation * square.green[scale].size;
         squared += rest * rest;
     }
-    // The deviation of a ratio of sums, and how many squares have a part in it.
+    // The deviation of a ratio of sums; then the effective number of squares.
     evidence.deviation = std::sqrt(squared) / size;
     if (size * size < min_squares * size_squares) return evidence;
     const double sureness = std::abs(evidence.correlation) / evidence.deviation;
@@ -356,7 +358,8 @@ GreenEvidence judged(const std::vector<SquareEvidence>& squares, std::size_t sca
     return evidence;
 }
 
-/// The surest scale; where two are sure of opposites, none is believed.
+/// Returns the scale with the highest significance. If two scales significantly contradict each
+/// other, green is undecided.
 GreenEvidence surest(const std::vector<SquareEvidence>& squares) {
     const auto sureness = [](const GreenEvidence& evidence) {
         if (evidence.correlation == 0.0 || evidence.confidence == 0.0) return 0.0;
@@ -377,7 +380,8 @@ GreenEvidence surest(const std::vector<SquareEvidence>& squares) {
     return best;
 }
 
-/// How well the slopes of alpha go with those of the normals, x alone: green may be either way.
+/// Returns the correlation of the slopes of alpha and of the normals along x; along y the sign of
+/// green may be unknown.
 std::optional<double> alpha_correlation(const std::vector<SquareEvidence>& squares) {
     double both = 0.0, alpha = 0.0, slopes = 0.0;
     for (const SquareEvidence& square : squares) {

@@ -22,15 +22,15 @@
 #include "relief/mesh/normal_map_check.h"
 
 namespace relief {
-/// How samples are to be understood.
+/// The meaning of samples.
 struct SampleMeaning {
     FlatCode flat = FlatCode::middle;
     StoredCurve curve = StoredCurve::none;
     bool is_signed = false;   ///< Float samples hold the component itself.
-    bool z_is_stored = true;  ///< Else it is rebuilt, upwards.
+    bool z_is_stored = true;  ///< Otherwise z is computed from x and y and points upwards.
 };
 
-/// One component, from the sample as it is stored.
+/// Returns the component that a stored sample means.
 template <typename Sample>
 float component_of(Sample sample, const SampleMeaning& meaning) {
     if constexpr (std::is_same_v<Sample, float>) {
@@ -44,7 +44,7 @@ float component_of(Sample sample, const SampleMeaning& meaning) {
     return 2.0F * meant - 1.0F;
 }
 
-/// Reads texels as vectors; y as it is stored, up or down. Codes go through a table.
+/// Reads texels as vectors, with y as stored, up or down. Codes are decoded by a table.
 template <typename Sample>
 class MapVectors {
   public:
@@ -80,18 +80,19 @@ class MapVectors {
     std::vector<float> table_;
 };
 
-/// Sums over a map. A texel whose three samples are the same is black, white or gray, a background
-/// or a height, and no vector.
+/// Sums over a map. A texel with three equal samples is black, white or gray: a background or a
+/// height, not a vector.
 struct MapStatistics {
-    std::size_t texels = 0;   ///< That were looked at.
-    std::size_t equal = 0;    ///< Whose samples are all the same.
-    std::size_t vectors = 0;  ///< The others, if finite: what all the rest is about.
-    std::size_t upwards = 0;  ///< z above 0.
-    std::size_t in_disk = 0;  ///< x and y within the unit disk, to within 5 %.
+    std::size_t texels = 0;   ///< The number of evaluated texels.
+    std::size_t equal = 0;    ///< Texels with equal samples.
+    std::size_t vectors = 0;  ///< All other finite texels. The fields below refer to these.
+    std::size_t upwards = 0;  ///< Vectors with z above 0.
+    std::size_t in_disk = 0;  ///< Vectors with x and y within the unit disk, to within 5%.
     glm::dvec3 mean{};
     VectorLengths lengths;
-    std::array<bool, 4> constant{};  ///< By channel.
-    /// Of these `equal`, not as long as a normal, nor without direction: 0.75 to 1.25.
+    std::array<bool, 4> constant{};  ///< By channel: whether all samples are equal.
+    /// The number of `equal` texels that have a direction, but whose length is not within 0.75 to
+    /// 1.25.
     std::size_t background = 0;
     MapConditionCount not_finite{MapCondition::texel_not_finite, 0, {}};
     MapConditionCount without_direction{MapCondition::texel_without_direction, 0, {}};
@@ -102,32 +103,35 @@ struct MapStatistics {
     }
 };
 
-/// \param step  looks at every step-th texel only
+/// \param step  only every step-th texel is evaluated
 MapStatistics map_statistics(const Image& map, const SampleMeaning& meaning, std::size_t step = 1);
 
 struct SurfaceEvidence {
     GreenEvidence green;
-    std::optional<double> alpha_correlation;  ///< With the slopes; where there is an alpha.
+    std::optional<double> alpha_correlation;  ///< The correlation of the slopes of alpha with those
+                                              ///< of the normals; none without alpha.
 };
 
-/// \param map  two channels at least; y as it is stored
+/// \param map  at least two channels; y as stored
 ///
-/// Texels that are not finite, face back or are steeper than 10 have no say, nor have their
-/// neighbors. The map is looked at as it is and averaged over 2, 4 and 8 texels, where the noise
-/// of few bits is less; of these the one counts that is surest.
+/// Texels that are not finite, face back or are steeper than 10 do not contribute, nor do their
+/// neighbors. The map is evaluated as it is and averaged over 2, 4 and 8 texels, which reduces the
+/// noise of few bits. The scale with the highest significance determines the result.
 SurfaceEvidence surface_evidence(const Image& map, const SampleMeaning& meaning);
 
-/// Texels whose x and y both have one of the two codes below and the two above 127.5 (32767.5).
+/// Counts of texels whose x and y both have one of the two codes below or the two codes above 127.5
+/// (32767.5).
 struct FlatEvidence {
-    std::size_t near = 0;   ///< All of them.
-    std::size_t lower = 0;  ///< Those that have the lower code of zero, 127, for both.
+    std::size_t near = 0;   ///< All of these texels.
+    std::size_t lower = 0;  ///< Those of them with the lower code of zero, 127, for both x and y.
 
-    /// A smooth surface passes all sixteen pairs of codes alike, on its way; where texels are flat
-    /// by intention, one pair stands out. So: at least 64 texels, and more than half of those near.
+    /// A smooth surface contains all sixteen pairs of codes equally often; if texels are flat by
+    /// intention, one pair is much more frequent. The criterion is at least 64 texels, and more
+    /// than half of the near ones.
     [[nodiscard]] bool is_half() const { return lower >= 64 && 2 * lower > near; }
 };
 
-/// \param map  three channels at least; none of 32 bits has evidence
+/// \param map  at least three channels; a map of 32 bits gives no evidence
 FlatEvidence flat_evidence(const Image& map);
 
 }  // namespace relief

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t samples_per_level_piece = 1 << 16;
 
-/// A level while it is worked on: samples of 16 bits or float, light or numbers.
+/// An intermediate level: samples of 16 bits or float, linear.
 template <typename Value>
 struct MipLevel {
     std::size_t width = 0;
@@ -27,14 +27,14 @@ struct MipLevel {
     std::vector<Value> values;
 };
 
-/// What one result takes of a row or column: up to three values, from `first` on.
+/// The source texels of one result along a row or column: up to three values, from `first` on.
 struct LevelTaps {
     std::size_t first = 0;
     std::array<float, 3> weights{};
     std::size_t count = 0;
 };
 
-/// \param size  of the level above; the result has max(size / 2, 1)
+/// \param size  the size of the level above; the result has max(size / 2, 1) texels
 LevelTaps taps_of(std::size_t size, std::size_t i) {
     if (size == 1) return {0, {1.0F}, 1};
     if (size % 2 == 0) return {2 * i, {0.5F, 0.5F}, 2};
@@ -50,7 +50,7 @@ Value rounded(float mean) {
     return static_cast<Value>(mean + 0.5F);
 }
 
-/// One row of the result where a size is odd or 1.
+/// Computes one row of the result if a size is odd or 1.
 template <int Channels, typename Value, typename Sample, typename Decode>
 void halve_row(const Sample* above, std::size_t width, std::size_t height, std::size_t y,
                Decode decode, Value* row) {
@@ -71,7 +71,7 @@ void halve_row(const Sample* above, std::size_t width, std::size_t height, std::
     }
 }
 
-/// One row of the result where both sizes are even: means of four.
+/// Computes one row of the result if both sizes are even: means of four texels.
 template <int Channels, typename Value, typename Sample, typename Decode>
 void halve_even_row(const Sample* upper, std::size_t width, Decode decode, Value* row) {
     const Sample* lower = upper + width * Channels;
@@ -90,7 +90,7 @@ void halve_even_row(const Sample* upper, std::size_t width, Decode decode, Value
     }
 }
 
-/// \param decode  of a sample and its channel: uint32_t within 16 bits, or float
+/// \param decode  decode(sample, channel) gives a float, or a uint32_t within 16 bits
 template <int Channels, typename Value, typename Sample, typename Decode>
 MipLevel<Value> halved(const Sample* above, std::size_t width, std::size_t height, Decode decode) {
     MipLevel<Value> level{
@@ -113,7 +113,7 @@ MipLevel<Value> halved(const Sample* above, std::size_t width, std::size_t heigh
     return level;
 }
 
-/// All levels: the first out of samples by `decode`, the others out of one another.
+/// Computes all levels: the first from samples by `decode`, each other one from the level above.
 template <int Channels, typename Value, typename Sample, typename Decode, typename Encode>
 std::vector<Image> levels_of(const Image& image, Decode decode, Encode encode) {
     using Number = std::conditional_t<std::is_same_v<Value, float>, float, std::uint32_t>;
@@ -139,7 +139,8 @@ std::vector<Image> levels_of(const Image& image, Decode decode, Encode encode) {
 // ---------------------------------------------------------------------------------------------
 // Codes
 
-/// 16-bit light of every 8-bit sRGB code, and back: the code whose light is nearest by code.
+/// 16-bit linear values of all 8-bit sRGB codes, and the inverse: the code with the nearest linear
+/// value.
 struct SrgbTables {
     std::array<std::uint16_t, 256> light{};
     std::vector<std::uint8_t> code = std::vector<std::uint8_t>(65536);
@@ -209,7 +210,7 @@ std::vector<Image> levels(const Image& image) {
 std::vector<Image> mip_levels(const Image& image) {
     if (image.empty()) throw InvalidInput("an image without texels has no mip levels");
     if (image.bits() == 16 && image.color_space == ColorSpace::srgb) {
-        // 16 bits of light would not tell the darkest codes apart.
+        // 16 bits of linear light do not resolve the darkest codes.
         std::vector<Image> result = mip_levels(to_linear(image));
         for (Image& level : result)
             level = to_srgb(level, 16);

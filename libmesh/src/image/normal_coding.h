@@ -17,22 +17,22 @@
 
 namespace relief {
 
-/// Codes of 8 or 16 bits under one of the two meanings of zero. Real: what to compute in.
+/// Codes of 8 or 16 bits with one of the two meanings of zero. Real is the type of the arithmetic.
 template <typename Code, typename Real = double>
 struct NormalCoding {
     static constexpr Real largest = std::numeric_limits<Code>::max();
     static constexpr Real middle = (largest + 1) / 2;
     FlatCode flat;
 
-    /// What a component is multiplied by to count in codes.
+    /// Returns the number of code steps of a component of 1.
     static constexpr Real steps(FlatCode flat) {
         return flat == FlatCode::half ? largest / 2 : middle - 1;
     }
 
-    // The cast cuts off, which is a nearest code after adding a half. Without branches, so that
-    // loops become vector instructions.
+    // The cast truncates, which gives the nearest code after adding one half. There are no
+    // branches, so that loops are vectorized.
     RELIEF_INLINE static Code from_half_steps(Real steps) {
-        // Its zero lies between two codes, so that only a sum can be rounded.
+        // Zero lies between two codes, so only the sum can be rounded.
         return static_cast<Code>(
             static_cast<std::int32_t>(largest / 2 + steps + static_cast<Real>(0.5)));
     }
@@ -52,9 +52,10 @@ struct NormalCoding {
         return flat == FlatCode::half ? to_half(component) : to_middle(component);
     }
 
-    /// One of the two codes around the component: the one farther from zero (with FlatCode::half,
-    /// the upper one) where what is left exceeds the threshold, which lies in (0,1). Opposite
-    /// components have mirrored codes; what a code says exactly has that code.
+    /// Returns one of the two codes around the component: the one farther from zero (with
+    /// FlatCode::half, the upper one) if the fraction exceeds the threshold, which lies in (0,1).
+    /// Opposite components have mirrored codes; a value that a code represents exactly has that
+    /// code.
     [[nodiscard]] RELIEF_INLINE Code dithered(Real component, Real threshold) const {
         const bool is_middle = flat == FlatCode::middle;
         const Real place =
@@ -72,7 +73,7 @@ struct NormalCoding {
     }
 };
 
-/// Float samples are scaled to [0,1], where zero is exactly 0.5 and no question of codes arises.
+/// Float samples are scaled to [0,1]. Zero is exactly 0.5, so there is no choice of a flat code.
 template <typename Real>
 struct NormalCoding<float, Real> {
     FlatCode flat;
@@ -86,11 +87,11 @@ struct NormalCoding<float, Real> {
     }
 };
 
-/// Tells the texels of a map that are read as exactly flat, see FlatTexels.
+/// Identifies the texels of a map that are read as exactly flat, see FlatTexels.
 template <typename Sample>
 class ExactFlat {
   public:
-    /// \param codes  of x and y, see flat_texel_codes()
+    /// \param codes  the codes of x and y, see flat_texel_codes()
     explicit ExactFlat(const std::optional<std::array<std::uint16_t, 2>>& codes) : codes_(codes) {}
     ExactFlat(const Image& map, FlatCode flat, FlatTexels texels, int x, int y) {
         if (texels == FlatTexels::exact && flat == FlatCode::half)

@@ -22,7 +22,7 @@
 namespace relief {
 namespace {
 
-/// Unit normals as codes: to_codes(column, direction, samples) for each texel of a row.
+/// Encodes a row of normals: to_codes(column, direction, samples) for each texel.
 template <typename Sample, typename ToCodes>
 void encode_row(const float* normals, int width, std::size_t first_texel, double green,
                 Sample* samples, Report& found, const ToCodes& to_codes) {
@@ -35,7 +35,7 @@ void encode_row(const float* normals, int width, std::size_t first_texel, double
     }
 }
 
-/// The same for a row in its place, which decides how it is dithered.
+/// Encodes a row of normals; the index of the row determines its dithering.
 template <typename Sample>
 void encode_row(const float* normals, int width, int row, const NormalMapFormat& format,
                 Sample* samples, Report& found) {
@@ -71,9 +71,9 @@ void encode(const Image& normals, const NormalMapFormat& format, Image& result, 
     });
 }
 
-/// True if a texel holds only codes next to zero, where zero lies between two codes: its vector is
-/// then no longer than rounding makes one. With FlatCode::middle such a texel decodes to exactly
-/// zero.
+/// Returns whether a texel has only codes next to zero, where zero lies between two codes: its
+/// vector is then as short as the rounding error. With FlatCode::middle such a texel decodes to
+/// exactly zero.
 template <typename Sample>
 bool has_no_direction(const Sample* sample, FlatCode flat) {
     if constexpr (std::is_same_v<Sample, float>) {
@@ -106,7 +106,7 @@ void decode(const Image& map, Green green, FlatCode flat, FlatTexels texels,
     });
 }
 
-/// How many texels hold each pair of the two codes around zero, lower first, x before y.
+/// Counts the texels with each pair of the two codes around zero, lower first, x before y.
 template <typename Code>
 std::array<std::size_t, 4> pairs_around_zero(const Image& map, int x, int y) {
     constexpr Code lower = std::numeric_limits<Code>::max() / 2;
@@ -209,12 +209,13 @@ std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& fo
 
 namespace {
 
-/// What stands for minus a sample.
+/// The negative of a stored sample.
 template <typename Sample>
 struct Opposite {
     FlatCode flat;
 
-    /// Twice the code of zero. In the codes' own arithmetic, where 256 - c is 0 - c.
+    /// The negative is twice the code of zero minus the code. In the arithmetic of the codes, 256 -
+    /// c is 0 - c.
     [[nodiscard]] Sample of(Sample code) const {
         constexpr Sample largest = std::numeric_limits<Sample>::max();
         if (flat == FlatCode::half) return static_cast<Sample>(largest - code);
@@ -283,7 +284,7 @@ void map_normal_axes(Image& normals, const AxisMapping& mapping) {
         const std::array<float, 3> old = {normal[0], normal[1], normal[2]};
         for (std::size_t i = 0; i < 3; ++i) {
             const float part = old[static_cast<std::size_t>(mapping[i].axis)];
-            normal[i] = mapping[i].is_negative ? 0.0F - part : part;  // Never -0.
+            normal[i] = mapping[i].is_negative ? 0.0F - part : part;  // This is never -0.
         }
     });
 }

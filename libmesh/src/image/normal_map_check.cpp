@@ -118,9 +118,10 @@ Report to_report(const NormalMapCheck& check, std::optional<Severity> severity) 
 
 namespace {
 
-constexpr std::size_t max_samples = 1 << 18;  // To tell the meaning from.
+constexpr std::size_t max_samples = 1 << 18;  // The texels from which the meaning is determined.
 
-/// Another meaning is believed where it makes lengths this much truer.
+/// Another meaning is accepted if it reduces the error of the lengths by this factor, to at most
+/// this value.
 constexpr double largest_other_rms = 0.1;
 constexpr double min_gain = 2.0;
 
@@ -128,7 +129,7 @@ bool is_gray(const MapStatistics& all) {
     return static_cast<double>(all.equal) >= 0.995 * static_cast<double>(all.texels);
 }
 
-/// Directions that lean towards z: lengths near 1, or at least x and y around 0.
+/// Returns whether the directions lean towards z: lengths are near 1, or at least x and y around 0.
 bool are_tangent_normals(const MapStatistics& all) {
     if (all.share(all.upwards) < 0.9 || all.mean.z < 0.4) return false;
     if (all.lengths.rms_deviation <= 0.1) return true;
@@ -136,13 +137,15 @@ bool are_tangent_normals(const MapStatistics& all) {
            std::abs(all.mean.y) <= 0.2;
 }
 
-/// Directions that face all ways: colors of that length do not.
+/// Returns whether the vectors have unit length and point in all directions. Colors of unit length
+/// do not.
 bool are_object_normals(const MapStatistics& all) {
     return all.lengths.rms_deviation <= 0.12 && glm::length(all.mean) <= 0.6 &&
            all.share(all.upwards) <= 0.98;
 }
 
-/// Two components within the unit disk, around 0, beside a third that says nothing.
+/// Returns whether two components lie within the unit disk, around 0, and the third one is
+/// constant.
 bool are_xy_normals(const Image& map, const MapStatistics& all) {
     const bool has_no_z = map.channels == 2 || all.constant[2];
     return has_no_z && !(all.constant[0] && all.constant[1]) && all.share(all.in_disk) >= 0.99 &&
@@ -162,8 +165,8 @@ struct Meaning {
     MapContent content = MapContent::other;
 };
 
-/// The meaning under which the vectors are nearest to unit length. What is kept unless another is
-/// much better: samples as they are stored.
+/// Returns the meaning that gives vectors nearest to unit length. Samples are taken as stored
+/// unless another meaning is much better.
 Meaning meaning_of(const Image& map, FlatCode flat) {
     const std::size_t count =
         static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
@@ -196,7 +199,7 @@ Meaning meaning_of(const Image& map, FlatCode flat) {
     return best;
 }
 
-/// One channel of a map, for the statistics of height maps.
+/// Returns one channel of a map, for the statistics of height maps.
 Image channel_to_check(const Image& map, int channel) {
     Image one = make_image(map.width, map.height, 1, map.bits(), ColorSpace::data);
     with_sample_type(map, [&](auto sample) {
@@ -212,7 +215,7 @@ Image channel_to_check(const Image& map, int channel) {
     return one;
 }
 
-/// Seams of x and y, the worse of the two, and the bits of every channel.
+/// Determines the larger seams of x and y, and the bits of every channel.
 void look_at_channels(const Image& map, NormalMapCheck& check) {
     for (int channel = 0; channel < map.channels; ++channel) {
         const Image one = channel_to_check(map, channel);
@@ -273,8 +276,8 @@ void find_texels(const NormalMapCheck& check, const MapStatistics& all, FoundCon
     found.if_so(rms > 0.02 && rms <= 0.05, MapCondition::not_quite_unit);
 }
 
-/// Returns whether flat texels have 127 while the file says that zero is 128. In the other case
-/// nothing can be told: maps with zero at 127.5 have 128 in flat texels too.
+/// Returns whether flat texels have 127 although the file says that zero is 128. The opposite case
+/// cannot be detected: maps with zero at 127.5 have 128 in flat texels too.
 bool contradicts_flat_code(const Image& map, const std::map<std::string, std::string>& metadata) {
     return metadata.contains("relief:flat") &&
            detect_flat_code(map, metadata) == FlatCode::middle && flat_evidence(map).is_half();
@@ -324,7 +327,7 @@ void find_channels(const Image& map, const NormalMapCheck& check, const MapStati
     found.if_so(!check.tiling.tiles_y(), seam_y);
 }
 
-/// Lengths by the meaning found, and as they are stored.
+/// Measures lengths with the detected meaning, and as stored.
 void measure_lengths(const Image& map, const SampleMeaning& meaning, const MapStatistics& all,
                      NormalMapCheck& check) {
     check.lengths = check.lengths_uncurved = all.lengths;
@@ -334,13 +337,14 @@ void measure_lengths(const Image& map, const SampleMeaning& meaning, const MapSt
     check.lengths = map_statistics(map, stored).lengths;
 }
 
-/// A surface in wrong numbers: vectors too short or too long, but their slopes are those of one.
+/// Returns whether vectors that are too short or too long have the slopes of a surface.
 bool is_surface(const MapStatistics& all, const GreenEvidence& green) {
     return all.share(all.upwards) >= 0.95 && all.mean.z >= 0.3 && std::abs(all.mean.x) <= 0.1 &&
            std::abs(all.mean.y) <= 0.1 && green.green && std::abs(green.correlation) >= 0.3;
 }
 
-/// What only tangent-space normals show; says so if the map turns out to hold some.
+/// Evaluates the properties of tangent-space normals, and sets the content if the map turns out to
+/// hold some.
 void look_at_surface(const Image& map, SampleMeaning meaning, const MapStatistics& all,
                      NormalMapCheck& check) {
     if (check.content == MapContent::gray || check.content == MapContent::object_normals) return;

@@ -33,7 +33,7 @@ void check_xy_map(const Image& map, const XyChannels& channels) {
     }
 }
 
-/// The normal with these coordinates that faces outwards.
+/// Returns the normal with these coordinates that points outwards.
 Direction facing_outwards(double x, double y, std::size_t texel, Report& found) {
     const double square = x * x + y * y;
     if (!std::isfinite(square)) {
@@ -46,7 +46,7 @@ Direction facing_outwards(double x, double y, std::size_t texel, Report& found) 
     return {x / length, y / length, 0.0};
 }
 
-/// How far rounding, or dithering, can move the end of a unit vector.
+/// Returns the largest change of length by rounding or dithering.
 template <typename Sample>
 double length_tolerance(FlatCode flat) {
     if constexpr (std::is_same_v<Sample, float>)
@@ -55,7 +55,7 @@ double length_tolerance(FlatCode flat) {
         return std::numbers::sqrt3 / NormalCoding<Sample>::steps(flat);
 }
 
-/// Of the vectors of a row.
+/// The lengths of the vectors of a row.
 struct RowLengths {
     double least = std::numeric_limits<double>::infinity();
     double sum = 0.0;
@@ -87,7 +87,7 @@ RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Repo
     return result;
 }
 
-/// All rows together, in their order.
+/// Combines all rows in order.
 LengthRange time_statistics(const std::vector<RowLengths>& rows) {
     RowLengths all;
     for (const RowLengths& row : rows) {
@@ -201,15 +201,16 @@ Direction sum_of_slopes(const Direction& b, const Direction& d) {
     return {b.x * d.z + d.x * b.z, b.y * d.z + d.y * b.z, b.z * d.z};
 }
 
-/// t (t . u) / t.z - u with t = b + (0,0,1) and u = (-d.x, -d.y, d.z), times t.z, which is positive
-/// but where the base faces straight back. There this is zero.
+/// Computes t (t . u) / t.z - u with t = b + (0,0,1) and u = (-d.x, -d.y, d.z), multiplied by t.z.
+/// The factor is positive unless the base points straight back; then it is zero.
 Direction reoriented(const Direction& b, const Direction& d) {
     const Direction t{b.x, b.y, b.z + 1.0};
     const double along = d.z * t.z - t.x * d.x - t.y * d.y;
     return {t.x * along + d.x * t.z, t.y * along + d.y * t.z, t.z * (along - d.z)};
 }
 
-/// The detail along three rows: the base, and the base turned by 90 degrees about y and about x.
+/// Returns the detail in a frame of three rows: the base, and the base rotated by 90 degrees about
+/// y and about x.
 Direction in_turned_frame(const Direction& b, const Direction& d) {
     return {d.x * b.z + d.y * b.x + d.z * b.x, d.x * b.y + d.y * b.z + d.z * b.y,
             -d.x * b.x - d.y * b.y + d.z * b.z};

@@ -24,13 +24,13 @@
 namespace relief {
 namespace {
 
-/// What a place of the result takes of a row or column.
+/// A source texel along one axis and its weight.
 struct Tap {
     std::size_t place;
     float weight;
 };
 
-/// All taps along one axis: those of result i are [first[i], first[i + 1]).
+/// All taps along one axis: result i has those in [first[i], first[i + 1]).
 struct Taps {
     std::vector<Tap> taps;
     std::vector<std::size_t> first = {0};
@@ -56,7 +56,8 @@ double radius_of(ResizeFilter filter) {
     return 3.0;
 }
 
-/// The filter at x texels from its middle; not the box, whose texels count by their share.
+/// Returns the filter at x texels from its center. The box is not included, because its weights are
+/// overlaps of texels.
 double filter_at(ResizeFilter filter, double x) {
     const double d = std::abs(x);
     if (d >= radius_of(filter)) return 0.0;
@@ -65,7 +66,7 @@ double filter_at(ResizeFilter filter, double x) {
     return d < 1.0 ? (1.5 * d - 2.5) * d * d + 1.0 : ((-0.5 * d + 2.5) * d - 4.0) * d + 2.0;
 }
 
-/// \param scale  texels of the source to one of the result
+/// \param scale  source texels per result texel
 double weight_of(ResizeFilter filter, double middle, int place, double scale) {
     const double width = std::max(scale, 1.0);
     if (filter != ResizeFilter::box) return filter_at(filter, (place + 0.5 - middle) / width);
@@ -75,7 +76,8 @@ double weight_of(ResizeFilter filter, double middle, int place, double scale) {
     return std::max(end - begin, 0.0);
 }
 
-/// \param from, to  texels of the source and of the result; `repeat` times the source on these
+/// \param from, to  texels of the source and of the result; the result shows the source `repeat`
+///                  times
 Taps taps_of(int from, int to, double repeat, ResizeFilter filter, Wrap wrap) {
     Taps result;
     const double scale = from * repeat / to;
@@ -100,7 +102,7 @@ Taps taps_of(int from, int to, double repeat, ResizeFilter filter, Wrap wrap) {
     return result;
 }
 
-/// Makes rows of float samples at another size.
+/// Computes rows of float samples at another size.
 class Resampling {
   public:
     Resampling(const Image& source, int width, int height, const ResizeOptions& options)
@@ -121,7 +123,7 @@ class Resampling {
         }
     }
 
-    /// The mean of vectors that lie as the samples do, at one place of the result.
+    /// Returns the mean of vectors at one texel of the result, with the weights of the samples.
     [[nodiscard]] Direction mean_vector(const Image& vectors, std::size_t row,
                                         std::size_t column) const {
         const float* const all = vectors.as<float>().data();
@@ -142,7 +144,7 @@ class Resampling {
     }
 
   private:
-    /// The rows around one of the result, weighed, all columns alike.
+    /// Returns the weighted sum of the source rows of one result row, by column.
     [[nodiscard]] std::vector<float> sum_of_rows(std::size_t row) const {
         const float* const samples = source_.as<float>().data();
         std::vector<float> sums(static_cast<std::size_t>(source_.width) *
@@ -175,7 +177,7 @@ void check(int width, int height, const ResizeOptions& options) {
     }
 }
 
-/// Slopes of normals, two floats a texel; not a number where there is none to be averaged.
+/// Returns the slopes of normals, two floats per texel; NaN if the normal is too steep.
 Image slopes_to_average(const Image& normals, Report& report) {
     Image result = make_image(normals.width, normals.height, 2, 32, ColorSpace::data);
     const std::span<const float> from = normals.as<float>();
@@ -193,7 +195,8 @@ Image slopes_to_average(const Image& normals, Report& report) {
     return result;
 }
 
-/// A row of means as unit normals. \param mean_vector  of a texel whose slopes are not numbers
+/// Stores a row of means as unit normals. \param mean_vector  returns the mean vector of a texel
+/// whose slopes are NaN
 template <typename MeanVector>
 void store_row(const std::vector<float>& means, ResizeDomain domain, std::size_t first_texel,
                float* normals, Report& found, const MeanVector& mean_vector) {

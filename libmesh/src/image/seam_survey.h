@@ -17,16 +17,16 @@ class SeamSurvey {
     /// \param width, height  of the map
     SeamSurvey(int width, int height);
 
-    /// Looks at the next row from the top; all rows of a map are of one type. Heights that are not
-    /// finite are left out.
+    /// Adds the next row from the top. All rows of a map have the same type. Heights that are not
+    /// finite are ignored.
     template <typename Sample>
     void add_row(std::span<const Sample> row);
 
-    /// What all rows together show.
+    /// Returns the result over all rows.
     [[nodiscard]] Tiling tiling() const;
 
   private:
-    /// Root of the mean of squares.
+    /// The root of a mean square.
     struct Mean {
         double squares = 0.0;
         std::size_t count = 0;
@@ -38,8 +38,9 @@ class SeamSurvey {
 
     int height_;
     int rows_ = 0;
-    std::vector<std::size_t> columns_;  ///< Left ones of the pairs looked at; the last is the seam.
-    std::vector<int> row_pairs_;        ///< Upper ones.
+    std::vector<std::size_t>
+        columns_;  ///< The left column of each evaluated pair; the last one is at the seam.
+    std::vector<int> row_pairs_;  ///< The upper row of each evaluated pair.
     std::vector<Mean> across_columns_, across_rows_;
     std::vector<double> first_, previous_;
 };

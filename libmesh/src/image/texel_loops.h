@@ -28,7 +28,7 @@ void for_each_texel(std::size_t count, Report& report, Each each) {
                            });
 }
 
-/// Calls each(row, report) for every row in parallel, as many rows a piece as make it worth while.
+/// Calls each(row, report) for every row in parallel. Each piece has enough rows to be worthwhile.
 template <typename Each>
 void for_each_row(int width, int height, Report& report, Each each) {
     const std::size_t rows_per_piece = texels_per_piece / static_cast<std::size_t>(width) + 1;
@@ -39,7 +39,7 @@ void for_each_row(int width, int height, Report& report, Each each) {
                            });
 }
 
-/// Calls with(Sample{}) for the type of an image's samples.
+/// Calls with(Sample{}) for the sample type of an image.
 template <typename With>
 auto with_sample_type(const Image& image, const With& with) {
     if (image.bits() == 8) return with(std::uint8_t{});
@@ -47,20 +47,20 @@ auto with_sample_type(const Image& image, const With& with) {
     return with(float{});
 }
 
-/// The last channel of two or four is alpha.
+/// Returns whether the last channel is alpha: that of two or four channels.
 inline bool has_alpha(const Image& image) {
     return image.channels == 2 || image.channels == 4;
 }
 
-/// \param what  in the plural, for messages: "normals"
-/// \throws InvalidInput if the image is empty or has not so many float channels
+/// \param what  the plural for messages: "normals"
+/// \throws InvalidInput if the image is empty or does not have this number of float channels
 void check_floats(const Image& image, int channels, const char* what);
 
 struct Direction {
     double x, y, z;
 };
 
-/// A direction at length 1, or flat where there is none; says which.
+/// Normalizes a direction. If it has none, the result is flat. \return whether it has a direction
 inline bool make_unit(Direction& direction) {
     const double largest =
         std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
@@ -75,14 +75,14 @@ inline bool make_unit(Direction& direction) {
     return true;
 }
 
-/// Three floats; adding zero turns -0 into 0, so that flat is (0,0,1) to the bit.
+/// Stores three floats. Adding zero turns -0 into 0, so that flat is exactly (0,0,1).
 inline void store(const Direction& direction, float* normal) {
     normal[0] = static_cast<float>(direction.x + 0.0);
     normal[1] = static_cast<float>(direction.y + 0.0);
     normal[2] = static_cast<float>(direction.z + 0.0);
 }
 
-/// The place within [0, count) that is read for any place: clamped to the edge for Wrap::clamp.
+/// Returns the texel within [0, count) for any coordinate: the nearest one for Wrap::clamp.
 inline int place_within(int place, int count, Wrap wrap) {
     if (wrap == Wrap::clamp) return std::clamp(place, 0, count - 1);
     const int period = wrap == Wrap::mirror ? 2 * count : count;
@@ -90,8 +90,8 @@ inline int place_within(int place, int count, Wrap wrap) {
     return rest < count ? rest : period - 1 - rest;
 }
 
-/// What a clamped quantity goes on as beyond its border: point-reflected at the border value, so
-/// that a plane goes on as a plane. `at(place)` gives values within; a single one goes on as is.
+/// Continues a clamped quantity beyond its border by point reflection at the border value, so that
+/// a plane remains a plane. `at(place)` gives values inside; a single value is constant.
 template <typename At>
 auto reflected(int place, int count, const At& at) -> decltype(at(0)) {
     if (place >= 0 && place < count) return at(place);
@@ -100,7 +100,7 @@ auto reflected(int place, int count, const At& at) -> decltype(at(0)) {
     return 2 * at(edge) - reflected(2 * edge - place, count, at);
 }
 
-/// In double, so that dividing codes by it is no division of whole numbers.
+/// This is a double, so that dividing a code by it is not an integer division.
 template <typename Sample>
 inline constexpr double largest_sample =
     std::is_floating_point_v<Sample> ? 1.0

@@ -39,38 +39,38 @@
 namespace relief {
 namespace {
 
-/// What to take vertices out of, and when to stop. All spans outlive the call.
+/// The input of a decimation, and when to stop. All spans outlive the call.
 struct Decimation {
     const Topology& topology;
     std::span<const glm::dvec3> points;  ///< By vertex of the topology; within [-1, 1].
-    /// For each triangle of the topology the mesh vertices at its corners: where those of two
+    /// For each triangle of the topology, the mesh vertices at its corners. If those of two
     /// neighbors differ along their edge, there is a seam.
     std::span<const glm::uvec3> wedges;
-    /// For each triangle, what it may not mix with: the number of its material range.
+    /// For each triangle, the index of its material range. Ranges are not mixed.
     std::span<const std::uint32_t> parts;
     std::span<const glm::vec2> texcoords;  ///< By mesh vertex, or empty.
-    std::optional<std::size_t> triangles;  ///< Stop at this many.
-    std::optional<double> max_error;       ///< In the unit of the points.
+    std::optional<std::size_t> triangles;  ///< The number of triangles to stop at.
+    std::optional<double> max_error;       ///< The maximum error in the unit of the points.
 };
 
 using Quadric = OpenMesh::Geometry::QuadricT<double>;
 using CollapseInfo = OpenMesh::Decimater::CollapseInfoT<SurfaceMesh>;
 
-/// How far a triangle may turn in one move: about 78 degrees.
+/// The maximum rotation of a triangle in one move: about 78 degrees.
 constexpr double min_turn_cosine = 0.2;
 
-/// How much shorter edges are preferred where nothing else tells moves apart.
+/// The weight of the squared length, which prefers short edges if costs are otherwise equal.
 constexpr double length_preference = 1e-7;
 
-/// What moving along a line costs, against what leaving the surface costs.
+/// The cost of moving along a line, relative to that of leaving the surface.
 constexpr double line_weight = 1.0;
 
 glm::dvec3 to_glm(const OpenMesh::Vec3d& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// The part of [Hoppe 1999]'s quadric that measures texture coordinates, for both at once: the
-/// integral of |gradient * p + offset - t|^2 over the triangles added.
+/// The part of the quadric of [Hoppe 1999] for texture coordinates, for both at once: the integral
+/// of |gradient * p + offset - t|^2 over the added triangles.
 struct TextureQuadric {
     double area = 0.0;
     glm::dmat3 squares{0.0};               ///< Sum of gradient^T gradient.
@@ -97,7 +97,7 @@ struct TextureQuadric {
     }
 };
 
-/// The squared distance from a point to a triangle.
+/// Returns the squared distance from a point to a triangle.
 double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                         const glm::dvec3& c) {
     const glm::dvec3 normal = glm::cross(b - a, c - a);
@@ -119,26 +119,26 @@ double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dve
     return std::min(nearest, height * height / glm::dot(normal, normal));
 }
 
-/// A triangle that stays when a vertex moves, and what its corner there becomes.
+/// A triangle that remains when a vertex moves, and its corner at that vertex.
 struct MovedFace {
     int face = 0;
-    int corner = 0;  ///< Which of the face's corners moves.
+    int corner = 0;  ///< The corner of the face that moves.
     std::uint32_t wedge_before = 0;
     std::uint32_t wedge_after = 0;
 };
 
-/// A vertex's triangles, counter-clockwise from the edge along which it may move.
+/// The triangles around a vertex, counter-clockwise from the edge along which it may move.
 class Ring {
   public:
     struct Spoke {
-        int face;      ///< To its left; -1 at a boundary.
-        bool is_line;  ///< A seam, a border or a boundary.
+        int face;      ///< The face on the left; -1 at a boundary.
+        bool is_line;  ///< True for a seam, a border or a boundary.
     };
     std::vector<Spoke> spokes;
     std::vector<MovedFace> moved;
 };
 
-/// The module that prices moves and keeps track of wedges.
+/// The decimater module that computes the cost of moves and updates wedges.
 class SeamQuadrics : public OpenMesh::Decimater::ModBaseT<SurfaceMesh> {
   public:
     using Handle = OpenMesh::Decimater::ModHandleT<SeamQuadrics>;
@@ -180,14 +180,15 @@ class SeamQuadrics : public OpenMesh::Decimater::ModBaseT<SurfaceMesh> {
     void gather_points(const CollapseInfo& move);
 
     const Decimation* input_ = nullptr;
-    std::vector<glm::uvec3> triangles_;  ///< Over the topology's vertices, as they are now.
+    std::vector<glm::uvec3> triangles_;  ///< The current triangles, with vertices of the topology.
     std::vector<glm::uvec3> wedges_;
-    std::vector<Quadric> quadrics_;                 ///< By vertex.
-    std::vector<TextureQuadric> texture_;           ///< By wedge.
-    std::vector<std::vector<std::uint32_t>> gone_;  ///< By face: vertices nearest to it.
-    double texture_scale_ = 0.0;                    ///< Squared length for a squared texcoord.
+    std::vector<Quadric> quadrics_;        ///< By vertex.
+    std::vector<TextureQuadric> texture_;  ///< By wedge.
+    std::vector<std::vector<std::uint32_t>>
+        gone_;                    ///< By face: removed vertices that are nearest to it.
+    double texture_scale_ = 0.0;  ///< The squared length of a squared texture coordinate.
     Ring ring_;
-    std::vector<std::uint32_t> points_;  ///< Whose distance a move must keep.
+    std::vector<std::uint32_t> points_;  ///< The points whose distance the move must preserve.
 };
 
 int SeamQuadrics::corner_of(int face, int vertex) const {
@@ -228,7 +229,7 @@ void SeamQuadrics::add_triangle_quadrics(std::size_t face) {
     const glm::dvec2 t = texcoord(wedge[0]);
     const glm::dvec2 tb = texcoord(wedge[1]) - t;
     const glm::dvec2 tc = texcoord(wedge[2]) - t;
-    // The gradient within the triangle's plane, by the dual basis of its edges.
+    // The gradient in the plane of the triangle results from the dual basis of its edges.
     const glm::dvec3 dual_b = glm::cross(ac, normal) / doubled_area;
     const glm::dvec3 dual_c = glm::cross(normal, ab) / doubled_area;
     TextureQuadric texture;
@@ -246,7 +247,7 @@ void SeamQuadrics::add_triangle_quadrics(std::size_t face) {
         texture_[wedge[i]] += texture;
 }
 
-/// Lines keep their place by planes through them, upright on the triangles.
+/// Adds planes through a line, perpendicular to the triangles, which keep the line in place.
 void SeamQuadrics::add_line_quadric(SurfaceMesh::EdgeHandle edge) {
     const auto halfedge = mesh().halfedge_handle(edge, 0);
     const int left = mesh().face_handle(halfedge).idx();
@@ -271,7 +272,7 @@ void SeamQuadrics::add_line_quadric(SurfaceMesh::EdgeHandle edge) {
     }
 }
 
-/// The mean squared length that a unit of the texture has on the surface.
+/// Computes the mean squared length of a texture unit on the surface.
 void SeamQuadrics::set_texture_scale() {
     double area = 0.0;
     double texture_area = 0.0;
@@ -319,11 +320,12 @@ bool SeamQuadrics::look_around(const CollapseInfo& move) {
         halfedge = mesh().ccw_rotated_halfedge_handle(halfedge);
     } while (halfedge != move.v0v1);
     if (lines != 0) return lines == 2 && ring_.spokes[0].is_line;
-    // Between two wedges of the neighbor it would not know which one to become.
+    // If the neighbor has two wedges, it is undefined which one the vertex becomes.
     return wedge_at(move.fl.idx(), move.v1.idx()) == wedge_at(move.fr.idx(), move.v1.idx());
 }
 
-/// The triangles that stay; those to the left of the line get the left wedge of the neighbor.
+/// Gathers the triangles that remain. Those to the left of the line get the left wedge of the
+/// neighbor.
 void SeamQuadrics::gather_moved(const CollapseInfo& move) {
     ring_.moved.clear();
     const int vertex = move.v0.idx();
@@ -342,8 +344,8 @@ void SeamQuadrics::gather_moved(const CollapseInfo& move) {
     }
 }
 
-/// A triangle that goes with lines on both its other sides would make them one, and whatever lies
-/// between them, the last of a texture island or a material, vanish.
+/// Returns whether a removed triangle has lines on both its other sides. The move would join them,
+/// and the last triangle between them, of a texture island or a material, would vanish.
 bool SeamQuadrics::joins_lines(const CollapseInfo& move) {
     const auto face_beyond = [&](SurfaceMesh::HalfedgeHandle halfedge) {
         return mesh().face_handle(mesh().opposite_halfedge_handle(halfedge)).idx();
@@ -364,7 +366,7 @@ bool SeamQuadrics::turns_over(const MovedFace& moved, const CollapseInfo& move) 
     const glm::dvec3 before = glm::cross(b - to_glm(move.p0), c - to_glm(move.p0));
     const glm::dvec3 after = glm::cross(b - to_glm(move.p1), c - to_glm(move.p1));
     const double length_before = glm::length(before);
-    if (!(length_before > 0.0)) return false;  // It had no side to turn.
+    if (!(length_before > 0.0)) return false;  // A triangle without area has no orientation.
     return !(glm::dot(before, after) > min_turn_cosine * length_before * glm::length(after));
 }
 
@@ -379,7 +381,8 @@ bool SeamQuadrics::turns_texture_over(const MovedFace& moved) const {
     return before != 0.0 && !(before * area_from(texcoord(moved.wedge_after)) > 0.0);
 }
 
-/// What the texture slides: of each wedge that goes, and of those they become.
+/// Returns the cost of the texture's movement, for each removed wedge and the wedge that replaces
+/// it.
 double SeamQuadrics::texture_cost(const CollapseInfo& move) const {
     if (texture_.empty()) return 0.0;
     const glm::dvec3 p = to_glm(move.p1);
@@ -397,7 +400,8 @@ double SeamQuadrics::texture_cost(const CollapseInfo& move) const {
     return cost * texture_scale_;
 }
 
-/// The triangle around the vertex that will be nearest to a point, and its squared distance.
+/// Returns the squared distance of the triangle around the moved vertex that is nearest to a point,
+/// and that triangle.
 std::pair<double, int> SeamQuadrics::nearest_face(std::uint32_t point_number,
                                                   const glm::dvec3& moved_to) const {
     std::pair<double, int> nearest = {std::numeric_limits<double>::infinity(), -1};
@@ -472,8 +476,8 @@ void SeamQuadrics::postprocess_collapse(const CollapseInfo& move) {
     quadrics_[index(move.v1.idx())] += quadrics_[index(move.v0.idx())];
 }
 
-/// For each triangle of the topology, the mesh vertices at its corners afterwards; nothing for one
-/// that is gone.
+/// Returns for each triangle of the topology the mesh vertices at its corners after decimation;
+/// none if the triangle is removed.
 std::vector<std::optional<glm::uvec3>> decimated_wedges(const Decimation& decimation) {
     SurfaceMesh mesh;
     build(mesh, decimation.topology, decimation.points);
@@ -506,7 +510,7 @@ void check(const Mesh& mesh, const DecimateOptions& options) {
         throw InvalidInput(fmt::format("an error of {} is no distance", *options.max_error));
 }
 
-/// From object space into [-1, 1], and how much longer things are there.
+/// Maps object space to [-1, 1]; `scale` is the factor of lengths.
 struct UnitSpace {
     glm::dvec3 center{0.0};
     double scale = 1.0;
@@ -529,7 +533,7 @@ UnitSpace unit_space(const Mesh& mesh) {
     return space;
 }
 
-/// The number of the material range of each triangle of the mesh.
+/// Returns the index of the material range of each triangle.
 std::vector<std::uint32_t> parts_of(const Mesh& mesh) {
     std::vector<std::uint32_t> parts(mesh.triangles.size(), 0);
     for (std::uint32_t r = 0; r < mesh.material_ranges.size(); ++r) {
@@ -539,8 +543,8 @@ std::vector<std::uint32_t> parts_of(const Mesh& mesh) {
     return parts;
 }
 
-/// For each vertex, the first that is at its position and equal to it in what makes seams. What
-/// belongs to different parts stays apart even where it is equal.
+/// Returns for each vertex the first one with the same position, part and seam attributes. Vertices
+/// of different parts stay separate even if they are equal.
 std::vector<std::uint32_t> wedges_of(const Mesh& mesh, std::span<const std::uint32_t> classes,
                                      std::span<const std::uint32_t> parts, bool with_normals) {
     std::vector<std::uint32_t> part_of(classes.size(), 0);
@@ -569,7 +573,7 @@ std::vector<std::uint32_t> wedges_of(const Mesh& mesh, std::span<const std::uint
     return wedges;
 }
 
-/// The triangles that are left, each in the place of the one it was.
+/// The remaining triangles, at the indices of the input.
 struct Remains {
     std::vector<std::optional<glm::uvec3>> triangles;  ///< By triangle of the input.
     std::size_t count = 0;
@@ -611,7 +615,8 @@ Remains remains_of(const Mesh& mesh, const DecimateOptions& options, Report& rep
     return remains;
 }
 
-/// The vertices that the remaining triangles use, in their order; isolated ones are counted.
+/// Returns the vertices that the remaining triangles use, in their order. Isolated vertices are
+/// counted.
 std::vector<std::uint32_t> used_vertices(const Mesh& mesh, const Remains& remains, Report& report) {
     std::vector<bool> was_used(mesh.positions.size(), false);
     for (const glm::uvec3& triangle : mesh.triangles) {
@@ -656,14 +661,15 @@ FramedMesh gathered(const Mesh& mesh, const Remains& remains, Report& report) {
     }
     FramedMesh result;
     result.mesh = carried(mesh, left);
-    result.mesh.tangents.clear();  // Of other triangles.
+    result.mesh.tangents.clear();  // The tangents are those of removed triangles.
     result.mesh.material_ranges = std::move(ranges);
     result.mesh.smoothing_groups = std::move(groups);
     result.source_vertex = std::move(left.source_vertex);
     return result;
 }
 
-/// Normals and tangents as asked for; nothing where nothing is asked and nothing was there.
+/// Computes normals and tangents as requested. Attributes that are neither requested nor present
+/// stay absent.
 FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Report& report) {
     const bool had_tangents = !input.tangents.empty() && !input.texcoords.empty();
     if (frames.tangents == TangentMode::keep) {
@@ -686,7 +692,7 @@ FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Repo
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& report) {
     check(mesh, options);
     const Remains remains = remains_of(mesh, options, report);
-    // One interior move takes two triangles, so the number may be missed by one.
+    // One interior move removes two triangles, so the result may be one less than requested.
     if (options.triangles && !options.max_error && remains.count > *options.triangles) {
         report.add("number of triangles out of reach", "mesh", 0,
                    fmt::format("{} are left: seams, hard edges, borders and shape allow no fewer",
