@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // --show, --wireframe, --vertex-frames and --health-markers as users write them: what they draw,
 // say and refuse.
-#include "debug_options.h"
+#include "effect_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

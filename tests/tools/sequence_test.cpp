@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sequences of pictures: names of numbered files, turntables, animations, and what is refused.
-#include "view_output.h"
+#include "view_command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Effects: forcing, measuring and dropping them by option, and printing the plan and the shaders.
+/// The effects and the debug views of a picture, by option.
 ///
 ///     --effects auto|all|none|+NAME,-NAME,...    also all,-NAME and none,+NAME
+///     --show VIEW --wireframe --vertex-frames [--frame-length R] --health-markers trouble|all
 ///
-/// Tests: tests/tools/effect_options_test.cpp.
+/// Tests: tests/tools/effect_options_test.cpp, debug_options_test.cpp.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 #include "view_options.h"
 
 namespace relief::tools {
+
+// Effects: forcing, measuring and dropping them, and printing the plan and the shaders.
 
 /// For example "'vase', material 'clay', 4096 triangles".
 std::string draw_heading(const Scene& scene, const DrawPlan& draw);
@@ -65,5 +71,36 @@ void print_shaders(const Scene& scene, const FramePlan& plan);
 
 /// [{"effects", "draws", "files", "vertex", "fragment"}]
 nlohmann::ordered_json shaders_json(const FramePlan& plan);
+
+// Debug views and overlays.
+
+void add_debug_options(CLI::App& app, ViewOptions& options);
+
+/// Rejects options without an effect, and sets the options that data views need.
+/// \throws UsageError
+void check_debug_options(ViewOptions& options);
+
+/// Finds the mesh problems that the options select.
+HealthMarkers chosen_markers(const DebugChoices& choices, const Scene& scene);
+
+/// \param markers  the result of chosen_markers()
+Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers);
+
+/// Changes the plan to the selected debug view.
+/// \throws FileError with the name of the model, if the view has nothing to show
+FramePlan viewed_plan(const ViewOptions& options, const Scene& scene, const FrameSettings& settings,
+                      FramePlan plan, Report& report);
+
+/// Describes each marker color, for example "#ff0000 collapsed triangles: 3".
+std::vector<std::string> legend(const HealthMarkers& markers);
+
+/// [{"kind", "count", "marked", "color"}]
+nlohmann::ordered_json legend_json(const HealthMarkers& markers);
+
+/// {"wireframe", "vertex_frames", "health_markers": legend_json() or null}
+nlohmann::ordered_json overlays_json(const DebugChoices& choices, const HealthMarkers& markers);
+
+/// The options that select this view, each after a space; "" for the picture.
+std::string command_line_of(const DebugChoices& choices);
 
 }  // namespace relief::tools

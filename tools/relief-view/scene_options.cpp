@@ -1,22 +1,414 @@
 // SPDX-License-Identifier: Apache-2.0
+// Adds the options of materials and the environment, and composes the scene and the camera.
+// Tests: tests/tools/scene_options_test.cpp.
 #include "scene_options.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "common/choices.h"
 #include "common/command.h"
 #include "common/text.h"
-#include "field_options.h"
-#include "material_options.h"
+#include "near_names.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
 #include "window/orbit_camera.h"
 
 namespace relief::tools {
+
+// Maps and materials.
+
+namespace {
+
+constexpr const char* maps_group = "Maps for all materials (the model needs texture coordinates)";
+
+void add_normal_options(CLI::App& app, ViewOptions& options) {
+    add_path(app, "--normal-map", options.normal_map, "Read a normal map from FILE.")
+        .group(maps_group);
+    add_choice(app, "--green", options.green, green_choices(),
+               "Set the direction of the normal map's green channel: up (OpenGL, glTF) or down "
+               "(DirectX). Default: up.")
+        .group(maps_group);
+    add_choice(app, "--normal-space", options.normal_space, enum_choices<NormalSpace>(),
+               "Set the space of the normal map's vectors. Default: tangent.")
+        .group(maps_group);
+    add_number(app, "--normal-scale", "S", options.normal_scale, {-100, 100, ""},
+               "Multiply the slopes of normal maps, including those of the model. Default: the "
+               "model's value, else 1.")
+        .group(maps_group);
+    add_choice(
+        app, "--tangent-frame", options.tangent_frame, enum_choices<TangentFrame>(),
+        "Choose the tangent frame of normal and bump maps: the mesh's tangents (MikkTSpace if it "
+        "has none), or screen-space derivatives of the texture coordinates. Default: stored.")
+        .group(maps_group);
+    add_choice(app, "--specular-antialiasing", options.specular_antialiasing,
+               Choices<bool>{{"on", true}, {"off", false}},
+               "Widen highlights where a normal map has more detail than the pixels show, so that "
+               "they do not flicker. Default: off.")
+        .group(maps_group);
+}
+
+void add_height_options(CLI::App& app, ViewOptions& options) {
+    add_path(app, "--height-map", options.height_map,
+             "Read a height map from FILE. It is converted to a normal map or drawn as a bump map.")
+        .group(maps_group);
+    add_choice(app, "--height-as", options.height_as,
+               Choices<HeightUse>{{"normal_map", HeightUse::normal_map},
+                                  {"bump_map", HeightUse::bump_map}},
+               "Convert the height map to a normal map once, or compute its slopes in the shader "
+               "at each pixel. Default: normal_map.")
+        .group(maps_group);
+    add_number(app, "--strength", "S", options.strength, {},
+               "Set the height in texels of the height map value 1.0. Default: 16.")
+        .group(maps_group);
+    add_choice(app, "--kernel", options.kernel, kernel_or_auto_choices(),
+               "Choose the derivative kernel for the height map. auto selects the most accurate "
+               "one for this map, as relief-bake bump does. Default: auto.")
+        .group(maps_group);
+}
+
+}  // namespace
+
+void add_map_options(CLI::App& app, ViewOptions& options) {
+    add_path(app, "--diffuse-map", options.diffuse_map,
+             "Replace the diffuse color of all materials by the color image FILE.")
+        .group(maps_group);
+    add_normal_options(app, options);
+    add_height_options(app, options);
+}
+
+void check_maps(const ViewOptions& options) {
+    const char* const give_height = "add --height-map, or leave it out";
+    const char* const give_normal = "add --normal-map, or leave it out";
+    refuse(options.normal_map && options.height_map, "--height-map",
+           "contradicts --normal-map, because both set the normals", "leave one of them out");
+    refuse(options.green && !options.normal_map, "--green", "needs --normal-map", give_normal);
+    refuse(options.normal_space && !options.normal_map, "--normal-space", "needs --normal-map",
+           give_normal);
+    refuse(options.strength && !options.height_map, "--strength", "needs --height-map",
+           give_height);
+    refuse(options.kernel && !options.height_map, "--kernel", "needs --height-map", give_height);
+    refuse(options.height_as && !options.height_map, "--height-as", "needs --height-map",
+           give_height);
+    const bool bump = options.height_as == HeightUse::bump_map;
+    refuse(bump && options.kernel, "--kernel", "applies to converted height maps, not to bump maps",
+           "leave it out");
+    refuse(bump && options.normal_scale, "--normal-scale",
+           "applies to normal maps, not to bump maps", "use --strength");
+    refuse(options.tangent_frame && options.normal_space == NormalSpace::object, "--tangent-frame",
+           "object-space normal maps need no tangent frame", "leave it out");
+}
+
+namespace {
+
+constexpr const char* materials_group = "Properties of all materials";
+
+MetallicOption parse_metallic(const std::string& subject, const std::string& text) {
+    const std::vector<double> numbers = parse_numbers(subject, text);
+    if (numbers.size() != 2) throw UsageError(subject + ": not metallic,roughness");
+    for (const double number : numbers) {
+        if (number < 0 || number > 1)
+            throw UsageError(subject + ": both numbers must be between 0 and 1");
+    }
+    return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1])};
+}
+
+void add_model_options(CLI::App& app, ViewOptions& options) {
+    using Model = SceneOptions::MaterialModel;
+    add_choice(app, "--shading", options.shading,
+               Choices<Model>{{"as_authored", Model::as_authored}, {"phong", Model::phong}},
+               "Shade glTF materials with their metallic-roughness model, or convert them to the "
+               "Phong model. Default: as_authored, unless an option needs the Phong model.")
+        .group(materials_group);
+    add_choice(app, "--interpolation", options.interpolation, enum_choices<Interpolation>(),
+               "Compute the lighting per pixel, per vertex (only with the Phong model), or with "
+               "the face normals. Default: the value in the scene file, else per_pixel.")
+        .group(materials_group);
+    add_value(app, "--material", "NAME",
+              "Use a classic material: gold, chrome, emerald, \"red plastic\", ... An unknown name "
+              "lists similar names.",
+              [&](const std::string&, const std::string& text) { options.material = text; })
+        .group(materials_group);
+    add_value(app, "--metallic-roughness", "METALLIC,ROUGHNESS",
+              "Use the glTF material model with these values and the material's color.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.metallic_roughness = parse_metallic(subject, text);
+              })
+        .group(materials_group);
+}
+
+}  // namespace
+
+void add_material_options(CLI::App& app, ViewOptions& options) {
+    add_model_options(app, options);
+    add_choice(app, "--specular", options.specular, enum_choices<SpecularModel>(),
+               "Choose the model of highlights. The normalized model preserves their energy for "
+               "every shininess. Materials without a specular color get gray 0.25. Default: the "
+               "model's value, else blinn_phong.")
+        .group(materials_group);
+    add_number(
+        app, "--shininess", "N", options.shininess, field_limits(&Material::shininess),
+        "Set the exponent of highlights; larger values make them smaller and sharper. Materials "
+        "without a specular color get gray 0.25. Default: the model's value, else 32.")
+        .group(materials_group);
+}
+
+void check_materials(const ViewOptions& options) {
+    const std::string phong = reason_for_phong(options);
+    refuse(options.shading == SceneOptions::MaterialModel::as_authored && !phong.empty(), phong,
+           "needs the Phong model, and --shading as_authored keeps the glTF model",
+           "leave one of them out");
+    refuse(options.metallic_roughness && !phong.empty(), "--metallic-roughness",
+           "needs the glTF model, and " + phong + " needs the Phong model",
+           "leave one of them out");
+    refuse(options.metallic_roughness && options.material, "--metallic-roughness",
+           "contradicts --material", "leave one of them out");
+}
+
+std::string reason_for_phong(const ViewOptions& options) {
+    const std::array<std::pair<bool, const char*>, 9> reasons{{
+        {options.shading == SceneOptions::MaterialModel::phong, "--shading phong"},
+        {options.interpolation == Interpolation::gouraud, "--interpolation gouraud"},
+        {options.specular.has_value(), "--specular"},
+        {options.shininess.has_value(), "--shininess"},
+        {options.reflectivity.has_value(), "--reflectivity"},
+        {options.reflection_roughness.has_value(), "--reflection-roughness"},
+        {options.fresnel.has_value() || options.no_fresnel, "--fresnel"},
+        {options.transmission.has_value(), "--transmission"},
+        {options.material.has_value(), "--material"},
+    }};
+    for (const auto& [given, name] : reasons) {
+        if (given) return name;
+    }
+    return "";
+}
+
+namespace {
+
+/// The specular color of materials without one, if an option sets highlights.
+constexpr glm::vec3 default_specular{0.25F};
+
+bool has_overrides(const ViewOptions& o) {
+    return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.tangent_frame ||
+           o.specular_antialiasing || o.interpolation || o.material || o.metallic_roughness ||
+           o.specular || o.shininess || o.reflectivity || o.reflection_roughness || o.fresnel ||
+           o.no_fresnel || o.transmission;
+}
+
+/// A map requires that at least one mesh has texture coordinates. Meshes without them are noted.
+void require_texcoords(const Scene& scene, const ViewOptions& options, const std::string& option,
+                       std::vector<std::string>& notes) {
+    const auto bare = std::count_if(scene.meshes.begin(), scene.meshes.end(),
+                                    [](const Mesh& mesh) { return mesh.texcoords.empty(); });
+    const auto all = static_cast<std::ptrdiff_t>(scene.meshes.size());
+    if (bare == all) {
+        throw failure(options.model, "no texture coordinates for " + option,
+                      "unwrap the model first, or leave " + option + " out");
+    }
+    if (bare > 0) {
+        notes.push_back(
+            fmt::format("{} of {} meshes have no texture coordinates, so {} has no effect on them",
+                        bare, all, option));
+    }
+}
+
+/// Images that an option names must be readable, unlike the images of models.
+Texture add_texture(Scene& scene, ImageSource image) {
+    image.is_required = true;
+    scene.images.push_back(std::move(image));
+    return {.image = scene.images.size() - 1};
+}
+
+void set_diffuse_map(Scene& scene, const std::filesystem::path& file) {
+    const Texture texture = add_texture(scene, {file.string(), file});
+    for (Material& material : scene.materials) {
+        material.diffuse = glm::vec3(1.0F);
+        material.ambient = glm::vec3(1.0F);
+        if (material.metallic_roughness) material.metallic_roughness->base_color = glm::vec3(1.0F);
+        material.diffuse_texture = texture;
+    }
+}
+
+void set_normal_map(Scene& scene, const NormalMap& map) {
+    for (Material& material : scene.materials) {
+        material.normal_map = map;
+        material.bump_map.reset();
+    }
+}
+
+void set_bump_map(Scene& scene, const ViewOptions& options) {
+    BumpMap map;
+    map.texture = add_texture(scene, {options.height_map->string(), *options.height_map});
+    map.strength = static_cast<float>(options.strength.value_or(BumpOptions{}.strength));
+    for (Material& material : scene.materials) {
+        material.bump_map = map;
+        material.normal_map.reset();
+    }
+}
+
+/// Converts the height map to a normal map with 16 bits.
+NormalMap normal_map_of_heights(Scene& scene, const ViewOptions& options, Stages& stages,
+                                Report& report) {
+    const std::filesystem::path& file = *options.height_map;
+    BumpOptions bump;
+    bump.strength = options.strength.value_or(bump.strength);
+    bump.kernel = options.kernel;
+    Image map = stages.run("height map", [&] {
+        return about(file, [&] {
+            return converted_heights(read_image(file, ImageUse::data), bump, 16, report);
+        });
+    });
+    return converted_map(add_texture(scene, {file.string(), std::move(map)}));
+}
+
+void set_normal_scale(Scene& scene, float scale) {
+    bool any = false;
+    for (Material& material : scene.materials) {
+        if (!material.normal_map) continue;
+        material.normal_map->scale = scale;
+        any = true;
+    }
+    if (!any) {
+        throw UsageError("--normal-scale: the model has no normal map to scale",
+                         "give one with --normal-map or --height-map");
+    }
+}
+
+void set_highlights(Scene& scene, const ViewOptions& options, std::vector<std::string>& notes) {
+    std::size_t added = 0;
+    for (Material& material : scene.materials) {
+        if (material.specular == glm::vec3(0.0F)) {
+            material.specular = default_specular;
+            ++added;
+        }
+        material.specular_model = options.specular.value_or(material.specular_model);
+        material.shininess = options.shininess.value_or(material.shininess);
+    }
+    if (added != 0) {
+        notes.push_back(fmt::format("{} without a specular color got gray {:g}",
+                                    counted(added, "material"), default_specular.r));
+    }
+}
+
+/// \throws UsageError with similar names, if the material is unknown
+Material named_material(const std::string& name) {
+    if (const std::optional<Material> material = material_by_name(name)) return *material;
+    throw UsageError(fmt::format("--material {}: unknown material{}", name,
+                                 did_you_mean(name, material_names())),
+                     fmt::format("there are {}", fmt::join(material_names(), ", ")));
+}
+
+/// Sets the colors and highlights of a named material. Other properties stay.
+void set_named_material(Scene& scene, const std::string& name) {
+    const Material named = named_material(name);
+    for (Material& material : scene.materials) {
+        material.ambient = named.ambient;
+        material.diffuse = named.diffuse;
+        material.specular = named.specular;
+        material.shininess = named.shininess;
+        material.specular_model = named.specular_model;
+        material.metallic_roughness.reset();
+    }
+}
+
+void set_metallic_roughness(Scene& scene, const MetallicOption& option) {
+    for (Material& material : scene.materials) {
+        MetallicRoughness model;
+        const glm::vec3 color = material.metallic_roughness
+                                    ? material.metallic_roughness->base_color
+                                    : material.diffuse;
+        model.base_color = glm::min(color, glm::vec3(1.0F));
+        model.metallic = option.metallic;
+        model.roughness = option.roughness;
+        material.metallic_roughness = model;
+        material.transmission = 0.0F;
+    }
+}
+
+void set_shading(Scene& scene, const ViewOptions& options) {
+    for (Material& material : scene.materials) {
+        material.interpolation = options.interpolation.value_or(material.interpolation);
+        material.tangent_frame = options.tangent_frame.value_or(material.tangent_frame);
+        material.specular_antialiasing =
+            options.specular_antialiasing.value_or(material.specular_antialiasing);
+        set_reflection(material, options);
+    }
+}
+
+/// The format of converted height maps.
+constexpr NormalMapFormat converted_format{
+    .bits = 16, .green = Green::up, .flat = FlatCode::middle};
+
+}  // namespace
+
+Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report) {
+    NormalMapFormat format = converted_format;
+    format.bits = bits;
+    return encode_normal_map(normals_from_height(height_field(image), bump, report), format,
+                             report);
+}
+
+std::optional<Kernel> displayed_kernel(const ViewOptions& options) {
+    if (options.kernel || !options.height_map) return options.kernel;
+    BumpOptions bump;
+    bump.strength = options.strength.value_or(bump.strength);
+    bump = resolve_options(height_field(read_image(*options.height_map, ImageUse::data)), bump);
+    if (bump.kernel == Kernel::gaussian && bump.gaussian_radius != BumpOptions{}.gaussian_radius)
+        return std::nullopt;
+    return bump.kernel;
+}
+
+NormalMap converted_map(const Texture& texture) {
+    return {.texture = texture, .green = converted_format.green, .flat = converted_format.flat};
+}
+
+void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
+                        std::vector<std::string>& notes) {
+    if (!has_overrides(options)) return;
+    name_default_material(scene);
+    // Options for the Phong model replace metallic-roughness materials.
+    if (!reason_for_phong(options).empty()) {
+        for (Material& material : scene.materials)
+            material.metallic_roughness.reset();
+    }
+    if (options.material) set_named_material(scene, *options.material);
+    if (options.metallic_roughness) set_metallic_roughness(scene, *options.metallic_roughness);
+    if (options.diffuse_map) {
+        require_texcoords(scene, options, "--diffuse-map", notes);
+        set_diffuse_map(scene, *options.diffuse_map);
+    }
+    if (options.normal_map) {
+        require_texcoords(scene, options, "--normal-map", notes);
+        const std::filesystem::path& file = *options.normal_map;
+        NormalMap map;
+        map.texture = add_texture(scene, {file.string(), file});
+        map.green = options.green.value_or(map.green);
+        map.space = options.normal_space.value_or(map.space);
+        set_normal_map(scene, map);
+    }
+    if (options.height_map) {
+        require_texcoords(scene, options, "--height-map", notes);
+        if (options.height_as == HeightUse::bump_map) {
+            set_bump_map(scene, options);
+        } else {
+            set_normal_map(scene, normal_map_of_heights(scene, options, stages, report));
+        }
+    }
+    if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);
+    if (options.specular || options.shininess) set_highlights(scene, options, notes);
+    set_shading(scene, options);
+}
+
+// The environment, the lights and the camera.
+
 namespace {
 
 constexpr const char* environment_group = "Environment";

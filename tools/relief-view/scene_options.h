@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Composes a scene and a camera from a model file and options.
+/// Composes a scene and a camera from a model file and options: maps, materials, highlights,
+/// reflection, environment, lights and camera.
 ///
 /// Missing options come from the model. Properties that the model lacks too get a default, which
 /// the notes report. Tests: tests/tools/scene_options_test.cpp.
@@ -10,11 +11,71 @@
 #include <vector>
 
 #include "common/command.h"
+#include "common/options.h"
 #include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
+#include "relief/shade/scene_fields.h"
 #include "relief/shade/scene_graph.h"
 #include "view_options.h"
 
 namespace relief::tools {
+
+// Names and limits of options for scene fields, derived from the description of the fields
+// (relief/shade/scene_fields.h).
+
+/// Options use the same enumeration names as scene files.
+template <typename Enum>
+Choices<Enum> enum_choices() {
+    Choices<Enum> choices;
+    for (const EnumName<Enum>& entry : enum_names<Enum>)
+        choices.emplace_back(entry.name, entry.value);
+    return choices;
+}
+
+template <typename Owner, typename Value>
+Range field_limits(Value Owner::*member) {
+    const FieldRange range = field_range(member);
+    return {static_cast<double>(range.min), static_cast<double>(range.max), ""};
+}
+
+// Maps, materials, highlights and reflection, which the options set for all materials of a scene.
+
+void add_map_options(CLI::App& app, ViewOptions& options);
+
+/// \throws UsageError if an option needs another one
+void check_maps(const ViewOptions& options);
+
+void add_material_options(CLI::App& app, ViewOptions& options);
+
+/// \throws UsageError if options contradict each other
+void check_materials(const ViewOptions& options);
+
+/// The option that requires the Phong model for glTF materials: --shading phong, or the first
+/// option that only the Phong model has. Empty if there is none.
+std::string reason_for_phong(const ViewOptions& options);
+
+/// Applies the options to all materials. Meshes without a material get the default material first.
+///
+/// \param notes  receives messages for the user, such as meshes without texture coordinates
+/// \throws UsageError if an option would have no effect
+/// \throws FileError if no mesh has texture coordinates for a map, or if the height map is invalid
+void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
+                        std::vector<std::string>& notes);
+
+/// Converts heights to a normal map with this number of bits. Green is up, and flat decodes to
+/// exactly flat.
+Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report);
+
+/// The kernel that converts the height map of the options.
+///
+/// \return empty for an automatic Gaussian, which has its own radius
+/// \throws FileError if the height map cannot be read
+std::optional<Kernel> displayed_kernel(const ViewOptions& options);
+
+/// The decoding parameters of a converted height map.
+NormalMap converted_map(const Texture& texture);
+
+// The environment, and the composed scene.
 
 void add_environment_options(CLI::App& app, ViewOptions& options);
 
@@ -28,7 +89,6 @@ Environment environment_of(const ViewOptions& options);
 /// Applies the reflection options to a material.
 void set_reflection(Material& material, const ViewOptions& options);
 
-/// A scene with its camera, ready to be drawn.
 /// A scene with its camera, ready to be drawn.
 struct ComposedScene {
     SceneGraph graph;

@@ -8,13 +8,12 @@
 #include <map>
 
 #include "common/choices.h"
-#include "field_options.h"
-#include "material_options.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
+#include "scene_options.h"
 
 #include "view_options.h"
 

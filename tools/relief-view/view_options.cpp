@@ -10,13 +10,10 @@
 
 #include "common/options.h"
 #include "common/text.h"
-#include "debug_options.h"
 #include "effect_options.h"
-#include "field_options.h"
-#include "material_options.h"
 #include "picture_comparison.h"
 #include "scene_options.h"
-#include "view_output.h"
+#include "view_command.h"
 #include "window/window_system.h"
 
 namespace relief::tools {

@@ -3,8 +3,8 @@
 /// The options of relief-view: parsing and validation. Angles are radians here and degrees on the
 /// command line. Lights have the following form:
 ///
-///     directional:AZIMUTH,ELEVATION[,INTENSITY[,#RRGGBB]]    the direction of the light, in
-///     degrees point:X,Y,Z[,INTENSITY[,#RRGGBB]]                      in world space
+///     directional:AZIMUTH,ELEVATION[,INTENSITY[,#RRGGBB]]    from this direction, in degrees
+///     point:X,Y,Z[,INTENSITY[,#RRGGBB]]                      in world space
 ///     spot:X,Y,Z,TX,TY,TZ[,ANGLE[,INTENSITY[,#RRGGBB]]]      from (X,Y,Z) towards (TX,TY,TZ)
 ///     none                                                   no lights
 ///

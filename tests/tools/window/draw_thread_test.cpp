@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing thread with its own context, without a window.
-#include "window/draw_thread.h"
+#include "window/background_jobs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "window/light_panel.h"
+#include "window/edit_panels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shortcuts, the documentation of the panels, and the panels of the real window. Changes are
 // checked in the state that the program reports and in the picture.
-#include "window/shortcuts.h"
+#include "window/viewer_state.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

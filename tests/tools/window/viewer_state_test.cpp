@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tools/workplace.h"
-#include "window/draw_thread.h"
+#include "window/background_jobs.h"
 
 namespace relief::tools {
 namespace {

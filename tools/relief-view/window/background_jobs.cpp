@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads scenes, searches for mesh problems and draws pictures on other threads.
+// Tests: tests/tools/window/background_jobs_test.cpp, draw_thread_test.cpp.
 #include "window/background_jobs.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "debug_options.h"
+#include "effect_options.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::tools {
+
+// Reading and checking.
+
 namespace {
 
 Loaded load(ViewOptions options, const Progress& progress) {
@@ -51,6 +58,300 @@ HealthResult find(const HealthRequest& request) {
 void HealthSearch::start(HealthRequest request) {
     if (!request.choice || !request.scene) return job_.cancel();
     job_.start([checked = std::move(request)](const Progress&) { return find(checked); });
+}
+
+// Drawing.
+
+namespace {
+
+constexpr double cost_of_samples = 2.4;  // Measured ratio of 4 samples to 1 in software.
+constexpr int coarsest = 4;
+
+}  // namespace
+
+FrameSettings AdaptiveResolution::settings_for(FrameSettings full, double now) const {
+    if (milliseconds_ <= max_milliseconds || now - last_move_ >= idle_seconds) return full;
+    const double of_one_sample = full.samples > 1 ? milliseconds_ / cost_of_samples : milliseconds_;
+    const double divisor = std::ceil(std::sqrt(of_one_sample / max_milliseconds));
+    const int n = static_cast<int>(std::clamp(divisor, 1.0, static_cast<double>(coarsest)));
+    full.samples = 1;
+    full.width = std::max(full.width / n, 1);
+    full.height = std::max(full.height / n, 1);
+    return full;
+}
+
+FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
+                      const EffectRequest& effects) {
+    return force_effects(scene, settings, plan_effects(scene, settings), effects);
+}
+
+/// The objects that live in the thread's context.
+class DrawThread::Drawer {
+  public:
+    Drawer(GlLoader loader, const std::string& name)
+        : context_(loader, name), cache_(context_), handover_(context_) {}
+
+    [[nodiscard]] const std::string& renderer_name() const { return context_.renderer_name(); }
+    PictureExchange& handover() { return handover_; }
+
+    void relink() {
+        cache_.drop_programs();
+        has_tried_ = false;
+    }
+
+    bool run(const DrawTask& task) { return task(context_, cache_); }
+
+    /// Draws a request, or throws and keeps the old picture. A scene that cannot be prepared is
+    /// tried once; after that, the old scene still follows the camera.
+    void draw(const DrawRequest& request, RenderedPicture& drawn, const Progress& progress) {
+        if (request.instead) {
+            show(*request.instead, request, drawn);
+            return;
+        }
+        const bool is_tried = has_tried_ && tried_revision_ == request.revision &&
+                              tried_beside_ == revision_of(request.beside) &&
+                              tried_settings_ == request.settings;
+        if (!is_tried) try_to_prepare(request, drawn, progress);
+        drawn.error = failure_;
+        if (!renderer_) return;
+        if (!failure_.empty() && is_same_view(drawn.camera, request.camera)) return;
+        draw_prepared(request, drawn);
+    }
+
+  private:
+    /// Stores the files that were read, even after an error, because the user may repair a file.
+    struct NotedFiles {
+        const Progress& progress;
+        RenderedPicture& drawn;
+        ~NotedFiles() {
+            drawn.files = std::make_shared<const std::map<std::filesystem::path, FileStamp>>(
+                progress.files());
+        }
+    };
+
+    static std::uint64_t revision_of(const std::optional<BesideRequest>& beside) {
+        return beside ? beside->revision : 0;
+    }
+
+    static bool is_same_view(const Camera& a, const Camera& b) {
+        return a.world_from_view == b.world_from_view && a.vertical_fov == b.vertical_fov;
+    }
+
+    void show(const Image& picture, const DrawRequest& request, RenderedPicture& drawn) {
+        handover_.put(picture);
+        drawn.error.clear();
+        drawn.beside = 0;
+        drawn.is_difference = true;
+        drawn.camera = request.camera;
+        drawn.settings = request.settings;
+        ++drawn.frames;
+    }
+
+    void draw_prepared(const DrawRequest& request, RenderedPicture& drawn) {
+        drawn.times = renderer_->draw_only(request.camera).times;
+        const bool has_beside = request.beside && beside_;
+        if (has_beside) drawn.times.draw += beside_->draw_only(request.beside->camera).times.draw;
+        handover_.put(*renderer_, has_beside ? beside_.get() : nullptr);
+        drawn.beside = has_beside ? request.beside->revision : 0;
+        drawn.is_difference = false;
+        drawn.camera = request.camera;
+        drawn.settings = settings_;
+        ++drawn.frames;
+    }
+
+    void try_to_prepare(const DrawRequest& request, RenderedPicture& drawn,
+                        const Progress& progress) {
+        const NotedFiles noted{progress, drawn};
+        tried_revision_ = request.revision;
+        tried_beside_ = revision_of(request.beside);
+        tried_settings_ = request.settings;
+        has_tried_ = true;
+        failure_.clear();
+        try {
+            prepare(request, drawn);
+            prepare_beside(request);
+            cache_.drop_unused();
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            failure_ = error.what();
+        }
+    }
+
+    void prepare(const DrawRequest& request, RenderedPicture& drawn) {
+        Report findings;
+        renderer_ = prepared(*request.scene, request, findings);
+        settings_ = request.settings;
+        drawn.revision = request.revision;
+        drawn.plan = std::make_shared<const FramePlan>(renderer_->plan());
+        drawn.findings = std::move(findings);
+        ++drawn.renderers;
+    }
+
+    /// Prepares the second scene, or removes it.
+    void prepare_beside(const DrawRequest& request) {
+        Report findings;  // Mostly the same as those of the first scene.
+        beside_.reset();
+        if (request.beside) beside_ = prepared(*request.beside->scene, request, findings);
+    }
+
+    std::unique_ptr<Renderer> prepared(const Scene& scene, const DrawRequest& request,
+                                       Report& findings) {
+        return std::make_unique<Renderer>(cache_, context_, scene,
+                                          forced_plan(scene, request.settings, request.effects),
+                                          request.settings, findings);
+    }
+
+    Context context_;
+    RenderCache cache_;
+    PictureExchange handover_;
+    std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<Renderer> beside_;
+    FrameSettings settings_;  ///< Settings of the renderer.
+    bool has_tried_ =
+        false;  ///< The last request was prepared, and shaders have not changed since.
+    std::uint64_t tried_revision_ = 0;
+    std::uint64_t tried_beside_ = 0;
+    FrameSettings tried_settings_;
+    std::string failure_;  ///< Error of the last preparation; empty if there was none.
+};
+
+DrawThread::DrawThread(DrawContext context) : context_(std::move(context)) {
+    thread_ = std::thread([this] { run(); });
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return is_ready_; });
+    if (!failure_) return;
+    lock.unlock();
+    thread_.join();
+    std::rethrow_exception(failure_);
+}
+
+DrawThread::~DrawThread() {
+    {
+        const std::lock_guard lock(mutex_);
+        is_ending_ = true;
+        progress_->cancel();
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void DrawThread::request(DrawRequest request) {
+    {
+        const std::lock_guard lock(mutex_);
+        request_ = std::move(request);
+    }
+    changed_.notify_all();
+}
+
+void DrawThread::add(DrawTask task) {
+    {
+        const std::lock_guard lock(mutex_);
+        tasks_.push_back(std::move(task));
+    }
+    changed_.notify_all();
+}
+
+void DrawThread::relink() {
+    const std::lock_guard lock(mutex_);
+    is_relinking_ = true;
+}
+
+RenderedPicture DrawThread::drawn() {
+    const std::lock_guard lock(mutex_);
+    return drawn_;
+}
+
+PictureExchange::Shown DrawThread::shown() {
+    return handover_->get();
+}
+
+bool DrawThread::is_busy() {
+    const std::lock_guard lock(mutex_);
+    return is_drawing_ || request_.has_value();
+}
+
+Progress::State DrawThread::progress() {
+    const std::lock_guard lock(mutex_);
+    return is_drawing_ ? progress_->state() : Progress::State{};
+}
+
+/// Runs one step of the first task without the lock.
+void DrawThread::do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock) {
+    const DrawTask task = tasks_.front();
+    const std::shared_ptr<Progress> progress = progress_ = std::make_shared<Progress>();
+    lock.unlock();
+    bool has_more = false;
+    {
+        const ProgressScope scope(*progress);
+        has_more = drawer.run(task);
+    }
+    // Waking after each step would let the window's frame disturb the first measurement of the next
+    // step.
+    if (!has_more) context_.wake();
+    lock.lock();
+    if (!has_more) tasks_.pop_front();
+}
+
+/// Waits for a request. Returns nothing at the end.
+std::optional<DrawRequest> DrawThread::next(Drawer& drawer) {
+    std::unique_lock lock(mutex_);
+    is_drawing_ = false;
+    // One step after each picture. Otherwise a turntable would block all tasks.
+    if (!is_ending_ && !tasks_.empty()) do_step(drawer, lock);
+    for (;;) {
+        changed_.wait(lock, [&] { return is_ending_ || request_ || !tasks_.empty(); });
+        if (is_ending_) return std::nullopt;
+        if (request_) break;
+        do_step(drawer, lock);
+    }
+    is_drawing_ = true;
+    progress_ = std::make_shared<Progress>();
+    if (std::exchange(is_relinking_, false)) drawer.relink();
+    return std::exchange(request_, std::nullopt);
+}
+
+std::shared_ptr<Progress> DrawThread::progress_of_now() {
+    const std::lock_guard lock(mutex_);
+    return progress_;
+}
+
+void DrawThread::run() {
+    context_.use();
+    try {
+        Drawer drawer(context_.loader, "window");
+        {
+            const std::lock_guard lock(mutex_);
+            renderer_name_ = drawer.renderer_name();
+            handover_ = &drawer.handover();
+            is_ready_ = true;
+        }
+        changed_.notify_all();
+        RenderedPicture picture;
+        while (const std::optional<DrawRequest> request = next(drawer)) {
+            try {
+                const std::shared_ptr<Progress> progress = progress_of_now();
+                const ProgressScope scope(*progress);
+                drawer.draw(*request, picture, *progress);
+            } catch (const std::exception& error) {
+                picture.error = error.what();
+            }
+            {
+                const std::lock_guard lock(mutex_);
+                drawn_ = picture;
+                is_drawing_ = false;
+            }
+            context_.wake();
+        }
+        const std::lock_guard lock(mutex_);
+        tasks_.clear();  // Tasks own objects of this context.
+    } catch (...) {
+        const std::lock_guard lock(mutex_);
+        failure_ = std::current_exception();
+        is_ready_ = true;
+    }
+    changed_.notify_all();
+    context_.release();
 }
 
 }  // namespace relief::tools

@@ -10,9 +10,8 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/scene_file.h"
-#include "view_output.h"
-#include "window/controls.h"
-#include "window/draw_thread.h"
+#include "view_command.h"
+#include "window/background_jobs.h"
 #include "window/panels.h"
 
 namespace relief::tools {

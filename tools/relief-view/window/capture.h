@@ -14,7 +14,6 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/renderer.h"
 #include "window/background_jobs.h"
-#include "window/draw_thread.h"
 #include "window/viewer_state.h"
 
 namespace relief::tools {

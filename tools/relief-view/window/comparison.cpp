@@ -7,7 +7,6 @@
 #include <array>
 
 #include "relief/mesh/image.h"
-#include "window/controls.h"
 #include "window/panels.h"
 
 namespace relief::tools {

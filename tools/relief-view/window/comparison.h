@@ -15,7 +15,6 @@
 #include "picture_comparison.h"
 #include "variant.h"
 #include "window/background_jobs.h"
-#include "window/draw_thread.h"
 #include "window/viewer_state.h"
 
 namespace relief::tools {

@@ -19,7 +19,6 @@
 #include "relief/mesh/execution.h"
 #include "view_options.h"
 #include "window/background_jobs.h"
-#include "window/draw_thread.h"
 
 namespace relief::tools {
 

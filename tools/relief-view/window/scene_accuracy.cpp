@@ -9,11 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "material_options.h"
 #include "relief/accuracy/duration.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "window/controls.h"
+#include "scene_options.h"
 #include "window/panels.h"
 
 namespace relief::tools {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The state of the window as plain data, and the actions that change it. It uses neither a window
-/// nor OpenGL. Tests: tests/tools/window/viewer_state_test.cpp.
+/// nor OpenGL. Tests: tests/tools/window/viewer_state_test.cpp, edit_rebase_test.cpp,
+/// user_interface_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +10,103 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
+#include "relief/shade/scene.h"
 #include "relief/shade/scene_graph.h"
 #include "scene_options.h"
 #include "window/background_jobs.h"
-#include "window/edit_rebase.h"
-#include "window/light_panel.h"
+#include "window/edit_panels.h"
 #include "window/orbit_camera.h"
-#include "window/shortcuts.h"
 
 namespace relief::tools {
+
+// Keyboard shortcuts and mouse gestures: one table, which the window, its help (H) and
+// --list-bindings use.
+
+enum class Action {
+    fit,
+    front,
+    back,
+    left,
+    right,
+    top,
+    bottom,
+    narrow_fov,
+    widen_fov,
+    turntable,
+    zoom_in,
+    zoom_out,
+    orbit_left,
+    orbit_right,
+    orbit_up,
+    orbit_down,
+    next_view,
+    previous_view,
+    picture_view,
+    wireframe,
+    vertex_frames,
+    health_markers,
+    compare,
+    swap_sides,
+    show_difference,
+    copy_camera,
+    paste_camera,
+    save_picture,
+    save_scene,
+    save_model,
+    panels,
+    larger_ui,
+    smaller_ui,
+    reset_ui_scale,
+    help,
+    quit,
+};
+
+struct Shortcut {
+    Action action;
+    std::string_view key;  ///< For example "F", "Ctrl+C", "Left".
+    std::string_view description;
+};
+
+/// All shortcuts. Some actions have two.
+const std::vector<Shortcut>& shortcuts();
+
+/// A mouse gesture, for example "Shift+drag", and its description.
+struct Gesture {
+    std::string_view input;
+    std::string_view description;
+};
+const std::vector<Gesture>& gestures();
+
+/// Both lists, one entry per line.
+std::string shortcuts_text();
+
+// Edit rebase: edits of the panels are applied to a scene that was read again, because a file
+// changed or another map was dropped. Each value that differs between the scene as read and the
+// edited scene is an edit. Other values follow the file. The fields are those of
+// relief/shade/scene_fields.h.
+
+/// The result of a rebase.
+struct RebasedEdits {
+    std::size_t kept = 0;           ///< Number of values that were applied to the fresh scene.
+    std::vector<std::string> lost;  ///< Messages about lost edits.
+};
+
+/// Materials are matched by name, or by index if they have no name and their number is unchanged.
+/// Lights of a kind are matched by index if their number is unchanged. Added lights stay added.
+/// Removed lights stay removed if the file's lights are unchanged. A texture, normal map or bump
+/// map that was added or removed stays so, unless the file has changed it too.
+///
+/// \param read  the scene as it was read
+/// \param edited  the same scene with edits
+/// \param fresh  the scene as it is read now; receives the edits
+RebasedEdits rebase_edits(const Scene& read, const Scene& edited, Scene& fresh);
+
+// The state.
 
 /// A node of the scene, or the world.
 struct TreeNode {

@@ -1,25 +1,457 @@
 // SPDX-License-Identifier: Apache-2.0
-// The main loop of the window. It draws when something has changed, and sleeps otherwise.
-// Tests: tests/tools/window/window_test.cpp.
+// The window: the user interface with Dear ImGui, mouse gestures, keys, dropped files and the
+// picture behind the panels, and the main loop, which draws when something has changed and sleeps
+// otherwise. Tests: tests/tools/window/window_test.cpp.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
+#include <imgui.h>
 
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "common/command.h"
 #include "file_replacement.h"
 #include "view_command.h"
+#include "window/background_jobs.h"
 #include "window/capture.h"
 #include "window/comparison.h"
-#include "window/controls.h"
-#include "window/draw_thread.h"
 #include "window/input_files.h"
+#include "window/orbit_camera.h"
+#include "window/panels.h"
 #include "window/scene_accuracy.h"
-#include "window/user_interface.h"
+#include "window/window_system.h"
 
 namespace relief::tools {
+
+/// The rectangle of the view, in the units of the user interface.
+struct ViewPlace {
+    glm::vec2 min{0.0F};
+    glm::vec2 max{0.0F};
+};
+
+class UserInterface {
+  public:
+    explicit UserInterface(const WindowSystem& system);
+    ~UserInterface();
+    UserInterface(const UserInterface&) = delete;
+    UserInterface& operator=(const UserInterface&) = delete;
+
+    /// Events since the last frame that the window handles.
+    struct Events {
+        std::vector<Action> actions;  ///< In the order of the key presses.
+        std::vector<std::filesystem::path> dropped;
+        PanelRequests panels;
+        bool has_input = false;  ///< A key, the mouse or a drop. Dear ImGui then needs more frames.
+    };
+
+    /// Draws one frame with panels and picture, and applies mouse gestures to the state.
+    Events draw(const PanelInput& input, const PictureExchange::Shown& picture);
+
+    void show_help() { is_help_open_ = !is_help_open_; }
+    [[nodiscard]] bool is_help_open() const { return is_help_open_; }
+
+    /// Returns whether a text field has the keyboard focus.
+    [[nodiscard]] static bool is_typing();
+    /// The pointer position in pixels, if the pointer is inside the window.
+    [[nodiscard]] static std::optional<glm::ivec2> pointer();
+
+    /// Sets the scale for the next frame.
+    void set_scale(const UiScale& scale) { wanted_scale_ = scale; }
+    [[nodiscard]] const UiScale& scale() const { return scale_; }
+
+    // GLFW callbacks. Several events may arrive between two frames.
+    void on_key(int key, int modifiers, bool is_held);
+    void on_button(int button, bool is_down, int modifiers);
+    void on_move(const glm::vec2& place);
+    void on_wheel(const glm::vec2& steps, bool has_shift);
+    void on_drop(const std::filesystem::path& file) { dropped_.push_back(file); }
+    void on_input() { has_input_ = true; }
+
+  private:
+    enum class Drag { none, orbit, pan, zoom, lights, aim, line };
+
+    /// A mouse gesture on the picture, in pixels.
+    struct Move {
+        Drag drag = Drag::none;  ///< none: wheel; aim: double click.
+        glm::vec2 pixels{0.0F};
+        float steps = 0.0F;
+        glm::vec2 place{0.0F};
+    };
+
+    void apply_scale();
+    [[nodiscard]] bool is_on_picture() const;
+    [[nodiscard]] bool is_second_click();
+    [[nodiscard]] glm::vec2 on_view(const glm::vec2& place, const ViewerState& state) const;
+    void apply(const Move& move, ViewerState& state) const;
+    [[nodiscard]] bool is_on_line() const;
+    void draw_view(const PanelInput& input, const PictureExchange::Shown& picture,
+                   const ViewPlace& place);
+
+    const WindowSystem& system_;
+    std::vector<std::filesystem::path> dropped_;
+    bool has_input_ = false;
+    std::vector<Action> pressed_;
+    std::vector<Move> moves_;
+    Drag drag_ = Drag::none;
+    glm::vec2 pointer_{0.0F};   ///< In window units.
+    glm::vec2 clicked_{-1e6F};  ///< Position of the last click.
+    double clicked_at_ = -1e9;
+    bool is_help_open_ = false;
+    UiScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< Not set yet.
+    UiScale wanted_scale_;
+    std::optional<float> line_;  ///< The x of the line between two pictures, in interface units.
+    float left_ = 0.0F;          ///< Left edge of the picture, in interface units.
+    float bottom_ = 0.0F;        ///< Height of the area below the picture.
+};
+
+namespace {
+
+constexpr ImU32 line_color = IM_COL32(255, 255, 255, 255);
+constexpr ImU32 label_color = IM_COL32(255, 255, 255, 255);
+constexpr ImU32 label_back = IM_COL32(20, 22, 26, 200);
+constexpr float label_margin = 8.0F;
+constexpr float label_padding = 4.0F;
+
+ImVec2 vec(const glm::vec2& v) {
+    return {v.x, v.y};
+}
+
+/// Draws a range of columns of a picture, as fractions of the width.
+void draw_part(unsigned texture, const ViewPlace& place, float from, float to) {
+    if (!(from < to)) return;
+    const float width = place.max.x - place.min.x;
+    // Row 0 of the texture is at the bottom.
+    ImGui::GetBackgroundDrawList()->AddImage(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
+        {place.min.x + from * width, place.min.y}, {place.min.x + to * width, place.max.y},
+        {from, 1.0F}, {to, 0.0F});
+}
+
+/// \param align  0: `place` is the left end; 1: `place` is the right end
+void draw_label(const std::string& text, const glm::vec2& place, float align) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const glm::vec2 min(std::round(place.x - align * size.x), place.y);
+    const glm::vec2 max = min + glm::vec2(size.x, size.y);
+    list.AddRectFilled(vec(min - label_padding), vec(max + label_padding), label_back);
+    list.AddText(vec(min), label_color, text.c_str());
+}
+
+void draw_picture(const PictureExchange::Shown& picture, const ViewPlace& place) {
+    draw_part(picture.texture, place, 0.0F, 1.0F);
+}
+
+float draw_sides(const PictureExchange::Shown& picture, const ViewPlace& place,
+                 const Comparison& comparison) {
+    const float width = place.max.x - place.min.x;
+    // The line is on a whole pixel, so that both textures are sampled at texel centers.
+    const float x = std::round(place.min.x + comparison.split() * width);
+    const float split = (x - place.min.x) / width;
+    const bool swapped = comparison.is_swapped();
+    draw_part(swapped ? picture.beside : picture.texture, place, 0.0F, split);
+    draw_part(swapped ? picture.texture : picture.beside, place, split, 1.0F);
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled({x - 1.0F, place.min.y}, {x + 1.0F, place.max.y}, line_color);
+    draw_label(comparison.left_label(), {x - 2.0F * label_margin, place.min.y + label_margin},
+               1.0F);
+    draw_label(comparison.right_label(), {x + 2.0F * label_margin, place.min.y + label_margin},
+               0.0F);
+    return x;
+}
+
+void draw_difference(const PictureExchange::Shown& picture, const ViewPlace& place,
+                     const Comparison& comparison) {
+    draw_picture(picture, place);
+    const std::string kind = comparison.shown() == ComparisonView::flip
+                                 ? "perceived difference (FLIP)"
+                                 : "largest channel difference";
+    draw_label(kind + ": " + comparison.left_label() + " | " + comparison.right_label(),
+               place.min + label_margin + label_padding, 0.0F);
+}
+
+constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
+constexpr double double_click_seconds = 0.35;
+constexpr float double_click_reach = 6.0F;  // In window units.
+constexpr float line_reach = 6.0F;          // For the line between two pictures.
+constexpr float drag_zoom = 0.02F;          // Wheel steps per pixel of a right drag.
+constexpr float wheel_pan = 40.0F;          // Window units per wheel step.
+
+/// The GLFW code of a key name.
+int key_code(std::string_view name) {
+    static constexpr std::array<std::pair<std::string_view, int>, 8> named{{
+        {"Left", GLFW_KEY_LEFT},
+        {"Right", GLFW_KEY_RIGHT},
+        {"Up", GLFW_KEY_UP},
+        {"Down", GLFW_KEY_DOWN},
+        {"Space", GLFW_KEY_SPACE},
+        {"Tab", GLFW_KEY_TAB},
+        {"+", GLFW_KEY_KP_ADD},
+        {"Escape", GLFW_KEY_ESCAPE},
+    }};
+    for (const auto& [known, code] : named) {
+        if (known == name) return code;
+    }
+    return name.empty() ? GLFW_KEY_UNKNOWN : static_cast<int>(name.back());
+}
+
+/// Returns whether a shortcut names this key with these modifiers.
+bool is_named(std::string_view name, int key, int modifiers) {
+    constexpr std::string_view control = "Ctrl+";
+    const bool needs_control = name.substr(0, control.size()) == control;
+    if (needs_control) name.remove_prefix(control.size());
+    const bool has_control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    return has_control == needs_control && key == key_code(name);
+}
+
+/// The user interface of a window.
+UserInterface& interface_of(GLFWwindow* window) {
+    auto& interface = *static_cast<UserInterface*>(glfwGetWindowUserPointer(window));
+    interface.on_input();
+    return interface;
+}
+
+/// Dear ImGui installs its own callbacks later, which call these.
+void install_callbacks(GLFWwindow* window) {
+    glfwSetDropCallback(window, [](GLFWwindow* where, int count, const char** names) {
+        for (int i = 0; i < count; ++i)
+            interface_of(where).on_drop(names[i]);
+    });
+    glfwSetKeyCallback(window, [](GLFWwindow* where, int key, int, int action, int modifiers) {
+        if (action != GLFW_RELEASE)
+            interface_of(where).on_key(key, modifiers, action == GLFW_REPEAT);
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* where, int button, int action, int mods) {
+        interface_of(where).on_button(button, action == GLFW_PRESS, mods);
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* where, double x, double y) {
+        interface_of(where).on_move(glm::vec2(x, y));
+    });
+    glfwSetScrollCallback(window, [](GLFWwindow* where, double x, double y) {
+        const bool has_shift = glfwGetKey(where, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
+                               glfwGetKey(where, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+        interface_of(where).on_wheel(glm::vec2(x, y), has_shift);
+    });
+}
+
+/// Returns whether the action repeats while its key is held.
+bool is_repeating(Action action) {
+    switch (action) {
+        case Action::narrow_fov:
+        case Action::widen_fov:
+        case Action::zoom_in:
+        case Action::zoom_out:
+        case Action::orbit_left:
+        case Action::orbit_right:
+        case Action::orbit_up:
+        case Action::orbit_down:
+            return true;
+        default:
+            return false;
+    }
+}
+
+glm::vec2 vec(const ImVec2& v) {
+    return {v.x, v.y};
+}
+
+}  // namespace
+
+UserInterface::UserInterface(const WindowSystem& system) : system_(system) {
+    GLFWwindow* window = system.window();
+    glfwSetWindowUserPointer(window, this);
+    install_callbacks(window);
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+UserInterface::~UserInterface() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+/// Glyphs are rasterized again in pixels. Other sizes are in window units.
+void UserInterface::apply_scale() {
+    if (scale_ == wanted_scale_) return;
+    scale_ = wanted_scale_;
+    ImGuiIO& io = ImGui::GetIO();
+    ImFontConfig font;
+    font.SizePixels = std::round(13.0F * scale_.glyphs);
+    io.Fonts->Clear();
+    io.Fonts->AddFontDefault(&font);
+    io.FontGlobalScale = scale_.layout / scale_.glyphs;
+    ImGui::GetStyle() = ImGuiStyle();
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().ScaleAllSizes(scale_.layout);
+    ImGui::GetStyle().WindowRounding = 0.0F;
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+bool UserInterface::is_typing() {
+    return ImGui::GetIO().WantTextInput;
+}
+
+std::optional<glm::ivec2> UserInterface::pointer() {
+    const ImVec2 position = ImGui::GetIO().MousePos;
+    if (!ImGui::IsMousePosValid(&position)) return std::nullopt;
+    return glm::ivec2(position.x, position.y);
+}
+
+void UserInterface::on_key(int key, int modifiers, bool is_held) {
+    if (is_typing()) return;
+    for (const Shortcut& shortcut : shortcuts()) {
+        if (is_named(shortcut.key, key, modifiers) && (!is_held || is_repeating(shortcut.action)))
+            pressed_.push_back(shortcut.action);
+    }
+}
+
+bool UserInterface::is_on_picture() const {
+    int width = 0, height = 0;
+    glfwGetWindowSize(system_.window(), &width, &height);
+    const bool is_over = pointer_.x >= left_ && pointer_.x < static_cast<float>(width) &&
+                         pointer_.y >= 0.0F && pointer_.y < static_cast<float>(height) - bottom_;
+    return is_over && !is_help_open_ && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+}
+
+bool UserInterface::is_on_line() const {
+    return line_ && std::abs(pointer_.x - *line_) <= line_reach;
+}
+
+/// Detects double clicks. A third click counts as a first one.
+bool UserInterface::is_second_click() {
+    const double now = glfwGetTime();
+    const bool is_second = now - clicked_at_ < double_click_seconds &&
+                           glm::distance(pointer_, clicked_) < double_click_reach;
+    clicked_ = pointer_;
+    clicked_at_ = is_second ? -1e9 : now;
+    return is_second;
+}
+
+void UserInterface::on_button(int button, bool is_down, int modifiers) {
+    drag_ = Drag::none;
+    if (!is_down || !is_on_picture()) return;
+    if (button == GLFW_MOUSE_BUTTON_LEFT && is_on_line()) {
+        drag_ = Drag::line;
+        return;
+    }
+    if (button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_second_click())
+        moves_.push_back({Drag::aim, {}, 0.0F, pointer_});
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) {
+        drag_ = Drag::zoom;
+    } else if (button == GLFW_MOUSE_BUTTON_MIDDLE || (modifiers & GLFW_MOD_SHIFT) != 0) {
+        drag_ = Drag::pan;
+    } else {
+        drag_ = (modifiers & GLFW_MOD_CONTROL) != 0 ? Drag::lights : Drag::orbit;
+    }
+}
+
+void UserInterface::on_move(const glm::vec2& place) {
+    const glm::vec2 moved = place - pointer_;
+    pointer_ = place;
+    if (drag_ != Drag::none) moves_.push_back({drag_, moved, 0.0F, place});
+}
+
+/// The wheel zooms. With Shift it pans.
+void UserInterface::on_wheel(const glm::vec2& steps, bool has_shift) {
+    if (!is_on_picture()) return;
+    if (has_shift) {
+        moves_.push_back({Drag::pan, wheel_pan * steps, 0.0F, pointer_});
+    } else {
+        moves_.push_back({Drag::none, {}, steps.y, pointer_});
+    }
+}
+
+/// The position relative to the center of the view, in halves of its height, y up.
+glm::vec2 UserInterface::on_view(const glm::vec2& place, const ViewerState& state) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::vec2 middle(0.5F * (left_ + io.DisplaySize.x), 0.5F * (io.DisplaySize.y - bottom_));
+    const glm::vec2 offset = (place - middle) * vec(io.DisplayFramebufferScale);
+    return glm::vec2(offset.x, -offset.y) /
+           (0.5F * static_cast<float>(std::max(state.view().y, 1)));
+}
+
+void UserInterface::apply(const Move& move, ViewerState& state) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::vec2 scale = vec(io.DisplayFramebufferScale);
+    const glm::vec2 moved = move.pixels * scale;
+    const int height = state.view().y;
+    if (move.drag == Drag::orbit) return orbit_by(state.camera(), moved, height);
+    if (move.drag == Drag::pan) return pan_by(state.camera(), moved, height);
+    if (move.drag == Drag::lights) return state.orbit_lights(moved);
+    if (move.drag == Drag::aim) return state.aim(on_view(move.place, state));
+    const bool is_drag = move.drag == Drag::zoom;
+    const glm::vec2 pointer = is_drag ? glm::vec2(0.0F) : on_view(move.place, state);
+    zoom_by(state.camera(), is_drag ? -drag_zoom * moved.y : move.steps, pointer, state.sphere());
+}
+
+/// Draws one picture, two pictures, or their difference.
+void UserInterface::draw_view(const PanelInput& input, const PictureExchange::Shown& picture,
+                              const ViewPlace& place) {
+    line_.reset();
+    if (picture.texture == 0) return;
+    if (input.drawn.is_difference) {
+        draw_difference(picture, place, *input.comparison);
+    } else if (picture.beside != 0) {
+        line_ = draw_sides(picture, place, *input.comparison);
+        const bool is_caught = drag_ == Drag::line || (is_on_line() && is_on_picture());
+        if (is_caught) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    } else {
+        draw_picture(picture, place);
+    }
+}
+
+UserInterface::Events UserInterface::draw(const PanelInput& input,
+                                          const PictureExchange::Shown& picture) {
+    ImGui_ImplOpenGL3_NewFrame();
+    apply_scale();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    clear_ui_probe();
+    Events events;
+    events.dropped = std::exchange(dropped_, {});
+    events.has_input = std::exchange(has_input_, false);
+    left_ = input.layout.has_panels ? draw_panels(input, events.panels) : 0.0F;
+    bottom_ = ImGui::GetFrameHeightWithSpacing();
+    draw_status(input, events.panels);
+    if (is_help_open_) draw_help(is_help_open_);
+
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::vec2 size(io.DisplaySize.x - left_, io.DisplaySize.y - bottom_);
+    const glm::vec2 pixels = size * vec(io.DisplayFramebufferScale);
+    input.state.set_view(glm::ivec2(glm::max(pixels, glm::vec2(1.0F))));
+    // The background of transparent pictures; nothing else clears the window.
+    ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, io.DisplaySize, backdrop);
+    draw_view(input, picture, {{left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}});
+    for (const Move& move : std::exchange(moves_, {})) {
+        if (move.drag == Drag::line)
+            input.comparison->set_split((move.place.x - left_) / std::max(size.x, 1.0F));
+        else
+            apply(move, input.state);
+    }
+    events.actions = std::exchange(pressed_, {});
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    system_.swap();
+    return events;
+}
+
+// The main loop.
+
 namespace {
 
 constexpr int frames_to_settle = 3;  // Dear ImGui reacts to the previous frame.
