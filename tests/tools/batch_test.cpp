@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Jobs on many files: order, failures and reports. process_batch_test.cpp tests the command line.
-#include "common/batch.h"
+#include "common/file_jobs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The models of a bake: texture coordinates, normals and space, also in `relief-bake mesh` and
 // `convert`.
-#include "common/map_models.h"
+#include "common/model_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "common/command.h"
-#include "common/findings.h"
 
 namespace relief::tools {
 namespace {

@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The input and output files of a command line.
+/// The input and output files of a command line, and the same job on several files.
 ///
 /// Two files without -o are IN and OUT. With -o all files are inputs, and the output is a file for
 /// one input or a folder for all. A folder exists or ends in '/'. A name with "<UDIM>" stands for
 /// all existing tiles from 1001. Ambiguous command lines are errors.
-/// Tests: tests/tools/file_jobs_test.cpp.
+///
+/// Jobs run in parallel. An error in one file does not stop the others.
+/// Tests: tests/tools/file_jobs_test.cpp, batch_test.cpp, process_batch_test.cpp.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "common/command.h"
+#include "common/options.h"
+#include "common/text.h"
 
 namespace relief::tools {
 
@@ -60,5 +68,28 @@ struct JobList {
 JobList jobs_of(
     const FileWords& words, const std::string& kind,
     const std::function<std::filesystem::path(const std::filesystem::path&)>& name_in_folder);
+
+/// The result of a file.
+struct FileOutcome {
+    std::string line;  ///< The line for stdout, without newline.
+    Findings findings;
+    nlohmann::ordered_json json;  ///< The entry in the report, besides "input" and "output".
+};
+
+struct Batch {
+    std::vector<Job> jobs;
+    /// Runs job `index`. Several threads call it.
+    std::function<FileOutcome(std::size_t index)> work;
+    /// Runs the jobs one after another, because two could write the same file.
+    bool one_by_one = false;
+    nlohmann::ordered_json head;  ///< The head of the report: tool, version, options.
+};
+
+/// Runs all jobs in parallel, one per thread. Prints the line or the error of each job in the given
+/// order, and then writes the report: the head, the number of failed jobs, and "files".
+///
+/// \return failed if a job failed; else fell_back if --strict was given and there are findings
+ExitCode run_batch(const CLI::App& app, const Batch& batch, const ReportOptions& report,
+                   const GeneralOptions& general);
 
 }  // namespace relief::tools

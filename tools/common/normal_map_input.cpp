@@ -7,8 +7,8 @@
 #include <array>
 #include <string_view>
 
-#include "common/choices.h"
 #include "common/command.h"
+#include "common/options.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map_check.h"
 

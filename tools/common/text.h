@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Formats numbers, sizes and times, and prints the lines of summaries.
-/// Tests: tests/tools/text_test.cpp.
+/// Formats numbers, sizes, times and findings, prints the lines of summaries, and adds the options
+/// --report and --strict.
+/// Tests: tests/tools/text_test.cpp, relief_mesh_test.cpp, relief_bake_test.cpp.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/command.h"
-#include "common/findings.h"
+#include "relief/mesh/report.h"
 
 namespace relief::tools {
 
@@ -46,5 +48,54 @@ void print_json(const nlohmann::ordered_json& json);
 
 /// Replaces a file by indented JSON. \throws FileError
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
+
+// Findings with the part of the input to which they belong.
+
+/// A finding with its place: "mesh 'Body' primitive 0", or an empty text for the whole file.
+struct PlacedFinding {
+    std::string where;
+    Finding finding;
+};
+
+class Findings {
+  public:
+    void add(const std::string& where, const Report& report);
+
+    [[nodiscard]] bool empty() const { return findings_.empty(); }
+    [[nodiscard]] const std::vector<PlacedFinding>& all() const { return findings_; }
+
+    /// Returns at most `limit` lines and the number of further findings.
+    [[nodiscard]] std::vector<std::string> lines(std::size_t limit = 12) const;
+
+    /// [{"where", "kind", "element", "count", "first", "outcome"}, ...]
+    [[nodiscard]] nlohmann::ordered_json json() const;
+
+  private:
+    std::vector<PlacedFinding> findings_;
+};
+
+struct ReportOptions {
+    std::optional<std::filesystem::path> file;
+    bool strict = false;
+};
+
+/// \param strict  the description of --strict; empty: the default text
+void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict = "");
+
+/// Checks the report file before the work begins.
+/// \throws UsageError if the report would overwrite one of the files, FileError if its folder does
+/// not exist
+void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files);
+
+/// Prints a warning if --strict was given and there are findings. \return whether it did
+bool found_fault(const CLI::App& app, const ReportOptions& options,
+                 const std::filesystem::path& input, const Findings& findings);
+
+/// Writes the report, if requested, and prints a warning if --strict was given and there are
+/// findings.
+/// \return fell_back after the warning, else done
+ExitCode finish(const CLI::App& app, const ReportOptions& options,
+                const std::filesystem::path& input, const Findings& findings,
+                const nlohmann::ordered_json& report);
 
 }  // namespace relief::tools

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a report to a folder: CSV tables, pictures, the JSON report and the HTML page.
-// Tests: tests/tools/accuracy_report_test.cpp, accuracy_run_test.cpp.
-#include "accuracy_report.h"
-
+// Writes a report to a folder: CSV tables, pictures, the JSON report and the HTML page; and formats
+// an experiment as text for a terminal. Tests: tests/tools/accuracy_report_test.cpp,
+// accuracy_run_test.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
+#include "accuracy_report.h"
 #include "common/command.h"
 #include "common/text.h"
 #include "file_replacement.h"
@@ -194,6 +195,170 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& fol
     write_json(folder / "accuracy.json", json);
     return {folder / "report.html", folder / "accuracy.json", folder / "accuracy.csv",
             folder / "accuracy-curves.csv"};
+}
+
+// The table for a terminal.
+
+namespace {
+
+/// A column of cells. Numbers are aligned to the right.
+struct TextColumn {
+    std::string heading;
+    std::vector<std::string> cells;
+    bool is_text = false;
+
+    [[nodiscard]] bool empty() const {
+        return std::all_of(cells.begin(), cells.end(),
+                           [](const std::string& cell) { return cell.empty(); });
+    }
+    /// Returns the width in code points of UTF-8.
+    [[nodiscard]] std::size_t width() const {
+        std::size_t width = letters_of(heading);
+        for (const std::string& cell : cells)
+            width = std::max(width, letters_of(cell));
+        return width;
+    }
+    static std::size_t letters_of(const std::string& text) {
+        return static_cast<std::size_t>(std::count_if(
+            text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+    }
+};
+
+std::string padded(const std::string& text, std::size_t width, bool is_text) {
+    const std::string space(width - TextColumn::letters_of(text), ' ');
+    return is_text ? text + space : space + text;
+}
+
+std::string line_of(const std::vector<TextColumn>& columns, const std::string& begin,
+                    const std::vector<std::size_t>& widths, std::size_t row, bool is_heading) {
+    std::string line = begin;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        const TextColumn& column = columns[i];
+        const std::string& text = is_heading ? column.heading : column.cells[row];
+        if (i > 0) line += "  ";
+        line += padded(text, widths[i], column.is_text);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + "\n";
+}
+
+std::string table_number(double value) {
+    return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
+}
+
+/// Returns half of the range from the 10th to the 90th percentile, relative to the median: "±3 %".
+std::string time_statistics(const std::optional<Timing>& timing) {
+    if (!timing) return "";
+    const TimeStatistics spread = timing->spread();
+    if (!(spread.median > 0.0)) return "";
+    return fmt::format("±{:.0f} %", 50.0 * (spread.p90 - spread.p10) / spread.median);
+}
+
+std::string median_of(const std::optional<Timing>& timing) {
+    return timing ? format_seconds(timing->spread().median) : "";
+}
+
+std::vector<TextColumn> columns_of(const Experiment& experiment) {
+    std::vector<TextColumn> columns = {
+        {"", {}, true},    {"RMS", {}},      {"mean", {}},   {"99 %", {}},     {"max", {}},
+        {"undefined", {}}, {"expected", {}}, {"PSNR", {}},   {"1 thread", {}}, {"", {}},
+        {"all", {}},       {"", {}},         {"memory", {}}, {"stored", {}}};
+    for (const Measurement& one : experiment.measurements) {
+        const ErrorFigures& error = one.error;
+        const std::vector<std::string> cells = {
+            one.method,
+            table_number(error.rms),
+            table_number(error.mean),
+            table_number(error.p99),
+            table_number(error.max),
+            error.undefined > 0 ? fmt::to_string(error.undefined) : "",
+            one.expected ? table_number(one.expected->total()) : "",
+            error.psnr ? fmt::format("{:.1f} dB", *error.psnr) : "",
+            median_of(one.cost.one_thread),
+            time_statistics(one.cost.one_thread),
+            median_of(one.cost.all_threads),
+            time_statistics(one.cost.all_threads),
+            one.cost.peak_bytes ? byte_size(*one.cost.peak_bytes) : "",
+            one.cost.stored_bytes > 0.0 ? fmt::format("{:.3g} B", one.cost.stored_bytes) : ""};
+        for (std::size_t i = 0; i < columns.size(); ++i)
+            columns[i].cells.push_back(cells[i]);
+    }
+    std::erase_if(columns, [](const TextColumn& column) { return column.empty(); });
+    return columns;
+}
+
+std::string rows_of(const Experiment& experiment) {
+    if (experiment.measurements.empty()) return "";
+    const std::vector<TextColumn> columns = columns_of(experiment);
+    std::vector<std::size_t> widths;
+    widths.reserve(columns.size());
+    for (const TextColumn& column : columns)
+        widths.push_back(column.width());
+    std::string text = line_of(columns, "    ", widths, 0, true);
+    for (std::size_t row = 0; row < experiment.measurements.size(); ++row) {
+        const Measurement& one = experiment.measurements[row];
+        text += line_of(columns, one.is_pareto_optimal ? "  * " : "    ", widths, row, false);
+    }
+    return text;
+}
+
+/// Returns each note once, after the names of its methods unless it applies to all.
+std::string notes_of(const Experiment& experiment) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> notes;
+    for (const Measurement& one : experiment.measurements) {
+        if (one.note.empty()) continue;
+        const auto known = std::find_if(notes.begin(), notes.end(),
+                                        [&](const auto& note) { return note.first == one.note; });
+        if (known == notes.end())
+            notes.push_back({one.note, {one.method}});
+        else
+            known->second.push_back(one.method);
+    }
+    std::string text;
+    for (const auto& [note, methods] : notes) {
+        const bool is_general = methods.size() == experiment.measurements.size();
+        text += is_general ? fmt::format("  {}\n", note)
+                           : fmt::format("  {}: {}\n", fmt::join(methods, "; "), note);
+    }
+    return text;
+}
+
+/// "sobel3: order 1.99 of 2, breaks at 1e-12"
+std::string line_of(const Curve& curve) {
+    std::string text = curve.method + ":";
+    if (curve.points.size() > 1) {
+        text += fmt::format(" {} at {:.4g}, {} at {:.4g}", table_number(curve.points.front().error),
+                            curve.points.front().x, table_number(curve.points.back().error),
+                            curve.points.back().x);
+    }
+    if (curve.order) text += fmt::format(", order {:.2f}", *curve.order);
+    if (curve.expected_order) text += fmt::format(" (in theory {:.3g})", *curve.expected_order);
+    if (curve.breaks_at) text += fmt::format(", breaks at {:.3g}", *curve.breaks_at);
+    return text;
+}
+
+}  // namespace
+
+std::string table_of(const Experiment& experiment) {
+    std::string text =
+        fmt::format("{}: {}\n  {}\n", experiment.id, experiment.title, experiment.question);
+    text += fmt::format("  input         {}\n  ground truth  {}\n  error         {}\n",
+                        experiment.input, experiment.ground_truth, experiment.error_unit);
+    if (experiment.reference_error) {
+        text += fmt::format(
+            "  expected: the root of the sum of squares of the reference error, {:.3g}, and the "
+            "error of the method\n",
+            *experiment.reference_error);
+    }
+    text += rows_of(experiment);
+    text += notes_of(experiment);
+    for (const Chart& chart : experiment.charts) {
+        text += fmt::format("  {} (by {})\n", chart.title, chart.x_label);
+        for (const Curve& curve : chart.curves)
+            text += fmt::format("    {}\n", line_of(curve));
+    }
+    if (!experiment.finding.empty()) text += fmt::format("  {}\n", experiment.finding);
+    return text;
 }
 
 }  // namespace relief::tools

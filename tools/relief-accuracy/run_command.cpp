@@ -1,22 +1,230 @@
 // SPDX-License-Identifier: Apache-2.0
 // `relief-accuracy run SUBJECT...` runs experiments, prints a table of each, and writes a report.
-// Tests: tests/tools/accuracy_run_test.cpp.
+// It shares its options and the description of the machine with `own`. Tests:
+// tests/tools/accuracy_run_test.cpp, accuracy_own_test.cpp, accuracy_report_test.cpp.
 #include <fmt/format.h>
+#include <sched.h>
+#include <sys/utsname.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
+#include <vector>
 
 #include "accuracy_report.h"
 #include "commands.h"
 #include "common/command.h"
 #include "common/text.h"
-#include "experiment_options.h"
+#include "parallel.h"
 #include "relief/accuracy/passes.h"
 #include "relief/accuracy/subjects.h"
+#include "relief/mesh/execution.h"
+#include "relief/shade/context.h"
 
 namespace relief::tools {
+
+// The options of `run` and `own`.
+
+namespace {
+
+constexpr int max_repeats = 1000;
+
+}  // namespace
+
+void add_experiment_options(CLI::App& app, ExperimentOptions& options) {
+    add_value(app, "--output", "DIR",
+              "Output folder for report.html (interactive plots in one file), accuracy.json, "
+              "accuracy.csv (a row per measurement), accuracy-curves.csv (a row per point of a "
+              "curve) and pictures/. It is created if necessary. Default: no files are written.",
+              [&options](const std::string&, const std::string& text) { options.output = text; });
+    add_switch(app, "--json", options.json,
+               "Print the report as JSON instead of tables; docs/accuracy-schema.md describes it.");
+    const char* group = "Effort";
+    add_switch(app, "--quick", options.quick, "Use small inputs: all subjects take a few minutes.")
+        .group(group);
+    add_switch(
+        app, "--no-times", options.no_times,
+        "Measure only errors, which are the same in each run (with OpenGL, on the same renderer).")
+        .group(group);
+    add_value(
+        app, "--repeats", "N",
+        "The number of rounds of each time, interleaved with the other methods of the experiment, "
+        "3 to 1000. With more rounds, `compare` detects smaller changes. Default: 10.",
+        [&options](const std::string& subject, const std::string& text) {
+            options.repeats = parse_integer(subject, text, 3, max_repeats);
+        })
+        .group(group);
+    add_general_options(app, options.general);
+}
+
+void check(const ExperimentOptions& options) {
+    if (options.json && options.general.quiet)
+        throw UsageError("--json and --quiet contradict each other");
+    if (options.no_times && options.repeats)
+        throw UsageError("--no-times and --repeats contradict each other");
+    if (options.general.quiet && !options.output)
+        throw UsageError("--quiet without --output would discard the results");
+}
+
+RunOptions run_options(const ExperimentOptions& options) {
+    RunOptions run;
+    run.is_quick = options.quick;
+    run.is_timed = !options.no_times;
+    run.threads = options.general.threads;
+    if (options.repeats) run.repeats.counted = static_cast<std::size_t>(*options.repeats);
+    return run;
+}
+
+std::string effort_options(const ExperimentOptions& options) {
+    std::string text;
+    if (options.quick) text += " --quick";
+    if (options.no_times) text += " --no-times";
+    if (options.repeats) text += fmt::format(" --repeats {}", *options.repeats);
+    if (options.general.threads > 0) text += fmt::format(" --threads {}", options.general.threads);
+    return text;
+}
+
+bool prints_tables(const ExperimentOptions& options) {
+    return !options.json && !options.general.quiet;
+}
+
+void prepare(const ExperimentOptions& options) {
+    if (options.output) make_folder(*options.output);
+    set_thread_limit(options.general.threads);
+}
+
+void finish_report(const ExperimentOptions& options, AccuracyReport report, bool draws) {
+    const RunOptions run = run_options(options);
+    report.relief = version();
+    report.machine = this_machine(draws);
+    report.settings = {.quick = options.quick,
+                       .timed = run.is_timed,
+                       .repeats = run.is_timed ? run.repeats.counted : 0,
+                       .passes = report.settings.passes,
+                       .threads = static_cast<unsigned>(thread_count())};
+    std::vector<std::string> written;
+    if (options.output) {
+        for (const std::filesystem::path& file : write_report(*options.output, report))
+            written.push_back(file_and_size(file));
+    }
+    if (options.json) {
+        print_json(json_of(report, options.output.has_value()));
+    } else if (!options.general.quiet) {
+        if (!options.no_times)
+            fmt::print(out(),
+                       "* efficient: no other method is both faster and at least as accurate\n"
+                       "± half of the range from the 10th to the 90th percentile of the rounds, in "
+                       "percent of the median\n");
+        print_entry("written", written);
+    }
+}
+
+// The machine, described by /proc, uname and the compiler.
+
+namespace {
+
+/// Returns the text after `separator` in the first line of a file that begins with `key`.
+std::string value_in(const char* file, const std::string& key, char separator) {
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) {
+        const std::size_t end = line.find(separator);
+        if (!line.starts_with(key) || end == std::string::npos) continue;
+        const std::size_t begin = line.find_first_not_of(" \"", end + 1);
+        if (begin == std::string::npos) return "";
+        return line.substr(begin, line.find_last_not_of(" \"") - begin + 1);
+    }
+    return "";
+}
+
+unsigned usable_cores() {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    if (sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(CPU_COUNT(&set));
+    return std::thread::hardware_concurrency();
+}
+
+std::uint64_t installed_memory() {
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    const long size = sysconf(_SC_PAGE_SIZE);
+    if (pages <= 0 || size <= 0) return 0;
+    return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size);
+}
+
+std::string system_name() {
+    utsname kernel{};
+    uname(&kernel);
+    const std::string kernel_name =
+        fmt::format("{} {} {}", kernel.sysname, kernel.release, kernel.machine);
+    const std::string distribution = value_in("/etc/os-release", "PRETTY_NAME", '=');
+    return distribution.empty() ? kernel_name : fmt::format("{}, {}", distribution, kernel_name);
+}
+
+std::string compiler_name() {
+#if defined(__clang__)
+    return "Clang " __clang_version__;
+#else
+    return "GCC " __VERSION__;
+#endif
+}
+
+std::optional<std::string> opengl_name() {
+    try {
+        return Context().renderer_name();
+    } catch (const GpuError&) {
+        return std::nullopt;
+    }
+}
+
+/// The memory that the kernel reserves differs slightly between starts.
+bool have_same_memory(const Machine& a, const Machine& b) {
+    const auto least = static_cast<double>(std::min(a.memory_bytes, b.memory_bytes));
+    const auto most = static_cast<double>(std::max(a.memory_bytes, b.memory_bytes));
+    return most <= 1.02 * least;
+}
+
+}  // namespace
+
+Machine this_machine(bool draws) {
+    return {.processor = value_in("/proc/cpuinfo", "model name", ':'),
+            .cores = usable_cores(),
+            .memory_bytes = installed_memory(),
+            .system = system_name(),
+            .compiler = compiler_name(),
+            .build = RELIEF_BUILD_TYPE,
+            .opengl = draws ? opengl_name() : std::nullopt};
+}
+
+std::string difference_of(const Machine& old_one, const Machine& new_one) {
+    std::vector<std::string> words;
+    const auto compare = [&](const char* what, const std::string& before,
+                             const std::string& after) {
+        if (before != after) words.push_back(fmt::format("{}: {}, then {}", what, before, after));
+    };
+    compare("processor", old_one.processor, new_one.processor);
+    compare("cores", fmt::to_string(old_one.cores), fmt::to_string(new_one.cores));
+    if (!have_same_memory(old_one, new_one))
+        compare("memory", byte_size(old_one.memory_bytes), byte_size(new_one.memory_bytes));
+    compare("system", old_one.system, new_one.system);
+    compare("compiler", old_one.compiler, new_one.compiler);
+    compare("build", old_one.build, new_one.build);
+    if (old_one.opengl && new_one.opengl) compare("OpenGL", *old_one.opengl, *new_one.opengl);
+    return fmt::format("{}", fmt::join(words, "; "));
+}
+
+bool may_compare_times(const Machine& old_one, const Machine& new_one) {
+    const bool same_opengl =
+        !old_one.opengl || !new_one.opengl || *old_one.opengl == *new_one.opengl;
+    return old_one.processor == new_one.processor && old_one.cores == new_one.cores &&
+           have_same_memory(old_one, new_one) && old_one.system == new_one.system && same_opengl;
+}
+
+// The command `run`.
+
 namespace {
 
 constexpr int max_passes = 100;

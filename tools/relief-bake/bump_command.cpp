@@ -1,12 +1,630 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `relief-bake bump` and its options. Contradictory and useless options are refused
-// before any file is read. Tests: tests/tools/relief_bake_bump_test.cpp.
-#include <memory>
+// The command `relief-bake bump`: converts height map files. It chooses from a map what the options
+// leave open. Contradictory and useless options are refused before any file is read.
+// Tests: tests/tools/relief_bake_bump_test.cpp.
+#include <fmt/format.h>
 
-#include "bump.h"
-#include "common/choices.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "common/options.h"
+#include "common/text.h"
+#include "relief/mesh/bump_experiment.h"
+#include "relief/mesh/bump_file.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/report.h"
 
 namespace relief::tools {
+
+/// The options of accuracy. Absent: chosen from the map itself.
+struct BumpAccuracyRequest {
+    std::optional<Kernel> kernel;
+    std::optional<Arithmetic> precision;
+    bool destaircase = false;
+    Grain grain = Grain::automatic;
+    std::optional<double> max_error;        ///< Of the map and the conversion together.
+    std::optional<double> max_added_error;  ///< Of the conversion alone.
+    std::optional<ErrorKind> max_error_kind;
+    bool compare = false;
+
+    [[nodiscard]] bool has_limit() const { return max_error || max_added_error; }
+    [[nodiscard]] bool needs_experiment() const { return compare || has_limit(); }
+};
+
+/// The options of a conversion, the same for every map of a call.
+struct BumpRequest {
+    std::optional<HeightChannel> channel;  ///< Absent: the mean, with a finding for color images.
+    bool ignore_alpha = false;
+    bool invert = false;
+    BumpAccuracyRequest accuracy;
+    std::optional<double> strength;
+    std::optional<double> height;
+    std::optional<glm::dvec2> texel;
+    std::optional<int> gaussian_radius;
+    WrapsOrAuto wrap;
+    bool slope_moments = false;
+    bool xy_only = false;
+    MapAlpha alpha = MapAlpha::none;
+    MapOutputOptions output;
+};
+
+/// The library's options, except for those that are chosen from the map.
+/// \throws UsageError if options contradict each other
+BumpOptions bump_options_of(const BumpRequest& request);
+
+/// The content and the format of the output file.
+/// \throws UsageError if the file cannot store them, or options contradict each other
+BumpFileFormat file_format_of(const BumpRequest& request, const std::filesystem::path& output);
+
+/// The choices that were made from the map, and the measured errors.
+struct BumpAccuracy {
+    std::optional<KernelChoice> choice;        ///< With --kernel auto.
+    std::optional<BumpExperiment> experiment;  ///< With --compare and --max-error.
+    std::optional<BumpMeasurement> selected;   ///< The method within --max-error.
+    double step = 0.0;                         ///< Of the steps that were smoothed; 0: none.
+};
+
+/// The result of a conversion.
+struct BumpConversion {
+    ImageInfo input;
+    bool is_streamed = false;     ///< A large map is read row by row.
+    std::size_t transparent = 0;  ///< Texels that are not part of the surface.
+    BumpOptions bump;             ///< With the choices that were made from the map.
+    std::optional<Tiling> tiling;
+    BumpAccuracy accuracy;
+    BumpFileFormat format;
+    Findings findings;
+};
+
+/// Converts a file. The stages are "read", "look" and "choose" if something is chosen from the map,
+/// "convert" and "write".
+/// \throws FileError, UsageError
+BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& stages);
+
+/// "gaussian 4", or the plain name of the kernel.
+std::string kernel_name(const BumpMethod& method);
+
+/// "gaussian 4 in float32, 16 bit"
+std::string to_string(const BumpMethod& method);
+
+void print_summary(const Job& job, const BumpRequest& request, const BumpConversion& conversion,
+                   const Stages& stages);
+
+/// The summary in one line, for a conversion of several files.
+std::string line_of(const Job& job, const BumpConversion& conversion, const Stages& stages);
+
+/// The summary for --report, without the file names.
+nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stages& stages);
+
+// The conversion.
+
+namespace {
+
+/// The bit depths that --max-error can choose from.
+std::vector<int> available_depths(const BumpRequest& request, const Job& job) {
+    if (request.output.bits) return {*request.output.bits};
+    std::vector<int> depths = depths_of(job.output);
+    // Options for codes have no effect on floats.
+    if (request.output.flat || request.output.dither) std::erase(depths, 32);
+    return depths;
+}
+
+/// Reports what the heights leave out: color differences and partial alpha.
+void report_channels(const BumpRequest& request, const HeightMapFile& map,
+                     const HeightMapFile::Survey& survey, Report& report) {
+    constexpr double min_share = 0.01;
+    if (request.channel) return;
+    const bool is_streamed = map.is_streamed();
+    const double colored = is_streamed ? survey.colored_share : map.map().colored_share;
+    const double alpha = is_streamed ? survey.partial_alpha_share : map.map().partial_alpha_share;
+    if (colored > min_share) {
+        report.add("color image read as heights", "map", 0,
+                   fmt::format("the height is the mean of red, green and blue, which differ in "
+                               "{:.0f}% of the texels (a color picture is not a height map; select "
+                               "a channel with --channel, or confirm with --channel mean)",
+                               100.0 * colored));
+    }
+    if (alpha > min_share && request.alpha != MapAlpha::keep) {
+        report.add("alpha with values between 0 and 1", "map", 0,
+                   "is not read (--channel alpha reads it as the height)");
+    }
+}
+
+/// The parts of the map that the choices and measurements need.
+BumpSampleParts parts_to_read(const BumpAccuracyRequest& request, const ImageInfo& map) {
+    BumpSampleParts parts;
+    if (!request.kernel || request.needs_experiment())
+        parts.analyzed = parts_to_analyze(map.width, map.height);
+    if (request.needs_experiment()) parts.measured = parts_to_measure(map.width, map.height);
+    return parts;
+}
+
+/// All methods that the options leave open.
+std::vector<BumpMethod> methods_for(const BumpAccuracyRequest& request, int radius,
+                                    const std::vector<int>& depths, bool compares_steps) {
+    std::vector<Arithmetic> arithmetics = {Arithmetic::float32, Arithmetic::float64};
+    if (request.precision) arithmetics = {*request.precision};
+    const std::array destaircased = {false, true};
+    const std::size_t first = request.destaircase && !compares_steps ? 1 : 0;
+    const std::size_t last = request.destaircase || compares_steps ? 2 : 1;
+    std::vector<BumpMethod> methods = bump_methods(
+        radius, depths, arithmetics, std::span(destaircased).subspan(first, last - first));
+    if (request.kernel && !request.compare)
+        std::erase_if(methods, [&](const auto& m) { return m.kernel != *request.kernel; });
+    return methods;
+}
+
+/// The message if no method is within the limits, with the smallest possible error and a remedy.
+std::string limit_message(const BumpAccuracyRequest& request, const BumpExperiment& experiment,
+                          ErrorKind kind) {
+    const BumpMeasurement* best = most_accurate(experiment, kind);
+    const ExpectedError error = expected_error(experiment.reference, *best, kind);
+    const std::string method = to_string(best->method);
+    const char* const kind_name = kind == ErrorKind::rms ? "RMS" : "maximum";
+    const bool steps_remain = !request.destaircase && experiment.reference.method->destaircased;
+    const char* const hint = steps_remain ? " (--destaircase reduces it)" : "";
+    if (request.max_added_error && error.added > *request.max_added_error) {
+        return fmt::format(
+            "no method adds at most {:g} degrees ({}): the minimum is {:.3g}, with "
+            "{}{}",
+            *request.max_added_error, kind_name, error.added, method, hint);
+    }
+    if (std::isnan(error.map)) {
+        return fmt::format(
+            "no method is known to be within {:g} degrees: the map has too few "
+            "texels to estimate its own error (limit only the added error with "
+            "--max-added-error)",
+            *request.max_error);
+    }
+    if (error.map > *request.max_error) {
+        return fmt::format(
+            "no method is within {:g} degrees ({}): the map itself has an expected "
+            "error of {:.3g} ({}), and {} adds {:.3g} (use a better map, or limit "
+            "only the added error with --max-added-error){}",
+            *request.max_error, kind_name, error.map, experiment.choice.reason, method, error.added,
+            hint);
+    }
+    return fmt::format("no method is within {:g} degrees ({}): the minimum is {:.3g}, with {}{}",
+                       *request.max_error, kind_name, error.total(), method, hint);
+}
+
+/// Reports that the choice of --kernel auto depends on the interpretation of fine grain.
+void report_grain(const KernelChoice& choice, Report& report) {
+    if (!choice.is_ambiguous()) return;
+    const KernelPrediction& other = choice.otherwise->best;
+    const bool is_noise = choice.noise > 0.0;
+    const char* const assumed = is_noise ? "noise" : "detail";
+    const char* const otherwise = is_noise ? "detail" : "noise";
+    report.add({"fine grain that may be noise or detail",
+                "map",
+                fmt::format("is assumed to be {}, with an expected error of {:.2g} degrees RMS; if "
+                            "it is {}, the error is {:.2g}, and {:.2g} with {} (--grain {})",
+                            assumed, choice.rms_degrees, otherwise, choice.otherwise->rms_degrees,
+                            other.rms_degrees, kernel_name({other.kernel, other.gaussian_radius}),
+                            otherwise),
+                1,
+                {0}});
+}
+
+/// Reports that the limit is between the ends of the range of the expected error.
+void report_range(const BumpAccuracyRequest& request, const BumpExperiment& experiment,
+                  const BumpMeasurement& selected, ErrorKind kind, Report& report) {
+    if (!request.max_error) return;
+    const double upper = expected_error_upper(experiment.reference, selected, kind).total();
+    if (upper <= *request.max_error) return;
+    const char* const unknown = experiment.choice.noise > 0.0
+                                    ? "how much detail the noise hides"
+                                    : "whether its fine detail is real, and how fine it is";
+    report.add(
+        {"error limit that may be exceeded",
+         "map",
+         fmt::format("the expected error is {:.2g} to {:.2g} degrees ({}), and --max-error "
+                     "is {:g}: the map does not show {}",
+                     expected_error(experiment.reference, selected, kind).total(), upper,
+                     kind == ErrorKind::rms ? "RMS" : "maximum", *request.max_error, unknown),
+         1,
+         {0}});
+}
+
+/// Selects the fastest method within the limits. \throws InvalidInput if there is none
+void select_within_limit(const BumpAccuracyRequest& request, BumpConversion& conversion,
+                         Report& report) {
+    BumpAccuracy& accuracy = conversion.accuracy;
+    const ErrorKind kind = request.max_error_kind.value_or(ErrorKind::rms);
+    const BumpMeasurement* selected =
+        cheapest_within(*accuracy.experiment, {request.max_error, request.max_added_error, kind});
+    if (selected == nullptr) throw InvalidInput(limit_message(request, *accuracy.experiment, kind));
+    report_range(request, *accuracy.experiment, *selected, kind, report);
+    accuracy.selected = *selected;
+    conversion.bump.kernel = selected->method.kernel;
+    conversion.bump.gaussian_radius = selected->method.gaussian_radius;
+    conversion.bump.arithmetic = selected->method.arithmetic;
+    conversion.format.normals.bits = selected->method.bits;
+}
+
+/// Chooses kernel, precision and bit depth from parts of the map.
+void choose_method(const BumpAccuracyRequest& request, const std::vector<Image>& parts,
+                   const std::vector<int>& depths, BumpConversion& conversion, Report& report) {
+    BumpOptions& bump = conversion.bump;
+    BumpAccuracy& accuracy = conversion.accuracy;
+    if (request.precision) bump.arithmetic = request.precision;
+    if (request.kernel) bump.kernel = *request.kernel;
+    const BumpSampleParts read = parts_to_read(request, conversion.input);
+    if (read.analyzed.empty()) return;
+    const BumpSample sample = read.sample(parts);
+    if (!request.kernel) {
+        accuracy.choice = choose_kernel(sample.analyzed, bump, request.destaircase, request.grain);
+        report_grain(*accuracy.choice, report);
+        bump.kernel = accuracy.choice->kernel;
+        bump.gaussian_radius = accuracy.choice->gaussian_radius;
+    }
+    if (!request.needs_experiment()) return;
+    const int radius =
+        accuracy.choice ? best_gaussian_radius(*accuracy.choice) : bump.gaussian_radius;
+    BumpExperimentOptions options;
+    options.bump = bump;
+    options.format = conversion.format.normals;
+    options.grain = request.grain;
+    if (!request.compare) options.repeats = {1, 0};
+    const std::vector<int> measured_depths =
+        request.has_limit() ? depths : std::vector<int>{options.format.bits};
+    const bool has_steps = accuracy.choice && accuracy.choice->depth.bits > 0 &&
+                           accuracy.choice->depth.bits <= 12 && request.compare;
+    accuracy.experiment =
+        measure_bump(sample, methods_for(request, radius, measured_depths, has_steps), options);
+    if (request.has_limit()) select_within_limit(request, conversion, report);
+}
+
+/// Smooths the quantization steps of the map. \throws InvalidInput if the map is not in memory
+void destaircase_map(const Wraps& wrap, HeightMapFile& map, BumpAccuracy& accuracy) {
+    if (map.is_streamed())
+        throw InvalidInput(
+            "--destaircase: the map is too large to fit in memory (convert it without this "
+            "option)");
+    Destaircased smooth = destaircase(map.map().heights, {.wrap = wrap});
+    accuracy.step = smooth.step;
+    if (smooth.step > 0.0) map.map().heights = std::move(smooth.heights);
+}
+
+/// Chooses what the options leave open: border mode, kernel, precision and bit depth.
+void choose_from_map(HeightMapFile& map, const Job& job, const BumpRequest& request, Stages& stages,
+                     BumpConversion& conversion) {
+    const BumpAccuracyRequest& accuracy = request.accuracy;
+    const std::vector<ImagePart> parts = parts_to_read(accuracy, map.info()).in_order();
+    HeightMapFile::Survey survey;
+    if (!request.wrap.is_settled() || !parts.empty()) {
+        survey = stages.run("look", [&] { return map.survey(parts); });
+        if (!request.wrap.is_settled()) conversion.tiling = survey.tiling;
+    }
+    Report report;
+    report_channels(request, map, survey, report);
+    conversion.findings.add("", report);
+    conversion.bump.wrap = request.wrap.value_or(conversion.tiling.value_or(Tiling{}).wraps());
+    if (parts.empty() && !accuracy.destaircase && !accuracy.kernel) return;
+    const auto choose = [&] {
+        Report choice_report;
+        choose_method(accuracy, survey.parts, available_depths(request, job), conversion,
+                      choice_report);
+        conversion.findings.add("", choice_report);
+        if (accuracy.destaircase) destaircase_map(*conversion.bump.wrap, map, conversion.accuracy);
+    };
+    // A given kernel needs no time, so it has no stage.
+    if (!parts.empty() || accuracy.destaircase)
+        stages.run("choose", choose);
+    else
+        choose();
+}
+
+void convert_and_write(const HeightMapFile& map, const Job& job, Stages& stages,
+                       BumpConversion& conversion) {
+    Report report;
+    const BumpFileTimes times =
+        write_bump_file(map, conversion.bump, job.output, conversion.format, report,
+                        [&](double part) { stages.show_progress("convert", part); });
+    stages.clear_progress();
+    if (map.is_streamed()) stages.book("read", times.read);
+    stages.book("convert", times.convert);
+    stages.book("write", times.write);
+    conversion.findings.add("", report);
+}
+
+}  // namespace
+
+BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& stages) {
+    BumpConversion conversion;
+    conversion.bump = bump_options_of(request);
+    conversion.format = file_format_of(request, job.output);
+    about(job.input, [&] {
+        HeightMapFile map = stages.run("read", [&] {
+            return HeightMapFile(
+                job.input, {request.channel.value_or(HeightChannel::mean), request.ignore_alpha});
+        });
+        conversion.input = map.info();
+        conversion.is_streamed = map.is_streamed();
+        conversion.transparent = map.map().transparent_count();
+        choose_from_map(map, job, request, stages, conversion);
+        convert_and_write(map, job, stages, conversion);
+    });
+    return conversion;
+}
+
+// The summary as text, as a line and as JSON.
+
+namespace {
+
+/// "gaussian of radius 2", or the plain name.
+std::string kernel_text(const BumpOptions& bump) {
+    const std::string name = name_of(*bump.kernel, kernel_choices());
+    return bump.kernel == Kernel::gaussian
+               ? fmt::format("{} of radius {}", name, bump.gaussian_radius)
+               : name;
+}
+
+std::string depth_text(const BumpRequest& request, const BumpOptions& bump) {
+    if (!request.height) return fmt::format("strength {:g} texels", bump.strength);
+    return fmt::format("height {:g} over texels of {:g} x {:g}", bump.strength, bump.texel.x,
+                       bump.texel.y);
+}
+
+/// The speed of the conversion itself, without reading and writing.
+double megapixels_per_second(const BumpConversion& conversion, const Stages& stages) {
+    const double milliseconds = stages.milliseconds("convert");
+    const double pixels = static_cast<double>(conversion.input.width) * conversion.input.height;
+    return milliseconds > 0 ? pixels / milliseconds / 1000 : 0;
+}
+
+/// "clamp at the border", with the evidence if the mode was chosen from the map.
+std::string border_text(const BumpConversion& conversion) {
+    const std::string text = wrap_text(*conversion.bump.wrap) + " at the border";
+    if (!conversion.tiling) return text;
+    return fmt::format("{} (differences across the seams are {:.2g} and {:.2g} times those inside)",
+                       text, conversion.tiling->seam_x, conversion.tiling->seam_y);
+}
+
+std::string input_text(const Job& job, const BumpConversion& conversion) {
+    const ImageInfo& input = conversion.input;
+    std::string text =
+        fmt::format("{}: {} x {}, {}, {} bit", job.input.string(), input.width, input.height,
+                    counted(static_cast<std::size_t>(input.channels), "channel"), input.bits);
+    if (conversion.is_streamed) text += ", row by row";
+    if (conversion.transparent > 0)
+        text += fmt::format(", {} left flat", counted(conversion.transparent, "transparent texel"));
+    return text;
+}
+
+std::string format_text(const BumpFileFormat& format) {
+    if (format.content == BumpContent::slope_moments) {
+        return fmt::format("slope moments, 32 bit float, dh/dy {}{}",
+                           name_of(format.normals.green, green_choices()),
+                           format.write.half ? ", half floats" : "");
+    }
+    std::string text = to_string(format.normals);
+    if (format.xy_only) text += ", without z";
+    if (format.alpha == MapAlpha::height) text += ", height in alpha";
+    if (format.alpha == MapAlpha::keep) text += ", alpha kept";
+    if (format.write.half) text += ", half floats";
+    return text;
+}
+
+std::string precision_name(const BumpMethod& method) {
+    return method.arithmetic == Arithmetic::float64 ? "float64" : "float32";
+}
+
+/// The table of --compare, sorted by error.
+std::vector<std::string> comparison_table(const BumpExperiment& experiment) {
+    std::vector<const BumpMeasurement*> rows;
+    for (const BumpMeasurement& measurement : experiment.measurements)
+        rows.push_back(&measurement);
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto* a, const auto* b) { return a->error.rms < b->error.rms; });
+    std::vector<std::string> lines = {
+        fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9} {:>9} {:>9} {:>9} {:>9}", "kernel", "precision",
+                    "bits", "steps", "RMS deg", "max deg", "with map", "time", "MPixel/s")};
+    for (const BumpMeasurement* row : rows) {
+        lines.push_back(
+            fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
+                        kernel_name(row->method), precision_name(row->method), row->method.bits,
+                        row->method.destaircased ? "smooth" : "as is", row->error.rms,
+                        row->error.max, expected_error(experiment.reference, *row).total(),
+                        duration(1000.0 * row->seconds.median), row->megapixels_per_second,
+                        row->is_pareto_optimal ? "*" : ""));
+    }
+    lines.emplace_back("RMS and max: added by the conversion; with map: total expected RMS error");
+    lines.emplace_back("* no other method is both faster and more accurate");
+    for (std::string& line : lines)
+        line.erase(line.find_last_not_of(' ') + 1);
+    return lines;
+}
+
+/// The expected error of the map and the kernel, in float64 and without rounding.
+std::string expectation_text(const KernelChoice& choice) {
+    if (std::isnan(choice.rms_degrees)) return "unknown";
+    const char* const range_reason =
+        choice.noise > 0.0 ? "; the range depends on how much detail the noise hides"
+                           : "; the range depends on whether fine detail is real, and how fine";
+    return fmt::format("{} degrees RMS, {:.2g} at most, from the map and this kernel{}",
+                       expected_error_text(choice), choice.upper_max_degrees,
+                       choice.is_range() ? range_reason : "");
+}
+
+void print_accuracy(const BumpAccuracy& accuracy) {
+    // With a limit, the kernel is not chosen for its accuracy alone.
+    if (accuracy.choice && !accuracy.selected) {
+        print_entry("because", accuracy.choice->reason);
+        print_entry("expected", expectation_text(*accuracy.choice));
+    }
+    if (accuracy.step > 0.0) {
+        print_entry("steps", fmt::format("smoothed: steps of 1/{:.0f}; heights moved by at most "
+                                         "half a step",
+                                         1.0 / accuracy.step));
+    }
+    if (accuracy.selected) {
+        const BumpMeasurement& selected = *accuracy.selected;
+        const ExpectedError error = expected_error(accuracy.experiment->reference, selected);
+        print_entry("selected", fmt::format("{}: {:.3g} degrees RMS expected",
+                                            to_string(selected.method), error.total()));
+        print_entry("", fmt::format("{:.3g} from the map itself, {:.3g} added by this conversion "
+                                    "({:.3g} at most), {:.0f} MPixel/s",
+                                    error.map, error.added, selected.error.max,
+                                    selected.megapixels_per_second));
+    }
+    if (!accuracy.experiment) return;
+    const BumpExperiment& experiment = *accuracy.experiment;
+    print_entry(
+        "errors",
+        fmt::format("measured on {} of the map, against {}",
+                    experiment.is_whole ? "all" : fmt::format("{} texels", experiment.texels),
+                    experiment.reference.words));
+    if (!accuracy.selected) print_entry("", comparison_table(experiment));
+}
+
+nlohmann::ordered_json measurement_json(const BumpMeasurement& measurement,
+                                        const BumpReference& reference) {
+    const BumpMethod& method = measurement.method;
+    const ExpectedError expected = expected_error(reference, measurement);
+    return {{"kernel", name_of(method.kernel, kernel_choices())},
+            {"kernel_radius", method.kernel == Kernel::gaussian
+                                  ? nlohmann::ordered_json(method.gaussian_radius)
+                                  : nullptr},
+            {"precision", precision_name(method)},
+            {"bits", method.bits},
+            {"destaircased", method.destaircased},
+            {"degrees",
+             {{"rms", measurement.error.rms},
+              {"mean", measurement.error.mean},
+              {"p99", measurement.error.p99},
+              {"max", measurement.error.max}}},
+            {"expected_degrees",
+             {{"map", expected.map},
+              {"added", expected.added},
+              {"total", expected.total()},
+              {"total_upper", expected_error_upper(reference, measurement).total()}}},
+            {"milliseconds",
+             {{"median", 1000.0 * measurement.seconds.median},
+              {"p10", 1000.0 * measurement.seconds.p10},
+              {"p90", 1000.0 * measurement.seconds.p90}}},
+            {"megapixels_per_second", measurement.megapixels_per_second},
+            {"efficient", measurement.is_pareto_optimal}};
+}
+
+nlohmann::ordered_json grain_json(const KernelChoice& choice) {
+    if (!choice.otherwise) return nullptr;
+    const KernelPrediction& best = choice.otherwise->best;
+    return {{"taken_for", choice.noise > 0.0 ? "noise" : "detail"},
+            {"deviation", choice.grain},
+            {"ambiguous", choice.is_ambiguous()},
+            {"otherwise",
+             {{"expected_degrees", choice.otherwise->rms_degrees},
+              {"best_kernel", kernel_name({best.kernel, best.gaussian_radius})},
+              {"best_expected_degrees", best.rms_degrees}}}};
+}
+
+void add_accuracy(const BumpAccuracy& accuracy, nlohmann::ordered_json& json) {
+    if (accuracy.choice && !accuracy.selected) {
+        json["kernel_reason"] = accuracy.choice->reason;
+        json["expected_degrees"] = accuracy.choice->rms_degrees;
+        json["expected_degrees_upper"] = accuracy.choice->upper_rms_degrees;
+        json["grain"] = grain_json(*accuracy.choice);
+    }
+    json["destaircased_step"] = accuracy.step > 0.0 ? nlohmann::ordered_json(accuracy.step)
+                                                    : nlohmann::ordered_json(nullptr);
+    if (!accuracy.experiment) return;
+    const BumpExperiment& experiment = *accuracy.experiment;
+    json["reference"] = {{"what", experiment.reference.words},
+                         {"own_degrees", experiment.reference.reference_degrees},
+                         {"texels", experiment.texels},
+                         {"whole", experiment.is_whole}};
+    if (accuracy.selected)
+        json["kept"] = measurement_json(*accuracy.selected, experiment.reference);
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const BumpMeasurement& measurement : experiment.measurements)
+        all.push_back(measurement_json(measurement, experiment.reference));
+    json["comparison"] = all;
+}
+
+}  // namespace
+
+std::string kernel_name(const BumpMethod& method) {
+    const std::string name = name_of(method.kernel, kernel_choices());
+    return method.kernel == Kernel::gaussian ? fmt::format("{} {}", name, method.gaussian_radius)
+                                             : name;
+}
+
+std::string to_string(const BumpMethod& method) {
+    return fmt::format("{} in {}, {} bit{}", kernel_name(method), precision_name(method),
+                       method.bits, method.destaircased ? ", steps smoothed" : "");
+}
+
+void print_summary(const Job& job, const BumpRequest& request, const BumpConversion& conversion,
+                   const Stages& stages) {
+    print_entry("read", input_text(job, conversion));
+    print_entry("slopes",
+                fmt::format("{}, {}, {}", kernel_text(conversion.bump),
+                            depth_text(request, conversion.bump), border_text(conversion)));
+    print_accuracy(conversion.accuracy);
+    print_entry("format", format_text(conversion.format));
+    print_entry("findings", conversion.findings.empty() ? std::vector<std::string>{"none"}
+                                                        : conversion.findings.lines());
+    print_entry("time", fmt::format("{} ({:.0f} MPixel/s without file access)",
+                                    durations(stages.finished()),
+                                    megapixels_per_second(conversion, stages)));
+    print_entry("wrote", file_and_size(job.output));
+}
+
+std::string line_of(const Job& job, const BumpConversion& conversion, const Stages& stages) {
+    double sum = 0;
+    for (const Stage& stage : stages.finished())
+        sum += stage.milliseconds;
+    return fmt::format("{}: {} x {}, {}, {}, {}", job.output.string(), conversion.input.width,
+                       conversion.input.height, kernel_text(conversion.bump),
+                       conversion.findings.empty()
+                           ? "no findings"
+                           : counted(conversion.findings.all().size(), "finding"),
+                       duration(sum));
+}
+
+nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stages& stages) {
+    const BumpOptions& bump = conversion.bump;
+    const NormalMapFormat& format = conversion.format.normals;
+    const bool has_radius = bump.kernel == Kernel::gaussian;
+    const bool has_moments = conversion.format.content == BumpContent::slope_moments;
+    nlohmann::ordered_json seams = nullptr;
+    if (conversion.tiling) seams = {conversion.tiling->seam_x, conversion.tiling->seam_y};
+    nlohmann::ordered_json json = {
+        {"width", conversion.input.width},
+        {"height", conversion.input.height},
+        {"by_rows", conversion.is_streamed},
+        {"transparent", conversion.transparent},
+        {"kernel", name_of(*bump.kernel, kernel_choices())},
+        {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
+        {"strength", bump.strength},
+        {"texel_size", {bump.texel.x, bump.texel.y}},
+        {"wrap", wrap_text(*bump.wrap)},
+        {"seams", seams},
+        {"content", has_moments ? "slope moments" : "normals"},
+        {"xy_only", conversion.format.xy_only},
+        {"alpha", name_of(conversion.format.alpha, map_alpha_choices())},
+        {"bits", format.bits},
+        {"green", name_of(format.green, green_choices())},
+        {"zero_code", name_of(format.flat, zero_code_choices())},
+        {"dither", name_of(format.dither, dither_choices())},
+        {"findings", conversion.findings.json()},
+        {"milliseconds", durations_json(stages.finished())},
+        {"megapixels_per_second", megapixels_per_second(conversion, stages)}};
+    add_accuracy(conversion.accuracy, json);
+    return json;
+}
+
+// The options.
+
 namespace {
 
 /// Parses "W" or "WxH".

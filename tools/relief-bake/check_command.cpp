@@ -9,10 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "common/choices.h"
-#include "common/findings.h"
+#include "common/options.h"
 #include "common/text.h"
-#include "mesh_bake.h"
+#include "mesh_accuracy.h"
+#include "mesh_maps.h"
+#include "mesh_models.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map_check.h"

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/choices.h"
+#include "common/options.h"
 #include "common/text.h"
 #include "relief/mesh/execution.h"
 

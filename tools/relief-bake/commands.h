@@ -11,11 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "common/batch.h"
 #include "common/command.h"
 #include "common/file_jobs.h"
-#include "common/findings.h"
 #include "common/options.h"
+#include "common/text.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <functional>
 
-#include "common/choices.h"
-#include "common/map_models.h"
+#include "common/model_file.h"
+#include "common/options.h"
 #include "common/text.h"
 #include "convert.h"
 #include "relief/mesh/image.h"

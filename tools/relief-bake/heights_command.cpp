@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "common/choices.h"
 #include "common/normal_map_input.h"
+#include "common/options.h"
 #include "common/text.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"

@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the errors of samples and bits on a map, and selects the fewest within a limit.
-// Tests: tests/tools/relief_bake_accuracy_test.cpp.
+// Measures the errors of samples and bits on a map and selects the fewest within a limit; and
+// compares a finished map with the models that it was baked from: errors by cause, an error map,
+// and the convention that explains the map if it is not the assumed one. Tests:
+// tests/tools/relief_bake_accuracy_test.cpp, relief_bake_check_test.cpp.
+
+#include "mesh_accuracy.h"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "common/text.h"
-#include "mesh_bake.h"
+#include "mesh_maps.h"
 #include "relief/mesh/bake_check.h"
 #include "relief/mesh/frontier.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::tools {
+
+// Samples and bits.
+
 namespace {
 
 constexpr std::size_t texels_for_limit = std::size_t{1} << 17;
@@ -256,6 +270,379 @@ MeshAccuracy select_accuracy(const Baker& baker, const BakeMapOptions& map,
         select_within_limit(baker, map, request, format, result);
     }
     return result;
+}
+
+// Finished maps, for `relief-bake mesh --verify` and `relief-bake check --high`.
+
+namespace {
+
+// The error map.
+
+/// The smallest 1, 2 or 5 times a power of ten that is not below the value.
+double rounded_up(double value) {
+    if (!(value > 0.0)) return 1.0;
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double step : {1.0, 2.0, 5.0}) {
+        if (value <= step * power) return step * power;
+    }
+    return 10.0 * power;
+}
+
+/// Colors rows of errors; texels without an error are transparent.
+Image heat_rows(std::span<const float> degrees, int width, double brightest) {
+    const int height = static_cast<int>(degrees.size() / static_cast<std::size_t>(width));
+    Image values = make_image(width, height, 1, 32, ColorSpace::data);
+    std::copy(degrees.begin(), degrees.end(), values.as<float>().begin());
+    const Image heat = false_color_image(values, brightest);
+    Image result = make_image(width, height, 4, 8, ColorSpace::srgb);
+    const auto from = heat.as<std::uint8_t>();
+    const auto to = result.as<std::uint8_t>();
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+        if (std::isnan(degrees[i])) continue;
+        std::copy_n(&from[3 * i], 3, &to[4 * i]);
+        to[4 * i + 3] = 255;
+    }
+    return result;
+}
+
+/// Writes the errors of all texels, in degrees, NaN if there is none. PNG: colors from black (no
+/// error) to pale yellow; EXR, TIFF: degrees in one channel. The metadata "relief:brightest" is the
+/// error of pale yellow in degrees.
+/// \return that error: the 99th percentile, rounded up to 1, 2 or 5 times a power of ten
+double write_error_map(const std::filesystem::path& file, const std::vector<float>& degrees,
+                       const BakeMapOptions& map, double p99) {
+    constexpr std::size_t rows_at_once = 256;
+    const double brightest = rounded_up(p99);
+    const bool is_picture = extension_of(file) == ".png";
+    const std::map<std::string, std::string> metadata = {
+        {"relief:content", is_picture ? "errors of normals as heat" : "errors of normals, degrees"},
+        {"relief:brightest", fmt::format("{:g}", brightest)}};
+    const ImageShape shape = {map.width, map.height, is_picture ? 4 : 1, is_picture ? 8 : 32,
+                              is_picture ? ColorSpace::srgb : ColorSpace::data};
+    ImageRowWriter writer(file, shape, metadata);
+    const std::size_t texels_at_once = rows_at_once * static_cast<std::size_t>(map.width);
+    for (std::size_t first = 0; first < degrees.size(); first += texels_at_once) {
+        const std::span<const float> part = std::span<const float>(degrees).subspan(
+            first, std::min(texels_at_once, degrees.size() - first));
+        if (is_picture) {
+            const Image picture = heat_rows(part, map.width, brightest);
+            writer.write(std::as_bytes(picture.as<std::uint8_t>()));
+        } else {
+            writer.write(std::as_bytes(part));
+        }
+    }
+    writer.finish();
+    return brightest;
+}
+
+// The convention that explains a map.
+
+/// As --axes of `relief-bake convert` accepts it.
+std::string axes_option(const AxisMapping& axes) {
+    std::string text;
+    for (const SignedAxis& axis : axes) {
+        text += text.empty() ? "" : ",";
+        text += axis.is_negative ? "-" : "";
+        text += "xyz"[axis.axis];
+    }
+    return text;
+}
+
+std::string describe(const AxisMapping& axes) {
+    const SignedAxis x{0, false}, y{1, false}, z{2, false};
+    const SignedAxis minus_x{0, true}, minus_y{1, true};
+    if (axes == AxisMapping{x, minus_y, z})
+        return "green is inverted (down instead of up, or up "
+               "instead of down)";
+    if (axes == AxisMapping{minus_x, y, z}) return "red is inverted";
+    if (axes == AxisMapping{minus_x, minus_y, z}) return "red and green are inverted";
+    if (axes == AxisMapping{y, x, z}) return "red and green are swapped";
+    return fmt::format("the axes differ: x, y, z are {}", axes_option(axes));
+}
+
+/// Names a part of a convention for JSON, and describes its value in the map.
+struct PartText {
+    const char* name;
+    std::string description;
+};
+
+PartText describe(const MapConvention& found, ConventionPart part) {
+    switch (part) {
+        case ConventionPart::curve:
+            return {"curve", found.curve == StoredCurve::srgb_encoded
+                                 ? "the values are sRGB-encoded"
+                                 : "the values were decoded as if they were sRGB"};
+        case ConventionPart::flat:
+            return {"flat", found.flat == FlatCode::half
+                                ? "zero is between two codes (127.5 of 255)"
+                                : "zero is a code (128 of 255)"};
+        case ConventionPart::turn:
+            return {"turn", found.turn == ImageOrientation::upside_down ? "the image is upside down"
+                            : found.turn == ImageOrientation::mirrored
+                                ? "the image is mirrored, left to "
+                                  "right"
+                                : "the image is rotated by 180 "
+                                  "degrees"};
+        case ConventionPart::axes:
+            return {"axes", describe(found.axes)};
+        case ConventionPart::space:
+            return {"space", found.space == MapAxes::tangent  ? "it is in tangent space"
+                             : found.space == MapAxes::object ? "it is in object space"
+                                                              : "it is in world space"};
+        case ConventionPart::basis:
+            return {"basis",
+                    found.basis == MapBasis::mikktspace ? "it was baked with MikkTSpace tangents"
+                    : found.basis == MapBasis::area_weighted
+                        ? "it was baked with area-weighted tangents"
+                    : found.basis == MapBasis::lengyel ? "it was baked with Lengyel's tangents"
+                                                       : "it was baked with the model's tangents"};
+        case ConventionPart::frame:
+            return {"frame", found.frame == FrameInterpolation::unit
+                                 ? "it was baked with normal and tangent normalized per pixel"
+                             : found.frame == FrameInterpolation::orthonormal
+                                 ? "it was baked with normal and tangent orthonormalized per pixel"
+                             : found.frame == FrameInterpolation::vertex_bitangent
+                                 ? "it was baked with bitangents interpolated from the vertices"
+                                 : "it was baked with the interpolated normal and tangent"};
+        case ConventionPart::mirroring:
+            return {"mirroring",
+                    "mirrored parts of the texture were baked as if they were not (w is +1)"};
+    }
+    return {"", ""};
+}
+
+/// "green is inverted (...): with this convention, the error is 0.12 degrees instead of 23.4 (RMS)"
+std::string describe(const ConventionFit& fit) {
+    std::vector<std::string> parts;
+    for (const ConventionPart part : fit.changes)
+        parts.push_back(describe(fit.convention, part).description);
+    return fmt::format(
+        "{}: with this convention, the error is {:.3g} degrees instead of {:.3g} "
+        "(RMS)",
+        fmt::join(parts, "; "), fit.found_degrees, fit.given_degrees);
+}
+
+/// Commands that convert the map, or make a model that fits it; the output files are "out.png" and
+/// "out.glb". Empty if no single command does it.
+std::vector<std::string> convention_remedies(const std::filesystem::path& map,
+                                             const std::filesystem::path& low,
+                                             const ConventionFit& fit) {
+    if (fit.changes.size() != 1) return {};
+    const MapConvention& found = fit.convention;
+    const std::string convert = fmt::format("relief-bake convert {} out.png", quoted(map));
+    switch (fit.changes.front()) {
+        case ConventionPart::axes:
+            return {convert + " --axes=" + axes_option(found.axes)};
+        case ConventionPart::flat:
+            return {convert + (found.flat == FlatCode::half
+                                   ? " --input-zero-code 127.5"
+                                   : " --input-zero-code 128 --zero-code 127.5")};
+        case ConventionPart::space:
+            if (found.space == MapAxes::tangent)
+                return {fmt::format("{} --to-object {}", convert, quoted(low))};
+            if (found.space == MapAxes::object)
+                return {fmt::format("{} --to-tangent {}", convert, quoted(low))};
+            return {};
+        case ConventionPart::basis:
+            if (found.basis == MapBasis::used) return {};
+            return {fmt::format("relief-mesh process {} out.glb --tangents {}", quoted(low),
+                                found.basis == MapBasis::mikktspace      ? "mikktspace"
+                                : found.basis == MapBasis::area_weighted ? "area-weighted"
+                                                                         : "lengyel")};
+        default:
+            return {};
+    }
+}
+
+/// Adds the problems of a map and their remedies.
+void add_problems(VerifiedMap& map, const MeshBakeRequest& bake, const BakeModels& models) {
+    // Above this, codes differ from those of the bake: other rays, another program, or an edit.
+    constexpr double max_other_degrees = 1.0;
+    const BakeCheck& check = map.check;
+    const ErrorBound& bound = map.request.bound;
+    const double other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).rms;
+    if (check.convention.is_explained) {
+        map.problems.push_back(describe(check.convention));
+        map.remedies = convention_remedies(map.request.map, bake.low, check.convention);
+    } else if (other > max_other_degrees) {
+        map.problems.push_back(
+            fmt::format("the map differs from this bake by {:.3g} degrees (RMS), and none of {} "
+                        "conventions explains it (other models, other rays, or edited?)",
+                        other, check.convention.tried));
+    }
+    if (!bound.allows(check.error)) {
+        map.problems.push_back(fmt::format("the error is {:.3g} degrees, more than the limit of {}",
+                                           bound.error(check.error), to_string(bound)));
+    }
+    const double missed = missed_percent(check.missed, check.error.count + check.frameless);
+    if (check.error.count == 0) {
+        map.problems.push_back("no texel has a surface to be compared with; " +
+                               describe_fit(bake, models));
+    } else if (missed > bake.missed_limit()) {
+        map.problems.push_back(
+            fmt::format("the rays of {:.3g} % of the texels hit nothing, more than {:g} %; {}",
+                        missed, bake.missed_limit(), describe_fit(bake, models)));
+    }
+}
+
+// The summary.
+
+constexpr std::array stage_names = {"projection", "sampling", "quantisation", "basis", "other"};
+
+std::vector<std::string> stage_lines(const BakeCheck& check) {
+    constexpr std::array descriptions = {"texels without a single normal", "too few samples",
+                                         "rounding to codes", "a basis that is not orthogonal",
+                                         "codes that this bake does not give"};
+    std::vector<std::string> lines;
+    for (std::size_t i = 0; i < bake_stage_count; ++i) {
+        lines.push_back(fmt::format("{:<12} {:>6.1f} %  {:>8.3g} degrees RMS  {}", stage_names[i],
+                                    100.0 * check.stages[i].share, check.stages[i].rms,
+                                    descriptions[i]));
+    }
+    return lines;
+}
+
+std::string texel_text(const BakeCheck& check) {
+    std::string text = counted(check.error.count, "texel");
+    if (check.discontinuous > 0)
+        text += fmt::format(", {} of them torn by the projection", check.discontinuous);
+    if (check.missed > 0) text += fmt::format("; {} missed, without a reference", check.missed);
+    if (check.frameless > 0) text += fmt::format("; {} without a frame", check.frameless);
+    return text;
+}
+
+std::string worst_text(const BakeCheck& check) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min<std::size_t>(check.worst.size(), 4); ++i) {
+        const WorstTexel& texel = check.worst[i];
+        text += fmt::format("{}({}, {}): {:.3g}{}", i == 0 ? "" : "; ", texel.x, texel.y,
+                            texel.degrees, texel.is_discontinuous ? " torn" : "");
+    }
+    return text;
+}
+
+std::vector<std::string> verdict_lines(const VerifiedMap& map) {
+    if (map.problems.empty()) {
+        return {map.request.bound.degrees ? fmt::format("within {}", to_string(map.request.bound))
+                                          : "matches this bake"};
+    }
+    std::vector<std::string> lines = map.problems;
+    for (const std::string& remedy : map.remedies)
+        lines.push_back("-> " + remedy);
+    return lines;
+}
+
+nlohmann::ordered_json summary_json(const AngleSummary& summary) {
+    return {{"rms", summary.rms},
+            {"mean", summary.mean},
+            {"p99", summary.p99},
+            {"max", summary.max},
+            {"texels", summary.count}};
+}
+
+nlohmann::ordered_json convention_json(const ConventionFit& fit) {
+    std::vector<std::string> parts;
+    for (const ConventionPart part : fit.changes)
+        parts.emplace_back(describe(fit.convention, part).name);
+    return {{"searched", fit.was_searched},
+            {"explained", fit.is_explained},
+            {"differs_in", parts},
+            {"told_degrees", fit.given_degrees},
+            {"found_degrees", fit.found_degrees},
+            {"tried", fit.tried}};
+}
+
+}  // namespace
+
+VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshBakeRequest& bake,
+                       BakeMapOptions map, const VerifyRequest& request, Report& report) {
+    const Stopwatch stopwatch;
+    VerifiedMap verified;
+    verified.request = request;
+    InputMap input = read_normal_map(request.map, request.input);
+    map.width = input.image.width;
+    map.height = input.image.height;
+    map.padding = 0;
+    map.border_folder.reset();
+    BakeCheckOptions options;
+    options.map = map;
+    options.format.green = input.green.value_or(Green::up);
+    options.format.flat = input.flat;
+    options.format.dither = bake.map.dither.value_or(Dither::none);
+    options.given = &models.low;
+    options.is_object = bake.space == SpaceChoice::object;
+    if (models.world_from_low) options.object_from_mesh = glm::transpose(*models.world_from_low);
+    std::vector<float> errors;
+    verified.check = about(request.map, [&] {
+        return check_bake(
+            baker, input.image, options,
+            [&](int, std::span<const float> degrees) {
+                if (request.error_map) errors.insert(errors.end(), degrees.begin(), degrees.end());
+            },
+            report);
+    });
+    if (request.error_map) {
+        verified.brightest =
+            write_error_map(*request.error_map, errors, map, verified.check.error.p99);
+    }
+    add_problems(verified, bake, models);
+    verified.milliseconds = 1e3 * stopwatch.seconds();
+    return verified;
+}
+
+std::string to_string(const AngleSummary& summary) {
+    return fmt::format("RMS {:.3g} degrees, mean {:.3g}, 99 of 100 within {:.3g}, {:.3g} at most",
+                       summary.rms, summary.mean, summary.p99, summary.max);
+}
+
+void print_verified(const VerifiedMap& map) {
+    const BakeCheck& check = map.check;
+    print_entry(
+        "error",
+        {to_string(check.error) +
+             fmt::format(", from the mean over each texel ({} samples)", check.reference_samples),
+         to_string(check.center) + ", from the normal at its center", texel_text(check)});
+    print_entry("stages", stage_lines(check));
+    if (check.error.max > 0.0) print_entry("worst", worst_text(check));
+    print_entry("verdict", verdict_lines(map));
+    if (map.request.error_map) {
+        print_entry("errors", fmt::format("{} ({:g} degrees is brightest)",
+                                          file_and_size(*map.request.error_map), map.brightest));
+    }
+    print_entry("checked", fmt::format("{} rays, {}", check.rays, duration(map.milliseconds)));
+}
+
+nlohmann::ordered_json verified_json(const VerifiedMap& map) {
+    const BakeCheck& check = map.check;
+    nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < bake_stage_count; ++i)
+        stages[stage_names[i]] = {{"share", check.stages[i].share}, {"rms", check.stages[i].rms}};
+    nlohmann::ordered_json worst = nlohmann::ordered_json::array();
+    for (const WorstTexel& texel : check.worst) {
+        worst.push_back({{"x", texel.x},
+                         {"y", texel.y},
+                         {"degrees", texel.degrees},
+                         {"torn", texel.is_discontinuous}});
+    }
+    nlohmann::ordered_json json = {{"error", summary_json(check.error)},
+                                   {"centre", summary_json(check.center)},
+                                   {"remade", summary_json(check.rebaked)},
+                                   {"reference_samples", check.reference_samples},
+                                   {"torn", check.discontinuous},
+                                   {"missed", check.missed},
+                                   {"frameless", check.frameless},
+                                   {"stages", stages},
+                                   {"worst", worst},
+                                   {"convention", convention_json(check.convention)},
+                                   {"trouble", map.problems},
+                                   {"remedies", map.remedies},
+                                   {"rays", check.rays},
+                                   {"milliseconds", map.milliseconds}};
+    if (map.request.error_map) {
+        json["error_map"] = {{"file", map.request.error_map->string()},
+                             {"brightest", map.brightest}};
+    }
+    return json;
 }
 
 }  // namespace relief::tools

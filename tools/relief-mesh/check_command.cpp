@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "commands.h"
-#include "common/findings.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"

@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
+// `relief-mesh conformance OUTPUT_DIR` compares the tangents that a program computed for the
+// conformance kit with MikkTSpace's, as text or JSON. Tests: tests/tools/conformance_test.cpp.
 #include "conformance.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "commands.h"
 #include "common/command.h"
 #include "common/options.h"
+#include "common/text.h"
 #include "relief/mesh/compare.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/gltf_document.h"
 
 namespace relief::tools {
+
+// The kit and the comparison.
+
 namespace {
 
 const Choices<KitGroup> kit_groups = {{"conformance", KitGroup::conformance},
@@ -168,6 +177,246 @@ Judgment judge(const KitMesh& kit, const Mesh& mesh) {
     }
     judgment.degrees = angle_distribution(std::move(degrees));
     return judgment;
+}
+
+// The command.
+
+namespace {
+
+struct ConformanceOptions {
+    std::filesystem::path results;
+    std::filesystem::path kit = "conformance/kit";
+    bool json = false;
+    bool strict = false;
+    bool quiet = false;
+};
+
+/// The result for a mesh of the kit.
+struct Result {
+    std::string name;
+    KitGroup group = KitGroup::conformance;
+    std::string error;  ///< The reason why there is no judgment, or empty.
+    Judgment judgment;
+
+    [[nodiscard]] bool passed() const { return error.empty() && judgment.passes(group); }
+};
+
+Result result_of(const KitMesh& kit, const std::filesystem::path& folder) {
+    Result result{kit.name, kit.group, "", {}};
+    std::filesystem::path file = folder / (kit.name + ".glb");
+    if (!std::filesystem::exists(file)) file.replace_extension(".gltf");
+    if (!std::filesystem::exists(file)) {
+        result.error = fmt::format("there is no {0}.glb or {0}.gltf", kit.name);
+        return result;
+    }
+    try {
+        const Mesh mesh = read_triangles(file);
+        const bool has_none = std::all_of(mesh.tangents.begin(), mesh.tangents.end(),
+                                          [](const glm::vec4& t) { return t == glm::vec4(0.0F); });
+        if (has_none)
+            result.error = "has no tangents";
+        else
+            result.judgment = judge(kit, mesh);
+    } catch (const FileError& error) {
+        result.error = error.what();
+    }
+    return result;
+}
+
+/// "3 corners of other sign, 5 off by more than 0.01 degrees"
+std::string faults(const Judgment& judgment) {
+    std::vector<std::string> list;
+    const auto add = [&](std::size_t count, const std::string& what) {
+        if (count != 0) list.push_back(fmt::format("{} {}", count, what));
+    };
+    add(judgment.missing, "missing");
+    add(judgment.extra, "not in this mesh");
+    add(judgment.not_finite, "not finite");
+    add(judgment.not_unit, "not unit");
+    add(judgment.not_perpendicular, "not perpendicular");
+    add(judgment.invalid_sign, "with w not 1 or -1");
+    add(judgment.mixed_signs, "of triangles with both signs");
+    if (judgment.other_sign == judgment.judged && judgment.judged != 0)
+        list.emplace_back(
+            "all with the opposite sign (is w computed for v upwards? In glTF, v points down)");
+    else
+        add(judgment.other_sign, "with the opposite sign");
+    add(judgment.too_far, fmt::format("with an error above {} degrees", conforming_degrees));
+    return list.empty() ? "" : fmt::format("; {}", fmt::join(list, ", "));
+}
+
+std::string verdict(const Result& result) {
+    if (result.group == KitGroup::stability) return result.passed() ? "usable" : "UNUSABLE";
+    if (result.group == KitGroup::defect)
+        return result.passed() ? "defect corrected"
+                               : "has the reference's defect, or a larger error";
+    return result.passed() ? "conforms" : "DIFFERS";
+}
+
+std::string as_text(const Result& result) {
+    if (!result.error.empty()) return "NOT COMPARED: " + result.error;
+    const Judgment& j = result.judgment;
+    std::string text = fmt::format("{}: {} of {} compared", verdict(result), j.judged,
+                                   counted(j.corners, "corner"));
+    if (result.group != KitGroup::stability && j.judged != 0) {
+        text += fmt::format(", error in degrees: mean {:.2g}, 99 % within {:.2g}, maximum {:.2g}",
+                            j.degrees.mean, j.degrees.p99, j.degrees.max);
+    }
+    return text + faults(j);
+}
+
+/// The number of meshes of a group, and of those that passed.
+struct Score {
+    std::size_t passed = 0;
+    std::size_t meshes = 0;
+};
+
+Score score_of(const std::vector<Result>& results, KitGroup group) {
+    Score score;
+    for (const Result& result : results) {
+        if (result.group != group) continue;
+        ++score.meshes;
+        score.passed += result.passed() ? 1U : 0U;
+    }
+    return score;
+}
+
+/// The scores of the two groups that decide the verdict.
+struct Scores {
+    Score conforming;
+    Score usable;
+
+    explicit Scores(const std::vector<Result>& results)
+        : conforming(score_of(results, KitGroup::conformance)),
+          usable(score_of(results, KitGroup::stability)) {}
+
+    [[nodiscard]] bool conforms() const { return conforming.passed == conforming.meshes; }
+    [[nodiscard]] bool is_stable() const { return usable.passed == usable.meshes; }
+};
+
+void show_text(const std::vector<Result>& results) {
+    std::size_t longest = 0;
+    for (const Result& result : results)
+        longest = std::max(longest, result.name.size());
+    std::vector<std::string> lines;
+    for (const Result& result : results)
+        lines.push_back(fmt::format("{:<{}}  {}", result.name, longest, as_text(result)));
+    print_entry("meshes", lines);
+    const Scores scores(results);
+    const Score& conforming = scores.conforming;
+    print_entry(
+        "verdict",
+        fmt::format("{} on {} of {} meshes; usable tangents on {} of {} hard ones",
+                    scores.conforms() ? "conforms" : "DIFFERS",
+                    scores.conforms() ? conforming.passed : conforming.meshes - conforming.passed,
+                    conforming.meshes, scores.usable.passed, scores.usable.meshes));
+}
+
+const char* group_name(KitGroup group) {
+    switch (group) {
+        case KitGroup::conformance:
+            return "conformance";
+        case KitGroup::defect:
+            return "defect";
+        case KitGroup::stability:
+            break;
+    }
+    return "stability";
+}
+
+nlohmann::ordered_json json_of(const Result& result) {
+    nlohmann::ordered_json json = {
+        {"name", result.name}, {"group", group_name(result.group)}, {"passed", result.passed()}};
+    if (!result.error.empty()) {
+        json["error"] = result.error;
+        return json;
+    }
+    const Judgment& j = result.judgment;
+    json.update({{"corners", j.corners},
+                 {"judged", j.judged},
+                 {"missing", j.missing},
+                 {"left_out", j.omitted},
+                 {"extra", j.extra},
+                 {"not_finite", j.not_finite},
+                 {"not_unit", j.not_unit},
+                 {"not_perpendicular", j.not_perpendicular},
+                 {"unhanded", j.invalid_sign},
+                 {"mixed_handedness", j.mixed_signs}});
+    if (result.group == KitGroup::stability) return json;
+    json.update(
+        {{"other_sign", j.other_sign},
+         {"too_far", j.too_far},
+         {"degrees", {{"mean", j.degrees.mean}, {"p99", j.degrees.p99}, {"max", j.degrees.max}}},
+         {"worst_corner", j.worst_corner}});
+    return json;
+}
+
+void show_json(const std::vector<Result>& results) {
+    const Scores scores(results);
+    nlohmann::ordered_json meshes = nlohmann::ordered_json::array();
+    for (const Result& result : results)
+        meshes.push_back(json_of(result));
+    print_json(nlohmann::ordered_json{{"tool", "relief-mesh conformance"},
+                                      {"version", version()},
+                                      {"conforms", scores.conforms()},
+                                      {"stable", scores.is_stable()},
+                                      {"meshes", std::move(meshes)}});
+}
+
+ExitCode run(const CLI::App& app, const ConformanceOptions& options) {
+    if (options.json && options.quiet) throw UsageError("--json and --quiet contradict each other");
+    const std::vector<KitMesh> kit = read_kit(options.kit);
+    if (!std::filesystem::is_directory(options.results)) {
+        throw failure(
+            options.results, "no such folder",
+            "it must contain the program's output for each mesh of the kit, with the same names");
+    }
+    Stages stages(options.quiet);
+    std::vector<Result> results;
+    for (const KitMesh& mesh : kit) {
+        results.push_back(stages.run("judge", "judge " + mesh.name,
+                                     [&] { return result_of(mesh, options.results); }));
+    }
+    if (options.json)
+        show_json(results);
+    else if (!options.quiet)
+        show_text(results);
+    const Scores scores(results);
+    if (!scores.conforms()) return ExitCode::failed;
+    if (!options.strict || scores.is_stable()) return ExitCode::done;
+    warn(app, fmt::format("{} with unusable tangents (exit code 3, because of --strict)",
+                          counted(scores.usable.meshes - scores.usable.passed, "mesh", "meshes")));
+    return ExitCode::fell_back;
+}
+
+}  // namespace
+
+Command add_conformance_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(
+        tool, "conformance",
+        "Compares any program's tangents for the conformance kit with those of MikkTSpace.");
+    const auto options = std::make_shared<ConformanceOptions>();
+    add_file(app, "OUTPUT_DIR", options->results,
+             "Folder with the program's output for conformance/kit: NAME.glb or NAME.gltf with "
+             "TANGENT for each NAME.glb of the kit");
+    add_value(app, "--kit", "FOLDER",
+              "Folder of the kit. Default: conformance/kit in the sources of relief.",
+              [options](const std::string&, const std::string& text) { options->kit = text; });
+    add_switch(app, "--json", options->json,
+               "Print one JSON object: tool, version, conforms, stable, meshes [name, group, "
+               "passed, error "
+               "or: corners, judged, missing, left_out, extra, not_finite, not_unit, "
+               "not_perpendicular, unhanded, mixed_handedness and, against the reference, "
+               "other_sign, too_far, degrees {mean, p99, max}, worst_corner].");
+    add_switch(app, "--strict", options->strict,
+               "Exit with 3 if the tangents conform, but are unusable on the hard meshes of the "
+               "stability group.");
+    add_switch(app, "--quiet", options->quiet, "Print only errors; the exit code is the result.");
+    set_examples(app,
+                 {"relief-mesh process conformance/kit/*.glb -o out/kit/ --tangents mikktspace",
+                  "relief-mesh conformance out/kit",
+                  "relief-mesh conformance out/kit --kit conformance/kit --json"});
+    return {&app, [&app, options] { return run(app, *options); }};
 }
 
 }  // namespace relief::tools

@@ -14,7 +14,6 @@
 
 #include "commands.h"
 #include "common/command.h"
-#include "common/findings.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"

@@ -16,10 +16,8 @@
 #include <vector>
 
 #include "commands.h"
-#include "common/batch.h"
-#include "common/choices.h"
 #include "common/command.h"
-#include "common/findings.h"
+#include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"

@@ -14,9 +14,7 @@
 #include <vector>
 
 #include "commands.h"
-#include "common/choices.h"
 #include "common/command.h"
-#include "common/findings.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"

@@ -11,8 +11,8 @@
 #include <limits>
 #include <utility>
 
-#include "common/choices.h"
 #include "common/command.h"
+#include "common/options.h"
 #include "common/text.h"
 #include "near_names.h"
 #include "relief/mesh/bump.h"

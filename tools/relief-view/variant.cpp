@@ -7,7 +7,7 @@
 #include <functional>
 #include <map>
 
-#include "common/choices.h"
+#include "common/options.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"

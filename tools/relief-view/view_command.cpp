@@ -12,7 +12,6 @@
 #include <numbers>
 
 #include "common/command.h"
-#include "common/findings.h"
 #include "common/model_file.h"
 #include "common/text.h"
 #include "effect_options.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <regex>
 
-#include "html_text.h"
 #include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "tools/accuracy_page/sample_report.h"

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The models of a bake: reading, pairs of parts by name, textures of the high models, and checks
+/// whether the models fit. Tests: tests/tools/relief_bake_models_test.cpp,
+/// relief_bake_layers_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/model_file.h"
+#include "common/text.h"
+#include "mesh_request.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/image_file.h"
+
+namespace relief::tools {
+
+// Models.
+
+/// A file and its parts.
+struct NamedModel {
+    std::filesystem::path file;
+    const MapModel* model = nullptr;
+};
+
+/// Triangles of one part of a high model.
+struct HighPiece {
+    std::size_t model = 0;
+    std::size_t part = 0;
+    std::vector<std::uint32_t> triangles;
+};
+
+/// The high and low triangles with one name.
+struct ModelPair {
+    std::string name;
+    std::vector<HighPiece> high;
+    std::vector<std::uint32_t> low;  ///< Triangles of the joined low model, ascending.
+};
+
+struct ModelPairs {
+    std::vector<ModelPair> pairs;  ///< Sorted by name; empty: every low part sees all high parts.
+    Report report;                 ///< High parts that no low part sees.
+    /// The names without a counterpart that prevent automatic pairs.
+    std::vector<std::string> unpaired;
+};
+
+/// Pairs parts by name (pair_name() in bake_matching.h). A part is named by its object (glTF: node;
+/// OBJ: o, else g) if that has a pair name, else by its file.
+///
+/// automatic: pairs parts if the low model has several names and every part on both sides has a
+/// counterpart. name: every low part must have a counterpart; high parts without one are counted.
+/// \throws FileError naming low parts without a counterpart
+ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low, MatchChoice choice);
+
+/// The textures of the high models, decoded.
+class HighTextures {
+  public:
+    /// Adds the textures of a mesh. The mesh must keep its address.
+    /// \param report  counts color textures with other texture coordinates, which are left out
+    /// \throws FileError if an image cannot be read
+    void add(const std::filesystem::path& file, const Mesh& mesh, const MapLooks& looks,
+             const HighTextureOptions& options, bool with_colors, Report& report);
+
+    [[nodiscard]] std::span<const HighMaterials> details() const { return details_; }
+
+    /// "1 normal map added to their normals, 2 color textures"; empty if there are none.
+    [[nodiscard]] std::string description() const;
+
+  private:
+    const Image* image(const std::filesystem::path& model, const MapLooks& looks, std::size_t index,
+                       ImageUse use);
+    const Image* image(const std::filesystem::path& file, ImageUse use);
+    SurfaceTexture texture(const std::filesystem::path& model, const MapLooks& looks,
+                           const GltfTexture& texture, ImageUse use);
+    [[nodiscard]] SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale) const;
+
+    std::vector<HighMaterials> details_;
+    std::map<std::string, Image> images_;  ///< By file, index and use.
+    std::map<const Image*, std::map<std::string, std::string>> metadata_;
+    std::size_t normal_maps_ = 0;
+    std::size_t color_textures_ = 0;
+};
+
+/// The high meshes of a pair, which are adjacent in BakeModels::high.
+struct BakePair {
+    std::string name;
+    std::size_t first_high = 0;
+    std::size_t high_count = 0;
+    std::size_t high_triangles = 0;
+    std::vector<std::uint32_t> low;  ///< Triangles.
+};
+
+/// The models of a bake, with the same axes and origin.
+struct BakeModels {
+    std::vector<Mesh> high;  ///< One per file, or with pairs one per part.
+    Mesh low;
+    std::vector<std::string> materials;  ///< Of the low mesh.
+    std::optional<glm::dmat3> world_from_low;
+    glm::dvec3 origin{0.0};  ///< The world position of the origin.
+    std::optional<Mesh> cage;
+    HighTextures textures;
+    std::vector<BakePair> pairs;  ///< Empty: every low part sees all high parts.
+    std::vector<std::string> unpaired;
+};
+
+/// \throws FileError if a model cannot be read, or the low one has no texture coordinates
+BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings);
+
+/// The transform of normals from the axes of the models to those of --space.
+/// \throws FileError if the low model has no axes of its own, and --space object needs them
+glm::dmat3 output_axes(const MeshBakeRequest& request,
+                       const std::optional<glm::dmat3>& world_from_low);
+
+// Checks whether the models fit.
+
+/// Missed texels in percent of those that the low model covers; 0 if it covers none.
+double missed_percent(std::size_t missed, std::size_t baked);
+
+/// Makes the baker, which refers to the models.
+/// \throws FileError if the models do not fit, with their boxes and the likely cause
+Baker make_baker(const MeshBakeRequest& request, const BakeModels& models,
+                 const BakeOptions& options, Report& report);
+
+/// Describes the boxes of the models and the likely cause of a misfit.
+std::string describe_fit(const MeshBakeRequest& request, const BakeModels& models);
+
+/// \param map  its name if there are several maps, else empty
+/// \throws FileError if no ray hits, or too many texels are missed
+void check_missed(const MeshBakeRequest& request, const BakeModels& models, const std::string& map,
+                  const BakeResult& result);
+
+/// Estimates on a reduced map, before the bake, whether too many texels are missed.
+/// \throws FileError like check_missed(), if the estimate is 5 percent points above the limit
+void check_missed_early(const MeshBakeRequest& request, const BakeModels& models,
+                        const Baker& baker, const BakeMapOptions& map, const std::string& name);
+
+/// Lists missed texels, their positions, and the ray lengths that would hit.
+std::vector<std::string> missed_lines(const MeshBakeRequest& request, const BakeResult& result,
+                                      const glm::dvec3& origin);
+
+/// A warning if the low model has many more triangles than the high one; else empty.
+std::string swapped_models_warning(const MeshBakeRequest& request, std::size_t high_triangles,
+                                   std::size_t low_triangles);
+
+}  // namespace relief::tools
