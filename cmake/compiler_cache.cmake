@@ -9,7 +9,7 @@ find_program(RELIEF_CCACHE_PROGRAM ccache)
 if(RELIEF_CCACHE AND RELIEF_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     foreach(language C CXX)
         set(CMAKE_${language}_COMPILER_LAUNCHER
-            ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1
+            ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
             CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
             ${RELIEF_CCACHE_PROGRAM})
     endforeach()

@@ -89,8 +89,22 @@ function(relief_vectorise target)
         PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# Empty, but for the headers that it lends to targets compiled alike.
+# relief_position_independent(TARGET): code for libraries, which programs link statically, into a shared library of
+# theirs, or as a shared library. Only the namespaces marked RELIEF_API are exported (relief/export.h).
+function(relief_position_independent target)
+    set_target_properties(
+        ${target}
+        PROPERTIES POSITION_INDEPENDENT_CODE ON
+                   C_VISIBILITY_PRESET hidden
+                   CXX_VISIBILITY_PRESET hidden
+                   VISIBILITY_INLINES_HIDDEN ON)
+    # Functions may be inlined although another library could replace them.
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+endfunction()
+
+# Empty, but for the headers that it lends to libraries.
 add_library(relief_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+relief_position_independent(relief_precompiled)
 target_link_libraries(relief_precompiled PRIVATE relief_flags glm::glm fmt::fmt)
 relief_precompile(relief_precompiled)
 

@@ -15,6 +15,7 @@
 #include "file_replacement.h"
 #include "near_names.h"
 #include "relief/mesh/execution.h"
+#include "relief/version.h"
 
 namespace relief::tools {
 namespace {

@@ -182,7 +182,7 @@ std::FILE* err();
 /// Returns whether err() is a terminal.
 bool is_err_terminal();
 
-/// "0.1.0"
+/// "0.9.0"
 std::string version();
 
 }  // namespace relief::tools

@@ -18,13 +18,14 @@
 #include "relief/accuracy/experiment.h"
 #include "relief/accuracy/measure.h"
 #include "relief/accuracy/recommend.h"
+#include "relief/export.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 class Baker;
 

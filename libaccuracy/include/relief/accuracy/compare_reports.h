@@ -31,8 +31,9 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/export.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 enum class TimeVerdict {
     unchanged,  ///< No change beyond the resolution.

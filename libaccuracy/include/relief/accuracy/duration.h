@@ -6,7 +6,9 @@
 
 #include <string>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// Formats a time: "840 ns", "4.13 µs", "12.3 ms", "1.50 s".
 std::string format_seconds(double seconds);

@@ -14,12 +14,13 @@
 #include <utility>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/timing.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 class PassHistory;  // passes.h
 

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/export.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// Measures several things interleaved (A B C A B C ...). All experiments use this function.
 ///

@@ -17,8 +17,9 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/export.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The rounds of earlier passes, by experiment. A group is a set of methods that are timed
 /// together. An experiment has the same groups in the same order in every pass; the order and the

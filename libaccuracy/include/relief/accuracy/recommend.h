@@ -10,8 +10,9 @@
 #include <string>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/export.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The cost to minimize: time (Measurement::cost, on one thread if that was measured), or the
 /// stored bytes of each item.

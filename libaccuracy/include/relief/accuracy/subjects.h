@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/export.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// Returns the subjects that have experiments, in the order of reports.
 std::vector<Subject> subjects_with_experiments();

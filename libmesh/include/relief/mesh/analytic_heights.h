@@ -11,10 +11,11 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The height amplitude * sin(dot(frequency, (x, y)) + phase); x points right and y down, both in
 /// texels.

@@ -10,9 +10,10 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/mesh.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 enum class AnalyticSurface {
     sphere,     ///< Radius 1; open at both poles.

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/map_convention.h"
@@ -26,7 +27,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/texel_coverage.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Options of the layers that a bake computes from the same rays: normals, heights, occlusion,
 // curvature, positions and colors. A layer that is not requested costs no time and no memory, and

@@ -14,13 +14,14 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/timing.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Measures the error of a finished normal map, texel by texel, against the surface that it was
 // baked from, as a renderer shows it, and splits the error by cause. Part of the library

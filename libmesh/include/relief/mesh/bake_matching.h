@@ -11,9 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/bake.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 enum class BakeSide { high, low };
 

@@ -8,12 +8,13 @@
 #include <optional>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Defines the derivative kernels for slopes of height fields, and computes their noise gain,
 // response and anisotropy in closed form.

@@ -11,13 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/bump_fields.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/timing.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// A method of conversion.
 struct BumpMethod {

@@ -10,10 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/analytic_heights.h"
 #include "relief/mesh/bump.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The shape of a field before it is stored.
 enum class FieldShape {

@@ -13,12 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The channel of a file that holds the heights, and the memory limit for reading it.
 struct HeightMapOptions {

@@ -13,10 +13,11 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 struct MatchOptions {
     /// Positions match if their distance is at most this, in the unit of the meshes.

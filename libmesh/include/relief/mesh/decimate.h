@@ -8,11 +8,12 @@
 #include <cstddef>
 #include <optional>
 
+#include "relief/export.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The limits of a decimation; at least one must be given, and the first one that is reached ends
 /// it.

@@ -13,10 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The severity of a condition. A problem causes a fallback, or makes a result depend on more than
 /// the surface. A note also applies to valid models.

@@ -10,7 +10,9 @@
 #include <span>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 // Computes angles between directions in degrees, and their RMS, mean and maximum.
 

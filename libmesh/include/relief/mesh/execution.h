@@ -15,9 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Defines the floating-point precision of computations that offer a choice.
 

@@ -13,10 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The layout of an encoded frame, in 32-bit words whose bit 0 is the least significant one. On
 /// little-endian machines, the words have the memory layout of vertex formats of the same

@@ -11,10 +11,11 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Converts values at triangle corners to values at vertices, with the minimum number of additional
 // vertices.

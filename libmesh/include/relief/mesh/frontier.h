@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// The error and time of a method, in any unit; smaller is better. NaN means unknown.
 struct MethodCost {

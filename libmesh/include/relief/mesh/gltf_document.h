@@ -18,12 +18,13 @@
 #include <variant>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// One primitive of one mesh of a document.
 struct GltfPrimitiveId {

@@ -10,12 +10,13 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Extracts heights from images, and finds the texels that have none.
 

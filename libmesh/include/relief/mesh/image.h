@@ -11,7 +11,9 @@
 #include <variant>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// The meaning of samples.
 enum class ColorSpace {

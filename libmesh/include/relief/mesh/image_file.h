@@ -5,7 +5,7 @@
 ///
 /// Common PNG and JPEG files are decoded directly. OpenImageIO is in a module that is loaded by the
 /// first image that needs it, because loading it takes 0.2 s and 120 MB. The module is searched in
-/// $RELIEF_MODULE_DIR, then in ../lib/relief beside the program.
+/// $RELIEF_MODULE_DIR, then in the tree of the library or the program, wherever it is moved.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,11 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Reads the color tags of image files. relief does not use them: ImageUse decides.
 

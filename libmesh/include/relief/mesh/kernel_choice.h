@@ -11,11 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The error of normals from a height map in degrees, by cause.
 struct ExpectedError {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
@@ -19,7 +20,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/texel_coverage.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Converts normal maps between the tangent space and the object space of a mesh.
 

@@ -16,7 +16,9 @@
 #include <string>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// A range of triangles with the same material.
 struct MaterialRange {

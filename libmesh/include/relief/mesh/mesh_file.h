@@ -11,10 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// A material of an MTL file: Phong's model, colors linear as given.
 ///

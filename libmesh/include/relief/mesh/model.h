@@ -13,13 +13,14 @@
 #include <variant>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/compare.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The contents of a model file: a glTF document, or a mesh with its materials.
 using Model = std::variant<GltfDocument, MeshFile>;

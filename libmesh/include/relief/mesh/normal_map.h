@@ -15,10 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Encodes unit normals as normal maps and decodes them.
 

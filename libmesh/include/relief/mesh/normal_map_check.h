@@ -13,12 +13,13 @@
 #include <string_view>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The most likely content of an image.
 enum class MapContent {

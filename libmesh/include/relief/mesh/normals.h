@@ -17,11 +17,12 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The weight of a triangle's normal at a corner with the edges e1 and e2 and the angle a.
 enum class NormalWeight {

@@ -11,7 +11,9 @@
 #include <string_view>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 // The exceptions of relief. Bad data always throws; programming errors assert.
 //

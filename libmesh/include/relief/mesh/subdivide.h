@@ -4,11 +4,12 @@
 /// Tests: tests/mesh/topology/subdivide_test.cpp.
 #pragma once
 
+#include "relief/export.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// Applies Loop subdivision: each level splits every triangle into four and smooths all positions.
 ///

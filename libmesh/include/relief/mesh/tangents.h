@@ -13,11 +13,12 @@
 #include <string_view>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Computes tangent frames from texture coordinates: MikkTSpace and two other weightings.
 

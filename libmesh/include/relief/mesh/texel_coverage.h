@@ -14,9 +14,10 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Finds the UDIM tiles (unit squares of texture space) that triangles cover.
 

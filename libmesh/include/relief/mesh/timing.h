@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// The number of repetitions of a measurement.
 struct Repeats {

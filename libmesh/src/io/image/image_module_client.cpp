@@ -4,6 +4,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 
 #include <algorithm>
 #include <array>
@@ -26,28 +27,48 @@ namespace {
 
 constexpr const char* module_name = "relief_image.so";
 
+/// Returns the file of the shared library or program that contains this function. It is empty if it
+/// is unknown.
+std::filesystem::path this_library() {
+    Dl_info info;
+    link_map* map = nullptr;
+    if (::dladdr1(reinterpret_cast<void*>(&this_library), &info, reinterpret_cast<void**>(&map),
+                  RTLD_DL_LINKMAP) != 0 &&
+        map->l_name != nullptr && *map->l_name != '\0')
+        return map->l_name;
+    std::error_code error;
+    return std::filesystem::read_symlink("/proc/self/exe", error);
+}
+
+/// Returns the files to try: in $RELIEF_MODULE_DIR, beside the shared library, and in the tree of
+/// the program. The last one has no folder, so the loader searches the run path of the program,
+/// which programs get that link the installed static library.
 std::vector<std::filesystem::path> candidates() {
     std::vector<std::filesystem::path> places;
     const char* named = std::getenv("RELIEF_MODULE_DIR");
-    if (named != nullptr && *named != '\0') places.push_back(std::filesystem::path(named));
-    std::error_code error;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (!error) places.push_back(program.parent_path().parent_path() / "lib" / "relief");
-    for (std::filesystem::path& place : places)
-        place /= module_name;
+    if (named != nullptr && *named != '\0')
+        places.push_back(std::filesystem::path(named) / module_name);
+    if (const std::filesystem::path library = this_library(); !library.empty()) {
+        const std::filesystem::path folder = library.parent_path();
+        places.push_back(folder / "relief" / module_name);
+        places.push_back(folder.parent_path() / RELIEF_MODULE_DIRECTORY / module_name);
+    }
+    places.emplace_back(module_name);
     return places;
 }
 
 /// Loads the module from one folder. If this fails, the result is null and `reasons` gets the
 /// reason.
 const ImageModule* loaded_from(const std::filesystem::path& place, std::string& reasons) {
-    if (std::error_code error; !std::filesystem::exists(place, error)) {
+    std::error_code error;
+    if (place.has_parent_path() && !std::filesystem::exists(place, error)) {
         reasons += fmt::format("; not at {}", place.string());
         return nullptr;
     }
     void* library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
-        reasons += fmt::format("; {} does not load: {}", place.string(), ::dlerror());
+        if (place.has_parent_path())
+            reasons += fmt::format("; {} does not load: {}", place.string(), ::dlerror());
         return nullptr;
     }
     using Entry = const ImageModule* (*)();

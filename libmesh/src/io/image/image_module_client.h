@@ -19,7 +19,7 @@ namespace relief {
 
 /// Returns the module, which is loaded by the first call and stays loaded until the program ends.
 ///
-/// It is searched in $RELIEF_MODULE_DIR, then in ../lib/relief beside the running program. A
+/// It is searched in $RELIEF_MODULE_DIR, then relative to the library or the program. A
 /// failure is not remembered: the next call tries again.
 ///
 /// \param file  the file that needs the module, for messages

@@ -6,9 +6,10 @@
 #include <memory>
 #include <string>
 
+#include "relief/export.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// OpenGL is missing, too old or out of memory, or refuses a shader. The message contains that of
 /// the driver.

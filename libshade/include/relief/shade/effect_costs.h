@@ -13,10 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/shade/image_compare.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// A scene and the settings with which it is drawn repeatedly.
 struct MeasuredFrame {

@@ -16,11 +16,12 @@
 #include <string>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The map that perturbs the normal.
 enum class NormalDetail : std::uint8_t { none, normal_map, object_normal_map, bump_map };

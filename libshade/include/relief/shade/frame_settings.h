@@ -15,10 +15,11 @@
 #include <string_view>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/shade/scene.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Defines debug views, which show one input or term of shading instead of the picture, and
 // overlays.

@@ -7,9 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// Differences of corresponding samples, in units of the images' own range (8 bit: 0 to 255).
 struct ImageDifference {

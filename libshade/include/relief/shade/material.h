@@ -13,10 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/normal_map.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// An image as a texture.
 struct Texture {

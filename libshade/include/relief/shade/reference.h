@@ -11,12 +11,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 struct ReferenceSettings {
     int width = 256;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/timing.h"
@@ -16,7 +17,7 @@
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Caches the resources that renderers share, so that an edited scene is redrawn quickly.
 

@@ -20,11 +20,12 @@
 #include <variant>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/shade/material.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Implements copy-on-write values, so that copying a scene with millions of triangles is cheap.
 

@@ -13,9 +13,10 @@
 #include <tuple>
 #include <type_traits>
 
+#include "relief/export.h"
 #include "relief/shade/scene_graph.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// A value of an enumeration and its name in scene files and on command lines.
 template <typename Enum>

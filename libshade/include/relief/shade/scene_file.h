@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <string>
 
+#include "relief/export.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -16,7 +17,7 @@
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_graph.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Reads scenes from model files and scene files.
 

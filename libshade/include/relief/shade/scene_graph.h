@@ -15,9 +15,10 @@
 #include <variant>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/shade/scene.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// A node at rest: scaled, then rotated, then translated within its parent's space.
 struct SceneNode {

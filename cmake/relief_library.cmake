@@ -1,0 +1,120 @@
+# The components of the library: which are built, how, and how they are installed and found.
+include(CMakePackageConfigHelpers)
+
+# Each component stands after those that it needs. The packages of CMake and of pkg-config, and the libraries that
+# have neither, are for programs that link an installed static component.
+set(RELIEF_ALL mesh topology files bake shade reference accuracy)
+set(RELIEF_PACKAGES_mesh fmt TBB)
+set(RELIEF_PKG_CONFIG_mesh fmt tbb)
+set(RELIEF_NEEDED_BY_topology mesh)
+set(RELIEF_PACKAGES_topology OpenMesh)
+set(RELIEF_PKG_CONFIG_topology openmesh)
+set(RELIEF_NEEDED_BY_files mesh)
+set(RELIEF_PACKAGES_files tinyobjloader meshoptimizer)
+set(RELIEF_PKG_CONFIG_files tinyobjloader libdeflate libisal libturbojpeg draco)
+set(RELIEF_LIBRARIES_files -lmeshoptimizer)
+set(RELIEF_NEEDED_BY_bake mesh)
+set(RELIEF_PACKAGES_bake embree)
+set(RELIEF_LIBRARIES_bake -lembree3)
+set(RELIEF_NEEDED_BY_shade files)
+set(RELIEF_NEEDED_BY_reference shade bake)
+set(RELIEF_NEEDED_BY_accuracy reference)
+
+set(RELIEF_COMPONENTS "${RELIEF_ALL}" CACHE STRING "Components to build; those that they need are added")
+set(RELIEF_BUILT ${RELIEF_COMPONENTS})
+foreach(component IN LISTS RELIEF_COMPONENTS)
+    if(NOT component IN_LIST RELIEF_ALL)
+        message(FATAL_ERROR "RELIEF_COMPONENTS: '${component}' is not one of ${RELIEF_ALL}")
+    endif()
+endforeach()
+set(RELIEF_BACKWARDS ${RELIEF_ALL})
+list(REVERSE RELIEF_BACKWARDS)
+foreach(component IN LISTS RELIEF_BACKWARDS)
+    if(component IN_LIST RELIEF_BUILT)
+        list(APPEND RELIEF_BUILT ${RELIEF_NEEDED_BY_${component}})
+    endif()
+endforeach()
+
+# Libraries that are loaded when they are needed.
+set(RELIEF_MODULE_DIRECTORY ${CMAKE_INSTALL_LIBDIR}/relief)
+# Installed programs and libraries find the libraries of their own tree, wherever it is moved.
+if(BUILD_SHARED_LIBS)
+    file(RELATIVE_PATH lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+    set(CMAKE_INSTALL_RPATH $ORIGIN $ORIGIN/${lib_from_bin})
+endif()
+
+# relief_add_library(COMPONENT FOLDER [PRIVATE TARGETS...]): the target relief::COMPONENT with the public headers in
+# FOLDER/include and the private ones in FOLDER/src, linked with the components that it needs.
+function(relief_add_library component folder)
+    cmake_parse_arguments(ARG "" "" "PRIVATE" ${ARGN})
+    set(target relief_${component})
+    add_library(${target})
+    add_library(relief::${component} ALIAS ${target})
+    relief_position_independent(${target})
+    # Until version 1.0, each minor version may change the binary interface.
+    set_target_properties(
+        ${target}
+        PROPERTIES EXPORT_NAME ${component}
+                   VERSION ${PROJECT_VERSION}
+                   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                   DEFINE_SYMBOL "")
+    set(needed ${RELIEF_NEEDED_BY_${component}})
+    list(TRANSFORM needed PREPEND relief::)
+    target_include_directories(
+        ${target}
+        PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${folder}/include>
+               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+        PRIVATE ${PROJECT_SOURCE_DIR}/${folder}/src)
+    target_link_libraries(
+        ${target}
+        PUBLIC ${needed}
+        PRIVATE $<BUILD_INTERFACE:relief_flags> fmt::fmt ${ARG_PRIVATE})
+    relief_precompile(${target} LIKE relief_precompiled)
+    if(RELIEF_INSTALL)
+        install(TARGETS ${target} EXPORT relief-${component})
+        install(
+            EXPORT relief-${component}
+            NAMESPACE relief::
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
+        install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/include/ TYPE INCLUDE)
+    endif()
+endfunction()
+
+# Installs what find_package(relief) and pkg-config read. Both find their files relative to their own.
+function(relief_install_package)
+    if(NOT RELIEF_INSTALL)
+        return()
+    endif()
+    set(tables "")
+    foreach(component IN LISTS RELIEF_ALL)
+        string(APPEND tables "set(relief_needed_by_${component} ${RELIEF_NEEDED_BY_${component}})\n")
+        # Shared libraries name what they need by themselves.
+        if(NOT BUILD_SHARED_LIBS)
+            string(APPEND tables "set(relief_packages_${component} ${RELIEF_PACKAGES_${component}})\n")
+        endif()
+    endforeach()
+    configure_package_config_file(
+        ${PROJECT_SOURCE_DIR}/cmake/relief-config.cmake.in ${PROJECT_BINARY_DIR}/relief-config.cmake
+        INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
+    write_basic_package_version_file(${PROJECT_BINARY_DIR}/relief-config-version.cmake COMPATIBILITY SameMinorVersion)
+    install(FILES ${PROJECT_BINARY_DIR}/relief-config.cmake ${PROJECT_BINARY_DIR}/relief-config-version.cmake
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
+
+    set(pc_folder ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
+    foreach(directory LIBDIR INCLUDEDIR)
+        file(RELATIVE_PATH ${directory} ${pc_folder} ${CMAKE_INSTALL_FULL_${directory}})
+    endforeach()
+    foreach(component IN LISTS RELIEF_BUILT)
+        set(needed ${RELIEF_NEEDED_BY_${component}})
+        list(TRANSFORM needed PREPEND relief-)
+        set(libraries -L\${libdir} -lrelief_${component})
+        if(NOT BUILD_SHARED_LIBS)
+            list(APPEND needed ${RELIEF_PKG_CONFIG_${component}})
+            list(APPEND libraries ${RELIEF_LIBRARIES_${component}})
+        endif()
+        list(JOIN needed " " needed)
+        list(JOIN libraries " " libraries)
+        configure_file(${PROJECT_SOURCE_DIR}/cmake/relief.pc.in ${PROJECT_BINARY_DIR}/relief-${component}.pc @ONLY)
+        install(FILES ${PROJECT_BINARY_DIR}/relief-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+    endforeach()
+endfunction()

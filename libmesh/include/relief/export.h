@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Marks the namespaces whose functions and classes shared libraries of relief export. All others
+/// are hidden.
+#pragma once
+
+#define RELIEF_API [[gnu::visibility("default")]]

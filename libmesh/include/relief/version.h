@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The version of relief, by Semantic Versioning. CMakeLists.txt reads RELIEF_VERSION from here.
+#pragma once
+
+#define RELIEF_VERSION "0.9.0"
+#define RELIEF_VERSION_MAJOR 0
+#define RELIEF_VERSION_MINOR 9
+#define RELIEF_VERSION_PATCH 0
