@@ -120,7 +120,7 @@ TEST(ConvertCommand, GreenIsDetectedFromTheSlopesOnRequest) {
     for (const std::string name : {"up", "down"}) {
         const ProgramResult result =
             run(workplace, name + ".png out/n.png --input-green auto --green up");
-        EXPECT_THAT(result.out, HasSubstr("green " + name + " (by its slopes)"));
+        EXPECT_THAT(result.out, HasSubstr("green " + name + " (from its slopes)"));
         EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max,
                   degrees_of_16_bit);
     }
@@ -128,8 +128,8 @@ TEST(ConvertCommand, GreenIsDetectedFromTheSlopesOnRequest) {
     const ProgramResult refused =
         workplace.run("relief-bake convert flat.png out/n.png --input-green auto --green up");
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_THAT(refused.error, HasSubstr("flat.png: its slopes do not tell which way its green is "
-                                         "bright (say up or down instead of auto)"));
+    EXPECT_THAT(refused.error, HasSubstr("flat.png: its slopes do not determine the direction of "
+                                         "green (give up or down instead of auto)"));
 }
 
 TEST(ConvertCommand, SignedFloatMapsAreRecognized) {
@@ -137,10 +137,11 @@ TEST(ConvertCommand, SignedFloatMapsAreRecognized) {
     write_image(workplace / "signed.exr", normals_image(side, side, waves()));
     const ProgramResult refused = workplace.run("relief-bake convert signed.exr out/n.png");
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_THAT(refused.error, HasSubstr("signed.exr: holds samples below 0, so n and not (n + 1) "
-                                         "/ 2 (convert it with --input-signed)"));
+    EXPECT_THAT(refused.error,
+                HasSubstr("signed.exr: has samples below 0, so it stores n instead of "
+                          "(n + 1) / 2 (give --input-signed)"));
     EXPECT_THAT(run(workplace, "signed.exr out/n.png --input-signed").out,
-                HasSubstr("zero is 0 (as told)\n"));
+                HasSubstr("zero is 0 (given)\n"));
     EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max,
               degrees_of_16_bit);
     write_map(workplace, "map.png");
@@ -452,7 +453,7 @@ TEST(ConvertRefusal, ExplainsAndLeavesNoFiles) {
         workplace, "relief-bake", "old.png",
         {{"relief-bake convert missing.png out/old.png", 1, "missing.png: "},
          {"relief-bake convert gray.png out/old.png", 1,
-          "gray.png: has 1 channel, which holds no normals (relief-bake bump converts height "
+          "gray.png: has 1 channel, but normals need at least 2 (relief-bake bump converts height "
           "maps)"},
          {"relief-bake convert map.png out/n.jpg", 2,
           "out/n.jpg: JPEG compression distorts normals"},

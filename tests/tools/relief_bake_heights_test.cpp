@@ -111,7 +111,7 @@ TEST(HeightsCommand, RefusesToGuessGreenAndUnsuitableFormats) {
               "relief-bake heights flat.png flat.png", 2,
               "flat.png: would replace the normal map (choose another output file or folder)"},
           test::Refused{"relief-bake heights data/bricks-height.png out/old.png", 1,
-                        "data/bricks-height.png: has 1 channel, which holds no normals"}}) {
+                        "data/bricks-height.png: has 1 channel, but normals need at least 2"}}) {
         expect_refusal(workplace, "relief-bake", {line, code, message}, "old.png");
     }
     EXPECT_EQ(workplace.run("relief-bake heights flat.png out/h.png --input-green up").exit_code,

@@ -33,7 +33,7 @@ TEST(CheckCommand, SaysThatASoundModelIsSound) {
     EXPECT_EQ(result.error, "");
     EXPECT_EQ(result.out,
               "file      square.obj: Wavefront OBJ, 1 primitive, 2 triangles: sound\n"
-              "remarks   4 x boundary edge\n"
+              "notes     4 x boundary edge\n"
               "details   docs/hard-cases.md describes each condition\n");
 }
 
@@ -46,18 +46,18 @@ TEST(CheckCommand, NamesTroubleAndIsStrictAboutItWhenAsked) {
     EXPECT_EQ(lenient.error, "");
     EXPECT_THAT(
         lenient.out,
-        HasSubstr("file      bad.obj: Wavefront OBJ, 1 primitive, 3 triangles: trouble\n"
-                  "trouble   1 x collinear triangle (triangle 2): has its corners on a line, so no "
+        HasSubstr("file      bad.obj: Wavefront OBJ, 1 primitive, 3 triangles: has problems\n"
+                  "problems  1 x collinear triangle (triangle 2): has its corners on a line, so no "
                   "area and no normal\n"));
     EXPECT_THAT(lenient.out,
-                HasSubstr("verdict   2 files: 1 sound, 1 with trouble, 0 unreadable\n"));
+                HasSubstr("verdict   2 files: 1 sound, 1 with problems, 0 unreadable\n"));
 
     const ProgramResult strict =
         workplace.run("relief-mesh check square.obj bad.obj --strict --quiet");
     EXPECT_EQ(strict.exit_code, 3);
     EXPECT_EQ(strict.out, "");
     EXPECT_EQ(strict.error,
-              "relief-mesh: warning: 1 file with trouble (exit code 3, because of --strict)\n");
+              "relief-mesh: warning: 1 file with problems (exit code 3, because of --strict)\n");
 }
 
 TEST(CheckCommand, GoesOnAfterAFileThatCannotBeRead) {
@@ -71,7 +71,7 @@ TEST(CheckCommand, GoesOnAfterAFileThatCannotBeRead) {
                                         "number\nrelief-mesh: error: missing.ply: "));
     EXPECT_THAT(result.out,
                 HasSubstr("square.obj: Wavefront OBJ, 1 primitive, 2 triangles: sound"));
-    EXPECT_THAT(result.out, HasSubstr("3 files: 1 sound, 0 with trouble, 2 unreadable\n"));
+    EXPECT_THAT(result.out, HasSubstr("3 files: 1 sound, 0 with problems, 2 unreadable\n"));
 
     const json report = json::parse(
         workplace.run("relief-mesh check broken.obj missing.ply square.obj --json").out);
@@ -109,11 +109,11 @@ TEST(CheckCommand, WhatAFormatHoldsBesideTheMeshIsNoTrouble) {
     workplace.write("lost.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/9 3/9\n");
     const ProgramResult points = workplace.run("relief-mesh check points.obj --strict");
     EXPECT_EQ(points.exit_code, 0);
-    EXPECT_THAT(points.out, HasSubstr("remarks   1 x point left out, 1 x line left out, 3 x "
+    EXPECT_THAT(points.out, HasSubstr("notes     1 x point left out, 1 x line left out, 3 x "
                                       "boundary edge\n"));
     const ProgramResult lost = workplace.run("relief-mesh check lost.obj --strict");
     EXPECT_EQ(lost.exit_code, 3);
-    EXPECT_THAT(lost.out, HasSubstr("trouble   3 x texture coordinate that does not exist (corner "
+    EXPECT_THAT(lost.out, HasSubstr("problems  3 x texture coordinate that does not exist (corner "
                                     "0, 1, 2): taken as none\n"));
 }
 
@@ -137,10 +137,10 @@ TEST(CheckCommand, OverlappingTextureIsTroubleForABake) {
                     "f 1/1 2/2 3/3\nf 4/1 3/2 2/3\n");
     const ProgramResult shown = workplace.run("relief-mesh check mirror.obj --strict");
     EXPECT_EQ(shown.exit_code, 0);
-    EXPECT_THAT(shown.out, HasSubstr("remarks   4 x boundary edge, 2 x overlapping texture\n"));
+    EXPECT_THAT(shown.out, HasSubstr("notes     4 x boundary edge, 2 x overlapping texture\n"));
     const ProgramResult baked = workplace.run("relief-mesh check mirror.obj --strict --for-baking");
     EXPECT_EQ(baked.exit_code, 3);
-    EXPECT_THAT(baked.out, HasSubstr("trouble   2 x overlapping texture (triangle 0, 1): shares "
+    EXPECT_THAT(baked.out, HasSubstr("problems  2 x overlapping texture (triangle 0, 1): shares "
                                      "texels with another: nothing can be baked there\n"));
 }
 
@@ -163,7 +163,7 @@ TEST(CheckCommand, RefusesWhatCannotBe) {
     EXPECT_EQ(workplace.run("relief-mesh check square.obj --json --quiet").exit_code, 2);
 }
 
-// The samples of Khronos are sound models, so their findings are only remarks.
+// The samples of Khronos are sound models, so their findings are only notes.
 TEST(CheckCommand, RealModelsThatAreFineAreSaidToBe) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const Workplace workplace;
@@ -174,7 +174,7 @@ TEST(CheckCommand, RealModelsThatAreFineAreSaidToBe) {
         "/CesiumMan/glTF-Binary/CesiumMan.glb " + folder +
         "/TextureSettingsTest/glTF-Binary/TextureSettingsTest.glb");
     EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
-    EXPECT_THAT(result.out, HasSubstr("5 files: 5 sound, 0 with trouble, 0 unreadable\n"));
+    EXPECT_THAT(result.out, HasSubstr("5 files: 5 sound, 0 with problems, 0 unreadable\n"));
 }
 
 TEST(CheckCommand, RealModelsWithTroubleAreNamed) {
@@ -186,16 +186,16 @@ TEST(CheckCommand, RealModelsWithTroubleAreNamed) {
             .run("relief-mesh check " + folder +
                  "/gltf/MetalRoughSpheresNoTextures/glTF-Binary/MetalRoughSpheresNoTextures.glb")
             .out,
-        HasSubstr("trouble   mesh 'Sphere' primitive 0: 2 x collapsed triangle (triangle 900, "
+        HasSubstr("problems  mesh 'Sphere' primitive 0: 2 x collapsed triangle (triangle 900, "
                   "9579): has two corners at the same place, so no area and no normal (196 in 98 "
                   "primitives)\n"));
     EXPECT_THAT(workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/fan3.obj").out,
-                HasSubstr("trouble   1 x non-manifold edge (edge of triangle 0)"));
+                HasSubstr("problems  1 x non-manifold edge (edge of triangle 0)"));
     EXPECT_THAT(workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/moebius.obj").out,
-                HasSubstr("trouble   4 x flipped neighbors"));
+                HasSubstr("problems  4 x flipped neighbors"));
     EXPECT_THAT(
         workplace.run("relief-mesh check " + folder + "/obj/nonmanifold/hourglass_ico.obj").out,
-        HasSubstr("sound\nremarks   1 x bow-tie vertex\n"));
+        HasSubstr("sound\nnotes     1 x bow-tie vertex\n"));
 }
 
 /// Writes the vase with tangents by a method.

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -143,6 +144,18 @@ struct Tool {
 /// Adds a subcommand with relief's help layout: one sentence, usage, arguments, grouped options,
 /// examples.
 CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence);
+
+/// Adds a subcommand whose options live as long as the tool.
+/// \param add  adds the options to the subcommand
+template <typename Options>
+Command add_command(CLI::App& tool, const std::string& name, const std::string& sentence,
+                    void (*add)(CLI::App&, Options&),
+                    ExitCode (*run)(const CLI::App&, const Options&)) {
+    CLI::App& app = add_subcommand(tool, name, sentence);
+    const auto options = std::make_shared<Options>();
+    add(app, *options);
+    return {&app, [&app, options, run] { return run(app, *options); }};
+}
 
 /// Sets the examples at the end of the help page. A test runs each of them.
 void set_examples(CLI::App& app, const std::vector<std::string>& commands);

@@ -190,26 +190,26 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
 }
 
 /// Converts materials by the rules of GltfDocument::from_mesh().
-MapLooks looks_of(const std::vector<MtlMaterial>& materials) {
-    MapLooks looks;
+MapAppearance appearance_of(const std::vector<MtlMaterial>& materials) {
+    MapAppearance appearance;
     const auto texture = [&](const std::optional<std::filesystem::path>& file) {
         std::optional<GltfTexture> result;
         if (file) {
             result.emplace();
-            result->image = looks.images.size();
-            looks.images.push_back({file->filename().string(), *file});
+            result->image = appearance.images.size();
+            appearance.images.push_back({file->filename().string(), *file});
         }
         return result;
     };
     for (const MtlMaterial& material : materials) {
-        GltfMaterial look;
-        look.name = material.name;
-        look.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), 1.0F);
-        look.base_color_texture = texture(material.diffuse_map);
-        look.normal_texture = texture(material.normal_map);
-        looks.materials.push_back(std::move(look));
+        GltfMaterial converted;
+        converted.name = material.name;
+        converted.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), 1.0F);
+        converted.base_color_texture = texture(material.diffuse_map);
+        converted.normal_texture = texture(material.normal_map);
+        appearance.materials.push_back(std::move(converted));
     }
-    return looks;
+    return appearance;
 }
 
 /// If some parts have tangents, the others get those of MikkTSpace.
@@ -240,7 +240,7 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
         part.mesh = placed(std::move(part.mesh), primitive.world_from_object);
         model.parts.push_back(std::move(part));
     }
-    model.looks = {std::move(view.materials), std::move(view.images)};
+    model.appearance = {std::move(view.materials), std::move(view.images)};
     add_missing_tangents(model, report);
     if (view.primitives.size() == 1)
         model.world_from_object = glm::dmat3(glm::dmat4(view.primitives[0].world_from_object));
@@ -297,7 +297,7 @@ MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Rep
                                std::move(contents.object_of), 0});
         for (const MtlMaterial& material : contents.materials)
             model.materials.push_back(material.name);
-        model.looks = looks_of(contents.materials);
+        model.appearance = appearance_of(contents.materials);
         model.origin = contents.origin;
         model.world_from_object = glm::dmat3(1.0);
         return model;

@@ -79,14 +79,14 @@ struct MapModelPart {
 };
 
 /// The materials and images of a scene, without decoded pixels.
-struct MapLooks {
+struct MapAppearance {
     std::vector<GltfMaterial> materials;
     std::vector<GltfImage> images;
 };
 
 struct MapModel {
     std::vector<MapModelPart> parts;
-    MapLooks looks;                      ///< In the order of `materials`; only in world space.
+    MapAppearance appearance;            ///< In the order of `materials`; only in world space.
     std::vector<std::string> materials;  ///< Names, by the indices in the material ranges.
     glm::dvec3 origin{0.0};              ///< The origin of the positions (mesh_file.h).
     /// The transform of the only primitive of a scene, or the identity for a mesh file; absent for

@@ -15,8 +15,8 @@
 namespace relief::tools {
 namespace {
 
-/// Returns the green that the file states.
-std::optional<Green> named_green(const std::map<std::string, std::string>& metadata) {
+/// Returns the direction of green in the metadata of the file.
+std::optional<Green> recorded_green(const std::map<std::string, std::string>& metadata) {
     const auto entry = metadata.find("relief:green");
     if (entry == metadata.end()) return std::nullopt;
     if (entry->second == "up") return Green::up;
@@ -26,23 +26,24 @@ std::optional<Green> named_green(const std::map<std::string, std::string>& metad
 
 std::string green_text(const MapInputOptions& options, const InputMap& map) {
     if (!map.green) return "green unknown";
-    const char* source = options.finds_green ? "by its slopes"
-                         : options.green     ? "as told"
-                                             : "as its file says";
+    const char* source = options.detects_green ? "from its slopes"
+                         : options.green       ? "given"
+                                               : "from its metadata";
     return fmt::format("green {} ({})", name_of(*map.green, green_choices()), source);
 }
 
 std::string zero_text(const MapInputOptions& options, const InputMap& map) {
-    if (options.is_signed) return "zero is 0 (as told)";
+    if (options.is_signed) return "zero is 0 (given)";
     if (map.image.bits() == 32) return "zero is 0.5";
-    const char* source = options.flat                           ? "as told"
-                         : map.metadata.contains("relief:flat") ? "as its file says"
-                                                                : "as glTF decodes";
+    const char* source = options.flat                           ? "given"
+                         : map.metadata.contains("relief:flat") ? "from its metadata"
+                                                                : "the default of glTF";
     return fmt::format("zero is {} of 255 ({})", name_of(map.flat, zero_code_choices()), source);
 }
 
-/// Returns whether more float samples are negative than overshoots of a filter would be.
-bool shows_signs(const Image& image) {
+/// Returns whether more than one in a thousand float samples is negative. Fewer may be overshoots
+/// of a filter.
+bool has_negative_samples(const Image& image) {
     std::size_t below = 0;
     for (const float sample : image.as<float>())
         below += sample < -0.01F ? 1 : 0;
@@ -53,13 +54,14 @@ bool shows_signs(const Image& image) {
 void convert_signs(const std::filesystem::path& file, bool is_signed, Image& image) {
     if (image.bits() != 32) {
         if (is_signed)
-            throw UsageError(fmt::format("--input-signed: {} is of {} bits, which have no sign",
-                                         file.string(), image.bits()));
+            throw UsageError(
+                fmt::format("--input-signed: {} has {} bits, but only floats can be signed",
+                            file.string(), image.bits()));
         return;
     }
-    if (!is_signed && shows_signs(image)) {
-        throw failure(file, "holds samples below 0, so n and not (n + 1) / 2",
-                      "convert it with --input-signed");
+    if (!is_signed && has_negative_samples(image)) {
+        throw failure(file, "has samples below 0, so it stores n instead of (n + 1) / 2",
+                      "give --input-signed");
     }
     if (!is_signed) return;
     const auto channels = static_cast<std::size_t>(image.channels);
@@ -69,17 +71,17 @@ void convert_signs(const std::filesystem::path& file, bool is_signed, Image& ima
     }
 }
 
-/// Detects green by the slopes of a map, whatever its file states.
-Green found_green(const std::filesystem::path& file, const Image& image) {
+/// Detects the direction of green from the slopes of a map. The metadata is ignored.
+Green detected_green(const std::filesystem::path& file, const Image& image) {
     const std::optional<Green> green = check_normal_map(image).green.green;
     if (green) return *green;
-    throw failure(file, "its slopes do not tell which way its green is bright",
-                  "say up or down instead of auto");
+    throw failure(file, "its slopes do not determine the direction of green",
+                  "give up or down instead of auto");
 }
 
 void check_channels(const std::filesystem::path& file, int channels) {
     if (channels > 1) return;
-    throw failure(file, "has 1 channel, which holds no normals",
+    throw failure(file, "has 1 channel, but normals need at least 2",
                   "relief-bake bump converts height maps");
 }
 
@@ -92,13 +94,13 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
     map.image = read_image(file, ImageUse::data);
     convert_signs(file, options.is_signed, map.image);
     map.metadata = std::move(info.metadata);
-    map.green = options.green ? options.green : named_green(map.metadata);
-    if (options.finds_green) map.green = found_green(file, map.image);
+    map.green = options.green ? options.green : recorded_green(map.metadata);
+    if (options.detects_green) map.green = detected_green(file, map.image);
     if (options.flat)
         map.flat = *options.flat;
     else if (map.image.channels > 2)
         map.flat = detect_flat_code(map.image, map.metadata);
-    map.words = green_text(options, map) + ", " + zero_text(options, map);
+    map.conventions = green_text(options, map) + ", " + zero_text(options, map);
     return map;
 }
 

@@ -17,7 +17,7 @@ namespace relief::tools {
 /// The conventions given on the command line.
 struct MapInputOptions {
     std::optional<Green> green;
-    bool finds_green = false;  ///< Detects green by the slopes of the map: `auto`.
+    bool detects_green = false;  ///< `auto`: green is detected from the slopes of the map.
     std::optional<FlatCode> flat;
     bool is_signed = false;  ///< Float samples are n instead of (n + 1) / 2.
 };
@@ -27,7 +27,8 @@ struct InputMap {
     std::map<std::string, std::string> metadata;
     std::optional<Green> green;  ///< Absent if it is neither given nor detected.
     FlatCode flat = FlatCode::half;
-    std::string words;  ///< "green down (as told), zero is 127.5 of 255 (as its file says)"
+    /// "green down (given), zero is 127.5 of 255 (from its metadata)"
+    std::string conventions;
 };
 
 /// \throws FileError if the file cannot be read, has too few channels for a normal map, or if

@@ -142,6 +142,23 @@ nlohmann::ordered_json Findings::json() const {
     return list;
 }
 
+void print_verdicts(const Verdicts& verdicts) {
+    if (verdicts.all() < 2) return;
+    print_entry("verdict", fmt::format("{}: {} sound, {} with problems, {} unreadable",
+                                       counted(verdicts.all(), "file"), verdicts.sound,
+                                       verdicts.with_problems, verdicts.unreadable));
+}
+
+ExitCode exit_code_for(const CLI::App& app, const Verdicts& verdicts, bool strict) {
+    const bool has_problems = strict && verdicts.with_problems > 0;
+    if (has_problems) {
+        warn(app, fmt::format("{} with problems (exit code 3, because of --strict)",
+                              counted(verdicts.with_problems, "file")));
+    }
+    if (verdicts.unreadable > 0) return ExitCode::failed;
+    return has_problems ? ExitCode::fell_back : ExitCode::done;
+}
+
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict) {
     add_path(app, "--report", options.file,
              "Write a JSON report with results and findings to FILE.")

@@ -74,6 +74,22 @@ class Findings {
     std::vector<PlacedFinding> findings_;
 };
 
+/// The number of checked files by verdict.
+struct Verdicts {
+    std::size_t sound = 0;
+    std::size_t with_problems = 0;
+    std::size_t unreadable = 0;
+
+    [[nodiscard]] std::size_t all() const { return sound + with_problems + unreadable; }
+};
+
+/// Prints the numbers if there are several files.
+void print_verdicts(const Verdicts& verdicts);
+
+/// Prints a warning if --strict was given and files have problems.
+/// \return failed if a file is unreadable; else fell_back after the warning; else done
+ExitCode exit_code_for(const CLI::App& app, const Verdicts& verdicts, bool strict);
+
 struct ReportOptions {
     std::optional<std::filesystem::path> file;
     bool strict = false;

@@ -203,7 +203,7 @@ std::vector<AssetExperiment> measure_normals(const AssetInput& input, const Asse
     Report report;
     const Image normals =
         decode_normal_map(map.image, map.green.value_or(Green::up), map.flat, report);
-    description += fmt::format("a normal map of {} bits: {}", map.image.bits(), map.words);
+    description += fmt::format("a normal map of {} bits: {}", map.image.bits(), map.conventions);
     const NormalMapStorage stored = {map.image.bits(), map.image.channels,
                                      lossless_extension(input.file, map.image.bits())};
     std::vector<AssetExperiment> all = {measure_asset_normals(

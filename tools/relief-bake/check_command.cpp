@@ -470,34 +470,6 @@ struct CheckOptions {
     SurfaceCheckRequest surface;
 };
 
-/// The number of files with each verdict.
-struct Verdicts {
-    std::size_t sound = 0;
-    std::size_t with_problems = 0;
-    std::size_t unreadable = 0;
-
-    [[nodiscard]] std::size_t all() const { return sound + with_problems + unreadable; }
-};
-
-void print_verdicts(const Verdicts& verdicts) {
-    if (verdicts.all() > 1) {
-        print_entry("verdict", fmt::format("{}: {} sound, {} with problems, {} unreadable",
-                                           counted(verdicts.all(), "file"), verdicts.sound,
-                                           verdicts.with_problems, verdicts.unreadable));
-    }
-    if (verdicts.sound + verdicts.with_problems > 0)
-        print_entry("see", fmt::format("{} explains all findings", documentation));
-}
-
-ExitCode exit_code_for(const CLI::App& app, const Verdicts& verdicts, bool strict) {
-    if (strict && verdicts.with_problems > 0) {
-        warn(app, fmt::format("{} with problems (exit code 3, because of --strict)",
-                              counted(verdicts.with_problems, "file")));
-    }
-    if (verdicts.unreadable > 0) return ExitCode::failed;
-    return strict && verdicts.with_problems > 0 ? ExitCode::fell_back : ExitCode::done;
-}
-
 ExitCode run(const CLI::App& app, const CheckOptions& options) {
     if (options.json && options.general.quiet)
         throw UsageError("--json and --quiet contradict each other");
@@ -531,7 +503,11 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
         if (options.json) files.push_back(json_of(map));
         if (options.json && surface) files.back()["surface"] = json_of(*surface);
     }
-    if (prints_text) print_verdicts(verdicts);
+    if (prints_text) {
+        print_verdicts(verdicts);
+        if (verdicts.all() > verdicts.unreadable)
+            print_entry("see", fmt::format("{} explains all findings", documentation));
+    }
     if (options.json) {
         print_json({{"tool", "relief-bake check"},
                     {"version", version()},

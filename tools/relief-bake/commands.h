@@ -47,6 +47,15 @@ struct MapWork {
     std::function<FileOutcome(const Job& job, Stages& stages, bool prints_summary)> work;
 };
 
+/// Describes a finished conversion by its print_summary(), line_of() and results_json().
+template <typename Conversion>
+FileOutcome outcome_of(const Job& job, const Conversion& conversion, const Stages& stages,
+                       bool prints_summary) {
+    if (prints_summary) print_summary(job, conversion, stages);
+    return {line_of(job, conversion, stages), conversion.findings,
+            results_json(conversion, stages)};
+}
+
 /// Adds the file arguments.
 /// \param input    what an input file is: "normal map"; its plural adds an s
 /// \param output   what an output file is

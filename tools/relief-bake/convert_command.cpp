@@ -167,7 +167,7 @@ AddedOption add_green(CLI::App& app, const std::string& name, MapInputOptions& i
     return add_value(app, name, "up|down|auto", description,
                      [&input, choices](const std::string& subject, const std::string& text) {
                          input.green = parse_choice(subject, text, choices);
-                         input.finds_green = !input.green;
+                         input.detects_green = !input.green;
                      });
 }
 
@@ -349,7 +349,7 @@ void check(const ConvertRequest& request) {
         require_option(detail.blend.has_value(), "--blend", "--detail");
         require_option(detail.strength.has_value(), "--detail-strength", "--detail");
         require_option(detail.repeat.has_value(), "--detail-repeat", "--detail");
-        require_option(detail.input.green || detail.input.finds_green, "--detail-green",
+        require_option(detail.input.green || detail.input.detects_green, "--detail-green",
                        "--detail");
         require_option(detail.input.flat.has_value(), "--detail-zero-code", "--detail");
     }
@@ -396,10 +396,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& r
         check_files(job, request, inputs);
     };
     work.work = [&](const Job& job, Stages& stages, bool prints_summary) -> FileOutcome {
-        const MapConversion conversion = convert_map(job, request, stages);
-        if (prints_summary) print_summary(job, conversion, stages);
-        return {line_of(job, conversion, stages), conversion.findings,
-                results_json(conversion, stages)};
+        return outcome_of(job, convert_map(job, request, stages), stages, prints_summary);
     };
     return run_map_jobs(app, files, work);
 }

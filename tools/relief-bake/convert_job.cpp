@@ -506,7 +506,7 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
     result.height = input.image.height;
     result.channels = input.image.channels;
     result.bits_read = input.image.bits();
-    result.input_text = input.words;
+    result.input_text = input.conventions;
     check_channels(job, request, input);
     // An object-space map has no green direction; its tangent-space map has that of the output.
     if (request.space.to_tangent) input.green = request.output.green;

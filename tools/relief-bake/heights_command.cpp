@@ -180,7 +180,7 @@ HeightsConversion convert_heights(const Job& job, const HeightsRequest& request,
     conversion.height = input.image.height;
     conversion.channels = input.image.channels;
     conversion.bits_read = input.image.bits();
-    conversion.input_text = input.words;
+    conversion.input_text = input.conventions;
     const Image file = about(job.input, [&] {
         return stages.run("integrate", [&] {
             choose_green(job, input, conversion);
@@ -296,10 +296,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const HeightsRequest& r
         refuse_to_replace(job.input, "normal map", job);
     };
     work.work = [&](const Job& job, Stages& stages, bool prints_summary) -> FileOutcome {
-        const HeightsConversion conversion = convert_heights(job, request, stages);
-        if (prints_summary) print_summary(job, conversion, stages);
-        return {line_of(job, conversion, stages), conversion.findings,
-                results_json(conversion, stages)};
+        return outcome_of(job, convert_heights(job, request, stages), stages, prints_summary);
     };
     return run_map_jobs(app, files, work);
 }

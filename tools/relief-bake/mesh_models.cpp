@@ -164,16 +164,16 @@ std::vector<std::size_t> add_high(const MeshBakeRequest& request, const MapModel
 }
 
 /// Adds the textures of the high meshes, which must be in their final places.
-void add_textures(const MeshBakeRequest& request, const std::vector<MapLooks>& looks,
+void add_textures(const MeshBakeRequest& request, const std::vector<MapAppearance>& appearances,
                   std::span<const std::size_t> file_of, BakeModels& models, Findings& findings) {
     const bool with_colors = request.layers.has(LayerKind::color);
-    std::vector<Report> reports(looks.size());
+    std::vector<Report> reports(appearances.size());
     for (std::size_t i = 0; i < models.high.size(); ++i) {
         const std::size_t file = file_of[i];
-        models.textures.add(request.high[file], models.high[i], looks[file], request.textures,
+        models.textures.add(request.high[file], models.high[i], appearances[file], request.textures,
                             with_colors, reports[file]);
     }
-    for (std::size_t file = 0; file < looks.size(); ++file)
+    for (std::size_t file = 0; file < appearances.size(); ++file)
         findings.add(request.high[file].string(), reports[file]);
 }
 
@@ -227,9 +227,9 @@ const Image* HighTextures::image(const std::filesystem::path& file, ImageUse use
     return added;
 }
 
-const Image* HighTextures::image(const std::filesystem::path& model, const MapLooks& looks,
-                                 std::size_t index, ImageUse use) {
-    const GltfImage& source = looks.images[index];
+const Image* HighTextures::image(const std::filesystem::path& model,
+                                 const MapAppearance& appearance, std::size_t index, ImageUse use) {
+    const GltfImage& source = appearance.images[index];
     const char* remedy = "put it there, or use --high-normal-map none, --high-color none";
     if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) {
         if (!std::filesystem::exists(*file))
@@ -249,10 +249,11 @@ const Image* HighTextures::image(const std::filesystem::path& model, const MapLo
     return added;
 }
 
-SurfaceTexture HighTextures::texture(const std::filesystem::path& model, const MapLooks& looks,
-                                     const GltfTexture& texture, ImageUse use) {
-    return {image(model, looks, texture.image, use), texture.wrap_u, texture.wrap_v, texture.filter,
-            texture.transform};
+SurfaceTexture HighTextures::texture(const std::filesystem::path& model,
+                                     const MapAppearance& appearance, const GltfTexture& texture,
+                                     ImageUse use) {
+    return {image(model, appearance, texture.image, use), texture.wrap_u, texture.wrap_v,
+            texture.filter, texture.transform};
 }
 
 SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float scale) const {
@@ -263,15 +264,17 @@ SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float s
     return result;
 }
 
-void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh, const MapLooks& looks,
-                       const HighTextureOptions& options, bool with_colors, Report& report) {
+void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
+                       const MapAppearance& appearance, const HighTextureOptions& options,
+                       bool with_colors, Report& report) {
     HighMaterials detail{&mesh, {}, {}};
-    for (std::size_t i = 0; i < looks.materials.size(); ++i) {
-        const GltfMaterial& source = looks.materials[i];
+    for (std::size_t i = 0; i < appearance.materials.size(); ++i) {
+        const GltfMaterial& source = appearance.materials[i];
         HighMaterial material;
         if (source.normal_texture && !options.normal_map) {
-            material.normal_map = normal_map(
-                texture(file, looks, *source.normal_texture, ImageUse::data), source.normal_scale);
+            material.normal_map =
+                normal_map(texture(file, appearance, *source.normal_texture, ImageUse::data),
+                           source.normal_scale);
             ++normal_maps_;
         }
         if (with_colors && !options.color) material.color = glm::vec3(source.base_color);
@@ -284,7 +287,7 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh, cons
                        "material", i, "is left out");
         } else if (has_texture) {
             material.color_texture =
-                texture(file, looks, *source.base_color_texture, ImageUse::color);
+                texture(file, appearance, *source.base_color_texture, ImageUse::color);
             ++color_textures_;
         }
         detail.materials.push_back(std::move(material));
@@ -324,10 +327,10 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
     require_texcoords(request.low, low, "no texture coordinates, which a map needs",
                       "unwrap it in a modeling program");
     std::vector<MapModel> high;
-    std::vector<MapLooks> looks;
+    std::vector<MapAppearance> appearances;
     for (const std::filesystem::path& file : request.high) {
         high.push_back(read_with_origin(low.origin, file, findings));
-        looks.push_back(std::move(high.back().looks));
+        appearances.push_back(std::move(high.back().appearance));
     }
     if (request.cage) {
         models.cage =
@@ -335,7 +338,7 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
     }
     const std::vector<std::size_t> file_of =
         add_high(request, low, std::move(high), models, findings);
-    add_textures(request, looks, file_of, models, findings);
+    add_textures(request, appearances, file_of, models, findings);
     models.materials = low.materials;
     models.world_from_low = low.world_from_object;
     models.origin = low.origin;

@@ -64,7 +64,7 @@ class HighTextures {
     /// Adds the textures of a mesh. The mesh must keep its address.
     /// \param report  counts color textures with other texture coordinates, which are left out
     /// \throws FileError if an image cannot be read
-    void add(const std::filesystem::path& file, const Mesh& mesh, const MapLooks& looks,
+    void add(const std::filesystem::path& file, const Mesh& mesh, const MapAppearance& appearance,
              const HighTextureOptions& options, bool with_colors, Report& report);
 
     [[nodiscard]] std::span<const HighMaterials> details() const { return details_; }
@@ -73,10 +73,10 @@ class HighTextures {
     [[nodiscard]] std::string description() const;
 
   private:
-    const Image* image(const std::filesystem::path& model, const MapLooks& looks, std::size_t index,
-                       ImageUse use);
+    const Image* image(const std::filesystem::path& model, const MapAppearance& appearance,
+                       std::size_t index, ImageUse use);
     const Image* image(const std::filesystem::path& file, ImageUse use);
-    SurfaceTexture texture(const std::filesystem::path& model, const MapLooks& looks,
+    SurfaceTexture texture(const std::filesystem::path& model, const MapAppearance& appearance,
                            const GltfTexture& texture, ImageUse use);
     [[nodiscard]] SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale) const;
 

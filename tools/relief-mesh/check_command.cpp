@@ -41,8 +41,8 @@ struct CheckedPart {
     std::size_t triangles = 0;
     std::size_t vertices = 0;
     Diagnosis diagnosis;
-    Report problem;
-    Report remarks;
+    Report problems;
+    Report notes;
     std::optional<CheckedTangents> tangents;  ///< Absent if the primitive has no tangents.
 };
 
@@ -50,19 +50,19 @@ struct CheckedModel {
     std::filesystem::path file;
     std::string error;  ///< The reason why the file cannot be read, or empty.
     std::string format;
-    /// Findings of the reader. Missing references are trouble; content that relief does not use
-    /// (points, lines, foreign properties) is a remark.
-    Report reading_trouble;
-    Report reading_remarks;
+    /// Findings of the reader. Missing references are problems; content that relief does not use
+    /// (points, lines, foreign properties) is a note.
+    Report reading_problems;
+    Report reading_notes;
     std::vector<CheckedPart> parts;
 
     [[nodiscard]] bool is_sound() const;
 };
 
 bool CheckedModel::is_sound() const {
-    return error.empty() && reading_trouble.empty() &&
+    return error.empty() && reading_problems.empty() &&
            std::all_of(parts.begin(), parts.end(),
-                       [](const CheckedPart& part) { return part.problem.empty(); });
+                       [](const CheckedPart& part) { return part.problems.empty(); });
 }
 
 /// Identifies the method of a primitive's stored tangents. If no method matches with the texture
@@ -105,7 +105,7 @@ bool is_harmless(const Finding& finding) {
 
 void add_reading(CheckedModel& model, const Report& reading) {
     for (const Finding& finding : reading.findings())
-        (is_harmless(finding) ? model.reading_remarks : model.reading_trouble).add(finding);
+        (is_harmless(finding) ? model.reading_notes : model.reading_problems).add(finding);
 }
 
 /// The intended use of a part, which decides the severity of a condition.
@@ -125,8 +125,8 @@ void add_part(CheckedModel& model, std::string name, const Mesh& mesh, const Use
     CheckedPart part{
         std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}, {}};
     for (const MeshConditionCount& found : part.diagnosis.found) {
-        const bool is_trouble = severity_of(found.condition, use) == Severity::problem;
-        (is_trouble ? part.problem : part.remarks).add(to_finding(found));
+        const bool is_problem = severity_of(found.condition, use) == Severity::problem;
+        (is_problem ? part.problems : part.notes).add(to_finding(found));
     }
     model.parts.push_back(std::move(part));
 }
@@ -166,7 +166,7 @@ void add_parts(CheckedModel& model, const MeshFile& contents, bool for_baking) {
 /// Reads and diagnoses a file. A file that cannot be read, or is not valid, gets an `error`.
 ///
 /// The severities are those of diagnose.h with two exceptions. With `for_baking`, overlapping
-/// texture coordinates are trouble. Triangles without texture gradient are only a remark if nothing
+/// texture coordinates are a problem. Triangles without texture gradient are only a note if nothing
 /// needs tangents: no baking, no normal or bump map in the materials, and no stored tangents.
 CheckedModel check_model(const std::filesystem::path& file, bool for_baking) {
     CheckedModel model;
@@ -303,7 +303,7 @@ std::size_t triangles_of(const CheckedModel& model) {
 }
 
 std::string verdict(const CheckedModel& model) {
-    if (!model.is_sound()) return "trouble";
+    if (!model.is_sound()) return "has problems";
     return triangles_of(model) == 0 ? "no triangles" : "sound";
 }
 
@@ -330,12 +330,12 @@ Sum sum_of(const CheckedModel& model, Report CheckedPart::*list, std::string_vie
 }
 
 /// Returns a line per condition, with its first place and the number of primitives.
-std::vector<std::string> trouble_lines(const CheckedModel& model) {
+std::vector<std::string> problem_lines(const CheckedModel& model) {
     std::vector<std::string> lines;
-    for (const Finding& finding : model.reading_trouble.findings())
+    for (const Finding& finding : model.reading_problems.findings())
         lines.push_back(to_string(finding));
     for (const MeshConditionInfo& condition : mesh_conditions()) {
-        const Sum sum = sum_of(model, &CheckedPart::problem, condition.word);
+        const Sum sum = sum_of(model, &CheckedPart::problems, condition.word);
         if (sum.parts == 0) continue;
         const std::string place = sum.first_part->name.empty() ? "" : sum.first_part->name + ": ";
         std::string line = place + to_string(sum.first);
@@ -347,12 +347,12 @@ std::vector<std::string> trouble_lines(const CheckedModel& model) {
 }
 
 /// "36 x boundary edge in 3 primitives, 12 x needle triangle"
-std::string remarks_text(const CheckedModel& model) {
+std::string notes_text(const CheckedModel& model) {
     std::vector<std::string> words;
-    for (const Finding& finding : model.reading_remarks.findings())
+    for (const Finding& finding : model.reading_notes.findings())
         words.push_back(fmt::format("{} x {} {}", finding.count, finding.kind, finding.outcome));
     for (const MeshConditionInfo& condition : mesh_conditions()) {
-        const Sum sum = sum_of(model, &CheckedPart::remarks, condition.word);
+        const Sum sum = sum_of(model, &CheckedPart::notes, condition.word);
         if (sum.parts == 0) continue;
         words.push_back(fmt::format("{} x {}", sum.count, condition.word));
         if (model.parts.size() > 1)
@@ -408,24 +408,24 @@ nlohmann::ordered_json findings_json(const Report& report) {
 
 nlohmann::ordered_json part_json(const CheckedPart& part) {
     return {{"name", part.name},
-            {"sound", part.problem.empty()},
+            {"sound", part.problems.empty()},
             {"triangles", part.triangles},
             {"vertices", part.vertices},
             {"size", part.diagnosis.size},
             {"spacing", part.diagnosis.spacing},
             {"overlap_raster", part.diagnosis.overlap_raster},
             {"tangents", part.tangents ? json_of(*part.tangents) : nlohmann::ordered_json()},
-            {"trouble", findings_json(part.problem)},
-            {"remarks", findings_json(part.remarks)}};
+            {"trouble", findings_json(part.problems)},
+            {"remarks", findings_json(part.notes)}};
 }
 
 void print_text(const CheckedModel& model) {
     print_entry("file", fmt::format("{}: {}, {}, {}: {}", model.file.string(), model.format,
                                     counted(model.parts.size(), "primitive"),
                                     counted(triangles_of(model), "triangle"), verdict(model)));
-    print_entry("trouble", trouble_lines(model));
-    const std::string remarks = remarks_text(model);
-    if (!remarks.empty()) print_entry("remarks", remarks);
+    print_entry("problems", problem_lines(model));
+    const std::string notes = notes_text(model);
+    if (!notes.empty()) print_entry("notes", notes);
     print_entry("tangents", tangents_text(model));
 }
 
@@ -438,8 +438,8 @@ nlohmann::ordered_json json_of(const CheckedModel& model) {
     return {{"file", model.file.string()},
             {"sound", model.is_sound()},
             {"format", model.format},
-            {"trouble", findings_json(model.reading_trouble)},
-            {"remarks", findings_json(model.reading_remarks)},
+            {"trouble", findings_json(model.reading_problems)},
+            {"remarks", findings_json(model.reading_notes)},
             {"primitives", std::move(parts)}};
 }
 
@@ -453,26 +453,14 @@ struct CheckOptions {
     GeneralOptions general;
 };
 
-/// The number of files by verdict.
-struct Verdicts {
-    std::size_t sound = 0;
-    std::size_t in_trouble = 0;
-    std::size_t unreadable = 0;
-
-    explicit Verdicts(const std::vector<CheckedModel>& models) {
-        for (const CheckedModel& model : models)
-            ++(!model.error.empty() ? unreadable : model.is_sound() ? sound : in_trouble);
+Verdicts verdicts_of(const std::vector<CheckedModel>& models) {
+    Verdicts verdicts;
+    for (const CheckedModel& model : models) {
+        ++(!model.error.empty() ? verdicts.unreadable
+           : model.is_sound()   ? verdicts.sound
+                                : verdicts.with_problems);
     }
-};
-
-void print_verdicts(const Verdicts& verdicts, std::size_t file_count) {
-    if (file_count > 1) {
-        print_entry("verdict", fmt::format("{}: {} sound, {} with trouble, {} unreadable",
-                                           counted(file_count, "file"), verdicts.sound,
-                                           verdicts.in_trouble, verdicts.unreadable));
-    }
-    if (verdicts.sound + verdicts.in_trouble > 0)
-        print_entry("details", fmt::format("{} describes each condition", page));
+    return verdicts;
 }
 
 void print_checks(const std::vector<CheckedModel>& models, const Verdicts& verdicts) {
@@ -482,19 +470,10 @@ void print_checks(const std::vector<CheckedModel>& models, const Verdicts& verdi
     tools::print_json({{"tool", "relief-mesh check"},
                        {"version", version()},
                        {"sound", verdicts.sound},
-                       {"with_trouble", verdicts.in_trouble},
+                       {"with_trouble", verdicts.with_problems},
                        {"unreadable", verdicts.unreadable},
                        {"words", page},
                        {"files", std::move(files)}});
-}
-
-ExitCode judge(const CLI::App& app, const Verdicts& verdicts, bool strict) {
-    if (strict && verdicts.in_trouble > 0) {
-        warn(app, fmt::format("{} with trouble (exit code 3, because of --strict)",
-                              counted(verdicts.in_trouble, "file")));
-    }
-    if (verdicts.unreadable > 0) return ExitCode::failed;
-    return strict && verdicts.in_trouble > 0 ? ExitCode::fell_back : ExitCode::done;
 }
 
 ExitCode run(const CLI::App& app, const CheckOptions& options) {
@@ -514,10 +493,14 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
         else if (to_print)
             print_text(models.back());
     }
-    const Verdicts verdicts(models);
-    if (to_print) print_verdicts(verdicts, models.size());
+    const Verdicts verdicts = verdicts_of(models);
+    if (to_print) {
+        print_verdicts(verdicts);
+        if (verdicts.all() > verdicts.unreadable)
+            print_entry("details", fmt::format("{} describes each condition", page));
+    }
     if (options.json) print_checks(models, verdicts);
-    return judge(app, verdicts, options.strict);
+    return exit_code_for(app, verdicts, options.strict);
 }
 
 }  // namespace
@@ -532,17 +515,18 @@ Command add_check_command(CLI::App& tool) {
     add_switch(
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers "
-        "of files), words, files [file, sound, error or: format, trouble and remarks (of reading), "
+        "of files), words (the documentation), files [file, sound, error or: format, trouble "
+        "(problems) and remarks (notes) of reading, "
         "primitives [name, sound, triangles, vertices, size, spacing, overlap_raster, tangents "
         "{basis, variant, nearest, nearest_by_far, same_here, texcoord_set, "
         "texcoord_set_of_material, corners, left_out, "
         "without_direction, stored_bits, tolerance, agreements} or null, "
         "trouble and remarks [kind, element, count, first, outcome]]].");
     add_switch(app, "--strict", options->strict,
-               "Exit with 3 if a file has trouble. Remarks do not count.");
+               "Exit with 3 if a file has problems. Notes do not count.");
     add_switch(app, "--for-baking", options->for_baking,
                "Check for baking: overlapping texture coordinates and triangles without texture "
-               "gradient are trouble, for any material.");
+               "gradient are problems, for any material.");
     add_general_options(app, options->general);
     set_examples(app, {"relief-mesh check data/vase.obj data/scenes/pot.glb",
                        "relief-mesh check data/scenes/knot.glb --for-baking --strict",

@@ -547,12 +547,10 @@ void add_options(CLI::App& app, ProcessOptions& options) {
 }  // namespace
 
 Command add_process_command(CLI::App& tool) {
-    CLI::App& app = add_subcommand(
+    return add_command<ProcessOptions>(
         tool, "process",
-        "Computes the normals and tangents of models; all other content of a glTF file is kept.");
-    const auto options = std::make_shared<ProcessOptions>();
-    add_options(app, *options);
-    return {&app, [&app, options] { return run(app, *options); }};
+        "Computes the normals and tangents of models; all other content of a glTF file is kept.",
+        add_options, run);
 }
 
 }  // namespace relief::tools

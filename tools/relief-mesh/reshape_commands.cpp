@@ -231,21 +231,17 @@ void add_subdivide_options(CLI::App& app, SubdivideCommand& command) {
 }  // namespace
 
 Command add_decimate_command(CLI::App& tool) {
-    CLI::App& app = add_subcommand(
+    return add_command<DecimateCommand>(
         tool, "decimate",
-        "Reduces the number of triangles; texture seams, materials and borders are kept.");
-    const auto command = std::make_shared<DecimateCommand>();
-    add_decimate_options(app, *command);
-    return {&app, [&app, command] { return decimate(app, *command); }};
+        "Reduces the number of triangles; texture seams, materials and borders are kept.",
+        add_decimate_options, decimate);
 }
 
 Command add_subdivide_command(CLI::App& tool) {
-    CLI::App& app = add_subcommand(
+    return add_command<SubdivideCommand>(
         tool, "subdivide",
-        "Refines and smooths a model by Loop subdivision; the texture mapping is kept.");
-    const auto command = std::make_shared<SubdivideCommand>();
-    add_subdivide_options(app, *command);
-    return {&app, [&app, command] { return subdivide(app, *command); }};
+        "Refines and smooths a model by Loop subdivision; the texture mapping is kept.",
+        add_subdivide_options, subdivide);
 }
 
 }  // namespace relief::tools
