@@ -13,7 +13,7 @@
 #include "mesh/bump_peers.h"
 #include "mesh/contenders.h"
 #include "mesh/triad.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/timing.h"

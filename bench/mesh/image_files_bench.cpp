@@ -11,7 +11,7 @@
 
 #include "io/image/image_module_client.h"
 #include "mesh/contenders.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"

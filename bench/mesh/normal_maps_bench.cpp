@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/timing.h"

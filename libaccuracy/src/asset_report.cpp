@@ -13,9 +13,8 @@
 
 #include "experiment_driver.h"
 #include "progress_stage.h"
-#include "relief/accuracy/duration.h"
-#include "relief/accuracy/recommend.h"
-#include "relief/mesh/frontier.h"
+#include "relief/accuracy/asset.h"
+#include "relief/accuracy/experiment.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief {

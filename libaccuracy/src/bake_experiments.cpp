@@ -16,7 +16,6 @@
 
 #include "experiment_driver.h"
 #include "relief/accuracy/measure.h"
-#include "relief/accuracy/passes.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"

@@ -13,9 +13,9 @@
 
 #include "error_metrics.h"
 #include "experiment_driver.h"
-#include "relief/accuracy/passes.h"
+#include "relief/accuracy/measure.h"
+#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/bump_experiment.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
 #include "report_names.h"

@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "experiment_driver.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
+#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/bump_experiment.h"
-#include "relief/mesh/bump_fields.h"
 #include "relief/mesh/error_stats.h"
 
 namespace relief {
@@ -33,7 +32,7 @@ std::string name_of(Kernel kernel, int gaussian_radius);
 /// ground truth do not count.
 double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius);
 
-/// A field from one of the sets of bump_fields.h. \throws InvalidInput if none has that name
+/// A field from one of the sets of ground_truth.h. \throws InvalidInput if none has that name
 const FieldRecipe& recipe_named(const std::string& name);
 
 /// A height map of one oblique wave of slope 1, with its exact normals.

@@ -4,13 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "experiment_driver.h"
-#include "relief/accuracy/duration.h"
-#include "relief/mesh/frontier.h"
 
 namespace relief {
 namespace {
@@ -46,12 +43,42 @@ ErrorFigures figures_of(const AngleSummary& angles) {
     return figures_of_summary(angles, 0);
 }
 
+double median_seconds(const Measurement& measurement) {
+    if (measurement.cost.one_thread) return measurement.cost.one_thread->spread().median;
+    if (measurement.cost.all_threads) return measurement.cost.all_threads->spread().median;
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
 double curve_error(const ErrorFigures& error) {
     return error.undefined > 0 ? undefined_error : error.rms;
 }
 
 double curve_error(const AngleDistribution& angles) {
     return curve_error(figures_of(angles));
+}
+
+std::vector<bool> pareto_optimal(std::span<const MethodCost> prices) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < prices.size(); ++i) {
+        if (!std::isnan(prices[i].error) && !std::isnan(prices[i].time)) order.push_back(i);
+    }
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return prices[a].time != prices[b].time ? prices[a].time < prices[b].time
+                                                : prices[a].error < prices[b].error;
+    });
+    std::vector<bool> result(prices.size(), false);
+    MethodCost last{std::numeric_limits<double>::infinity(),
+                    0.0};  // The slowest Pareto-optimal one so far.
+    bool is_first = true;
+    for (const std::size_t i : order) {
+        const MethodCost& price = prices[i];
+        const bool is_equal = !is_first && price.error == last.error && price.time == last.time;
+        if (!is_first && !is_equal && price.error >= last.error) continue;
+        result[i] = true;
+        last = price;
+        is_first = false;
+    }
+    return result;
 }
 
 void mark_pareto_optimal(Experiment& experiment) {

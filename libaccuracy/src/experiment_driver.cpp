@@ -8,15 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 
 #include "bake_experiments.h"
 #include "bump_experiments.h"
 #include "normals_experiments.h"
-#include "relief/accuracy/passes.h"
-#include "relief/accuracy/subjects.h"
+#include "relief/accuracy/experiment.h"
+#include "relief/accuracy/measure.h"
 #include "relief/mesh/report.h"
 #include "shading_experiments.h"
 #include "stability_experiments.h"
@@ -60,12 +59,6 @@ const Measurement& method_in(const Experiment& experiment, const std::string& na
         if (one.method == name) return one;
     }
     throw std::out_of_range(experiment.id + " has no method " + name);
-}
-
-double median_seconds(const Measurement& measurement) {
-    if (measurement.cost.one_thread) return measurement.cost.one_thread->spread().median;
-    if (measurement.cost.all_threads) return measurement.cost.all_threads->spread().median;
-    return std::numeric_limits<double>::quiet_NaN();
 }
 
 std::string value_of(const Measurement& measurement, const std::string& choice) {

@@ -38,9 +38,6 @@ const Measurement* most_accurate(const Experiment& experiment);
 /// The measurement of a method. \throws std::out_of_range if there is none
 const Measurement& method_in(const Experiment& experiment, const std::string& name);
 
-/// The median seconds on one thread, or on all threads if only those were timed, or NaN.
-double median_seconds(const Measurement& measurement);
-
 /// The value of a choice such as "arithmetic", or an empty text.
 std::string value_of(const Measurement& measurement, const std::string& choice);
 

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "progress_stage.h"
-#include "relief/accuracy/passes.h"
 #include "relief/mesh/execution.h"
 
 namespace relief {

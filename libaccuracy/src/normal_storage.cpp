@@ -15,7 +15,7 @@
 #include "experiment_driver.h"
 #include "octahedral_code.h"
 #include "parallel.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"

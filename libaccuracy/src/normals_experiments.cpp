@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "experiment_driver.h"
-#include "relief/accuracy/passes.h"
+#include "relief/accuracy/measure.h"
 #include "relief/mesh/error_stats.h"
 #include "report_names.h"
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "experiment_driver.h"
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"

@@ -11,7 +11,7 @@
 
 #include "environment/environment_images.h"
 #include "parallel.h"
-#include "relief/accuracy/passes.h"
+#include "relief/accuracy/measure.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
 
 namespace relief {

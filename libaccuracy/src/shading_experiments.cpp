@@ -12,7 +12,7 @@
 
 #include "error_metrics.h"
 #include "experiment_driver.h"
-#include "relief/accuracy/passes.h"
+#include "relief/accuracy/measure.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "rendered_methods.h"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 

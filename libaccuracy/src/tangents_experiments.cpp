@@ -9,8 +9,8 @@
 #include <array>
 
 #include "experiment_driver.h"
-#include "relief/accuracy/passes.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
+#include "relief/accuracy/measure.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"

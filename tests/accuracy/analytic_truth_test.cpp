@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "report_names.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recommendations for invented measurements, computed by hand.
-#include "relief/accuracy/recommend.h"
+#include "relief/accuracy/asset.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "experiment_checks.h"
-#include "relief/mesh/bump_experiment.h"
+#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/report.h"
 
 namespace relief::test {

@@ -9,9 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "relief/accuracy/experiment.h"
 #include "relief/accuracy/measure.h"
-#include "relief/accuracy/passes.h"
-#include "relief/accuracy/subjects.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -13,7 +13,7 @@
 
 #include "error_metrics.h"
 #include "experiment_checks.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"

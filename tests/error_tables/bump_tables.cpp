@@ -10,7 +10,7 @@
 
 #include "bump_experiments.h"
 #include "error_tables/error_tables.h"
-#include "relief/mesh/bump_experiment.h"
+#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/height_map.h"
 
 namespace relief::test {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "error_tables/error_tables.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/normal_map.h"
 #include "storage_experiments.h"
 #include "support/images.h"

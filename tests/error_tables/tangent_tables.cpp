@@ -9,7 +9,7 @@
 #include <string>
 
 #include "error_tables/error_tables.h"
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/frame_encoding.h"
 #include "storage_experiments.h"
 #include "support/random_frames.h"

@@ -12,7 +12,7 @@
 
 #include "hard_cases/hard_cases.h"
 #include "io/png/png_format.h"
-#include "relief/mesh/bump_fields.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/kernel_choice.h"

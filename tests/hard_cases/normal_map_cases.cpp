@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "hard_cases/hard_cases.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/map_convention.h"

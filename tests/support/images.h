@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "relief/mesh/bump_fields.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "support/angle.h"

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "relief/accuracy/duration.h"
 #include "relief/accuracy/experiment.h"
 
 namespace relief::tools {

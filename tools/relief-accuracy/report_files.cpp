@@ -14,7 +14,7 @@
 #include "common/command.h"
 #include "common/text.h"
 #include "file_replacement.h"
-#include "relief/accuracy/subjects.h"
+#include "relief/accuracy/experiment.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "report_page.h"

@@ -11,7 +11,7 @@
 #include "common/command.h"
 #include "file_bytes.h"
 #include "json_cursor.h"
-#include "relief/accuracy/subjects.h"
+#include "relief/accuracy/experiment.h"
 
 namespace relief::tools {
 namespace {

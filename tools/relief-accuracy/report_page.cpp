@@ -27,7 +27,7 @@
 #include "common/options.h"
 #include "common/text.h"
 #include "file_bytes.h"
-#include "relief/accuracy/duration.h"
+#include "relief/accuracy/experiment.h"
 #include "relief/mesh/report.h"
 
 namespace relief::tools {

@@ -21,8 +21,8 @@
 #include "common/command.h"
 #include "common/text.h"
 #include "parallel.h"
-#include "relief/accuracy/passes.h"
-#include "relief/accuracy/subjects.h"
+#include "relief/accuracy/experiment.h"
+#include "relief/accuracy/measure.h"
 #include "relief/mesh/execution.h"
 #include "relief/shade/context.h"
 

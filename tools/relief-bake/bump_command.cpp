@@ -17,7 +17,7 @@
 #include "commands.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "relief/mesh/bump_experiment.h"
+#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"

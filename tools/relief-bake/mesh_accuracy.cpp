@@ -16,8 +16,8 @@
 
 #include "common/text.h"
 #include "mesh_maps.h"
+#include "relief/accuracy/experiment.h"
 #include "relief/mesh/bake_check.h"
-#include "relief/mesh/frontier.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"

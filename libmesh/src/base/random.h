@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A pseudorandom number generator with the same results on every machine.
-/// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
+/// Tests: tests/accuracy/ground_truth_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Seconds; order statistics of repeated measurements, in whatever unit they come, and the order in
 // which they are taken. Series of different lengths throw InvalidInput.
-// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
+// Tests: tests/mesh/geometry/error_statistics_test.cpp.
 #include "relief/mesh/timing.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // Filters and noise estimators for small height fields: derivatives of high order that do not cross
 // step edges (essentially non-oscillatory, after [Harten et al. 1987]), the removal of outliers,
 // and noise estimates by high-pass masks, after [Immerkaer 1996]. Nothing throws.
-// Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+// Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #include "bump/height_tile.h"
 
 #include <algorithm>

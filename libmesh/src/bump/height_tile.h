@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A small height field in double precision, with filters and noise estimators for the choice of a
-/// kernel. Heights have any unit. Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+/// kernel. Heights have any unit. Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Selects a kernel with the kernel error model (kernel_error_model.h) and explains the choice in
 // words. Heights are in the unit of the map, and angles are in degrees. Bad images and options
-// throw. Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+// throw. Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #include "relief/mesh/kernel_choice.h"
 
 #include <fmt/format.h>

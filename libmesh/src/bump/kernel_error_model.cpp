@@ -4,7 +4,7 @@
 // by destaircase(). Floats without noise remain unchanged. The model then adds rounding, noise and
 // outliers again and measures the kernels on the result. Heights are in the unit of the map, where
 // 1.0 is white. Bad images throw.
-// Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+// Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #include "bump/kernel_error_model.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 /// \file
 /// Predicts the errors of derivative kernels on a height map. The model restores the map as it may
 /// have been before storage, adds the same kinds of degradation again, and measures the kernels.
-/// Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+/// Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Power spectral densities of small squares with a squared Hann window, averaged over the squares
 // and over bins of frequency and direction [Welch 1967], and spectral subtraction of noise
-// [Boll 1979]. Nothing throws. Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+// [Boll 1979]. Nothing throws. Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #include "bump/power_spectrum.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Power spectral densities of square height fields, noise spectra, and noise removal by spectral
-/// subtraction. Heights have any unit. Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+/// subtraction. Heights have any unit. Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #pragma once
 
 #include <complex>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Degrees in, their distribution out. Percentiles are values that occur (nearest rank). Linear
-// expected time. Tests: tests/mesh/accuracy/error_statistics_test.cpp.
+// expected time. Tests: tests/mesh/geometry/error_statistics_test.cpp.
 #include "relief/mesh/error_stats.h"
 
 #include <algorithm>

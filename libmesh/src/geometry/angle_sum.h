@@ -3,7 +3,7 @@
 /// Angles added up as they come, in constant memory, in double, in degrees: the one place where
 /// their mean, root of the mean square and greatest are formed, and AngleSummary for those who
 /// cannot keep all of them. Of none, all zeros. Tests:
-/// tests/mesh/accuracy/error_statistics_test.cpp.
+/// tests/mesh/geometry/error_statistics_test.cpp.
 #pragma once
 
 #include <algorithm>

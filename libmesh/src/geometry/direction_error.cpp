@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Angles by atan2 in double, and their sums, in degrees. Unlike angle_distribution(), which counts
 // what is no angle apart, one NaN makes all three sums NaN: there is no place here to tell of it.
-// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
+// Tests: tests/mesh/geometry/error_statistics_test.cpp.
 #include "relief/mesh/error_stats.h"
 
 #include <fmt/format.h>

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "mesh/bake/bake_support.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bake_check.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/error_stats.h"

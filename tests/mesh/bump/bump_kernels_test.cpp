@@ -10,7 +10,7 @@
 #include <glm/vec2.hpp>
 #include <numbers>
 
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"

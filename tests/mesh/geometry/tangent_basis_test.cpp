@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh.h"

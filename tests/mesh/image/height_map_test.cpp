@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "image/height_holes.h"
-#include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/bump_fields.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"

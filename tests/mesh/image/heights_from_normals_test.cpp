@@ -9,7 +9,7 @@
 #include <random>
 
 #include "image/fft.h"
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"

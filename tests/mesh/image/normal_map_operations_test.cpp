@@ -9,7 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map.h"

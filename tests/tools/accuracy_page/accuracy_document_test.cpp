@@ -11,7 +11,6 @@
 #include <sstream>
 
 #include "relief/accuracy/experiment.h"
-#include "relief/accuracy/subjects.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 

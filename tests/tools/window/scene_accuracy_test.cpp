@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "tools/window/display.h"
 

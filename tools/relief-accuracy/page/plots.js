@@ -217,7 +217,7 @@ function placeLabels(svg, wanted, taken, area) {
     }
 }
 
-// ---- The Pareto frontier for the shown cost and error, by the rule of relief/mesh/frontier.h.
+// ---- The Pareto frontier for the shown cost and error, by the rule of relief/accuracy/experiment.h.
 
 // prices: [{cost, error, undefined}] with null for missing values. Returns the efficient methods, fastest first:
 // all cheaper methods have a larger error. Equal methods are all efficient or not.

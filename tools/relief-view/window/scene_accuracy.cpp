@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "relief/accuracy/duration.h"
+#include "relief/accuracy/experiment.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "scene_options.h"

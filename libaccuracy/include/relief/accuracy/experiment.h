@@ -10,7 +10,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,7 @@
 
 namespace RELIEF_API relief {
 
-class PassHistory;  // passes.h
+class PassHistory;  // measure.h
 
 /// The subjects of experiments, with the names of `relief-accuracy run`.
 enum class Subject { normals, tangents, bump, storage, bake, shading, stability };
@@ -84,6 +86,9 @@ struct Measurement {
         false;           ///< Pareto-optimal by RMS error and time (mark_pareto_optimal()).
     std::string note{};  ///< A note for readers; mostly empty.
 };
+
+/// Returns the median seconds on one thread, or on all threads if only those were timed, or NaN.
+double median_seconds(const Measurement& measurement);
 
 /// The error as a function of a parameter: cells of a mesh, texels of a wave, the scale of a mesh.
 struct CurvePoint {
@@ -166,6 +171,19 @@ struct RunOptions {
     std::function<void(const std::string& title, std::size_t done, std::size_t total)> tell{};
 };
 
+/// The error and time of a method, in any unit; smaller is better. NaN means unknown.
+struct MethodCost {
+    double error = 0.0;
+    double time = 0.0;
+};
+
+/// Finds the Pareto-optimal methods.
+///
+/// \return for each method, true if no other is better in one value and at least as good in the
+///         other. Equal methods have equal results. A method with NaN is never Pareto-optimal and
+///         does not affect the others
+std::vector<bool> pareto_optimal(std::span<const MethodCost> prices);
+
 /// Marks the measurements that are Pareto-optimal by RMS error and time on one thread, or on all
 /// threads if only that was measured. Without times none is marked. Measurements with undefined
 /// results are never marked.
@@ -175,6 +193,22 @@ void mark_pareto_optimal(Experiment& experiment);
 /// are positive and finite.
 /// \return nothing for fewer than two different x
 std::optional<double> fitted_order(const std::vector<CurvePoint>& points);
+
+/// Returns the subjects that have experiments, in the order of reports.
+std::vector<Subject> subjects_with_experiments();
+
+/// Returns true if some of its experiments draw with OpenGL, so that their errors depend on the
+/// renderer.
+bool uses_opengl(Subject subject);
+
+/// Returns the name: "normals", "tangents", ...
+std::string_view name_of(Subject subject);
+
+/// Returns the subject of this name. \throws InvalidInput listing the valid names
+Subject subject_from(std::string_view word);
+
+/// Formats a time: "840 ns", "4.13 µs", "12.3 ms", "1.50 s".
+std::string format_seconds(double seconds);
 
 /// Runs the experiments of one subject.
 std::vector<Experiment> run_experiments(Subject subject, const RunOptions& options);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Measures the time and memory of several functions, interleaved.
-/// Tests: tests/accuracy/measure_test.cpp.
+/// Measures the time and memory of several functions, interleaved, and runs experiments in several
+/// passes.
+/// Tests: tests/accuracy/measure_test.cpp, tests/accuracy/experiment_driver_test.cpp.
 #pragma once
 
+#include <any>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
@@ -15,7 +20,7 @@ namespace RELIEF_API relief {
 
 /// Measures several things interleaved (A B C A B C ...). All experiments use this function.
 ///
-/// \param options  its repeats, or the share of them that belongs to this pass (passes.h)
+/// \param options  its repeats, or the share of them that belongs to this pass (PassHistory)
 /// \param seconds_of_round  runs one round of thing `thing` and returns its time
 /// \return the times of each thing, including those of earlier passes. Cancellation is checked
 ///         before each round
@@ -53,5 +58,73 @@ std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
 /// Returns the peak memory of `work` in bytes in addition to the memory before; nothing if the
 /// system does not report it.
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
+
+// Passes: the methods of an experiment are interleaved, so that none has an advantage. But all its
+// rounds may lie within a second, and if the machine is busy in that second, the methods look
+// slower. Passes spread the rounds of each method over the whole run, so that the median ignores
+// such a second. Memory is also allocated anew in each pass, which averages effects of its layout.
+
+/// The rounds of earlier passes, by experiment. A group is a set of methods that are timed
+/// together. An experiment has the same groups in the same order in every pass; the order and the
+/// number of experiments do not matter.
+class PassHistory {
+  public:
+    /// \param passes  at least 1
+    explicit PassHistory(std::size_t passes) : passes_(passes) {}
+
+    /// Starts the next pass, outside of all experiments.
+    void begin_pass();
+
+    /// Selects the experiment of the following calls. Its groups and results are counted from the
+    /// first one in each pass. The empty id stands for calls outside of all experiments.
+    void begin_experiment(const std::string& id);
+
+    /// Returns the number of `rounds` in this pass; if they cannot be divided evenly, the first
+    /// passes have one more.
+    [[nodiscard]] std::size_t share_of(std::size_t rounds) const;
+
+    /// Returns the rounds of the next group, to which new ones are added. \param methods  number of
+    /// methods in the group
+    /// \throws std::runtime_error if the previous pass had another number of methods
+    std::vector<Timing>& next_group(std::size_t methods);
+
+    /// Returns the result that the first pass computed at this point, in the order of calls; the
+    /// first pass computes it with `make`.
+    const std::any& next_result(const std::function<std::any()>& make);
+
+  private:
+    struct Record {
+        std::vector<std::vector<Timing>> groups{};
+        std::vector<std::any> results{};
+        std::size_t next_group = 0;
+        std::size_t next_result = 0;
+    };
+
+    std::size_t passes_;
+    std::size_t begun_ = 0;
+    std::map<std::string, Record> records_;  ///< By id of the experiment.
+    std::string id_;
+};
+
+/// Returns the result of `make`, which is called only in the first pass: for ground truths and
+/// curves that are slow to compute and equal in every pass.
+template <typename Make>
+auto computed_once(const RunOptions& options, const Make& make) {
+    using Result = decltype(make());
+    if (!options.earlier) return make();
+    return std::any_cast<Result>(options.earlier->next_result([&] { return std::any(make()); }));
+}
+
+/// Runs experiments several times. Each pass sees the rounds of the previous ones, so the results
+/// of the last pass and their findings contain all of them.
+///
+/// \param passes  at least 1; at most the number of rounds; without timing there is one
+/// \param options  its repeats are those of all passes together; each pass has its own warm-up
+/// \param run  runs all experiments with these options, the same ones each time. Its exceptions are
+///         passed on
+/// \return the result of the last pass
+std::vector<Experiment> run_in_passes(
+    std::size_t passes, const RunOptions& options,
+    const std::function<std::vector<Experiment>(const RunOptions& options, std::size_t pass)>& run);
 
 }  // namespace relief

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Computes angles between directions, and statistics of many angles, in degrees.
-/// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
+/// Tests: tests/mesh/geometry/error_statistics_test.cpp.
 #pragma once
 
 #include <array>

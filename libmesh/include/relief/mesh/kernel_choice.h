@@ -2,7 +2,7 @@
 /// \file
 /// Selects the derivative kernel with the least expected error for a height map, from the map
 /// alone.
-/// Tests: tests/mesh/accuracy/kernel_choice_test.cpp.
+/// Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #pragma once
 
 #include <cmath>

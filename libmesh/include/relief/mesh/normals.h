@@ -5,7 +5,7 @@
 ///
 /// docs/normals.md has the error and time of each weighting.
 /// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp,
-/// tests/mesh/accuracy/analytic_surfaces_test.cpp, tests/mesh/geometry/corner_normals_test.cpp,
+/// tests/accuracy/ground_truth_test.cpp, tests/mesh/geometry/corner_normals_test.cpp,
 /// tests/mesh/geometry/curvature_test.cpp.
 #pragma once
 

@@ -2,7 +2,7 @@
 /// \file
 /// Measures wall-clock time: interleaved repetitions with warm-up, so that all methods share the
 /// drift of the machine, summarized by median and percentiles.
-/// Tests: tests/mesh/accuracy/error_statistics_test.cpp.
+/// Tests: tests/mesh/geometry/error_statistics_test.cpp.
 #pragma once
 
 #include <chrono>

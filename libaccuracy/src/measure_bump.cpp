@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ways to convert a height map, run in turns on the map or on parts of it: stored normals are read
 // back and compared with the reference, in degrees; times are of all parts together. A bad map
-// throws. Tests: tests/mesh/accuracy/bump_experiment_test.cpp.
-#include "relief/mesh/bump_experiment.h"
+// throws. Tests: tests/accuracy/measure_bump_test.cpp.
+#include "relief/accuracy/measure_bump.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "parallel.h"
+#include "relief/accuracy/experiment.h"
 #include "relief/mesh/error_stats.h"
-#include "relief/mesh/frontier.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
 

@@ -9,7 +9,7 @@
 
 #include "bump/power_spectrum.h"
 #include "random.h"
-#include "relief/mesh/bump_fields.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"

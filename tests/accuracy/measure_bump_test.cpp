@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/analytic_heights.h"
+#include "relief/accuracy/ground_truth.h"
+#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/bump_experiment.h"
-#include "relief/mesh/bump_fields.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"

@@ -13,7 +13,7 @@
 #include <random>
 
 #include "bump/power_spectrum.h"
-#include "relief/mesh/bump_fields.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/kernel_choice.h"

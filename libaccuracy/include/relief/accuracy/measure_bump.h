@@ -2,7 +2,7 @@
 /// \file
 /// Measures the error and time of the conversions of a height map, and selects the cheapest one
 /// within an error limit.
-/// Tests: tests/mesh/accuracy/bump_experiment_test.cpp.
+/// Tests: tests/accuracy/measure_bump_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "relief/accuracy/ground_truth.h"
 #include "relief/export.h"
-#include "relief/mesh/bump_fields.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/normal_map.h"

@@ -8,8 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "relief/mesh/analytic_heights.h"
-#include "relief/mesh/analytic_surfaces.h"
+#include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameters (s, t) in [0,1]^2 to a point, its normal and how it moves with them; the random
 // numbers are a generator of our own, since those of the standard library's distributions differ
-// between libraries. Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
-#include "relief/mesh/analytic_surfaces.h"
+// between libraries. Tests: tests/accuracy/ground_truth_test.cpp.
+#include "relief/accuracy/ground_truth.h"
 
 #include <fmt/format.h>
 

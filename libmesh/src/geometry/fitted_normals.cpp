@@ -2,7 +2,7 @@
 // Weighted least squares for heights over the tangent plane, turned to the normal found and fitted
 // again. Object space, lengths in units of the neighborhood. Source: [Cazals and Pouget 2005];
 // unlike there, the polynomial goes through the vertex itself, and near vertices count more.
-// Tests: tests/mesh/accuracy/analytic_surfaces_test.cpp.
+// Tests: tests/accuracy/ground_truth_test.cpp.
 #include "relief/mesh/normals.h"
 
 #include <algorithm>
