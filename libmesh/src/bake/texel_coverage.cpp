@@ -390,9 +390,9 @@ class Bands {
 };
 
 /// Draws one band.
-class DrawnBand {
+class Band {
   public:
-    DrawnBand(const Triangles& triangles, const CoverageOptions& options, int first_row)
+    Band(const Triangles& triangles, const CoverageOptions& options, int first_row)
         : triangles_(triangles),
           options_(options),
           first_row_(first_row),
@@ -594,7 +594,7 @@ Coverage TexelRasterizer::cover(
         coverages.size(), 1, report, [&](std::size_t begin, std::size_t end, Report& findings) {
             for (std::size_t i = begin; i < end; ++i) {
                 const int band_row = static_cast<int>(first_band + i) * band_rows;
-                DrawnBand band(all, options, band_row);
+                Band band(all, options, band_row);
                 for (const std::uint32_t index : bands.members(first_band + i))
                     band.draw(index);
                 coverages[i] = band.finish(findings);

@@ -23,8 +23,8 @@ namespace {
 
 // Differences of floats reach 7e38. With these limits, squares of slopes stay within the range of
 // double.
-constexpr double max_bump_strength = 1e30;
-constexpr double max_bump_texel = 1e30;
+constexpr double max_strength = 1e30;
+constexpr double max_texel = 1e30;
 
 void check(const Image& height, const BumpOptions& options) {
     if (height.empty()) throw InvalidInput("an empty height field has no normals");
@@ -104,14 +104,14 @@ Image image_to_fill(int width, int height, int channels, int bits) {
 }  // namespace
 
 void check_bump(const BumpOptions& options) {
-    if (!(std::abs(options.strength) <= max_bump_strength)) {
+    if (!(std::abs(options.strength) <= max_strength)) {
         throw InvalidInput(
-            fmt::format("the strength {} is not within +-{}", options.strength, max_bump_strength));
+            fmt::format("the strength {} is not within +-{}", options.strength, max_strength));
     }
     for (const double size : {options.texel.x, options.texel.y}) {
-        if (!(size >= 1.0 / max_bump_texel && size <= max_bump_texel)) {
+        if (!(size >= 1.0 / max_texel && size <= max_texel)) {
             throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
-                                           1.0 / max_bump_texel, max_bump_texel));
+                                           1.0 / max_texel, max_texel));
         }
     }
     gradient_kernel(options.kernel.value_or(Kernel::gaussian), options.gaussian_radius);

@@ -309,7 +309,7 @@ class FrequencySolver {
 };
 
 constexpr double damping = 1e-3;
-constexpr std::size_t real_lanes = RealTransform::lanes;
+constexpr std::size_t lanes = RealTransform::lanes;
 
 double squared_difference(const GradientKernel& kernel, double frequency, double texel) {
     std::complex<double> sum = 0.0;
@@ -360,37 +360,36 @@ void FrequencySolver::solve(double* values) const {
 
 void FrequencySolver::transform_rows(double* values, bool forward) const {
     const std::size_t width = x_.transform.length(), height = y_.transform.length();
-    parallel_for(
-        (height + real_lanes - 1) / real_lanes, 1, [&](std::size_t begin, std::size_t end) {
-            std::vector<double> rows(width * real_lanes), scratch;
-            for (std::size_t group = begin; group < end; ++group) {
-                const std::size_t first = group * real_lanes;
-                const std::size_t count = std::min(real_lanes, height - first);
-                for (std::size_t lane = 0; lane < count; ++lane) {
-                    for (std::size_t column = 0; column < width; ++column)
-                        rows[column * real_lanes + lane] = values[(first + lane) * width + column];
-                }
-                if (forward)
-                    x_.transform.forward(rows.data(), scratch);
-                else
-                    x_.transform.inverse(rows.data(), scratch);
-                for (std::size_t lane = 0; lane < count; ++lane) {
-                    for (std::size_t column = 0; column < width; ++column)
-                        values[(first + lane) * width + column] = rows[column * real_lanes + lane];
-                }
+    parallel_for((height + lanes - 1) / lanes, 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> rows(width * lanes), scratch;
+        for (std::size_t group = begin; group < end; ++group) {
+            const std::size_t first = group * lanes;
+            const std::size_t count = std::min(lanes, height - first);
+            for (std::size_t lane = 0; lane < count; ++lane) {
+                for (std::size_t column = 0; column < width; ++column)
+                    rows[column * lanes + lane] = values[(first + lane) * width + column];
             }
-        });
+            if (forward)
+                x_.transform.forward(rows.data(), scratch);
+            else
+                x_.transform.inverse(rows.data(), scratch);
+            for (std::size_t lane = 0; lane < count; ++lane) {
+                for (std::size_t column = 0; column < width; ++column)
+                    values[(first + lane) * width + column] = rows[column * lanes + lane];
+            }
+        }
+    });
 }
 
 void FrequencySolver::solve_columns(double* values) const {
     const std::size_t width = x_.transform.length(), height = y_.transform.length();
-    parallel_for((width + real_lanes - 1) / real_lanes, 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> columns(height * real_lanes), scratch;
+    parallel_for((width + lanes - 1) / lanes, 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> columns(height * lanes), scratch;
         for (std::size_t group = begin; group < end; ++group) {
-            const std::size_t first = group * real_lanes;
-            const std::size_t count = std::min(real_lanes, width - first);
+            const std::size_t first = group * lanes;
+            const std::size_t count = std::min(lanes, width - first);
             for (std::size_t row = 0; row < height; ++row)
-                std::copy_n(values + row * width + first, count, &columns[row * real_lanes]);
+                std::copy_n(values + row * width + first, count, &columns[row * lanes]);
             y_.transform.forward(columns.data(), scratch);
             for (std::size_t row = 0; row < height; ++row) {
                 for (std::size_t lane = 0; lane < count; ++lane) {
@@ -399,20 +398,20 @@ void FrequencySolver::solve_columns(double* values) const {
                     const double fourth = shortness * shortness * shortness * shortness;
                     const double seen = x_.difference[column] * y_.smoothing[row] +
                                         x_.smoothing[column] * y_.difference[row];
-                    double& value = columns[row * real_lanes + lane];
+                    double& value = columns[row * lanes + lane];
                     value = row == 0 && column == 0 ? 0.0 : value / (seen + damping * fourth);
                 }
             }
             y_.transform.inverse(columns.data(), scratch);
             for (std::size_t row = 0; row < height; ++row)
-                std::copy_n(&columns[row * real_lanes], count, values + row * width + first);
+                std::copy_n(&columns[row * lanes], count, values + row * width + first);
         }
     });
 }
 
 using Field = std::vector<double>;
 
-constexpr int max_solver_rounds = 24;
+constexpr int max_rounds = 24;
 constexpr double enough = 1e-10;  // Relative to the first error, squared.
 
 /// The slopes of a normal, and its problem.
@@ -532,7 +531,7 @@ int refine(const SlopeOperator& slopes, const FrequencySolver& solver, Field& ri
     double error = dot(rest, better, rows);
     const double first_error = error;
     int round = 0;
-    while (round < max_solver_rounds && error > enough * first_error) {
+    while (round < max_rounds && error > enough * first_error) {
         slopes.transpose(
             [&](int row, double* along_x, double* along_y) {
                 slopes.slopes(direction.data(), row, along_x, along_y);

@@ -16,13 +16,13 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t curvature_grain = 1 << 14;
+constexpr std::size_t grain = 1 << 14;
 
 /// A triangle seen from one of its corners: the other two vertices, counter-clockwise.
-struct RingSpoke {
+struct Spoke {
     std::uint32_t next, last;
 
-    friend auto operator<=>(const RingSpoke&, const RingSpoke&) = default;
+    friend auto operator<=>(const Spoke&, const Spoke&) = default;
 };
 
 /// The triangles around every vertex.
@@ -52,11 +52,11 @@ class Rings {
         return triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x;
     }
 
-    [[nodiscard]] std::span<const RingSpoke> around(std::size_t vertex) const {
+    [[nodiscard]] std::span<const Spoke> around(std::size_t vertex) const {
         return std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }
     /// Returns the triangles around a vertex, sorted by their vertices.
-    [[nodiscard]] std::span<RingSpoke> sorted(std::size_t vertex) {
+    [[nodiscard]] std::span<Spoke> sorted(std::size_t vertex) {
         const auto ring =
             std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
         std::sort(ring.begin(), ring.end());
@@ -65,13 +65,13 @@ class Rings {
 
   private:
     std::vector<std::size_t> first_;
-    std::vector<RingSpoke> spokes_;
+    std::vector<Spoke> spokes_;
 };
 
 /// Returns whether the ring is closed: each vertex around ends one triangle and begins another one.
-bool is_closed(std::span<const RingSpoke> sorted, std::vector<std::uint32_t>& ends) {
+bool is_closed(std::span<const Spoke> sorted, std::vector<std::uint32_t>& ends) {
     ends.clear();
-    for (const RingSpoke& spoke : sorted)
+    for (const Spoke& spoke : sorted)
         ends.push_back(spoke.last);
     std::sort(ends.begin(), ends.end());
     for (std::size_t i = 0; i < sorted.size(); ++i) {
@@ -115,10 +115,10 @@ bool has_area(const glm::dvec3& b, const glm::dvec3& c) {
 
 /// Returns the curvature, or none if it is undefined.
 std::optional<double> curvature_at(std::span<const glm::vec3> positions, std::size_t vertex,
-                                   std::span<const RingSpoke> sorted) {
+                                   std::span<const Spoke> sorted) {
     VertexSum sum;
     const glm::dvec3 here(positions[vertex]);
-    for (const RingSpoke& spoke : sorted) {
+    for (const Spoke& spoke : sorted) {
         const glm::dvec3 b = glm::dvec3(positions[spoke.next]) - here;
         const glm::dvec3 c = glm::dvec3(positions[spoke.last]) - here;
         if (has_area(b, c)) sum.add(b, c);
@@ -131,12 +131,11 @@ std::optional<double> curvature_at(std::span<const glm::vec3> positions, std::si
 enum class RingKind : std::uint8_t { none, closed, open };
 
 /// Returns the mean of the adjacent vertices with closed rings.
-std::optional<double> mean_around(std::span<const RingSpoke> sorted,
-                                  const std::vector<RingKind>& kinds,
+std::optional<double> mean_around(std::span<const Spoke> sorted, const std::vector<RingKind>& kinds,
                                   const std::vector<float>& values,
                                   std::vector<std::uint32_t>& around) {
     around.clear();
-    for (const RingSpoke& spoke : sorted)
+    for (const Spoke& spoke : sorted)
         around.insert(around.end(), {spoke.next, spoke.last});
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
@@ -153,17 +152,16 @@ std::optional<double> mean_around(std::span<const RingSpoke> sorted,
 
 void count_flat_triangles(std::span<const glm::vec3> positions,
                           std::span<const glm::uvec3> triangles, Report& report) {
-    parallel_for_reporting(triangles.size(), curvature_grain, report,
-                           [&](std::size_t begin, std::size_t end, Report& found) {
-                               for (std::size_t i = begin; i < end; ++i) {
-                                   const glm::dvec3 a(positions[triangles[i].x]);
-                                   if (has_area(glm::dvec3(positions[triangles[i].y]) - a,
-                                                glm::dvec3(positions[triangles[i].z]) - a))
-                                       continue;
-                                   found.add("triangle without area under curvature", "triangle", i,
-                                             "has no say");
-                               }
-                           });
+    parallel_for_reporting(
+        triangles.size(), grain, report, [&](std::size_t begin, std::size_t end, Report& found) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const glm::dvec3 a(positions[triangles[i].x]);
+                if (has_area(glm::dvec3(positions[triangles[i].y]) - a,
+                             glm::dvec3(positions[triangles[i].z]) - a))
+                    continue;
+                found.add("triangle without area under curvature", "triangle", i, "has no say");
+            }
+        });
 }
 
 }  // namespace
@@ -177,7 +175,7 @@ std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
     std::vector<float> values(positions.size(), 0.0F);
     std::vector<RingKind> kinds(positions.size(), RingKind::none);
     const auto each = [&](const auto& work) {
-        parallel_for_reporting(positions.size(), curvature_grain, report,
+        parallel_for_reporting(positions.size(), grain, report,
                                [&](std::size_t begin, std::size_t end, Report& found) {
                                    std::vector<std::uint32_t> scratch;
                                    for (std::size_t i = begin; i < end; ++i) {
@@ -186,7 +184,7 @@ std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
                                });
     };
     each([&](std::size_t i, std::vector<std::uint32_t>& scratch, Report& found) {
-        const std::span<const RingSpoke> ring = rings.sorted(i);
+        const std::span<const Spoke> ring = rings.sorted(i);
         kinds[i] = is_closed(ring, scratch) ? RingKind::closed : RingKind::open;
         if (kinds[i] == RingKind::open) return;
         const std::optional<double> value = curvature_at(positions, i, ring);

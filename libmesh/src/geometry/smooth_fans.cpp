@@ -28,7 +28,7 @@ struct Spoke {
     std::uint32_t group;   ///< Smoothing group of its triangle, 0 if the mesh has none.
 };
 
-bool spoke_comes_before(const Spoke& a, const Spoke& b) {
+bool comes_before(const Spoke& a, const Spoke& b) {
     if (a.neighbor != b.neighbor) return a.neighbor < b.neighbor;
     return a.group != b.group ? a.group < b.group : a.corner < b.corner;
 }
@@ -110,7 +110,7 @@ class FansAtPosition {
             for (Spoke& spoke : spokes_)
                 spoke.neighbor = seen_through_.of(spoke.neighbor);
         }
-        std::sort(spokes_.begin(), spokes_.end(), spoke_comes_before);
+        std::sort(spokes_.begin(), spokes_.end(), comes_before);
     }
 
     [[nodiscard]] const glm::vec3& normal_at(const Spoke& spoke) const {

@@ -25,7 +25,7 @@ std::uint32_t ordinal(float value) {
 }
 
 template <int N>
-bool value_comes_before(const glm::vec<N, float>& a, const glm::vec<N, float>& b) {
+bool comes_before(const glm::vec<N, float>& a, const glm::vec<N, float>& b) {
     for (int i = 0; i < N; ++i) {
         if (ordinal(a[i]) != ordinal(b[i])) return ordinal(a[i]) < ordinal(b[i]);
     }
@@ -50,10 +50,10 @@ VertexSplit split(std::size_t vertex_count, std::span<const glm::uvec3> triangle
         check_cancelled(v);
         around.assign(corners.at(v).begin(), corners.at(v).end());
         std::sort(around.begin(), around.end(),
-                  [&](Corner a, Corner b) { return value_comes_before<N>(values[a], values[b]); });
+                  [&](Corner a, Corner b) { return comes_before<N>(values[a], values[b]); });
         auto vertex = static_cast<std::uint32_t>(v);
         for (std::size_t i = 1; i < around.size(); ++i) {
-            if (value_comes_before<N>(values[around[i - 1]], values[around[i]])) {
+            if (comes_before<N>(values[around[i - 1]], values[around[i]])) {
                 vertex = static_cast<std::uint32_t>(result.source_vertex.size());
                 result.source_vertex.push_back(static_cast<std::uint32_t>(v));
             }

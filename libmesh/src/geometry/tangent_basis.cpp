@@ -18,7 +18,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t basis_grain = 2048;
+constexpr std::size_t grain = 2048;
 
 /// Differences from float arithmetic in another order, in degrees, with a margin for exporters that
 /// convert positions and normals.
@@ -40,7 +40,7 @@ struct Method {
 /// The u direction of each triangle, not averaged.
 std::vector<glm::vec4> triangle_tangents(const Mesh& mesh) {
     std::vector<glm::vec4> result(3 * mesh.triangles.size());
-    parallel_for(mesh.triangles.size(), basis_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const TriangleGradient gradient =
                 triangle_gradient(mesh.positions, mesh.texcoords, mesh.triangles[t]);
@@ -128,7 +128,7 @@ bool has_certain_gradient(const Mesh& mesh, const glm::uvec3& triangle) {
 /// Certainty of each corner: 1 certain, 0 uncertain, 2 if the stored tangent is invalid.
 std::vector<unsigned char> judge_corners(const Mesh& mesh) {
     std::vector<unsigned char> kinds(3 * mesh.triangles.size(), 0);
-    parallel_for(mesh.triangles.size(), basis_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const glm::uvec3& triangle = mesh.triangles[t];
             if (!has_certain_gradient(mesh, triangle)) continue;
@@ -171,7 +171,7 @@ TangentAgreement agreement_with(const Method& method, const Mesh& mesh,
                                 std::span<const unsigned char> kinds, double tolerance) {
     const std::vector<glm::vec4> computed = method.tangents(mesh);
     std::vector<float> turns(computed.size(), std::numeric_limits<float>::quiet_NaN());
-    parallel_for(computed.size(), basis_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(computed.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t corner = begin; corner < end; ++corner) {
             if (kinds[corner] != 1) continue;
             const std::uint32_t v = vertex_of(static_cast<Corner>(corner), mesh.triangles);

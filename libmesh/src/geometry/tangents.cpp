@@ -51,17 +51,17 @@ std::size_t slot_of(float sign) {
     return sign > 0.0F ? 0 : 1;
 }
 
-bool offer_comes_before(const glm::vec3& a, const glm::vec3& b) {
+bool comes_before(const glm::vec3& a, const glm::vec3& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
 /// Most frequent value; ties: the first.
 Offer most_frequent(std::vector<glm::vec3>& values) {
-    std::sort(values.begin(), values.end(), offer_comes_before);
+    std::sort(values.begin(), values.end(), comes_before);
     Offer best;
     std::ptrdiff_t most = 0;
     for (auto first = values.begin(); first != values.end();) {
-        const auto last = std::upper_bound(first, values.end(), *first, offer_comes_before);
+        const auto last = std::upper_bound(first, values.end(), *first, comes_before);
         if (last - first > most) {
             most = last - first;
             best = *first;

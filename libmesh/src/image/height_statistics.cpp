@@ -105,7 +105,7 @@ HeightDepth depth_of(const Heights<float>& heights) {
 }
 
 /// The sum of the mask's absolute values in one row, and the number of finite ones.
-struct RowOfNoise {
+struct NoiseRow {
     double sum = 0.0;
     std::size_t count = 0;
 };
@@ -113,7 +113,7 @@ struct RowOfNoise {
 template <typename Sample>
 double noise_of(const Heights<Sample>& heights) {
     if (heights.width < 3 || heights.height < 3) return 0.0;
-    std::vector<RowOfNoise> rows(static_cast<std::size_t>(heights.height - 2));
+    std::vector<NoiseRow> rows(static_cast<std::size_t>(heights.height - 2));
     parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const int row = static_cast<int>(i) + 1;
@@ -131,8 +131,8 @@ double noise_of(const Heights<Sample>& heights) {
             }
         }
     });
-    RowOfNoise all;
-    for (const RowOfNoise& row : rows) {
+    NoiseRow all;
+    for (const NoiseRow& row : rows) {
         all.sum += row.sum;
         all.count += row.count;
     }

@@ -26,7 +26,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t statistics_texels_per_piece = 1 << 15;
+constexpr std::size_t texels_per_sum = 1 << 15;
 constexpr float longest_without_direction = 1.0F / 16.0F;
 constexpr float facing_back = -0.02F;  // Rounding to 8 bits decodes 0 to values above this one.
 
@@ -135,7 +135,7 @@ MapStatistics map_statistics(const Image& map, const SampleMeaning& meaning, std
         const MapVectors<decltype(sample)> vectors(map, meaning);
         const std::size_t count =
             static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
-        const std::size_t per_piece = statistics_texels_per_piece * step;
+        const std::size_t per_piece = texels_per_sum * step;
         std::vector<Sums> pieces((count + per_piece - 1) / per_piece);
         parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t piece = begin; piece < end; ++piece)

@@ -17,25 +17,25 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t samples_per_level_piece = 1 << 16;
+constexpr std::size_t samples_per_piece = 1 << 16;
 
 /// An intermediate level: samples of 16 bits or float, linear.
 template <typename Value>
-struct MipLevel {
+struct Level {
     std::size_t width = 0;
     std::size_t height = 0;
     std::vector<Value> values;
 };
 
 /// The source texels of one result along a row or column: up to three values, from `first` on.
-struct LevelTaps {
+struct Taps {
     std::size_t first = 0;
     std::array<float, 3> weights{};
     std::size_t count = 0;
 };
 
 /// \param size  the size of the level above; the result has max(size / 2, 1) texels
-LevelTaps taps_of(std::size_t size, std::size_t i) {
+Taps taps_of(std::size_t size, std::size_t i) {
     if (size == 1) return {0, {1.0F}, 1};
     if (size % 2 == 0) return {2 * i, {0.5F, 0.5F}, 2};
     const auto m = static_cast<float>(size / 2);
@@ -54,9 +54,9 @@ Value rounded(float mean) {
 template <int Channels, typename Value, typename Sample, typename Decode>
 void halve_row(const Sample* above, std::size_t width, std::size_t height, std::size_t y,
                Decode decode, Value* row) {
-    const LevelTaps down = taps_of(height, y);
+    const Taps down = taps_of(height, y);
     for (std::size_t x = 0; x < std::max<std::size_t>(width / 2, 1); ++x) {
-        const LevelTaps across = taps_of(width, x);
+        const Taps across = taps_of(width, x);
         for (std::size_t c = 0; c < Channels; ++c) {
             float sum = 0.0F;
             for (std::size_t j = 0; j < down.count; ++j) {
@@ -92,24 +92,23 @@ void halve_even_row(const Sample* upper, std::size_t width, Decode decode, Value
 
 /// \param decode  decode(sample, channel) gives a float, or a uint32_t within 16 bits
 template <int Channels, typename Value, typename Sample, typename Decode>
-MipLevel<Value> halved(const Sample* above, std::size_t width, std::size_t height, Decode decode) {
-    MipLevel<Value> level{
+Level<Value> halved(const Sample* above, std::size_t width, std::size_t height, Decode decode) {
+    Level<Value> level{
         std::max<std::size_t>(width / 2, 1), std::max<std::size_t>(height / 2, 1), {}};
     const std::size_t row_size = level.width * Channels;
     level.values.resize(row_size * level.height);
     const bool is_even = width % 2 == 0 && height % 2 == 0;
-    parallel_for(level.height, samples_per_level_piece / row_size + 1,
-                 [&](std::size_t begin, std::size_t end) {
-                     for (std::size_t y = begin; y < end; ++y) {
-                         Value* row = level.values.data() + y * row_size;
-                         if (is_even) {
-                             halve_even_row<Channels>(above + 2 * y * width * Channels, width,
-                                                      decode, row);
-                         } else {
-                             halve_row<Channels>(above, width, height, y, decode, row);
-                         }
-                     }
-                 });
+    parallel_for(
+        level.height, samples_per_piece / row_size + 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t y = begin; y < end; ++y) {
+                Value* row = level.values.data() + y * row_size;
+                if (is_even) {
+                    halve_even_row<Channels>(above + 2 * y * width * Channels, width, decode, row);
+                } else {
+                    halve_row<Channels>(above, width, height, y, decode, row);
+                }
+            }
+        });
     return level;
 }
 
@@ -121,7 +120,7 @@ std::vector<Image> levels_of(const Image& image, Decode decode, Encode encode) {
     std::vector<Image> result;
     auto width = static_cast<std::size_t>(image.width);
     auto height = static_cast<std::size_t>(image.height);
-    MipLevel<Value> level;
+    Level<Value> level;
     while (width > 1 || height > 1) {
         level = result.empty()
                     ? halved<Channels, Value>(image.as<Sample>().data(), width, height, decode)

@@ -14,7 +14,7 @@ namespace relief {
 namespace {
 
 constexpr float unmatched = -1.0F;
-constexpr std::size_t compare_grain = 4096;
+constexpr std::size_t grain = 4096;
 
 /// Equal directions are the common case and need no arc tangent.
 float degrees_apart(const glm::vec3& a, const glm::vec3& b) {
@@ -61,7 +61,7 @@ CornerDifferences corner_differences(const Mesh& a, const Mesh& b, const CornerM
         result.tangents.assign(count, unmatched);
         result.sign_differs.assign(count, 0);
     }
-    parallel_for(count, compare_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t corner = begin; corner < end; ++corner) {
             if (match.corners[corner] == no_corner_matched) continue;
             const std::uint32_t va = vertex_of(static_cast<Corner>(corner), a.triangles);

@@ -39,12 +39,12 @@ struct NearPair {
     bool is_ambiguous = false;  ///< b's triangle was within the tolerance of several.
 };
 
-constexpr std::size_t near_match_grain = 1024;
+constexpr std::size_t grain = 1024;
 constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t max_in_cell = 256;
 constexpr double radii_in_a_cell = 8.0;
 // Few triangles remain after three rounds, except in clusters.
-constexpr int max_match_rounds = 32;
+constexpr int max_rounds = 32;
 constexpr double narrowing = 8.0;
 constexpr std::size_t max_tolerances = 10;
 
@@ -185,7 +185,7 @@ class NearPairing {
         std::vector<std::uint32_t> asking(left_b_.size());
         for (std::uint32_t i = 0; i < asking.size(); ++i)
             asking[i] = i;
-        for (int i = 0; i < max_match_rounds && !asking.empty(); ++i)
+        for (int i = 0; i < max_rounds && !asking.empty(); ++i)
             asking = round(asking);
         return std::move(pairs_);
     }
@@ -229,7 +229,7 @@ class NearPairing {
     /// Grants requests. \return the triangles that must request again
     std::vector<std::uint32_t> round(const std::vector<std::uint32_t>& asking) {
         std::vector<MethodRequest> requests(asking.size());
-        parallel_for(asking.size(), near_match_grain, [&](std::size_t begin, std::size_t end) {
+        parallel_for(asking.size(), grain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 requests[i] = request_of(left_b_[asking[i]]);
         });

@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t edge_grain = 1024;
+constexpr std::size_t grain = 1024;
 
 // Triangles at an edge lie on each other if their normals are opposite within one degree.
 constexpr float folded_cosine = -0.99984770F;
@@ -179,13 +179,13 @@ FoundEdges find_edges(const DiagnosedMesh& diagnosed) {
     FoundEdges found{std::vector<Copy>(diagnosed.triangles.size(), Copy::none),
                      std::vector<Edge>(3 * diagnosed.triangles.size(), Edge::unremarkable),
                      std::vector<std::uint8_t>(vertices, 0)};
-    parallel_for(vertices, edge_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(vertices, grain, [&](std::size_t begin, std::size_t end) {
         std::vector<TriangleKey> keys;
         for (std::size_t v = begin; v < end; ++v)
             find_copies(corners.at(v), static_cast<std::uint32_t>(v), diagnosed.triangles, keys,
                         found.copies);
     });
-    parallel_for(vertices, edge_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(vertices, grain, [&](std::size_t begin, std::size_t end) {
         Workspace work;
         for (std::size_t v = begin; v < end; ++v) {
             gather_spokes(corners.at(v), diagnosed.triangles, found.copies, work);
