@@ -62,4 +62,12 @@ inline bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
     return a.z < b.z;
 }
 
+/// The largest deviation from unit length by 8-bit storage, the coarsest in use: half a step of
+/// 1/127 in each of three components.
+inline constexpr double unit_tolerance = 0.007;
+
+/// The largest cosine between a normal and its tangent that counts as rounding. 8-bit storage
+/// causes up to 0.014; larger values are intentional.
+inline constexpr double leaning_tolerance = 0.02;
+
 }  // namespace relief

@@ -12,16 +12,27 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
 
 #include "geometry/direction.h"
-#include "geometry/frame_codes.h"
-#include "geometry/unit_tolerance.h"
 #include "octahedral_code.h"
 #include "parallel.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
 namespace {
+
+/// An orthonormal tangent frame.
+struct SoundFrame {
+    glm::dvec3 normal{0.0, 0.0, 1.0};
+    glm::dvec3 tangent{1.0, 0.0, 0.0};
+    bool mirrored = false;  ///< w = -1.
+};
+
+/// Returns the orthonormal frame for a normal and a tangent. Deviations are counted under `index`.
+SoundFrame sound_frame(const glm::vec3& normal, const glm::vec4& tangent, std::size_t index,
+                       Report& found);
 
 // Shortest projection of a unit tangent onto the plane of its normal that floats can distinguish
 // from zero.
@@ -354,8 +365,6 @@ SoundFrame repaired_frame(const glm::vec3& normal, const glm::vec4& tangent, std
     return frame;
 }
 
-}  // namespace
-
 SoundFrame sound_frame(const glm::vec3& normal, const glm::vec4& tangent, std::size_t index,
                        Report& found) {
     const glm::dvec3 n(normal);
@@ -372,6 +381,7 @@ SoundFrame sound_frame(const glm::vec3& normal, const glm::vec4& tangent, std::s
     return {unit, remainder * (1.0 / glm::length(remainder)), tangent.w < 0.0F};
 }
 
+/// \param words  array of words_per_frame() words
 void encode_frame(const SoundFrame& frame, FrameEncoding encoding, FrameRounding rounding,
                   std::uint32_t* words) {
     switch (encoding) {
@@ -394,6 +404,7 @@ void encode_frame(const SoundFrame& frame, FrameEncoding encoding, FrameRounding
     }
 }
 
+/// \param words  array of words_per_frame() words
 SoundFrame decode_frame(const std::uint32_t* words, FrameEncoding encoding, std::size_t index,
                         Report& found) {
     switch (encoding) {
@@ -416,8 +427,6 @@ SoundFrame decode_frame(const std::uint32_t* words, FrameEncoding encoding, std:
     }
     return Angle<16, 31>::decode(words);
 }
-
-namespace {
 
 constexpr std::size_t frames_per_piece = 1 << 12;
 

@@ -10,8 +10,8 @@
 
 #include "geometry/corners.h"
 #include "geometry/direction.h"
-#include "geometry/disjoint_sets.h"
 #include "geometry/portable_math.h"
+#include "geometry/weld.h"
 #include "parallel.h"
 
 namespace relief {
@@ -28,7 +28,7 @@ struct Spoke {
     std::uint32_t group;   ///< Smoothing group of its triangle, 0 if the mesh has none.
 };
 
-bool comes_before(const Spoke& a, const Spoke& b) {
+bool spoke_comes_before(const Spoke& a, const Spoke& b) {
     if (a.neighbor != b.neighbor) return a.neighbor < b.neighbor;
     return a.group != b.group ? a.group < b.group : a.corner < b.corner;
 }
@@ -110,7 +110,7 @@ class FansAtPosition {
             for (Spoke& spoke : spokes_)
                 spoke.neighbor = seen_through_.of(spoke.neighbor);
         }
-        std::sort(spokes_.begin(), spokes_.end(), comes_before);
+        std::sort(spokes_.begin(), spokes_.end(), spoke_comes_before);
     }
 
     [[nodiscard]] const glm::vec3& normal_at(const Spoke& spoke) const {

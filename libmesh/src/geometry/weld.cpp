@@ -16,7 +16,6 @@
 #include <utility>
 
 #include "geometry/direction.h"
-#include "geometry/disjoint_sets.h"
 #include "geometry/weld.h"
 #include "large_memory.h"
 #include "parallel.h"

@@ -6,8 +6,11 @@
 /// equals no other. Expected time is linear.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -55,5 +58,35 @@ std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
 /// \param tolerance  finite and above 0
 std::vector<std::uint32_t> weld_near_positions(std::span<const glm::vec3> positions,
                                                double tolerance);
+
+/// Disjoint sets of numbers that can be joined, in nearly constant time per operation. The
+/// representative of each set is its smallest element.
+class DisjointSets {
+  public:
+    explicit DisjointSets(std::size_t count = 0) { reset(count); }
+
+    /// Starts with `count` sets of one element.
+    void reset(std::size_t count) {
+        parents_.resize(count);
+        std::iota(parents_.begin(), parents_.end(), 0U);
+    }
+
+    std::uint32_t find(std::uint32_t element) {
+        while (parents_[element] != element) {
+            parents_[element] = parents_[parents_[element]];
+            element = parents_[element];
+        }
+        return element;
+    }
+
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = find(a);
+        b = find(b);
+        parents_[std::max(a, b)] = std::min(a, b);
+    }
+
+  private:
+    std::vector<std::uint32_t> parents_;
+};
 
 }  // namespace relief

@@ -16,11 +16,9 @@
 
 #include "geometry/direction.h"
 #include "geometry/texture_gradient.h"
-#include "geometry/unit_tolerance.h"
 #include "geometry/weld.h"
 #include "parallel.h"
 #include "topology/diagnose_parts.h"
-#include "topology/texture_overlap.h"
 
 namespace relief {
 namespace {

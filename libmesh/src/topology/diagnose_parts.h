@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "geometry/corners.h"
@@ -71,5 +72,20 @@ void diagnose_frames(const DiagnosedMesh& diagnosed, Tally& tally);
 
 /// Checks texture coordinates, except for overlaps.
 void diagnose_texture(const DiagnosedMesh& diagnosed, Tally& tally);
+
+struct TextureOverlap {
+    std::vector<std::uint8_t> overlapping;  ///< Per triangle: 1 if it shares a texel.
+    int raster = 0;                         ///< Texels along each side of the raster.
+};
+
+/// Finds triangles that share texels.
+///
+/// Texture coordinates are used as stored. Two triangles overlap if the center of a texel lies
+/// inside both, at least a thousandth of a texel from every edge, so that rounding does not make
+/// neighbors overlap. The raster covers the bounding box of all finite texture coordinates.
+/// Triangles that are not finite or have no area in the image overlap nothing. The time is nearly
+/// linear; see texture_overlap.cpp.
+TextureOverlap texture_overlap(std::span<const glm::vec2> texcoords,
+                               std::span<const glm::uvec3> triangles);
 
 }  // namespace relief

@@ -8,8 +8,6 @@
 //
 // The result does not depend on the order of triangles: overlapping triangles are those that share
 // a texel.
-#include "topology/texture_overlap.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +15,7 @@
 #include <optional>
 
 #include "geometry/direction.h"
+#include "topology/diagnose_parts.h"
 
 namespace relief {
 namespace {

@@ -17,7 +17,7 @@
 #include "relief/mesh/report.h"
 #include "support/hard_meshes.h"
 #include "support/shapes.h"
-#include "topology/texture_overlap.h"
+#include "topology/diagnose_parts.h"
 
 namespace relief {
 namespace {

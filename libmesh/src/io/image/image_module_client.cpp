@@ -170,7 +170,7 @@ class ModuleSource final : public RowSource {
         // Whole tiles, otherwise a multiple of 64 rows, which compressed formats decode together.
         const auto tile = static_cast<std::size_t>(module.row_grain(reader_.get()));
         grain_ = tile > 1 ? tile : 64;
-        band_rows_ = std::max<std::size_t>(bytes_per_band / row_bytes_ / grain_, 1) * grain_;
+        band_rows_ = std::max<std::size_t>(module_bytes_per_band / row_bytes_ / grain_, 1) * grain_;
     }
 
     [[nodiscard]] const ImageInfo& info() const override { return info_; }
@@ -329,7 +329,7 @@ class ModuleSink final : public RowSink {
     explicit ModuleSink(const RowSinkPlan& plan)
         : plan_(plan),
           row_bytes_(plan.row_bytes()),
-          band_rows_(std::max<std::size_t>(bytes_per_band / row_bytes_ / band_grain, 1) *
+          band_rows_(std::max<std::size_t>(module_bytes_per_band / row_bytes_ / band_grain, 1) *
                      band_grain) {
         const Metadata entries = entries_for(plan.format, plan.metadata);
         std::vector<const char*> keys, values;
