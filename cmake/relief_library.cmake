@@ -60,6 +60,7 @@ function(relief_add_library component folder)
                    DEFINE_SYMBOL "")
     set(needed ${RELIEF_NEEDED_BY_${component}})
     list(TRANSFORM needed PREPEND relief::)
+    target_compile_features(${target} PUBLIC cxx_std_20)
     target_include_directories(
         ${target}
         PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${folder}/include>

@@ -25,11 +25,12 @@
 #include <vector>
 
 #include "bake/triangle_clusters.h"
+#include "relief/export.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// A ray in the space of the meshes.
 struct Ray {

@@ -11,7 +11,9 @@
 #include <string>
 #include <string_view>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// The bytes of a file, as text. \throws FileError if it is missing, a folder or unreadable
 std::string read_file(const std::filesystem::path& file);

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <span>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// A temporary file beside the file that it will replace.
 ///

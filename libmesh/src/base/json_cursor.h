@@ -20,7 +20,9 @@
 #include <utility>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 class JsonCursor {
   public:

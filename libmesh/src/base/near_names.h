@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// The known names that are nearest to an unknown one, nearest first, at most three.
 ///

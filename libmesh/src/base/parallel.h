@@ -9,9 +9,10 @@
 #include <functional>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// Calls body(begin, end) for disjoint pieces that cover [0, count), on all threads.
 ///

@@ -9,9 +9,10 @@
 #include <filesystem>
 #include <string>
 
+#include "relief/export.h"
 #include "relief/mesh/execution.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The Progress of this thread; null if there is none.
 extern constinit thread_local Progress* current_progress;

@@ -8,6 +8,8 @@
 /// same results.
 #pragma once
 
+#include "relief/export.h"
+
 #if defined(__x86_64__)
 #define RELIEF_TARGET_256 [[gnu::target("avx2,fma,bmi,bmi2"), gnu::noinline]]
 #define RELIEF_TARGET_512 \
@@ -18,7 +20,7 @@
 #endif
 #define RELIEF_INLINE [[gnu::always_inline]] inline
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// Bits of a vector register.
 enum class VectorTarget { any = 128, wide = 256, widest = 512 };

@@ -6,9 +6,10 @@
 
 #include <functional>
 
+#include "relief/export.h"
 #include "relief/mesh/bump.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// The grain size of parallel loops over rows.
 inline constexpr std::size_t bump_texels_per_piece = 1 << 16;

@@ -9,7 +9,9 @@
 #include <optional>
 #include <span>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// Returns the first corner (3 per triangle) that refers to a vertex that does not exist.
 std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,

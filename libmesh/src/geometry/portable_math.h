@@ -6,7 +6,10 @@
 /// Errors are at most 4 units of the last place, of pow() 60.
 #pragma once
 
-namespace relief::portable {
+#include "relief/export.h"
+
+namespace relief {
+namespace RELIEF_API portable {
 
 /// \param x  radians; not finite: NaN. Beyond 1e5 turns count as 2 * std::numbers::pi
 double sin(double x);
@@ -28,4 +31,5 @@ double erf(double x);
 /// \param y  greater than 0, and small enough for the result to be finite
 double pow(double x, double y);
 
-}  // namespace relief::portable
+}  // namespace portable
+}  // namespace relief

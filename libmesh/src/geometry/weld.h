@@ -14,7 +14,9 @@
 #include <span>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 /// For every vertex, the smallest index of a vertex with an equal position (its position class).
 std::vector<std::uint32_t> weld_positions(std::span<const glm::vec3> positions);
 

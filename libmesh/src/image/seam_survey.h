@@ -8,9 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/height_map.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 class SeamSurvey {
   public:

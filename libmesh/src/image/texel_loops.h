@@ -12,10 +12,11 @@
 #include <type_traits>
 
 #include "parallel.h"
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 inline constexpr std::size_t texels_per_piece = 1 << 14;
 
 /// Calls each(texel, report) for every texel in parallel; the findings come together in `report`.

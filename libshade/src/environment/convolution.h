@@ -9,9 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Blurred radiance
 

@@ -7,9 +7,10 @@
 
 #include <glm/glm.hpp>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // The distribution
 

@@ -16,12 +16,14 @@
 #include <vector>
 
 #include "environment/convolution.h"
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 
-namespace relief::reference {
+namespace relief {
+namespace RELIEF_API reference {
 
 /// The record of a ray on its way to a color: every discrete decision (which texel, which side of a
 /// light), and every place in a texture. Rays whose decisions differ may differ by a jump, so that
@@ -132,4 +134,5 @@ class EnvironmentLookup {
 /// GGX's directional albedo: x multiplies f0, y is added (environment/ggx.h).
 glm::dvec2 directional_albedo(double n_dot_v, double roughness);
 
-}  // namespace relief::reference
+}  // namespace reference
+}  // namespace relief

@@ -8,9 +8,11 @@
 
 #include "reference/surface.h"
 #include "reference/visibility.h"
+#include "relief/export.h"
 #include "relief/shade/material.h"
 
-namespace relief::reference {
+namespace relief {
+namespace RELIEF_API reference {
 
 /// The reflectance of a smooth boundary by Fresnel's formulas for unpolarized light: the mean of
 /// both polarizations.
@@ -31,4 +33,5 @@ struct Shaded {
 
 Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material, Trace& trace);
 
-}  // namespace relief::reference
+}  // namespace reference
+}  // namespace relief

@@ -15,10 +15,12 @@
 
 #include "reference/lookups.h"
 #include "reference/visibility.h"
+#include "relief/export.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 
-namespace relief::reference {
+namespace relief {
+namespace RELIEF_API reference {
 
 /// One instance of a mesh, by vertex.
 struct PreparedInstance {
@@ -73,4 +75,5 @@ Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material
 /// bends its normal.
 Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int corner);
 
-}  // namespace relief::reference
+}  // namespace reference
+}  // namespace relief

@@ -12,11 +12,14 @@
 #include <span>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 class EmbreeScene;
 }
 
-namespace relief::reference {
+namespace relief {
+namespace RELIEF_API reference {
 
 /// Triangles of one instance; both spans must outlive their use.
 struct ViewMesh {
@@ -54,4 +57,5 @@ class Visibility {
     std::unique_ptr<EmbreeScene> embree_;
 };
 
-}  // namespace relief::reference
+}  // namespace reference
+}  // namespace relief
