@@ -284,18 +284,6 @@ std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageS
     return means;
 }
 
-AlphaMode alpha_mode_from(GltfMaterial::AlphaMode mode) {
-    switch (mode) {
-        case GltfMaterial::AlphaMode::mask:
-            return AlphaMode::mask;
-        case GltfMaterial::AlphaMode::blend:
-            return AlphaMode::blend;
-        case GltfMaterial::AlphaMode::opaque:
-            break;
-    }
-    return AlphaMode::opaque;
-}
-
 /// Sets textures and alpha, which are the same in both material models.
 void add_textures(Material& result, const GltfMaterial& material, std::size_t index,
                   Report& report) {
@@ -313,7 +301,7 @@ void add_textures(Material& result, const GltfMaterial& material, std::size_t in
     if (const auto normal = texture(material.normal_texture)) {
         result.normal_map = NormalMap{*normal, material.normal_scale, Green::up, std::nullopt};
     }
-    result.alpha_mode = alpha_mode_from(material.alpha_mode);
+    result.alpha_mode = material.alpha_mode;
     result.opacity = usable(material.base_color.a, 1.0F);
     result.alpha_cutoff = usable(material.alpha_cutoff, max_reflectance);
 }
@@ -405,15 +393,15 @@ void add_lights(const GltfView& view, SceneGraph& graph) {
         const PointLight point{glm::vec3(0.0F), power, light.range};
         const Carried carried{item.node};
         switch (light.type) {
-            case GltfLight::Type::directional:
+            case LightType::directional:
                 scene.directional_lights.push_back({glm::vec3(0.0F, 0.0F, -1.0F), power});
                 graph.directional_lights.push_back(carried);
                 break;
-            case GltfLight::Type::point:
+            case LightType::point:
                 scene.point_lights.push_back(point);
                 graph.point_lights.push_back(carried);
                 break;
-            case GltfLight::Type::spot:
+            case LightType::spot:
                 scene.spot_lights.push_back(
                     {point, glm::vec3(0.0F, 0.0F, -1.0F), light.inner_cone, light.outer_cone});
                 graph.spot_lights.push_back(carried);
@@ -457,31 +445,10 @@ void add_nodes(const GltfView& view, SceneGraph& graph, Report& report) {
     }
 }
 
-KeyChannel channel_from(const GltfChannel& channel) {
-    KeyChannel result;
-    result.node = channel.node;
-    result.property = channel.path == GltfChannel::Path::translation
-                          ? KeyChannel::Property::translation
-                      : channel.path == GltfChannel::Path::rotation ? KeyChannel::Property::rotation
-                                                                    : KeyChannel::Property::scale;
-    result.interpolation = channel.interpolation == GltfChannel::Interpolation::step
-                               ? KeyInterpolation::step
-                           : channel.interpolation == GltfChannel::Interpolation::linear
-                               ? KeyInterpolation::linear
-                               : KeyInterpolation::cubic_spline;
-    result.times = channel.times;
-    result.values = channel.values;
-    return result;
-}
-
 /// Adds animations that move a node. Those of skins and morph targets have no channels here.
 void add_animations(const GltfDocument& document, SceneGraph& graph, Report& report) {
-    for (const GltfAnimation& animation : document.animations(report)) {
-        if (animation.channels.empty()) continue;
-        KeyAnimation keys{animation.name, {}};
-        for (const GltfChannel& channel : animation.channels)
-            keys.channels.push_back(channel_from(channel));
-        graph.animations.emplace_back(std::move(keys));
+    for (KeyAnimation& animation : document.animations(report)) {
+        if (!animation.channels.empty()) graph.animations.emplace_back(std::move(animation));
     }
 }
 

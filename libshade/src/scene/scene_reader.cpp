@@ -42,11 +42,6 @@ glm::vec3 vector_in(const JsonCursor& object, const char* key, const glm::vec3& 
 
 // Lights and cameras
 
-enum class LightType { directional, point, spot };
-constexpr EnumName<LightType> light_types[] = {{"directional", LightType::directional},
-                                               {"point", LightType::point},
-                                               {"spot", LightType::spot}};
-
 /// Refuses members that this type of light does not have.
 void check_light_members(const JsonCursor& object, LightType type) {
     std::vector<std::string> known = {"type",    "color",    "intensity",
@@ -90,7 +85,7 @@ void hang(std::vector<Carried>& carried, std::size_t index, std::optional<std::s
 /// Adds a light on a node, or without one in the world.
 void add_light(const JsonCursor& object, std::optional<std::size_t> node, JsonImages& images,
                SceneGraph& graph) {
-    const LightType type = one_of(object.at("type"), light_types);
+    const LightType type = one_of(object.at("type"), enum_names<LightType>);
     check_light_members(object, type);
     Scene& scene = graph.scene;
     if (type == LightType::directional) {

@@ -49,10 +49,11 @@ TEST(Lights, KeepTheirIrradianceWhenTheirKindChanges) {
     spot.point = near;
     spot.direction_world = {0.0F, -3.0F, 4.0F};
     for (const AnyLight& light : {AnyLight(far), AnyLight(near), AnyLight(even), AnyLight(spot)}) {
-        for (const LightKind kind : {LightKind::directional, LightKind::point, LightKind::spot}) {
-            SCOPED_TRACE(testing::Message() << name_of(kind_of(light)) << " to " << name_of(kind));
-            const AnyLight other = converted_to(light, kind, lit_sphere);
-            EXPECT_EQ(kind_of(other), kind);
+        for (const LightType type : {LightType::directional, LightType::point, LightType::spot}) {
+            SCOPED_TRACE(testing::Message()
+                         << enum_name(type_of(light)) << " to " << enum_name(type));
+            const AnyLight other = converted_to(light, type, lit_sphere);
+            EXPECT_EQ(type_of(other), type);
             EXPECT_LT(glm::distance(irradiance_at_center(other), irradiance_at_center(light)),
                       1e-5F * glm::length(irradiance_at_center(light)));
             EXPECT_LT(glm::distance(direction_at_center(other), direction_at_center(light)), 1e-6F);
@@ -67,8 +68,8 @@ TEST(Lights, KeepTheirIrradianceWhenTheirKindChanges) {
 }
 
 TEST(Lights, ArePlacedOutsideTheModel) {
-    for (const LightKind kind : {LightKind::point, LightKind::spot}) {
-        const AnyLight light = converted_to(DirectionalLight{}, kind, lit_sphere);
+    for (const LightType type : {LightType::point, LightType::spot}) {
+        const AnyLight light = converted_to(DirectionalLight{}, type, lit_sphere);
         const auto* spot = std::get_if<SpotLight>(&light);
         const PointLight& point = spot != nullptr ? spot->point : std::get<PointLight>(light);
         EXPECT_GT(glm::distance(point.position_world, lit_sphere.center), lit_sphere.radius);
@@ -78,8 +79,8 @@ TEST(Lights, ArePlacedOutsideTheModel) {
 TEST(Lights, KeepTheirHighlightColor) {
     DirectionalLight far;
     far.highlight_irradiance = glm::vec3(0.25F);
-    const AnyLight point = converted_to(far, LightKind::point, lit_sphere);
-    const AnyLight again = converted_to(point, LightKind::directional, lit_sphere);
+    const AnyLight point = converted_to(far, LightType::point, lit_sphere);
+    const AnyLight again = converted_to(point, LightType::directional, lit_sphere);
     ASSERT_TRUE(std::get<DirectionalLight>(again).highlight_irradiance);
     EXPECT_NEAR(std::get<DirectionalLight>(again).highlight_irradiance->x, 0.25F, 1e-6F);
 }
@@ -90,10 +91,10 @@ TEST(Lights, AtTheCenterOrWithoutADirectionStayFinite) {
     DirectionalLight nowhere;
     nowhere.direction_world = glm::vec3(0.0F);
     for (const AnyLight& light : {AnyLight(inside), AnyLight(nowhere)}) {
-        for (const LightKind kind : {LightKind::directional, LightKind::point, LightKind::spot}) {
-            if (kind == kind_of(light)) continue;
+        for (const LightType type : {LightType::directional, LightType::point, LightType::spot}) {
+            if (type == type_of(light)) continue;
             Scene scene;
-            set_lights(scene, {converted_to(light, kind, lit_sphere)});
+            set_lights(scene, {converted_to(light, type, lit_sphere)});
             EXPECT_NO_THROW(validate_transforms(scene));
         }
     }
@@ -107,9 +108,9 @@ TEST(Lights, AreListedByKindAndRestored) {
     scene.directional_lights.resize(1);
     const std::vector<AnyLight> lights = lights_of(scene);
     ASSERT_EQ(lights.size(), 4U);
-    EXPECT_EQ(kind_of(lights[0]), LightKind::directional);
+    EXPECT_EQ(type_of(lights[0]), LightType::directional);
     EXPECT_EQ(std::get<PointLight>(lights[2]).intensity.x, 7.0F);
-    EXPECT_EQ(kind_of(lights[3]), LightKind::spot);
+    EXPECT_EQ(type_of(lights[3]), LightType::spot);
     Scene other;
     other.point_lights.resize(5);
     set_lights(other, lights);
@@ -142,7 +143,7 @@ TEST(LightRowsTest, KeepTheIdWhenTheKindChanges) {
     EXPECT_NE(rows[0].id, rows[1].id);
     const unsigned first = rows[0].id;
     const unsigned second = rows[1].id;
-    rows[0].light = converted_to(rows[0].light, LightKind::spot, BoundingSphere{});
+    rows[0].light = converted_to(rows[0].light, LightType::spot, BoundingSphere{});
     rows[0].speed = 1.0F;
     lights.set(scene, rows);
     EXPECT_EQ(scene.spot_lights.size(), 1U);

@@ -80,13 +80,8 @@ SpotLight spot_at(const PointLight& point, const BoundingSphere& sphere) {
 
 }  // namespace
 
-LightKind kind_of(const AnyLight& light) {
-    return static_cast<LightKind>(light.index());
-}
-
-const char* name_of(LightKind kind) {
-    if (kind == LightKind::directional) return "directional";
-    return kind == LightKind::point ? "point" : "spot";
+LightType type_of(const AnyLight& light) {
+    return static_cast<LightType>(light.index());
 }
 
 std::vector<AnyLight> lights_of(const Scene& scene) {
@@ -110,16 +105,16 @@ void set_lights(Scene& scene, const std::vector<AnyLight>& lights) {
     }
 }
 
-AnyLight new_light(LightKind kind, const BoundingSphere& sphere) {
+AnyLight new_light(LightType type, const BoundingSphere& sphere) {
     DirectionalLight light;
     light.direction_world = -upper_right;
-    return converted_to(light, kind, sphere);
+    return converted_to(light, type, sphere);
 }
 
-AnyLight converted_to(const AnyLight& light, LightKind kind, const BoundingSphere& sphere) {
-    if (kind == kind_of(light)) return light;
+AnyLight converted_to(const AnyLight& light, LightType type, const BoundingSphere& sphere) {
+    if (type == type_of(light)) return light;
     const Illumination illumination = illumination_of(light, sphere);
-    if (kind == LightKind::directional)
+    if (type == LightType::directional)
         return DirectionalLight{-illumination.from,
                                 glm::min(illumination.irradiance, glm::vec3(max_light)),
                                 illumination.highlight};
@@ -127,7 +122,7 @@ AnyLight converted_to(const AnyLight& light, LightKind kind, const BoundingSpher
     PointLight point = point_light_for(illumination, sphere);
     if (const auto* spot = std::get_if<SpotLight>(&light)) point = spot->point;
     if (const auto* own = std::get_if<PointLight>(&light)) point = *own;
-    if (kind == LightKind::point) return point;
+    if (type == LightType::point) return point;
     return spot_at(point, sphere);
 }
 
@@ -149,11 +144,11 @@ void turn(AnyLight& light, const glm::mat3& rotation, const glm::vec3& center) {
 void LightRows::update(const Scene& scene) {
     std::vector<Entry> now;
     for (const AnyLight& light : lights_of(scene)) {
-        const LightKind kind = kind_of(light);
+        const LightType type = type_of(light);
         const auto same = std::find_if(entries_.begin(), entries_.end(),
-                                       [&](const Entry& entry) { return entry.kind == kind; });
+                                       [&](const Entry& entry) { return entry.type == type; });
         if (same == entries_.end()) {
-            now.push_back({kind, ++last_id_, 0.0F});
+            now.push_back({type, ++last_id_, 0.0F});
         } else {
             now.push_back(*same);
             entries_.erase(same);
@@ -172,12 +167,12 @@ std::vector<LightRow> LightRows::rows(const Scene& scene) const {
 
 void LightRows::set(Scene& scene, std::vector<LightRow> rows) {
     std::stable_sort(rows.begin(), rows.end(), [](const LightRow& a, const LightRow& b) {
-        return kind_of(a.light) < kind_of(b.light);
+        return type_of(a.light) < type_of(b.light);
     });
     entries_.clear();
     std::vector<AnyLight> lights;
     for (const LightRow& row : rows) {
-        entries_.push_back({kind_of(row.light), row.id != 0 ? row.id : ++last_id_, row.speed});
+        entries_.push_back({type_of(row.light), row.id != 0 ? row.id : ++last_id_, row.speed});
         lights.push_back(row.light);
     }
     set_lights(scene, lights);
@@ -204,7 +199,7 @@ void LightRows::advance(Scene& scene, double seconds, const glm::vec3& center) c
 
 namespace {
 
-constexpr LightKind kinds[] = {LightKind::directional, LightKind::point, LightKind::spot};
+constexpr LightType types[] = {LightType::directional, LightType::point, LightType::spot};
 
 /// Edits a color as a normalized color and an intensity.
 bool edit_light_color(glm::vec3& irradiance) {
@@ -263,9 +258,9 @@ bool edit_light(AnyLight& light) {
 
 /// Edits the kind, the parameters and the rotation. \return whether anything changed
 bool edit_row(LightRow& row, const BoundingSphere& sphere) {
-    LightKind kind = kind_of(row.light);
-    bool changed = choose("Kind", kind, {"Directional", "Point", "Spot"});
-    if (changed) row.light = converted_to(row.light, kind, sphere);
+    LightType type = type_of(row.light);
+    bool changed = choose("Kind", type, {"Directional", "Point", "Spot"});
+    if (changed) row.light = converted_to(row.light, type, sphere);
     changed |= edit_light(row.light);
     float speed = glm::degrees(row.speed);
     if (slide("Rotation", speed, {-180.0F, 180.0F, "%.0f deg/s"})) {
@@ -283,7 +278,7 @@ bool edit_rows(std::vector<LightRow>& rows, const BoundingSphere& sphere) {
         const std::string name = fmt::format("Light {}", i + 1);
         ImGui::PushID(static_cast<int>(rows[i].id));
         const bool is_open =
-            ImGui::TreeNode("light", "%s, %s", name.c_str(), name_of(kind_of(rows[i].light)));
+            ImGui::TreeNode("light", "%s, %s", name.c_str(), enum_name(type_of(rows[i].light)));
         probe_item(name);
         if (is_open) {
             changed |= edit_row(rows[i], sphere);
@@ -300,13 +295,13 @@ bool edit_rows(std::vector<LightRow>& rows, const BoundingSphere& sphere) {
 bool add_rows(std::vector<LightRow>& rows, const BoundingSphere& sphere) {
     bool changed = false;
     ImGui::TextUnformatted("Add");
-    for (const LightKind kind : kinds) {
+    for (const LightType type : types) {
         ImGui::SameLine();
-        if (ImGui::Button(name_of(kind))) {
-            rows.push_back({new_light(kind, sphere)});
+        if (ImGui::Button(enum_name(type))) {
+            rows.push_back({new_light(type, sphere)});
             changed = true;
         }
-        probe_item(fmt::format("Add {}", name_of(kind)));
+        probe_item(fmt::format("Add {}", enum_name(type)));
     }
     return changed;
 }

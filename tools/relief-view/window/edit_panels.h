@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "relief/mesh/gltf_document.h"
 #include "relief/shade/scene.h"
 #include "window/orbit_camera.h"
 
@@ -17,13 +18,10 @@ namespace relief::tools {
 
 // Lights.
 
-enum class LightKind { directional, point, spot };
-
-/// The alternatives are in the order of LightKind.
+/// The alternatives are in the order of LightType.
 using AnyLight = std::variant<DirectionalLight, PointLight, SpotLight>;
 
-LightKind kind_of(const AnyLight& light);
-const char* name_of(LightKind kind);
+LightType type_of(const AnyLight& light);
 
 /// All lights: directional lights first, then point lights, then spotlights.
 std::vector<AnyLight> lights_of(const Scene& scene);
@@ -32,12 +30,12 @@ std::vector<AnyLight> lights_of(const Scene& scene);
 void set_lights(Scene& scene, const std::vector<AnyLight>& lights);
 
 /// A new light at the upper right, for a model of this size.
-AnyLight new_light(LightKind kind, const BoundingSphere& sphere);
+AnyLight new_light(LightType type, const BoundingSphere& sphere);
 
 /// Converts a light to another kind with the same irradiance at the center of the sphere. A
 /// directional light that becomes a point light or spotlight is placed outside the sphere, in the
 /// direction of the light. The conversion to a directional light loses the range and falloff.
-AnyLight converted_to(const AnyLight& light, LightKind kind, const BoundingSphere& sphere);
+AnyLight converted_to(const AnyLight& light, LightType type, const BoundingSphere& sphere);
 
 /// Rotates the position and direction of a light about a center.
 void turn(AnyLight& light, const glm::mat3& rotation, const glm::vec3& center);
@@ -71,7 +69,7 @@ class LightRows {
 
   private:
     struct Entry {
-        LightKind kind;
+        LightType type;
         unsigned id;
         float speed;
     };

@@ -642,7 +642,7 @@ nlohmann::ordered_json ViewerState::json(const RenderedPicture& drawn) const {
     state["lights"] = nlohmann::json::array();
     for (const LightRow& row : light_rows()) {
         state["lights"].push_back(
-            {{"kind", name_of(kind_of(row.light))}, {"speed", glm::degrees(row.speed)}});
+            {{"kind", enum_name(type_of(row.light))}, {"speed", glm::degrees(row.speed)}});
     }
     if (drawn.plan) state["effects"] = effects_in(*drawn.plan);
     return state;

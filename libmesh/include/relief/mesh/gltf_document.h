@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
@@ -82,6 +83,17 @@ struct GltfImage {
     std::string fault{};
 };
 
+/// The meaning of alpha.
+enum class AlphaMode {
+    opaque,  ///< Alpha is ignored.
+    mask,    ///< The surface exists where alpha is at least alpha_cutoff.
+    blend,   ///< Alpha blends the surface over its background; drawn farthest first.
+};
+
+template <>
+inline constexpr auto enum_names<AlphaMode> = std::to_array<EnumName<AlphaMode>>(
+    {{"opaque", AlphaMode::opaque}, {"mask", AlphaMode::mask}, {"blend", AlphaMode::blend}});
+
 /// A material as glTF defines it; colors are linear.
 struct GltfMaterial {
     std::string name;
@@ -96,15 +108,23 @@ struct GltfMaterial {
     std::optional<GltfTexture> occlusion_texture;  ///< Red: the share of ambient light.
     float normal_scale = 1.0F;
     float occlusion_strength = 1.0F;
-    enum class AlphaMode { opaque, mask, blend } alpha_mode = AlphaMode::opaque;
-    float alpha_cutoff = 0.5F;  ///< For AlphaMode::mask: texels with less alpha are invisible.
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;
     bool double_sided = false;
     bool unlit = false;  ///< KHR_materials_unlit
 };
 
+enum class LightType { directional, point, spot };
+
+template <>
+inline constexpr auto enum_names<LightType> =
+    std::to_array<EnumName<LightType>>({{"directional", LightType::directional},
+                                        {"point", LightType::point},
+                                        {"spot", LightType::spot}});
+
 /// KHR_lights_punctual: the light points along its node's -z.
 struct GltfLight {
-    enum class Type { directional, point, spot } type = Type::directional;
+    LightType type = LightType::directional;
     std::string name;
     glm::vec3 color{1.0F};
     float intensity = 1.0F;      ///< lux for directional, candela for the others
@@ -133,23 +153,31 @@ struct GltfNode {
     bool has_morph_targets = false;  ///< True if a primitive of its mesh has morph targets.
 };
 
-/// The keys of one property of one node.
-struct GltfChannel {
-    enum class Path { translation, rotation, scale };
-    enum class Interpolation { step, linear, cubic_spline };
+/// The interpolation between two keys, as in glTF.
+enum class KeyInterpolation {
+    step,          ///< The value of the previous key.
+    linear,        ///< Linear; rotations along the shortest arc.
+    cubic_spline,  ///< Cubic Hermite, with a tangent before and after each key.
+};
+
+/// The keys of one property of a node. The first value holds before the first key, the last value
+/// after the last key.
+struct KeyChannel {
+    enum class Property { translation, rotation, scale };
 
     std::size_t node = 0;
-    Path path = Path::translation;
-    Interpolation interpolation = Interpolation::linear;
-    std::vector<float> times;  ///< Seconds.
-    /// One for each time, or three for cubic_spline: in-tangent, value, out-tangent. Rotations are
-    /// quaternions x, y, z, w; for other paths w is 0.
+    Property property = Property::translation;
+    KeyInterpolation interpolation = KeyInterpolation::linear;
+    std::vector<float> times;  ///< Ascending, at least one.
+    /// One for each time, or three for cubic_spline: in-tangent, value, out-tangent. Quaternions
+    /// are x, y, z, w of any length but 0; w of other properties is ignored.
     std::vector<glm::vec4> values;
 };
 
-struct GltfAnimation {
+/// Key frames that repeat from the start.
+struct KeyAnimation {
     std::string name;
-    std::vector<GltfChannel> channels;
+    std::vector<KeyChannel> channels;
 };
 
 /// An item of the document with its transform to the world (of the default scene, or the first
@@ -320,7 +348,7 @@ class GltfDocument {
     /// \param report  counts channels that are left out: those of morph weights or of extensions,
     ///         and those of nodes with a matrix, which glTF does not animate; also those with times
     ///         or values that are not finite, of the wrong number, or of the wrong type
-    [[nodiscard]] std::vector<GltfAnimation> animations(Report& report) const;
+    [[nodiscard]] std::vector<KeyAnimation> animations(Report& report) const;
 
     /// Returns the compression of the file, one entry for each extension; empty if there is none.
     [[nodiscard]] std::vector<GltfCompression> compression() const;

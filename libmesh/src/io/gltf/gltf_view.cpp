@@ -173,7 +173,6 @@ GltfMaterial material_from(const Json& root, const Json& json) {
         material.emission *= float_in(*strength, "emissiveStrength", 1.0F);
     }
     const std::string mode = text_in(json, "alphaMode");
-    using AlphaMode = GltfMaterial::AlphaMode;
     material.alpha_mode = mode == "MASK"    ? AlphaMode::mask
                           : mode == "BLEND" ? AlphaMode::blend
                                             : AlphaMode::opaque;
@@ -216,10 +215,9 @@ GltfLight light_from(const Json& json) {
     GltfLight light;
     light.name = text_in(json, "name");
     const std::string type = text_in(json, "type");
-    using Type = GltfLight::Type;
-    light.type = type == "directional" ? Type::directional
-                 : type == "spot"      ? Type::spot
-                                       : Type::point;
+    light.type = type == "directional" ? LightType::directional
+                 : type == "spot"      ? LightType::spot
+                                       : LightType::point;
     light.color = vector_in(json, "color", glm::vec3(1.0F));
     light.intensity = float_in(json, "intensity", 1.0F);
     if (json.contains("range")) light.range = float_in(json, "range", 0.0F);
@@ -377,30 +375,31 @@ GltfView GltfDocument::view() const {
 
 namespace {
 
-std::optional<GltfChannel::Path> path_from(const std::string& path) {
-    if (path == "translation") return GltfChannel::Path::translation;
-    if (path == "rotation") return GltfChannel::Path::rotation;
-    if (path == "scale") return GltfChannel::Path::scale;
+std::optional<KeyChannel::Property> property_from(const std::string& path) {
+    if (path == "translation") return KeyChannel::Property::translation;
+    if (path == "rotation") return KeyChannel::Property::rotation;
+    if (path == "scale") return KeyChannel::Property::scale;
     return std::nullopt;
 }
 
-GltfChannel::Interpolation interpolation_from(const std::string& name) {
-    if (name == "STEP") return GltfChannel::Interpolation::step;
-    if (name == "CUBICSPLINE") return GltfChannel::Interpolation::cubic_spline;
-    return GltfChannel::Interpolation::linear;
+KeyInterpolation interpolation_from(const std::string& name) {
+    if (name == "STEP") return KeyInterpolation::step;
+    if (name == "CUBICSPLINE") return KeyInterpolation::cubic_spline;
+    return KeyInterpolation::linear;
 }
 
 std::vector<glm::vec4> values_of(const GltfContents& contents, std::size_t accessor,
-                                 GltfChannel::Path path) {
-    if (path == GltfChannel::Path::rotation) return float_elements<glm::vec4>(contents, accessor);
+                                 KeyChannel::Property property) {
+    if (property == KeyChannel::Property::rotation)
+        return float_elements<glm::vec4>(contents, accessor);
     std::vector<glm::vec4> values;
     for (const glm::vec3& value : float_elements<glm::vec3>(contents, accessor))
         values.emplace_back(value, 0.0F);
     return values;
 }
 
-bool is_usable(const GltfChannel& channel) {
-    const bool cubic = channel.interpolation == GltfChannel::Interpolation::cubic_spline;
+bool is_usable(const KeyChannel& channel) {
+    const bool cubic = channel.interpolation == KeyInterpolation::cubic_spline;
     const std::size_t per_key = cubic ? 3 : 1;
     if (channel.times.empty() || channel.values.size() != per_key * channel.times.size())
         return false;
@@ -412,7 +411,7 @@ bool is_usable(const GltfChannel& channel) {
     }
     if (!std::all_of(channel.values.begin(), channel.values.end(), is_finite<4, float>))
         return false;
-    if (channel.path != GltfChannel::Path::rotation) return true;
+    if (channel.property != KeyChannel::Property::rotation) return true;
     for (std::size_t key = 0; key < channel.times.size(); ++key) {
         if (channel.values[key * per_key + per_key / 2] == glm::vec4(0.0F)) return false;
     }
@@ -420,14 +419,14 @@ bool is_usable(const GltfChannel& channel) {
 }
 
 /// The keys of a channel, or nullopt if its accessors are unusable.
-std::optional<GltfChannel> keys_from(const GltfContents& contents, const Json& sampler,
-                                     std::size_t node, GltfChannel::Path path) {
-    GltfChannel channel{.node = node, .path = path, .times = {}, .values = {}};
+std::optional<KeyChannel> keys_from(const GltfContents& contents, const Json& sampler,
+                                    std::size_t node, KeyChannel::Property property) {
+    KeyChannel channel{.node = node, .property = property, .times = {}, .values = {}};
     channel.interpolation = interpolation_from(text_in(sampler, "interpolation"));
     try {
         for (const auto& time : float_elements<glm::vec1>(contents, size_in(sampler, "input")))
             channel.times.push_back(time.x);
-        channel.values = values_of(contents, size_in(sampler, "output"), path);
+        channel.values = values_of(contents, size_in(sampler, "output"), property);
     } catch (const InvalidInput&) {
         return std::nullopt;
     }
@@ -436,12 +435,12 @@ std::optional<GltfChannel> keys_from(const GltfContents& contents, const Json& s
 }
 
 void add_channel(const GltfContents& contents, const Json& animation, const Json& json,
-                 std::size_t number, GltfAnimation& result, Report& report) {
+                 std::size_t number, KeyAnimation& result, Report& report) {
     const Json& target = json["target"];
     const auto node = index_in(target, "node");
     const std::string name = text_in(target, "path");
-    const auto path = path_from(name);
-    if (!path) {
+    const auto property = property_from(name);
+    if (!property) {
         report.add(name == "weights" ? "animated morph weights" : "animation of an extension",
                    "channel", number, "left out");
         return;
@@ -452,7 +451,7 @@ void add_channel(const GltfContents& contents, const Json& animation, const Json
         return;
     }
     const Json& sampler = animation["samplers"][size_in(json, "sampler")];
-    if (auto channel = keys_from(contents, sampler, *node, *path)) {
+    if (auto channel = keys_from(contents, sampler, *node, *property)) {
         result.channels.push_back(std::move(*channel));
     } else {
         report.add("animation channel with unusable keys", "channel", number,
@@ -462,12 +461,12 @@ void add_channel(const GltfContents& contents, const Json& animation, const Json
 
 }  // namespace
 
-std::vector<GltfAnimation> GltfDocument::animations(Report& report) const {
+std::vector<KeyAnimation> GltfDocument::animations(Report& report) const {
     const GltfContents& contents = contents_->data;
-    std::vector<GltfAnimation> result;
+    std::vector<KeyAnimation> result;
     std::size_t number = 0;  // Counts the channels of all animations.
     for (const Json& json : array_in(contents.root, "animations")) {
-        GltfAnimation& animation = result.emplace_back();
+        KeyAnimation& animation = result.emplace_back();
         animation.name = text_in(json, "name");
         for (const Json& channel : json["channels"])
             add_channel(contents, json, channel, number++, animation, report);

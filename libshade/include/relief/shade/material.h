@@ -48,13 +48,6 @@ enum class FresnelModel {
                  ///< reflectivity.
 };
 
-/// The meaning of alpha.
-enum class AlphaMode {
-    opaque,  ///< Alpha is ignored.
-    mask,    ///< The surface exists where alpha is at least alpha_cutoff.
-    blend,   ///< Alpha blends the surface over its background; drawn farthest first.
-};
-
 /// The source of the frame of a tangent-space map.
 enum class TangentFrame {
     stored,       ///< The tangents of the mesh; MikkTSpace's if it has none.

@@ -14,20 +14,10 @@
 #include <type_traits>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/shade/scene_graph.h"
 
 namespace RELIEF_API relief {
-
-/// A value of an enumeration and its name in scene files and on command lines.
-template <typename Enum>
-struct EnumName {
-    const char* name;
-    Enum value;
-};
-
-/// The names of all values of an enumeration; empty for a type without names.
-template <typename Enum>
-inline constexpr auto enum_names = std::array<EnumName<Enum>, 0>{};
 
 template <>
 inline constexpr auto enum_names<ToneMapping> =
@@ -49,9 +39,6 @@ inline constexpr auto enum_names<FresnelModel> =
     std::to_array<EnumName<FresnelModel>>({{"schlick", FresnelModel::schlick},
                                            {"dielectric", FresnelModel::dielectric},
                                            {"conductor", FresnelModel::conductor}});
-template <>
-inline constexpr auto enum_names<AlphaMode> = std::to_array<EnumName<AlphaMode>>(
-    {{"opaque", AlphaMode::opaque}, {"mask", AlphaMode::mask}, {"blend", AlphaMode::blend}});
 template <>
 inline constexpr auto enum_names<TangentFrame> = std::to_array<EnumName<TangentFrame>>(
     {{"stored", TangentFrame::stored}, {"derivatives", TangentFrame::derivatives}});
@@ -75,15 +62,6 @@ inline constexpr auto enum_names<TextureFilter> = std::to_array<EnumName<Texture
 template <>
 inline constexpr auto enum_names<Falloff> = std::to_array<EnumName<Falloff>>(
     {{"inverse_square", Falloff::inverse_square}, {"none", Falloff::none}});
-
-/// Returns the name of an enumeration's value.
-template <typename Enum>
-constexpr const char* enum_name(Enum value) {
-    for (const EnumName<Enum>& entry : enum_names<Enum>) {
-        if (entry.value == value) return entry.name;
-    }
-    return "";
-}
 
 /// The limits of a number, or of every component of a color; both are allowed values.
 struct FieldRange {

@@ -38,33 +38,6 @@ struct Carried {
     bool place_only = false;
 };
 
-/// The interpolation between two keys, as in glTF.
-enum class KeyInterpolation {
-    step,          ///< The value of the previous key.
-    linear,        ///< Linear; rotations along the shortest arc.
-    cubic_spline,  ///< Cubic Hermite, with a tangent before and after each key.
-};
-
-/// The keys of one property of a node. The first value holds before the first key, the last value
-/// after the last key.
-struct KeyChannel {
-    enum class Property { translation, rotation, scale };
-
-    std::size_t node = 0;
-    Property property = Property::translation;
-    KeyInterpolation interpolation = KeyInterpolation::linear;
-    std::vector<float> times;  ///< Ascending, at least one.
-    /// One for each time, or three for cubic_spline: in-tangent, value, out-tangent. Quaternions
-    /// are x, y, z, w of any length but 0; w of other properties is ignored.
-    std::vector<glm::vec4> values;
-};
-
-/// Key frames that repeat from the start.
-struct KeyAnimation {
-    std::string name;
-    std::vector<KeyChannel> channels;
-};
-
 /// A node that orbits on spherical coordinates within its parent's space.
 struct Orbit {
     std::size_t node = 0;

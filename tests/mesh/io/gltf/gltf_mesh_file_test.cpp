@@ -110,7 +110,7 @@ TEST_F(GltfFromMesh, PhongMaterialsAreTranslated) {
     EXPECT_EQ(result.metallic, 0.0F);
     EXPECT_FLOAT_EQ(result.roughness, 0.25F);  // (2 / 512)^(1/4).
     EXPECT_EQ(result.emission, glm::vec3(0, 4, 2));
-    EXPECT_EQ(result.alpha_mode, GltfMaterial::AlphaMode::blend);
+    EXPECT_EQ(result.alpha_mode, AlphaMode::blend);
     // The conversion back gives the same values, as far as OBJ can hold them.
     const MtlMaterial back = flattened(written(file)).materials.at(0);
     EXPECT_FLOAT_EQ(back.shininess, 510.0F);

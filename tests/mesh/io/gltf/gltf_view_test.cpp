@@ -56,7 +56,7 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(plain.metallic, 1.0F);
     EXPECT_EQ(plain.roughness, 1.0F);
     EXPECT_EQ(plain.emission, glm::vec3(0.0F));
-    EXPECT_EQ(plain.alpha_mode, GltfMaterial::AlphaMode::opaque);
+    EXPECT_EQ(plain.alpha_mode, AlphaMode::opaque);
     EXPECT_FALSE(plain.base_color_texture || plain.normal_texture || plain.double_sided);
     const GltfMaterial& full = view.materials[1];
     EXPECT_EQ(full.name, "m");
@@ -65,7 +65,7 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(full.roughness, 0.25F);
     EXPECT_EQ(full.emission, glm::vec3(4, 2, 0));
     EXPECT_EQ(full.normal_scale, 0.75F);
-    EXPECT_EQ(full.alpha_mode, GltfMaterial::AlphaMode::mask);
+    EXPECT_EQ(full.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(full.alpha_cutoff, 0.25F);
     EXPECT_TRUE(full.unlit && full.double_sided);
     const GltfTexture& base = *full.base_color_texture;
@@ -150,7 +150,7 @@ TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
     ASSERT_EQ(view.lights.size(), 3U);
     const GltfLight& spot = view.lights[0].what;
     EXPECT_EQ(view.lights[0].name, "lamp");
-    EXPECT_EQ(spot.type, GltfLight::Type::spot);
+    EXPECT_EQ(spot.type, LightType::spot);
     EXPECT_EQ(spot.color, glm::vec3(1, 0.5F, 0));
     EXPECT_EQ(spot.intensity, 20.0F);
     EXPECT_EQ(spot.range, 9.0F);
@@ -161,8 +161,8 @@ TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
     EXPECT_LT(test::degrees_between(looks, {-1, 0, 0}), 1e-5);
     EXPECT_NEAR(glm::length(looks), 2.0F, 1e-6F);
     EXPECT_EQ(glm::vec3(view.lights[0].world_from_object[3]), glm::vec3(1, 2, 3));
-    EXPECT_EQ(view.lights[1].what.type, GltfLight::Type::directional);
-    EXPECT_EQ(view.lights[2].what.type, GltfLight::Type::point);
+    EXPECT_EQ(view.lights[1].what.type, LightType::directional);
+    EXPECT_EQ(view.lights[2].what.type, LightType::point);
     EXPECT_FALSE(view.lights[2].what.range);
     // Scenes are perspective, so the orthographic camera is omitted.
     ASSERT_EQ(view.cameras.size(), 2U);
@@ -290,7 +290,7 @@ class Animated : public testing::Test {
             {{"sampler", animation["samplers"].size() - 1}, {"target", target}});
     }
 
-    std::vector<GltfAnimation> read() {
+    std::vector<KeyAnimation> read() {
         root_["buffers"] = {{{"byteLength", bytes_.size()}}};
         test::write_gltf_file(folder_ / "a.glb", root_, bytes_);
         return GltfDocument::read(folder_ / "a.glb", report_).animations(report_);
@@ -312,17 +312,17 @@ TEST_F(Animated, ChannelsAreKeysOfNodes) {
             "STEP");
     channel({{"node", 0}, {"path", "scale"}}, two,
             add({0, 0, 0, 1, 1, 1, 0, 0, 0, 9, 9, 9, 2, 2, 2, 9, 9, 9}, "VEC3", 3), "CUBICSPLINE");
-    const std::vector<GltfAnimation> animations = read();
+    const std::vector<KeyAnimation> animations = read();
     ASSERT_EQ(animations.size(), 1U);
     EXPECT_EQ(animations[0].name, "move");
     ASSERT_EQ(animations[0].channels.size(), 3U);
-    const GltfChannel& translation = animations[0].channels[0];
+    const KeyChannel& translation = animations[0].channels[0];
     EXPECT_EQ(translation.times, (std::vector<float>{0.5F, 2.0F}));
     EXPECT_EQ(translation.values, (std::vector<glm::vec4>{{1, 2, 3, 0}, {4, 5, 6, 0}}));
-    EXPECT_EQ(translation.interpolation, GltfChannel::Interpolation::linear);
-    const GltfChannel& rotation = animations[0].channels[1];
+    EXPECT_EQ(translation.interpolation, KeyInterpolation::linear);
+    const KeyChannel& rotation = animations[0].channels[1];
     EXPECT_EQ(rotation.values[1], glm::vec4(1, 0, 0, 0));
-    EXPECT_EQ(rotation.interpolation, GltfChannel::Interpolation::step);
+    EXPECT_EQ(rotation.interpolation, KeyInterpolation::step);
     EXPECT_EQ(animations[0].channels[2].values.size(), 6U);
     EXPECT_TRUE(report_.empty());
 }
@@ -346,7 +346,7 @@ TEST_F(Animated, WhatCannotBeUsedIsLeftOutAndCounted) {
     channel({{"node", 0}, {"path", "rotation"}}, two,
             add({0, 0, 0, 1, 0, 0, 0, 0}, "VEC4", 4));  // 11: no rotation
     channel(place, two, good);
-    const std::vector<GltfAnimation> animations = read();
+    const std::vector<KeyAnimation> animations = read();
     EXPECT_EQ(animations[0].channels.size(), 1U);
     EXPECT_EQ(report_.count("animated morph weights"), 1U);
     EXPECT_EQ(report_.count("animation of an extension"), 1U);
