@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A wall of weathered bricks, evaluated texel by texel over the unit square, which it tiles.
-// A brick is a rounded block whose outline is bent by noise and bitten by chips; its face
-// undulates, has pores, and a fine grain. Mortar is sandy and hollow. Heights run from 0 to 1.
-// Nothing can go wrong here: there is no input. Tests: tests/mesh/image/sample_data_test.cpp.
-#include "bricks.h"
-
+// A brick is a rounded block with noise and chips along its outline. Its face has waves, pores and
+// fine grain. The mortar is sandy and concave. Heights are from 0 to 1.
+// Tests: tests/mesh/image/sample_data_test.cpp.
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 
 #include "noise.h"
+#include "samples.h"
 
 namespace relief::sample {
 namespace {
@@ -23,7 +22,7 @@ constexpr double brick_height = 1000.0 / courses;
 constexpr double half_joint = 6.0;
 constexpr double bevel = 13.0;
 
-/// What chance has made of one brick.
+/// The random properties of a brick.
 struct Brick {
     std::int32_t column;
     std::int32_t course;
@@ -34,19 +33,20 @@ struct Brick {
     [[nodiscard]] double spread(std::uint32_t which) const { return 2.0 * chance(which) - 1.0; }
 };
 
-/// Everything that height and color share at one place of the wall.
-struct WallPlace {
+/// The properties of a point of the wall that height and color share.
+struct WallPoint {
     Brick brick;
     double inside;     ///< Distance from the brick's worn outline; negative in the joint.
-    double from_left;  ///< Place within the brick, -1 to 1.
+    double from_left;  ///< Position within the brick, -1 to 1.
     double from_top;
-    double wear;   ///< Slow noise over the wall: where weather has been at work, 0 to 1.
+    double wear;   ///< Weathering, 0 to 1: noise of low frequency.
     double pores;  ///< Depth of pores, 0 to 1.
-    double grain;  ///< Finest noise.
-    double crack;  ///< 1 in the middle of a crack, 0 away from it.
+    double grain;  ///< Noise of the highest frequency.
+    double crack;  ///< 1 in the center of a crack, 0 outside.
 };
 
-/// Distance inside a rectangle with round corners, by its half sides.
+/// The distance from the border of a rectangle with round corners, positive inside.
+/// \param half  half of its sides
 double inside_rounded(glm::dvec2 from_center, glm::dvec2 half, double radius) {
     const glm::dvec2 beyond = glm::abs(from_center) - (half - radius);
     const double outside = std::sqrt(std::max(beyond.x, 0.0) * std::max(beyond.x, 0.0) +
@@ -54,7 +54,7 @@ double inside_rounded(glm::dvec2 from_center, glm::dvec2 half, double radius) {
     return radius - outside - std::min(std::max(beyond.x, beyond.y), 0.0);
 }
 
-/// Round holes of random size, one to a lattice cell at most; 1 in the middle, 0 outside.
+/// Round holes of random size, at most one per lattice cell: 1 in the center, 0 outside.
 double holes(double x, double y, std::int32_t cells, double share, std::uint32_t seed) {
     const double cx = x * cells;
     const double cy = y * cells;
@@ -76,7 +76,7 @@ double holes(double x, double y, std::int32_t cells, double share, std::uint32_t
     return std::max(deepest, 0.0);
 }
 
-/// How far chips bite into the outline: large ones rarely, small ones often, more at the corners.
+/// The depth of chips in the outline. Large chips are rare, small ones frequent; corners have more.
 double chips(double x, double y, const Brick& brick, double corner) {
     const double broad = tiling_octaves(x, y, 20, 3, 300);
     const double fine = tiling_octaves(x, y, 56, 2, 310);
@@ -84,8 +84,8 @@ double chips(double x, double y, const Brick& brick, double corner) {
     return 34.0 * std::max(broad - 0.44 + luck, 0.0) + 6.0 * std::max(fine - 0.30 + luck, 0.0);
 }
 
-WallPlace place_at(double x, double y) {
-    // The outline is bent: slowly, as hand-made bricks are, and finely, as broken edges are.
+WallPoint wall_point(double x, double y) {
+    // The outline is displaced at two scales: that of hand-made bricks, and that of broken edges.
     const double bent_x =
         x + unit * (3.2 * tiling_octaves(x, y, 12, 2, 1) + 1.3 * tiling_octaves(x, y, 64, 2, 2));
     const double bent_y =
@@ -96,71 +96,71 @@ WallPlace place_at(double x, double y) {
     const double column = bent_x * bricks_per_course + shift;
     const auto index = static_cast<std::int32_t>(std::floor(column));
 
-    WallPlace place{};
-    place.brick = {(index % bricks_per_course + bricks_per_course) % bricks_per_course,
+    WallPoint point{};
+    point.brick = {(index % bricks_per_course + bricks_per_course) % bricks_per_course,
                    (course % courses + courses) % courses};
-    const Brick& brick = place.brick;
+    const Brick& brick = point.brick;
     glm::dvec2 from_center((column - index - 0.5) * brick_length,
                            (row - course - 0.5) * brick_height);
     from_center -= glm::dvec2(2.2 * brick.spread(2), 1.6 * brick.spread(3));
     from_center.y += from_center.x * 0.012 * brick.spread(4);
     const glm::dvec2 half(brick_length / 2.0 - half_joint - 1.6 * brick.chance(5),
                           brick_height / 2.0 - half_joint - 1.2 * brick.chance(6));
-    place.from_left = from_center.x / half.x;
-    place.from_top = from_center.y / half.y;
+    point.from_left = from_center.x / half.x;
+    point.from_top = from_center.y / half.y;
     const double corner =
-        smooth_step(1.5, 2.0, std::abs(place.from_left) + std::abs(place.from_top));
-    place.inside =
+        smooth_step(1.5, 2.0, std::abs(point.from_left) + std::abs(point.from_top));
+    point.inside =
         inside_rounded(from_center, half, 6.0 + 7.0 * brick.chance(7)) - chips(x, y, brick, corner);
-    place.wear = 0.5 + 0.5 * tiling_octaves(x, y, 4, 4, 20);
-    // Pores are torn, not drilled: their place is bent by noise of about their own size.
+    point.wear = 0.5 + 0.5 * tiling_octaves(x, y, 4, 4, 20);
+    // Pores are irregular: noise of about their size displaces them.
     const double torn_x = x + unit * 4.0 * tiling_octaves(x, y, 90, 2, 31);
     const double torn_y = y + unit * 4.0 * tiling_octaves(x, y, 90, 2, 33);
     const double fired_hard = brick.chance(8) * brick.chance(8);
-    place.pores = std::max(holes(torn_x, torn_y, 40, 0.05 + 0.20 * fired_hard, 400),
+    point.pores = std::max(holes(torn_x, torn_y, 40, 0.05 + 0.20 * fired_hard, 400),
                            0.7 * holes(torn_x, torn_y, 110, 0.08 + 0.16 * fired_hard, 410));
-    place.grain = tiling_octaves(x, y, 128, 2, 30);
-    // A crack runs where a slow noise passes through zero, in one brick of five.
+    point.grain = tiling_octaves(x, y, 128, 2, 30);
+    // A crack is where noise of low frequency changes its sign, in one brick of five.
     const double ridge = std::abs(tiling_octaves(x, y, 14, 3, 40));
     const double open = brick.chance(9) < 0.22 ? 1.0 : 0.0;
-    place.crack = open * smooth_step(0.075, 0.0, ridge) *
-                  smooth_step(0.35, 0.65, place.wear + 0.2 * brick.spread(10));
-    return place;
+    point.crack = open * smooth_step(0.075, 0.0, ridge) *
+                  smooth_step(0.35, 0.65, point.wear + 0.2 * brick.spread(10));
+    return point;
 }
 
-double mortar_height(double x, double y, const WallPlace& place) {
-    const double hollow = smooth_step(-half_joint, 1.0, place.inside);
-    return 0.20 + 0.05 * hollow + 0.050 * tiling_octaves(x, y, 40, 3, 50) + 0.030 * place.grain +
+double mortar_height(double x, double y, const WallPoint& point) {
+    const double hollow = smooth_step(-half_joint, 1.0, point.inside);
+    return 0.20 + 0.05 * hollow + 0.050 * tiling_octaves(x, y, 40, 3, 50) + 0.030 * point.grain +
            0.035 * holes(x, y, 150, 0.5, 420);
 }
 
-double brick_face(double x, double y, const WallPlace& place) {
-    const Brick& brick = place.brick;
+double brick_face(double x, double y, const WallPoint& point) {
+    const Brick& brick = point.brick;
     const double tilt =
-        0.035 * (brick.spread(11) * place.from_left + brick.spread(12) * place.from_top);
+        0.035 * (brick.spread(11) * point.from_left + brick.spread(12) * point.from_top);
     const double waves =
         0.075 * tiling_octaves(x, y, 16, 2, 60) + 0.045 * tiling_octaves(x, y, 48, 3, 61);
-    // Weather takes the burnt skin off in flakes, which leaves a ragged step.
+    // Flakes of the burnt surface are missing, which gives a ragged step.
     const double skin = tiling_octaves(x, y, 9, 5, 70) + 0.35 * brick.spread(13);
     const double flaked = 0.060 * smooth_step(0.22, 0.30, skin);
-    return 0.80 + 0.07 * brick.spread(14) + tilt + waves - flaked - 0.14 * place.pores -
-           0.13 * place.crack + (0.010 + 0.012 * brick.chance(15)) * place.grain;
+    return 0.80 + 0.07 * brick.spread(14) + tilt + waves - flaked - 0.14 * point.pores -
+           0.13 * point.crack + (0.010 + 0.012 * brick.chance(15)) * point.grain;
 }
 
 double height_at(double x, double y) {
-    const WallPlace place = place_at(x, y);
-    const double mortar = mortar_height(x, y, place);
-    if (place.inside <= 0.0) return mortar;
-    // Rounded from the joint up to the face, steep at first but never a wall.
-    const double left = 1.0 - std::min(place.inside / bevel, 1.0);
-    return mix(mortar, brick_face(x, y, place), 1.0 - left * left * left);
+    const WallPoint point = wall_point(x, y);
+    const double mortar = mortar_height(x, y, point);
+    if (point.inside <= 0.0) return mortar;
+    // The edge is rounded from the joint to the face, and never vertical.
+    const double left = 1.0 - std::min(point.inside / bevel, 1.0);
+    return mix(mortar, brick_face(x, y, point), 1.0 - left * left * left);
 }
 
 /// Linear diffuse color.
 glm::dvec3 color_at(double x, double y) {
-    const WallPlace place = place_at(x, y);
-    const Brick& brick = place.brick;
-    // Fired clay: from orange over red to nearly black, now and then a pale one.
+    const WallPoint point = wall_point(x, y);
+    const Brick& brick = point.brick;
+    // Fired clay: from orange over red to nearly black; some bricks are pale.
     const glm::dvec3 orange(0.46, 0.165, 0.072);
     const glm::dvec3 red(0.30, 0.078, 0.042);
     const glm::dvec3 burnt(0.105, 0.052, 0.044);
@@ -173,26 +173,26 @@ glm::dvec3 color_at(double x, double y) {
     clay = mixed(clay, burnt, 0.45 * smooth_step(0.05, 0.75, cloud + 0.5 * brick.spread(22)));
     const double skin = tiling_octaves(x, y, 9, 5, 70) + 0.35 * brick.spread(13);
     clay = mixed(clay, clay * 1.25 + glm::dvec3(0.02, 0.008, 0.002), smooth_step(0.22, 0.30, skin));
-    clay *= 1.0 + 0.16 * place.grain + 0.10 * tiling_octaves(x, y, 48, 3, 61);
-    clay *= 1.0 - 0.55 * place.pores - 0.6 * place.crack;
-    // Lime that water has washed out of the joints lies on the bricks like a bloom.
+    clay *= 1.0 + 0.16 * point.grain + 0.10 * tiling_octaves(x, y, 48, 3, 61);
+    clay *= 1.0 - 0.55 * point.pores - 0.6 * point.crack;
+    // Water has washed lime out of the joints onto the bricks.
     const double bloom =
-        smooth_step(0.45, 1.0, place.wear + 0.22 * cloud) * smooth_step(26.0, 2.0, place.inside);
+        smooth_step(0.45, 1.0, point.wear + 0.22 * cloud) * smooth_step(26.0, 2.0, point.inside);
     clay = mixed(clay, glm::dvec3(0.50, 0.46, 0.41), 0.30 * bloom);
 
     glm::dvec3 mortar = mixed(glm::dvec3(0.40, 0.36, 0.30), glm::dvec3(0.24, 0.21, 0.175),
-                              smooth_step(0.3, 0.8, place.wear));
-    mortar *= 1.0 + 0.20 * place.grain + 0.18 * tiling_octaves(x, y, 40, 3, 50) -
+                              smooth_step(0.3, 0.8, point.wear));
+    mortar *= 1.0 + 0.20 * point.grain + 0.18 * tiling_octaves(x, y, 40, 3, 50) -
               0.35 * holes(x, y, 150, 0.5, 420);
-    return glm::max(mixed(mortar, clay, smooth_step(0.0, 3.0, place.inside)), glm::dvec3(0.004));
+    return glm::max(mixed(mortar, clay, smooth_step(0.0, 3.0, point.inside)), glm::dvec3(0.004));
 }
 
 }  // namespace
 
 Image brick_heights(int size) {
     Image image = make_image(size, size, 1, 16, ColorSpace::data);
-    // Whole multiples of 128, half a step of 8 bits: below that the grain would cost file size for
-    // nothing that can be seen.
+    // Heights are multiples of 128, half a step of 8 bits. Finer grain would increase the file size
+    // without a visible effect.
     constexpr double step = 128.0;
     auto sample = image.as<std::uint16_t>().begin();
     for (int row = 0; row < size; ++row) {

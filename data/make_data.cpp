@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the project's samples into a folder: relief-make-data FOLDER. What each file is stands in
-// data/README.md. The same files come out of every run. Exit 0 done, 1 failed, 2 wrong usage.
+// Writes the samples of data/ into a folder: relief-make-data FOLDER. data/README.md describes each
+// file. Every run writes the same bytes. Exit codes: 0 done, 1 failed, 2 wrong usage.
 // Tests: tests/mesh/image/sample_data_test.cpp.
 #include <fmt/format.h>
 
@@ -8,8 +8,6 @@
 #include <exception>
 #include <filesystem>
 
-#include "bricks.h"
-#include "ornaments.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
@@ -17,9 +15,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normal_map.h"
-#include "sky.h"
-#include "urn.h"
-#include "vase.h"
+#include "samples.h"
 
 namespace {
 
@@ -40,7 +36,7 @@ relief::MeshFile vase_with_material(const std::filesystem::path& folder) {
     return file;
 }
 
-/// A model with smooth normals; glTF would make it flat without.
+/// Writes a model with smooth normals. Without normals, glTF requires flat ones.
 void write_glb(const std::filesystem::path& file, relief::Mesh mesh) {
     relief::Report report;
     const relief::FrameOptions smooth;
@@ -48,7 +44,8 @@ void write_glb(const std::filesystem::path& file, relief::Mesh mesh) {
     relief::GltfDocument::from_mesh({std::move(mesh), {}}).write(file);
 }
 
-/// The bricks' heights as a normal map, a quarter as large: a quarter of their 24 texels' depth.
+/// Writes the normal map of the bricks at a quarter of the size, with a quarter of the depth of 24
+/// texels.
 void write_brick_normals(const std::filesystem::path& file) {
     relief::Report report;
     relief::BumpOptions options;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradient noise from integer hashes, see noise.h. Only +, -, * and / act on numbers here, so that
-// no mathematical library can change a bit.
+// Gradient noise from integer hashes (see noise.h). It uses only +, -, * and /, so that the result
+// does not depend on a mathematical library.
 #include "noise.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ double fade(double t) {
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
-/// The gradient at a lattice point times the way from it: one of the twelve edge directions of a
-/// cube; in the plane one of eight.
+/// The dot product of the gradient at a lattice point and the offset from it. The gradient is one
+/// of the twelve edge directions of a cube, or one of eight directions in the plane.
 double corner(std::uint32_t hashed, double x, double y, double z) {
     static constexpr std::array<std::array<double, 3>, 12> edges{{{1, 1, 0},
                                                                   {-1, 1, 0},
@@ -35,10 +35,10 @@ double corner(std::uint32_t hashed, double x, double y, double z) {
 
 double corner(std::uint32_t hashed, double x, double y) {
     static constexpr double d = 0.70710678118654752;
-    static constexpr std::array<std::array<double, 2>, 8> ways{
+    static constexpr std::array<std::array<double, 2>, 8> directions{
         {{1, 0}, {d, d}, {0, 1}, {-d, d}, {-1, 0}, {-d, -d}, {0, -1}, {d, -d}}};
-    const auto& way = ways[hashed % ways.size()];
-    return way[0] * x + way[1] * y;
+    const auto& direction = directions[hashed % directions.size()];
+    return direction[0] * x + direction[1] * y;
 }
 
 std::int32_t wrapped(std::int32_t place, std::int32_t period) {

@@ -1,27 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pot of surfaces of revolution and tubes, and a torus knot. Object space, y up. Curves are cubic
-// Bezier curves, and the knot's are sines. Tests: tests/mesh/image/sample_data_test.cpp.
-#include "ornaments.h"
-
+// A pot of surfaces of revolution and tubes along cubic Bezier curves, and a torus knot.
+// Tests: tests/mesh/image/sample_data_test.cpp.
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
 #include <numbers>
+#include <vector>
 
-#include "tube.h"
+#include "noise.h"
+#include "samples.h"
 
 namespace relief::sample {
 namespace {
 
-constexpr double full_turn = 2.0 * std::numbers::pi;
+constexpr double two_pi = 2.0 * std::numbers::pi;
 
-/// One piece of a profile: radius and height.
+glm::vec3 rounded(const glm::dvec3& position) {
+    return {sample::rounded(position.x), sample::rounded(position.y), sample::rounded(position.z)};
+}
+
+/// A point of a cubic Bezier curve.
+template <typename Vector>
+Vector bezier(const Vector (&points)[4], double t) {
+    const double s = 1.0 - t;
+    return s * s * s * points[0] + 3.0 * s * s * t * points[1] + 3.0 * s * t * t * points[2] +
+           t * t * t * points[3];
+}
+
+/// A curve of a profile: radius and height.
 struct Profile {
     glm::dvec2 points[4];
     int steps;
 };
 
-/// Turns a profile about the y axis. It must run upwards on the outside; at radius 0 it ends in a
-/// pole of triangles without area on one side, which are left out.
-void add_lathed(Mesh& mesh, const std::vector<Profile>& pieces, int segments) {
+/// Adds a surface of revolution about the y axis. The profile must go upwards on the outside. At
+/// radius 0, triangles without area are left out.
+void add_revolved(Mesh& mesh, const std::vector<Profile>& pieces, int segments) {
     std::vector<glm::dvec2> rings{pieces.front().points[0]};
     for (const Profile& piece : pieces) {
         for (int step = 1; step <= piece.steps; ++step)
@@ -30,7 +45,7 @@ void add_lathed(Mesh& mesh, const std::vector<Profile>& pieces, int segments) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (std::size_t ring = 0; ring < rings.size(); ++ring) {
         for (int segment = 0; segment <= segments; ++segment) {
-            const double angle = full_turn * (segment % segments) / segments;
+            const double angle = two_pi * (segment % segments) / segments;
             const double radius = rings[ring].x;
             mesh.positions.push_back(
                 rounded({radius * std::sin(angle), rings[ring].y, radius * std::cos(angle)}));
@@ -50,7 +65,49 @@ void add_lathed(Mesh& mesh, const std::vector<Profile>& pieces, int segments) {
     }
 }
 
-/// A tube in the xy plane along a Bezier curve, from one radius to another.
+/// A curve in space with a radius, over t in [0, 1].
+struct TubePath {
+    std::function<glm::dvec3(double t)> center;
+    std::function<double(double t)> radius;
+    /// A direction that is never parallel to the curve. It orients the cross-section.
+    std::function<glm::dvec3(double t)> reference;
+    bool closed = false;  ///< t = 1 is the same point as t = 0.
+};
+
+/// Adds a tube: rings of vertices, each in the plane perpendicular to the curve. For the texture,
+/// the first vertex of each ring is repeated, and so is the first ring of a closed tube.
+/// \param along    the number of cells along the curve
+/// \param around   the number of cells around it
+/// \param repeats  the repetitions of the texture: u around, v along
+void add_tube(Mesh& mesh, const TubePath& path, int along, int around, glm::dvec2 repeats) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    constexpr double step = 1e-4;
+    for (int ring = 0; ring <= along; ++ring) {
+        const double share = static_cast<double>(ring) / along;
+        const double t = path.closed && ring == along ? 0.0 : share;
+        const double before = path.closed ? t - step : std::max(t - step, 0.0);
+        const double after = path.closed ? t + step : std::min(t + step, 1.0);
+        const glm::dvec3 forward = glm::normalize(path.center(after) - path.center(before));
+        const glm::dvec3 side = glm::normalize(glm::cross(forward, path.reference(t)));
+        const glm::dvec3 up = glm::cross(side, forward);
+        for (int corner = 0; corner <= around; ++corner) {
+            const double angle = 2.0 * std::numbers::pi * (corner % around) / around;
+            const glm::dvec3 outwards = std::cos(angle) * up + std::sin(angle) * side;
+            mesh.positions.push_back(rounded(path.center(t) + path.radius(t) * outwards));
+            mesh.texcoords.emplace_back(repeats.x * corner / around, repeats.y * (1.0 - share));
+        }
+    }
+    const auto row = static_cast<std::uint32_t>(around + 1);
+    for (std::uint32_t ring = 0; ring < static_cast<std::uint32_t>(along); ++ring) {
+        for (std::uint32_t corner = 0; corner + 1 < row; ++corner) {
+            const std::uint32_t lower = first + ring * row + corner;
+            mesh.triangles.emplace_back(lower, lower + row, lower + 1);
+            mesh.triangles.emplace_back(lower + 1, lower + row, lower + row + 1);
+        }
+    }
+}
+
+/// Adds a tube in the xy plane along a Bezier curve, from one radius to another.
 void add_plane_tube(Mesh& mesh, const glm::dvec3 (&points)[4], double from, double to, int along,
                     int around) {
     const TubePath path{[&](double t) { return bezier(points, t); },
@@ -64,15 +121,16 @@ void add_plane_tube(Mesh& mesh, const glm::dvec3 (&points)[4], double from, doub
 Mesh pot() {
     Mesh mesh;
     mesh.name = "pot";
-    add_lathed(mesh,
-               {{{{0.00, 0.00}, {0.20, 0.00}, {0.34, 0.00}, {0.36, 0.02}}, 4},   // foot
-                {{{0.36, 0.02}, {0.38, 0.05}, {0.58, 0.12}, {0.60, 0.34}}, 12},  // belly
-                {{{0.60, 0.34}, {0.62, 0.56}, {0.46, 0.66}, {0.38, 0.70}}, 12},  // shoulder
-                {{{0.38, 0.70}, {0.39, 0.73}, {0.36, 0.74}, {0.35, 0.72}}, 4},   // rim
-                {{{0.35, 0.72}, {0.30, 0.80}, {0.08, 0.80}, {0.06, 0.84}}, 10},  // lid
-                {{{0.06, 0.84}, {0.04, 0.88}, {0.12, 0.90}, {0.11, 0.95}}, 6},   // neck of the knob
-                {{{0.11, 0.95}, {0.10, 1.00}, {0.05, 1.01}, {0.00, 1.01}}, 6}},  // knob
-               48);
+    add_revolved(
+        mesh,
+        {{{{0.00, 0.00}, {0.20, 0.00}, {0.34, 0.00}, {0.36, 0.02}}, 4},   // foot
+         {{{0.36, 0.02}, {0.38, 0.05}, {0.58, 0.12}, {0.60, 0.34}}, 12},  // belly
+         {{{0.60, 0.34}, {0.62, 0.56}, {0.46, 0.66}, {0.38, 0.70}}, 12},  // shoulder
+         {{{0.38, 0.70}, {0.39, 0.73}, {0.36, 0.74}, {0.35, 0.72}}, 4},   // rim
+         {{{0.35, 0.72}, {0.30, 0.80}, {0.08, 0.80}, {0.06, 0.84}}, 10},  // lid
+         {{{0.06, 0.84}, {0.04, 0.88}, {0.12, 0.90}, {0.11, 0.95}}, 6},   // neck of the knob
+         {{{0.11, 0.95}, {0.10, 1.00}, {0.05, 1.01}, {0.00, 1.01}}, 6}},  // knob
+        48);
     add_plane_tube(mesh,
                    {{0.45, 0.22, 0.0}, {0.85, 0.22, 0.0}, {0.68, 0.58, 0.0}, {0.98, 0.70, 0.0}},
                    0.15, 0.055, 24, 20);
@@ -84,8 +142,8 @@ Mesh pot() {
 
 Mesh knot() {
     constexpr double tube = 0.2;
-    // On a torus: twice along it, three times round its tube.
-    const auto torus_angles = [](double t) { return glm::dvec2(2.0, 3.0) * full_turn * t; };
+    // The curve goes twice around a torus and three times around its tube.
+    const auto torus_angles = [](double t) { return glm::dvec2(2.0, 3.0) * two_pi * t; };
     const auto outwards = [=](double t) {
         const glm::dvec2 a = torus_angles(t);
         return glm::dvec3(std::cos(a.y) * std::sin(a.x), std::sin(a.y),
@@ -98,7 +156,7 @@ Mesh knot() {
     Mesh mesh;
     mesh.name = "knot";
     add_tube(mesh,
-             {center, [](double t) { return tube * (0.5 + 0.03 * std::sin(30.0 * full_turn * t)); },
+             {center, [](double t) { return tube * (0.5 + 0.03 * std::sin(30.0 * two_pi * t)); },
               outwards, true},
              400, 16, {2.0, 24.0});
     return mesh;

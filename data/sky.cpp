@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance by direction in a made-up landscape, y up: a clear sky that pales towards the horizon
-// and glows round the sun, two sheets of cloud, three ranges of hills in haze, and a meadow. Linear
-// light, mapped to display range by 1 - exp(-x). Each texel is the mean of four directions, and all
-// depend on the direction alone, so that faces meet without a seam.
+// Radiance by direction in an invented landscape, y up: a clear sky that is paler at the horizon
+// and brighter around the sun, two layers of clouds, three ranges of hills in haze, and a meadow.
+// Linear light, mapped to display range by 1 - exp(-x). Each texel is the mean of four directions.
+// Radiance depends only on the direction, so that faces meet without a seam.
 // Tests: tests/mesh/image/sample_data_test.cpp.
-#include "sky.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 
 #include "noise.h"
+#include "samples.h"
 
 namespace relief::sample {
 namespace {
@@ -34,7 +33,7 @@ glm::dvec3 air(glm::dvec3 direction) {
     return color;
 }
 
-/// One sheet of cloud over `color`: thick where the noise is, lit from the sun's side.
+/// Adds a layer of clouds over `color`. Noise is its thickness; the side towards the sun is lit.
 glm::dvec3 with_clouds(glm::dvec3 color, glm::dvec3 direction, double altitude, double cover,
                        std::uint32_t seed) {
     if (direction.y < 0.015) return color;
@@ -57,7 +56,7 @@ glm::dvec3 with_clouds(glm::dvec3 color, glm::dvec3 direction, double altitude, 
     return mixed(color, mixed(dark, lit, light), 0.92 * density);
 }
 
-/// The sine of the elevation where a range of hills ends, by direction in the plane.
+/// The sine of the elevation of the top of a range of hills, by horizontal direction.
 double ridge(glm::dvec3 direction, double base, double rise, double detail, std::uint32_t seed) {
     const glm::dvec2 around = glm::normalize(glm::dvec2(direction.x, direction.z));
     return base + rise * octaves(around.x * detail, around.y * detail, 0.5, 5, seed);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A profile of cubic Bezier curves from the foot's edge to the lid's, turned about the y axis, and
-// closed by two discs. Carvings move the surface along its normal: lobes, beads, studs, and the
-// marks of a tool; they end before the discs begin. Object space, y up. Texture: u runs once round
-// the body, v down along the profile. Tests: tests/mesh/image/sample_data_test.cpp.
-#include "urn.h"
-
+// The urn is a surface of revolution about the y axis, closed by two discs. Its profile consists of
+// cubic Bezier curves from the edge of the foot to the edge of the lid. Carvings displace the
+// surface along its normal: lobes, beads, studs and tool marks; the discs have none. u goes once
+// around the body, v down along the profile. Tests: tests/mesh/image/sample_data_test.cpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,12 +10,12 @@
 #include <vector>
 
 #include "noise.h"
-#include "rounded.h"
+#include "samples.h"
 
 namespace relief::sample {
 namespace {
 
-constexpr double whole_turn = 2.0 * std::numbers::pi;
+constexpr double two_pi = 2.0 * std::numbers::pi;
 
 using Bezier = std::array<glm::dvec2, 4>;  // Radius and height.
 constexpr std::array<Bezier, 3> profile_curves = {{
@@ -26,13 +24,14 @@ constexpr std::array<Bezier, 3> profile_curves = {{
     {{{0.520, 0.600}, {0.520, 0.800}, {0.420, 0.940}, {0.300, 1.000}}},  // Shoulder.
 }};
 
-/// A place on the profile; `along` is the number of the curve and how far along it that is.
-struct ProfilePlace {
-    glm::dvec2 point{0.0};
+/// A point of the profile. Its parameter `along` is the index of the curve plus the curve's own
+/// parameter.
+struct ProfilePoint {
+    glm::dvec2 position{0.0};
     glm::dvec2 outward{0.0};  ///< Unit.
 };
 
-ProfilePlace place_at(double along) {
+ProfilePoint profile_point(double along) {
     const std::size_t index = std::min(static_cast<std::size_t>(along), profile_curves.size() - 1);
     const Bezier& c = profile_curves[index];
     const double t = along - static_cast<double>(index);
@@ -43,20 +42,20 @@ ProfilePlace place_at(double along) {
             glm::normalize(glm::dvec2(forward.y, -forward.x))};
 }
 
-/// 1 inside of a range, 0 outside, smooth at its ends.
+/// 1 inside a range, 0 outside, with smooth ends.
 double window(double from, double to, double soft, double x) {
     return smooth_step(from, from + soft, x) * smooth_step(to, to - soft, x);
 }
 
-/// How far outwards the carving moves the surface.
+/// The displacement of the surface by the carving, outwards.
 double carved(double angle, double along) {
     const double lobes = std::pow(std::abs(std::sin(10.0 * angle)), 0.7);
-    const double bead_x = std::remainder(25.0 * angle / whole_turn, 1.0);
+    const double bead_x = std::remainder(25.0 * angle / two_pi, 1.0);
     const double bead_y = (along - 2.08) / 0.16;
     const double bead = std::sqrt(std::max(0.0, 1.0 - 4.4 * (bead_x * bead_x + bead_y * bead_y)));
     const double stud =
         std::sin(10.0 * angle + 19.0 * along) * std::sin(10.0 * angle - 19.0 * along);
-    const glm::dvec2 at = place_at(along).point;
+    const glm::dvec2 at = profile_point(along).position;
     const double marks =
         octaves(14.0 * at.x * std::sin(angle), 14.0 * at.y, 14.0 * at.x * std::cos(angle), 2, 71);
     return 0.020 * lobes * window(1.04, 1.94, 0.16, along) + 0.019 * bead +
@@ -64,31 +63,33 @@ double carved(double angle, double along) {
            0.003 * marks * window(0.0, 3.0, 0.2, along);
 }
 
-glm::vec3 turned(const glm::dvec2& point, double angle) {
+glm::vec3 revolved(const glm::dvec2& point, double angle) {
     return {rounded(point.x * std::sin(angle)), rounded(point.y),
             rounded(point.x * std::cos(angle))};
 }
 
-struct Fineness {
+struct Resolution {
     int segments;
     std::array<int, 3> steps;  ///< Of each curve.
 };
 
-std::vector<double> ring_places(const Fineness& fineness) {
-    std::vector<double> places = {0.0};
+/// The profile's parameter at each ring.
+std::vector<double> ring_parameters(const Resolution& resolution) {
+    std::vector<double> parameters = {0.0};
     for (std::size_t curve = 0; curve < profile_curves.size(); ++curve) {
-        for (int step = 1; step <= fineness.steps[curve]; ++step)
-            places.push_back(static_cast<double>(curve) +
-                             static_cast<double>(step) / fineness.steps[curve]);
+        for (int step = 1; step <= resolution.steps[curve]; ++step)
+            parameters.push_back(static_cast<double>(curve) +
+                                 static_cast<double>(step) / resolution.steps[curve]);
     }
-    return places;
+    return parameters;
 }
 
-/// How long the profile is up to each ring, over all of it.
-std::vector<double> shares_of_length(const std::vector<double>& places) {
+/// The length of the profile up to each ring, relative to its whole length.
+std::vector<double> shares_of_length(const std::vector<double>& parameters) {
     std::vector<double> shares = {0.0};
-    for (std::size_t i = 1; i < places.size(); ++i) {
-        const glm::dvec2 step = place_at(places[i]).point - place_at(places[i - 1]).point;
+    for (std::size_t i = 1; i < parameters.size(); ++i) {
+        const glm::dvec2 step =
+            profile_point(parameters[i]).position - profile_point(parameters[i - 1]).position;
         shares.push_back(shares.back() + glm::length(step));
     }
     const double all = shares.back();
@@ -97,21 +98,21 @@ std::vector<double> shares_of_length(const std::vector<double>& places) {
     return shares;
 }
 
-void add_body(Mesh& mesh, const Fineness& fineness, bool is_carved) {
-    const std::vector<double> places = ring_places(fineness);
-    const std::vector<double> shares = shares_of_length(places);
-    for (std::size_t ring = 0; ring < places.size(); ++ring) {
-        const ProfilePlace place = place_at(places[ring]);
-        for (int segment = 0; segment <= fineness.segments; ++segment) {
-            const double angle = whole_turn * (segment % fineness.segments) / fineness.segments;
-            const double out = is_carved ? carved(angle, places[ring]) : 0.0;
-            mesh.positions.push_back(turned(place.point + out * place.outward, angle));
-            mesh.texcoords.emplace_back(rounded(0.02 + 0.96 * segment / fineness.segments),
+void add_body(Mesh& mesh, const Resolution& resolution, bool is_carved) {
+    const std::vector<double> parameters = ring_parameters(resolution);
+    const std::vector<double> shares = shares_of_length(parameters);
+    for (std::size_t ring = 0; ring < parameters.size(); ++ring) {
+        const ProfilePoint point = profile_point(parameters[ring]);
+        for (int segment = 0; segment <= resolution.segments; ++segment) {
+            const double angle = two_pi * (segment % resolution.segments) / resolution.segments;
+            const double out = is_carved ? carved(angle, parameters[ring]) : 0.0;
+            mesh.positions.push_back(revolved(point.position + out * point.outward, angle));
+            mesh.texcoords.emplace_back(rounded(0.02 + 0.96 * segment / resolution.segments),
                                         rounded(0.02 + 0.70 * (1.0 - shares[ring])));
         }
     }
-    const auto row = static_cast<std::uint32_t>(fineness.segments + 1);
-    for (std::uint32_t ring = 0; ring + 1 < places.size(); ++ring) {
+    const auto row = static_cast<std::uint32_t>(resolution.segments + 1);
+    for (std::uint32_t ring = 0; ring + 1 < parameters.size(); ++ring) {
         for (std::uint32_t lower = ring * row; lower + 1 < (ring + 1) * row; ++lower) {
             mesh.triangles.emplace_back(lower, lower + 1, lower + row + 1);
             mesh.triangles.emplace_back(lower, lower + row + 1, lower + row);
@@ -119,9 +120,9 @@ void add_body(Mesh& mesh, const Fineness& fineness, bool is_carved) {
     }
 }
 
-/// A flat disc within the profile's end; its texture lies upright as seen from outside.
-void add_disc(Mesh& mesh, const Fineness& fineness, bool is_lid) {
-    const glm::dvec2 rim = place_at(is_lid ? 3.0 : 0.0).point;
+/// A flat disc at an end of the profile. Its texture is upright, seen from outside.
+void add_disc(Mesh& mesh, const Resolution& resolution, bool is_lid) {
+    const glm::dvec2 rim = profile_point(is_lid ? 3.0 : 0.0).position;
     const double turn = is_lid ? 1.0 : -1.0;
     const glm::dvec2 middle = is_lid ? glm::dvec2(0.14, 0.87) : glm::dvec2(0.40, 0.87);
     const auto add = [&](const glm::vec3& position) {
@@ -130,10 +131,10 @@ void add_disc(Mesh& mesh, const Fineness& fineness, bool is_lid) {
                                     rounded(middle.y + 0.11 / rim.x * turn * position.z));
     };
     const auto center = static_cast<std::uint32_t>(mesh.positions.size());
-    add(turned({0.0, rim.y}, 0.0));
-    for (int segment = 0; segment < fineness.segments; ++segment)
-        add(turned(rim, whole_turn * segment / fineness.segments));
-    const auto count = static_cast<std::uint32_t>(fineness.segments);
+    add(revolved({0.0, rim.y}, 0.0));
+    for (int segment = 0; segment < resolution.segments; ++segment)
+        add(revolved(rim, two_pi * segment / resolution.segments));
+    const auto count = static_cast<std::uint32_t>(resolution.segments);
     for (std::uint32_t segment = 0; segment < count; ++segment) {
         const std::uint32_t here = center + 1 + segment;
         const std::uint32_t next = center + 1 + (segment + 1) % count;
@@ -142,11 +143,11 @@ void add_disc(Mesh& mesh, const Fineness& fineness, bool is_lid) {
     }
 }
 
-Mesh urn(const Fineness& fineness, bool is_carved) {
+Mesh urn(const Resolution& resolution, bool is_carved) {
     Mesh mesh;
-    add_body(mesh, fineness, is_carved);
-    add_disc(mesh, fineness, false);
-    add_disc(mesh, fineness, true);
+    add_body(mesh, resolution, is_carved);
+    add_disc(mesh, resolution, false);
+    add_disc(mesh, resolution, true);
     return mesh;
 }
 
@@ -154,7 +155,7 @@ Mesh urn(const Fineness& fineness, bool is_carved) {
 
 Mesh carved_urn() {
     Mesh mesh = urn({200, {8, 28, 30}}, true);
-    mesh.texcoords.clear();  // Whoever bakes looks at the plain one's.
+    mesh.texcoords.clear();  // A bake uses those of the plain urn.
     mesh.name = "carved urn";
     return mesh;
 }

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// A profile of cubic Bezier curves, from the middle of the foot up the outside, over the lip and
-// down inside to the middle of the floor, turned about the y axis. Object space, y up.
-// Texture: u runs three times round; v grows with the way along the profile divided by the radius,
-// which makes the mapping conformal: bricks may be smaller where the vase is narrow, but never
-// stretched. At the two poles that has no limit: two discs are mapped flat instead, at the density
-// of their rims. Coordinates are rounded to what a text file holds shortly.
-// Tests: tests/mesh/image/sample_data_test.cpp.
-#include "vase.h"
-
+// The vase is a surface of revolution about the y axis. Its profile consists of cubic Bezier curves
+// from the center of the foot up the outside, over the lip and down the inside to the center of the
+// floor. u goes three times around. dv is the length along the profile divided by the radius, so
+// that the mapping is conformal: texels are smaller where the vase is narrow, but never stretched.
+// That would diverge at the two poles, so two discs are mapped flat, with the density of their
+// rims. Tests: tests/mesh/image/sample_data_test.cpp.
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "rounded.h"
+#include "noise.h"
+#include "samples.h"
 
 namespace relief::sample {
 namespace {
@@ -20,7 +18,7 @@ namespace {
 constexpr int segments = 48;
 constexpr double repeats = 3.0;
 
-/// A point of the profile: radius and height, and the texture's v there.
+/// A ring of vertices: radius, height and the texture coordinate v.
 struct Ring {
     double radius;
     double height;
@@ -38,7 +36,7 @@ glm::dvec2 bezier(const Curve& curve, double t) {
            3.0 * s * t * t * curve.points[2] + t * t * t * curve.points[3];
 }
 
-/// The rings between the two discs, v included.
+/// The rings between the two discs.
 std::vector<Ring> profile() {
     const Curve curves[] = {
         {{{0.300, 0.000}, {0.335, 0.000}, {0.350, 0.012}, {0.352, 0.036}}, 4},   // edge of the foot
@@ -54,7 +52,7 @@ std::vector<Ring> profile() {
     };
     std::vector<Ring> rings{{curves[0].points[0].x, curves[0].points[0].y}};
     for (const Curve& curve : curves) {
-        // The finer steps within one are for v: its integral along the curve, by the middle rule.
+        // v is an integral along the curve, by the midpoint rule with finer steps.
         constexpr int parts = 64;
         double v = rings.back().v;
         for (int step = 0; step < curve.steps; ++step) {
@@ -72,7 +70,7 @@ std::vector<Ring> profile() {
     return rings;
 }
 
-glm::vec3 turned(double radius, double height, int segment) {
+glm::vec3 revolved(double radius, double height, int segment) {
     const double angle = 2.0 * std::numbers::pi * (segment % segments) / segments;
     return {rounded(radius * std::sin(angle)), rounded(height), rounded(radius * std::cos(angle))};
 }
@@ -80,7 +78,7 @@ glm::vec3 turned(double radius, double height, int segment) {
 void add_wall(Mesh& mesh, const std::vector<Ring>& rings) {
     for (const Ring& ring : rings) {
         for (int segment = 0; segment <= segments; ++segment) {
-            mesh.positions.push_back(turned(ring.radius, ring.height, segment));
+            mesh.positions.push_back(revolved(ring.radius, ring.height, segment));
             mesh.texcoords.emplace_back(rounded(repeats * segment / segments),
                                         rounded(ring.v - rings.back().v));
         }
@@ -96,7 +94,7 @@ void add_wall(Mesh& mesh, const std::vector<Ring>& rings) {
     }
 }
 
-/// A flat disc within a ring, facing down or up; its texture lies upright as seen from outside.
+/// A flat disc inside a ring, facing down or up. Its texture is upright, seen from outside.
 void add_disc(Mesh& mesh, const Ring& rim, bool faces_up) {
     const double density = repeats / (2.0 * std::numbers::pi * rim.radius);
     const double turn = faces_up ? 1.0 : -1.0;
@@ -106,9 +104,9 @@ void add_disc(Mesh& mesh, const Ring& rim, bool faces_up) {
                                     rounded(0.5 + density * turn * position.z));
     };
     const auto center = static_cast<std::uint32_t>(mesh.positions.size());
-    add(turned(0.0, rim.height, 0));
+    add(revolved(0.0, rim.height, 0));
     for (int segment = 0; segment < segments; ++segment)
-        add(turned(rim.radius, rim.height, segment));
+        add(revolved(rim.radius, rim.height, segment));
     for (std::uint32_t segment = 0; segment < segments; ++segment) {
         const std::uint32_t here = center + 1 + segment;
         const std::uint32_t next = center + 1 + (segment + 1) % segments;
