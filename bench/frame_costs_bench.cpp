@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tangent frames cost, each table measured in turns in one run and printed in Markdown:
-// computing them, by method; storing them, by encoding; and drawing with stored frames or with
-// frames from derivatives. `relief-frame-costs-bench [TRIANGLES [ROUNDS]]`.
+// The costs of tangent frames: computing them, by method; storing them, by encoding; and drawing
+// with stored frames or with frames from derivatives. `relief-frame-costs-bench [TRIANGLES
+// [ROUNDS]]` prints tables in Markdown. The methods of each table are interleaved.
 #include <fmt/format.h>
 
 #include <array>
@@ -74,7 +74,7 @@ void compare_methods(const Mesh& mesh, std::size_t rounds) {
     }
 }
 
-/// Frames of every vertex, one tangent each.
+/// A frame per vertex, with one tangent.
 struct VertexFrames {
     std::vector<glm::vec3> normals;
     std::vector<glm::vec4> tangents;

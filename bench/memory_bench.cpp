@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The floor under every other line: how many bytes a second one thread moves (McCalpin's triad).
+// The memory bandwidth of one thread (McCalpin's triad), a lower bound for all other times.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 namespace {
 
 void memory_triad(benchmark::State& state) {
-    const std::size_t count = std::size_t{1} << 25;  // 3 x 128 MiB: far beyond any cache
+    const std::size_t count = std::size_t{1} << 25;  // 3 x 128 MiB, larger than any cache
     std::vector<float> a(count, 0.0F);
     const std::vector<float> b(count, 1.0F);
     const std::vector<float> c(count, 2.0F);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heights to 16-bit normal maps, in turns with the plainest loop that makes one, with OpenCV where
-// it is installed, and with a triad over memory: `relief-bump-bench [SIDE [ROUNDS]]` prints a table
-// in Markdown. All write into memory that is there already.
+// Heights to 16-bit normal maps, interleaved with a naive loop, with OpenCV if it is installed, and
+// with a triad over memory: `relief-bump-bench [SIDE [ROUNDS]]` prints a table in Markdown. All
+// methods write into allocated memory.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,9 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/bump_peers.h"
 #include "mesh/contenders.h"
-#include "mesh/triad.h"
+#include "mesh/peers.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"
@@ -21,7 +20,7 @@
 namespace relief::bench {
 namespace {
 
-/// What a first version looks like: Sobel in float, no care for borders, green up.
+/// A naive method: Sobel in float without border texels, green up.
 void plain_loop(const Image& heights, float strength, Image& map) {
     const auto width = static_cast<std::size_t>(heights.width);
     const float* const in = heights.as<float>().data();
@@ -58,7 +57,7 @@ Fields fields(int side) {
     return {std::move(field.heights), std::move(coded.codes), coded.strength};
 }
 
-/// Moved at least: heights read and codes written once.
+/// The minimum memory traffic: heights are read once, and codes are written once.
 double bytes_a_texel(const Image& heights) {
     return heights.bits() / 8.0 + 6.0;
 }
@@ -103,7 +102,7 @@ std::vector<Contender> contenders(const Fields& in, Triad& triad, Image& map) {
             ours(in.floats, fmt::format("{}, float in", name), options_of(kernel, 1.0), 1, map));
     all.push_back(ours(in.floats, "sobel3, float in, in double",
                        options_of(Kernel::sobel3, 1.0, Arithmetic::float64), 1, map));
-    for (BumpPeer& peer : bump_peers(in.floats, map))
+    for (Peer& peer : bump_peers(in.floats, map))
         all.push_back({std::move(peer.name), std::move(peer.run), {}, bytes_a_texel(in.floats)});
     all.push_back({"triad", [&triad] { triad.run(); }});
     return all;

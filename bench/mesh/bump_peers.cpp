@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/bump_peers.h"
+#include "mesh/peers.h"
 
 #ifdef RELIEF_HAS_OPENCV
 #include <cmath>
@@ -12,7 +12,7 @@ namespace relief::bench {
 #ifdef RELIEF_HAS_OPENCV
 namespace {
 
-/// Two Sobel images, then a loop over rows that normalizes and codes, shared out by OpenCV.
+/// Computes two Sobel images, then normalizes and encodes the rows in a parallel loop of OpenCV.
 void opencv_sobel(const Image& heights, Image& map, int threads) {
     cv::setNumThreads(threads);
     const cv::Mat in(heights.height, heights.width, CV_32F,
@@ -39,12 +39,12 @@ void opencv_sobel(const Image& heights, Image& map, int threads) {
 
 }  // namespace
 
-std::vector<BumpPeer> bump_peers(const Image& heights, Image& map) {
+std::vector<Peer> bump_peers(const Image& heights, Image& map) {
     return {{"OpenCV, Sobel, float in", [&] { opencv_sobel(heights, map, 1); }},
             {"OpenCV, Sobel, float in, 2 threads", [&] { opencv_sobel(heights, map, 2); }}};
 }
 #else
-std::vector<BumpPeer> bump_peers(const Image&, Image&) {
+std::vector<Peer> bump_peers(const Image&, Image&) {
     return {};
 }
 #endif

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The mesh that geometry is timed on: a sphere with waves, a texture seam and poles, as scans and
-/// sculpts have them; vertices in scan-line order.
+/// The mesh of most geometry benchmarks: a sphere with waves, a texture seam and poles. The
+/// vertices are in scan-line order.
 #pragma once
 
 #include "relief/mesh/mesh.h"
 
 namespace relief::bench {
 
-/// About `triangles` triangles; normals are those of the round sphere, good enough to time with.
+/// A mesh of about `triangles` triangles. The normals are those of the sphere without waves, which
+/// is sufficient for timing.
 Mesh bumpy_sphere(std::size_t triangles);
 
 }  // namespace relief::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparing two meshes corner by corner, and telling by which method tangents were made: on equal
-// numbers, on numbers that are a little off, and where all triangles stand around one vertex.
+// Comparison of two meshes by corners, with equal and slightly different positions and on a fan
+// around one vertex; and identification of the tangent method.
 #include "relief/mesh/compare.h"
 
 #include <benchmark/benchmark.h>
@@ -39,7 +39,7 @@ Mesh fan() {
     return mesh;
 }
 
-/// The triangles in another order, the vertices moved at most so far along each axis.
+/// The mesh with shuffled triangles, and vertices displaced by at most `distance` along each axis.
 Mesh shuffled(Mesh mesh, float distance) {
     std::mt19937 random(1);
     std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
@@ -65,7 +65,7 @@ void compare(benchmark::State& state, Mesh (*make)(), float distance) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(a.triangles.size()));
 }
 
-void sniff(benchmark::State& state) {
+void identify(benchmark::State& state) {
     const Mesh mesh = sphere();
     set_thread_limit(static_cast<unsigned>(state.range(0)));
     for (auto _ : state)
@@ -81,7 +81,7 @@ BENCHMARK_CAPTURE(compare, sphere_equal, sphere, 0.0F)->RELIEF_ON_THREADS;
 BENCHMARK_CAPTURE(compare, sphere_near, sphere, 1e-6F)->RELIEF_ON_THREADS;
 BENCHMARK_CAPTURE(compare, fan_equal, fan, 0.0F)->RELIEF_ON_THREADS;
 BENCHMARK_CAPTURE(compare, fan_near, fan, 1e-8F)->RELIEF_ON_THREADS;
-BENCHMARK(sniff)->RELIEF_ON_THREADS;
+BENCHMARK(identify)->RELIEF_ON_THREADS;
 
 }  // namespace
 }  // namespace relief::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The health check of a mesh, whole and in parts, on a sound mesh and on shapes for which looking
-// at pairs would take hours: none may take much longer for each triangle than the others.
+// The health check of a mesh, and its parts, on a sound mesh and on shapes for which a comparison
+// of all pairs would take hours. The time per triangle should be similar for all shapes.
 #include "relief/mesh/diagnose.h"
 
 #include <benchmark/benchmark.h>
@@ -21,14 +21,14 @@ Mesh bare_sphere() {
     return bumpy_sphere(triangles_diagnosed);
 }
 
-/// A point of the unit circle, in the plane of the image as well.
+/// Adds a vertex on the unit circle, in space and in the image.
 void add_on_circle(Mesh& mesh, std::uint32_t i, float height) {
     const double angle = 2.0 * std::numbers::pi * i / triangles_diagnosed;
     mesh.positions.emplace_back(std::cos(angle), std::sin(angle), height);
     mesh.texcoords.emplace_back(std::cos(angle), std::sin(angle));
 }
 
-/// All triangles around one vertex, in space and in the image.
+/// All triangles share one vertex, in space and in the image.
 Mesh textured_fan() {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}};
@@ -40,7 +40,7 @@ Mesh textured_fan() {
     return mesh;
 }
 
-/// All triangles on one edge.
+/// All triangles share one edge.
 Mesh book() {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {0, 0, 1}};
@@ -52,7 +52,7 @@ Mesh book() {
     return mesh;
 }
 
-/// Triangles anywhere, each with the whole image on it.
+/// Triangles at random positions, each with the whole image.
 Mesh soup() {
     Mesh mesh;
     std::mt19937 generator(1);
@@ -71,7 +71,7 @@ Mesh soup() {
     return mesh;
 }
 
-/// All vertices at one place.
+/// All vertices have the same position.
 Mesh point() {
     Mesh mesh;
     mesh.positions.assign(triangles_diagnosed, glm::vec3(1, 2, 3));

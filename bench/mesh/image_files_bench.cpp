@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normal maps written to and read from PNG files by each effort, in turns with OpenImageIO's own
-// writer and reader at its defaults: `relief-image-files-bench [SIDE [ROUNDS [HEIGHT-MAP...]]]`
-// prints a table in Markdown. Without files: fields of waves, smooth, noisy and in 8-bit steps.
+// Normal maps written to and read from PNG files with each effort, interleaved with the writer and
+// reader of OpenImageIO with default settings: `relief-image-files-bench [SIDE [ROUNDS
+// [HEIGHT-MAP...]]]` prints a table in Markdown. Without files, the inputs are smooth, noisy and
+// quantized fields of waves.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -58,7 +59,7 @@ std::vector<Map> made_maps(int side) {
 
 const ImageModuleFailure failure{nullptr, [](void*, const char* text) { fail(text); }};
 
-/// OpenImageIO's writer, with nothing said about how.
+/// Writes by OpenImageIO with default settings.
 void write_by_module(const fs::path& file, const Image& image) {
     const ImageModule& module = image_module(file);
     ImageModulePicture picture;

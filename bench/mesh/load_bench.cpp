@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading model files in turns with bare calls of the libraries that read them, and with reading
-// their bytes alone: `relief-load-bench [TRIANGLES [ROUNDS]]` prints a table in Markdown. Files are
-// in the system's cache, as they are when a tool chain hands them on.
+// Reading of model files, interleaved with direct calls of tinygltf and tinyobjloader and with
+// reading only the bytes: `relief-load-bench [TRIANGLES [ROUNDS]]` prints a table in Markdown. The
+// files are in the page cache.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 #include <tiny_obj_loader.h>
@@ -24,7 +24,7 @@ namespace {
 struct Reading {
     std::string format;
     std::string who;
-    std::function<std::size_t()> run;  ///< How many triangles, or bytes, were read.
+    std::function<std::size_t()> run;  ///< Returns the number of triangles, or of bytes.
     std::vector<double> seconds;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done to normal maps, each thing in turn with the others so that the machine's drift hits
-// all alike: nanoseconds a texel, files left out. The figures of docs/normal-maps.md.
+// Operations on normal maps without files, interleaved: nanoseconds per texel, for
+// docs/normal-maps.md.
 #include <fmt/format.h>
 
 #include <functional>
@@ -18,10 +18,10 @@ using namespace relief;
 
 constexpr int side = 2048;
 
-struct Thing {
+struct Operation {
     std::string name;
     std::function<void()> once;
-    std::function<void()> prepare = [] {};  ///< Before each time, and not timed.
+    std::function<void()> prepare = [] {};  ///< Runs before each timed run, and is not timed.
 };
 
 Image bumpy_normals() {
@@ -33,20 +33,20 @@ Image bumpy_normals() {
     return image;
 }
 
-std::vector<Thing> all_things(const Image& normals, Report& report) {
-    std::vector<Thing> things;
+std::vector<Operation> all_things(const Image& normals, Report& report) {
+    std::vector<Operation> operations;
     const auto codes_of = [&](const NormalMapFormat& format) {
         return [&, format] { encode_normal_map(normals, format, report); };
     };
-    things.push_back({"encode 16 bits", codes_of({16})});
-    things.push_back({"encode 8 bits", codes_of({8})});
-    things.push_back({"encode 8 bits, blue-noise",
-                      codes_of({8, Green::up, FlatCode::middle, Dither::blue_noise})});
+    operations.push_back({"encode 16 bits", codes_of({16})});
+    operations.push_back({"encode 8 bits", codes_of({8})});
+    operations.push_back({"encode 8 bits, blue-noise",
+                          codes_of({8, Green::up, FlatCode::middle, Dither::blue_noise})});
     static const Image map = encode_normal_map(normals, {16}, report);
-    things.push_back(
+    operations.push_back(
         {"decode 16 bits", [&] { decode_normal_map(map, Green::up, FlatCode::middle, report); }});
     static Image flipped = map;
-    things.push_back(
+    operations.push_back(
         {"flip green of 16-bit codes", [&] {
              map_axes(flipped, {{{0, false}, {1, true}, {2, false}}}, FlatCode::middle, report);
          }});
@@ -54,9 +54,10 @@ std::vector<Thing> all_things(const Image& normals, Report& report) {
         "reoriented", "partial-derivative", "whiteout", "udn", "unity", "linear", "overlay"};
     static Image base = normals;
     for (std::size_t i = 0; i < std::size(names); ++i) {
-        things.push_back({fmt::format("blend, {}", names[i]),
-                          [&, i] { blend_normals(base, normals, all_normal_blends[i], report); },
-                          [&] { base = normals; }});
+        operations.push_back(
+            {fmt::format("blend, {}", names[i]),
+             [&, i] { blend_normals(base, normals, all_normal_blends[i], report); },
+             [&] { base = normals; }});
     }
     for (const auto& [name, filter] :
          {std::pair{"box", ResizeFilter::box}, std::pair{"lanczos", ResizeFilter::lanczos}}) {
@@ -64,14 +65,14 @@ std::vector<Thing> all_things(const Image& normals, Report& report) {
             ResizeOptions options;
             options.filter = filter;
             options.domain = domain;
-            things.push_back(
+            operations.push_back(
                 {fmt::format("resize to 50 %, {}, {}", name,
                              domain == ResizeDomain::slopes ? "slopes" : "vectors"),
                  [&, options] { resize_normals(normals, side / 2, side / 2, options, report); }});
         }
     }
-    things.push_back({"all mip levels", [&] { normal_mip_levels(normals); }});
-    return things;
+    operations.push_back({"all mip levels", [&] { normal_mip_levels(normals); }});
+    return operations;
 }
 
 }  // namespace
@@ -80,16 +81,16 @@ int main(int argc, char** argv) {
     if (argc > 1) set_thread_limit(static_cast<unsigned>(std::stoul(argv[1])));
     const Image normals = bumpy_normals();
     Report report;
-    const std::vector<Thing> things = all_things(normals, report);
-    std::vector<std::vector<double>> times(things.size());
-    interleave(things.size(), {}, [&](std::size_t thing, bool counted) {
-        things[thing].prepare();
-        const double taken = seconds_of(things[thing].once);
-        if (counted) times[thing].push_back(1e9 * taken / (double{side} * side));
+    const std::vector<Operation> operations = all_things(normals, report);
+    std::vector<std::vector<double>> times(operations.size());
+    interleave(operations.size(), {}, [&](std::size_t operation, bool counted) {
+        operations[operation].prepare();
+        const double taken = seconds_of(operations[operation].once);
+        if (counted) times[operation].push_back(1e9 * taken / (double{side} * side));
     });
-    for (std::size_t i = 0; i < things.size(); ++i) {
+    for (std::size_t i = 0; i < operations.size(); ++i) {
         const TimeStatistics spread = time_statistics(times[i]);
-        fmt::print("{:32} {:6.2f} ns a texel (p10 {:.2f}, p90 {:.2f})\n", things[i].name,
+        fmt::print("{:32} {:6.2f} ns a texel (p10 {:.2f}, p90 {:.2f})\n", operations[i].name,
                    spread.median, spread.p10, spread.p90);
     }
 }

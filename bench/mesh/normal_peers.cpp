@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/normal_peers.h"
+#include "mesh/peers.h"
 
 #include <algorithm>
 #include <memory>
@@ -17,8 +17,9 @@ namespace relief::bench {
 namespace {
 
 #ifdef RELIEF_HAS_OPENMESH
-/// update_normals() of faces, then of vertices by uniform weights; halfedges are made beforehand.
-NormalPeer open_mesh(const Mesh& mesh) {
+/// update_normals() computes face normals, then vertex normals with uniform weights. The half-edges
+/// are part of the setup.
+Peer open_mesh(const Mesh& mesh) {
     using Halfedges = OpenMesh::TriMesh_ArrayKernelT<>;
     const auto peer = std::make_shared<Halfedges>();
     std::vector<OpenMesh::VertexHandle> handles;
@@ -33,7 +34,7 @@ NormalPeer open_mesh(const Mesh& mesh) {
 #endif
 
 #ifdef RELIEF_HAS_CGAL
-NormalPeer cgal(const Mesh& mesh) {
+Peer cgal(const Mesh& mesh) {
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
     const auto peer = std::make_shared<Surface>();
@@ -51,8 +52,8 @@ NormalPeer cgal(const Mesh& mesh) {
 
 }  // namespace
 
-std::vector<NormalPeer> normal_peers([[maybe_unused]] const Mesh& mesh) {
-    std::vector<NormalPeer> peers;
+std::vector<Peer> normal_peers([[maybe_unused]] const Mesh& mesh) {
+    std::vector<Peer> peers;
 #ifdef RELIEF_HAS_OPENMESH
     peers.push_back(open_mesh(mesh));
 #endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertex normals in turns with the plainest loop that gives any, with other libraries, and with a
-// triad over the same memory: `relief-normals-bench [TRIANGLES [ROUNDS]]` prints a table in
-// Markdown.
+// Vertex normals, interleaved with a naive loop, with other libraries, and with a triad over
+// memory: `relief-normals-bench [TRIANGLES [ROUNDS]]` prints a table in Markdown.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -11,8 +10,7 @@
 
 #include "mesh/bumpy_sphere.h"
 #include "mesh/contenders.h"
-#include "mesh/normal_peers.h"
-#include "mesh/triad.h"
+#include "mesh/peers.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/timing.h"
@@ -20,8 +18,8 @@
 namespace relief::bench {
 namespace {
 
-/// The naive best: area-weighted float scatter. Overflows, underflows, splits at seams, depends on
-/// the order of triangles, and returns NaN where triangles vanish.
+/// A naive method: area-weighted sums in float. It overflows, underflows, does not average across
+/// seams, depends on the order of triangles, and gives NaN for vertices of collapsed triangles.
 std::vector<glm::vec3> naive_area_normals(const Mesh& mesh) {
     std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0.0F));
     for (const glm::uvec3& triangle : mesh.triangles) {
@@ -72,7 +70,7 @@ std::vector<Contender> contenders(const Mesh& mesh, Triad& triad) {
                        keep(chosen_normals(mesh.positions, mesh.triangles, {}, report).normals);
                    },
                    {}});
-    for (NormalPeer& peer : normal_peers(mesh))
+    for (Peer& peer : normal_peers(mesh))
         all.push_back({std::move(peer.name), std::move(peer.run), {}});
     all.push_back({"triad, 192 MB", [&] { triad.run(); }, {}});
     return all;
@@ -98,7 +96,7 @@ int run(int argc, char** argv) {
                    spread.median / naive);
     }
     const double bandwidth = Triad::bytes / time_statistics(all.back().nanoseconds).median;
-    // Indices and positions once, sums written and read once, normals written.
+    // Indices and positions are read once, and normals are written once.
     const double least = 12.0 * count + 24.0 * static_cast<double>(mesh.positions.size());
     fmt::print(
         "\nTriad: {:.1f} GB/s. Indices, positions and normals moved once: {:.2f} ns/triangle.\n",

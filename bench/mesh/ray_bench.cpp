@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a bake through relief's scene and through bare Embree, in every way it has: the same
-// triangles, rays and order, in turns, one thread each. Argument: millions of triangles.
+// Rays of a bake through relief's scene and through Embree's own functions: the same triangles,
+// rays and order, interleaved, with one thread. Argument: millions of triangles.
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
@@ -17,7 +17,8 @@ namespace {
 
 constexpr int side = 1024;
 
-/// Blocks of 4 x 4 texels of a map of the sphere by longitude and latitude, as the baker has them.
+/// The rays of a map of the sphere by longitude and latitude, in blocks of 4 x 4 texels like those
+/// of the baker.
 std::vector<Ray> rays_of_a_bake() {
     std::vector<Ray> rays;
     for (int block = 0; block < side * side / 16; ++block) {
@@ -34,7 +35,7 @@ std::vector<Ray> rays_of_a_bake() {
     return rays;
 }
 
-/// Embree's own scene of the same triangles, where they are.
+/// An Embree scene of the same triangles in local coordinates.
 struct Bare {
     explicit Bare(const Mesh& mesh) : device(rtcNewDevice(nullptr)), scene(rtcNewScene(device)) {
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
@@ -101,7 +102,7 @@ void run(std::size_t triangles) {
     const std::vector<Ray> rays = rays_of_a_bake();
     Bare bare(mesh);
     const RayScene scene({{mesh.positions, mesh.triangles}});
-    // Every round begins with rays that have not been cast yet, in memory that was used before.
+    // Each round begins with rays that have not been cast yet, in memory that has been used before.
     const auto singles = singles_of(rays);
     const auto eights = packets_of<RTCRayHit8, 8>(rays);
     const auto sixteens = packets_of<RTCRayHit16, 16>(rays);

@@ -1,25 +1,110 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tangents in turns with the plainest loop that gives any and with a triad over memory:
-// `relief-tangents-bench [TRIANGLES [ROUNDS]]` prints tables in Markdown, `relief-tangents-bench
-// shapes` what crowded shapes take.
+// Tangents, interleaved with a naive loop and with a triad over memory: `relief-tangents-bench
+// [TRIANGLES [ROUNDS]]` prints tables in Markdown. `relief-tangents-bench shapes` measures shapes
+// on which a search for neighbors, a recursion or a comparison of sets can need quadratic time.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "mesh/bumpy_sphere.h"
 #include "mesh/contenders.h"
-#include "mesh/tangent_shapes.h"
-#include "mesh/triad.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/tangents.h"
 #include "relief/mesh/timing.h"
 
 namespace relief::bench {
 namespace {
+
+// Meshes.
+
+void add_vertex(Mesh& mesh, const glm::dvec3& position, const glm::dvec3& normal,
+                const glm::dvec2& texcoord) {
+    mesh.positions.emplace_back(position);
+    mesh.normals.emplace_back(normal);
+    mesh.texcoords.emplace_back(texcoord);
+}
+
+/// A square of hills with about `triangles` triangles. The texture is projected from above.
+Mesh displaced_grid(std::size_t triangles) {
+    const auto cells = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(triangles) / 2.0));
+    Mesh mesh;
+    for (std::uint32_t row = 0; row <= cells; ++row) {
+        for (std::uint32_t column = 0; column <= cells; ++column) {
+            const double x = static_cast<double>(column) / cells;
+            const double y = static_cast<double>(row) / cells;
+            // The hills have two sizes and slopes of at most 45 degrees.
+            const auto slope = [](double at, double waves) { return 0.35 * std::cos(waves * at); };
+            const double height = 0.35 * (std::sin(20.0 * x) / 20.0 + std::sin(20.0 * y) / 20.0 +
+                                          std::sin(90.0 * x) / 90.0 + std::sin(90.0 * y) / 90.0);
+            const glm::dvec3 normal(-slope(x, 20.0) - slope(x, 90.0),
+                                    -slope(y, 20.0) - slope(y, 90.0), 1.0);
+            add_vertex(mesh, {x, y, height}, glm::normalize(normal), {x, 1.0 - y});
+        }
+    }
+    for (std::uint32_t row = 0; row < cells; ++row) {
+        for (std::uint32_t column = 0; column < cells; ++column) {
+            const std::uint32_t lower = row * (cells + 1) + column;
+            const std::uint32_t upper = lower + cells + 1;
+            mesh.triangles.emplace_back(lower, lower + 1, upper + 1);
+            mesh.triangles.emplace_back(lower, upper + 1, upper);
+        }
+    }
+    return mesh;
+}
+
+/// A disc of triangles that share one vertex.
+Mesh fan(std::size_t triangles) {
+    const auto count = static_cast<std::uint32_t>(triangles);
+    Mesh mesh;
+    add_vertex(mesh, {0, 0, 0}, {0, 0, 1}, {0.5, 0.5});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / count;
+        const glm::dvec2 rim(std::cos(angle), std::sin(angle));
+        add_vertex(mesh, {rim, 0}, {0, 0, 1}, glm::dvec2(0.5) + 0.5 * glm::dvec2(rim.x, -rim.y));
+        mesh.triangles.emplace_back(0, i + 1, (i + 1) % count + 1);
+    }
+    return mesh;
+}
+
+/// Triangles that share one edge, like the pages of a book. Half of them have the other
+/// orientation.
+Mesh book(std::size_t triangles) {
+    const auto count = static_cast<std::uint32_t>(triangles);
+    Mesh mesh;
+    add_vertex(mesh, {0, 0, 0}, {0, 0, 1}, {0, 0});
+    add_vertex(mesh, {0, 1, 0}, {0, 0, 1}, {0, 1});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double angle = std::numbers::pi * i / count;
+        add_vertex(mesh, {std::cos(angle), 0.5, std::sin(angle)}, {0, 0, 1},
+                   {1.0 + i % 7, 0.3 * (i % 5)});
+        mesh.triangles.emplace_back(i % 2, 1 - i % 2, i + 2);
+    }
+    return mesh;
+}
+
+/// The grid with all vertices at one point.
+Mesh collapsed_to_a_point(std::size_t triangles) {
+    Mesh mesh = displaced_grid(triangles);
+    for (glm::vec3& position : mesh.positions)
+        position = glm::vec3(0.0F);
+    return mesh;
+}
+
+/// The grid with all vertices on a line.
+Mesh collapsed_to_a_line(std::size_t triangles) {
+    Mesh mesh = displaced_grid(triangles);
+    for (glm::vec3& position : mesh.positions)
+        position = {position.x, 0, 0};
+    return mesh;
+}
+
+// Methods.
 
 using Method = decltype(&mikktspace_tangents);
 
@@ -29,9 +114,9 @@ void keep(const std::vector<glm::vec4>& tangents) {
     sink = tangents[tangents.size() / 2].x;
 }
 
-/// What engines have in a page of code: gradients added up at vertices, in float. Wrong where
-/// textures are mirrored, NaN where they have no gradient, split at seams, other bits in another
-/// order.
+/// A naive method of engines: texture gradients are summed at the vertices, in float. It is wrong
+/// if the texture is mirrored, gives NaN without a gradient, does not average across seams, and
+/// depends on the order of triangles.
 std::vector<glm::vec4> naive_tangents(const Mesh& mesh) {
     std::vector<glm::vec3> along_u(mesh.positions.size(), glm::vec3(0.0F));
     std::vector<glm::vec3> along_v(mesh.positions.size(), glm::vec3(0.0F));
@@ -70,7 +155,7 @@ Contender ours(const Mesh& mesh, const std::string& name, Method method, unsigne
             {}};
 }
 
-/// A line of /proc/self/status, in MiB; 0 where there is none.
+/// A value of /proc/self/status, in MiB; 0 if it does not exist.
 double status_mib(const std::string& key) {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
@@ -79,9 +164,9 @@ double status_mib(const std::string& key) {
     return 0.0;
 }
 
-/// How much memory a call takes at most, its result included, beyond what was in use before.
+/// The peak of the additional memory of a call, including its result.
 double peak_mib(const std::function<void()>& work) {
-    std::ofstream("/proc/self/clear_refs") << "5";  // Linux: forget the highest mark.
+    std::ofstream("/proc/self/clear_refs") << "5";  // Linux: resets VmHWM.
     const double before = status_mib("VmRSS:");
     work();
     return status_mib("VmHWM:") - before;
@@ -118,7 +203,7 @@ void print_table(const std::string& title, const Mesh& mesh, std::size_t rounds)
     const double output = 48.0 * count;
     fmt::print(
         "\nTriad: {:.1f} GB/s. Input read and output written once: {:.1f} ns/triangle.\n"
-        "Input {:.0f} MiB, output {:.0f}; mikktspace takes {:.0f} at most, output included: "
+        "Input {:.0f} MiB, output {:.0f}; the peak of mikktspace is {:.0f}, including the output: "
         "{:.2f} times input and output.\n",
         bandwidth, (input + output) / bandwidth / count, input / 0x1p20, output / 0x1p20, peak,
         (input / 0x1p20 + peak) / ((input + output) / 0x1p20));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame takes by relief's planned program, by one written by hand for the scene, and by one
-// that holds every effect behind branches on uniforms; six typical scenes, in turns in one run.
-// A sphere of 99,856 triangles, 1280 x 720, one sample a pixel; milliseconds of wall clock.
+// The frame times of three programs, interleaved, for six typical scenes: relief's planned program,
+// a hand-written one for the scene, and one with all effects in branches on uniforms.
+// A sphere of 99,856 triangles, 1280 x 720, one sample per pixel; wall-clock milliseconds.
 //
 //   relief-frame-bench [REPEATS]
 //
-// The hand-written and the branching shaders stand in for shaders/surface.* by way of
-// $RELIEF_SHADER_DIR, so all three draw the same meshes with the same state.
+// The hand-written and the branching shaders replace shaders/surface.* through $RELIEF_SHADER_DIR,
+// so that all three programs draw the same meshes with the same state.
 #include <fmt/format.h>
 
 #include <array>
@@ -26,7 +26,7 @@ namespace {
 
 const FrameSettings settings{1280, 720, 1, OutputCoding::srgb};
 
-/// Shaders of this folder go first; of none: those built in.
+/// Uses the shaders of a folder below bench/shade; empty: the embedded ones.
 void use_shaders(const std::string& folder) {
     if (folder.empty()) {
         unsetenv("RELIEF_SHADER_DIR");
@@ -36,7 +36,7 @@ void use_shaders(const std::string& folder) {
     }
 }
 
-/// Sets switches of the program that drew last: in these scenes the only one.
+/// Sets switches of the current program, which is the only one in these scenes.
 void switch_on(const Context& context, const std::vector<const char*>& uses) {
     const gl::Api& api = context.api();
     GLint program = 0;

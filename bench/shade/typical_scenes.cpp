@@ -9,7 +9,7 @@
 namespace relief::bench {
 namespace {
 
-/// Texels of noise; of a normal map, around flat.
+/// Random texels; for a normal map, near the flat color.
 Image noise(std::uint32_t seed, int size, bool around_flat, ColorSpace space) {
     std::mt19937 random(seed);
     Image image = make_image(size, size, 3, 8, space);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Six scenes that frames are timed on: a sphere of 99,856 triangles, from plain to
-/// metallic-roughness.
+/// The six scenes of the frame benchmarks: a sphere of 99,856 triangles with materials from plain
+/// to metallic-roughness.
 #pragma once
 
 #include <vector>
