@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One function a mesh, or a sentence; the table of all is at the end. Tests:
-// tests/tools/conformance_kit_test.cpp.
+// A function per mesh, except for simple ones. The tables at the end list all meshes.
+// Tests: tests/tools/conformance_kit_test.cpp.
 #include "kit_meshes.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Mesh mirrored_hills() {
         hills(8), [](Texcoord t) { return Texcoord(std::abs(t.x - 0.5), std::abs(t.y - 0.5)); });
 }
 
-/// Squares of 2 x 2 cells, each with the image turned, scaled and put elsewhere.
+/// Squares of 2 x 2 cells, each with another rotation, scale and position of the image.
 Mesh islands() {
     Mesh all;
     Random random(11);
@@ -63,8 +63,7 @@ Mesh sheared() {
     return retextured(hills(10), [](Texcoord t) { return Texcoord(16.0 * t.x + 9.0 * t.y, t.y); });
 }
 
-/// A random place in the image for every vertex: handedness and size change from one triangle to
-/// the next.
+/// Random texture coordinates: handedness and size differ between adjacent triangles.
 Mesh scrambled() {
     Random random(12);
     return retextured(hills(10), [&](Texcoord) { return Texcoord{random.unit(), random.unit()}; });
@@ -90,7 +89,7 @@ Mesh leaning_normals() {
     });
 }
 
-/// Every triangle with its own normal, as glTF asks for where there are none.
+/// Flat normals, which glTF requires for meshes without normals.
 Mesh facets() {
     Mesh mesh = soup(hills(7));
     for (const glm::uvec3& triangle : mesh.triangles) {
@@ -104,8 +103,8 @@ Mesh facets() {
     return mesh;
 }
 
-/// Triangles that name a vertex twice, have two corners in one place, lie on a line, or show a
-/// line or a point of the image, all between sound ones.
+/// Degenerate triangles among sound ones: with a repeated vertex, two corners at the same position,
+/// collinear corners, or a texture that is a line or a point of the image.
 Mesh degenerate() {
     Mesh mesh = hills(8);
     Random random(14);
@@ -123,7 +122,7 @@ Mesh degenerate() {
         mesh.triangles.emplace_back(near.x, near.y,
                                     static_cast<std::uint32_t>(mesh.positions.size() - 1));
     }
-    // Of the flat middle of an edge: on a line in space, but not in the image.
+    // The third corner is the midpoint of an edge: collinear in space, but not in the image.
     for (int i = 0; i < 8; ++i) {
         const glm::uvec3 near = mesh.triangles[random.below(128)];
         mesh.positions.push_back((mesh.positions[near.x] + mesh.positions[near.y]) * 0.5F);
@@ -137,8 +136,8 @@ Mesh degenerate() {
     return mesh;
 }
 
-/// Five pages of a book around the y axis, some facing one way, some the other: every edge of its
-/// back has several partners to choose from.
+/// Five pages of a book around the y axis with different orientations. Each edge of the spine has
+/// several possible neighbors.
 Mesh book() {
     Mesh all;
     for (int page = 0; page < 5; ++page) {
@@ -175,7 +174,7 @@ Mesh flipped() {
     return mesh;
 }
 
-/// Vertices stored several times over, in part as -0 where they are 0, and named at random.
+/// Each vertex is stored three times, once with -0 instead of 0. Triangles refer to random copies.
 Mesh duplicates() {
     Mesh mesh = changed(hills(8), [](Mesh& m, std::size_t v) {
         m.positions[v].z = std::abs(m.positions[v].x) < 0.3F ? 0.0F : m.positions[v].z;
@@ -205,8 +204,8 @@ Mesh duplicates() {
     return mesh;
 }
 
-/// A strip that overhangs like an S, seen from above: its texture runs on, but as the common
-/// normal sees it, it turns back exactly where the strip does.
+/// An S-shaped strip with overhangs. Its texture is continuous. Projected along the common normal,
+/// the texture reverses exactly where the strip does.
 Mesh folded_back() {
     constexpr double places[] = {0, 1, 2, 1, 0, 1, 2};
     return patch(6, 2, [&](double x, double y) {
@@ -217,9 +216,8 @@ Mesh folded_back() {
     });
 }
 
-/// The same, but folded the other way, with a texture that is sheared by another amount in every
-/// triangle: v turns back exactly, u only a little. Half of the triangles show the normal their
-/// back.
+/// The same strip along the other axis, with a texture that each triangle shears differently: v
+/// reverses exactly, u only slightly. Half of the triangles face away from their normals.
 Mesh folded_over() {
     constexpr double places[] = {0, 1, 2, 1, 0, 1, 2};
     Random random(21);
@@ -232,7 +230,7 @@ Mesh folded_over() {
     });
 }
 
-/// Quads whose shorter diagonal in the image is now the one, now the other.
+/// Quads, of which some have one shorter diagonal in the image and some the other.
 KitMesh quads() {
     const int cells = 8;
     Random random(17);
@@ -269,8 +267,8 @@ KitMesh quads() {
     return kit;
 }
 
-/// A few hills, their triangles in an order in which the reference misses neighbors: around the
-/// vertex whose edges it comes to last, and does not sort to the end. One order in a hundred does.
+/// Hills with an order of triangles for which the reference misses neighbors: it does not sort the
+/// last run of edges completely. About one order in a hundred has this effect.
 Mesh unsorted_bucket() {
     Random random(284);
     Mesh mesh = retextured(hills(4), [&](Texcoord t) {
@@ -397,7 +395,7 @@ Mesh with_normals_of_lengths() {
     });
 }
 
-/// Normals along the texture, or along each triangle's edges.
+/// Normals in the plane of the surface: along the axes of the texture.
 Mesh normals_in_the_surface() {
     return changed(hills(6), [](Mesh& mesh, std::size_t v) {
         mesh.normals[v] = v % 2 == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);

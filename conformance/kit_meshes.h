@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The meshes of the conformance kit: small, each about one thing that tangents have to get right.
+/// The meshes of the conformance kit. Each is small and tests one property of tangents.
 ///
-/// Object space, triangles, normals and texture coordinates (upper left origin, v down).
-/// Everything is made here from formulas and a fixed generator of random numbers; nothing depends
-/// on how relief computes normals or tangents. Tests: tests/tools/conformance_kit_test.cpp.
+/// Object space, triangles, normals and texture coordinates (upper left origin, v down). The meshes
+/// are computed from formulas and pseudo-random numbers, independently of relief's normals and
+/// tangents. Tests: tests/tools/conformance_kit_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,11 +15,11 @@
 
 namespace relief::conformance {
 
-/// What a mesh is judged by.
+/// The criteria for a mesh.
 enum class Group {
-    conformance,  ///< Corner by corner against the reference, where that has one answer.
-    defect,       ///< The same, but the reference is wrong: expected is what it means to do.
-    stability,    ///< Input on which programs fail: only what any usable tangent is.
+    conformance,  ///< Each corner is compared with the reference if that is unambiguous.
+    defect,       ///< The same, with the results of the corrected reference.
+    stability,    ///< Hard input: tangents must only be finite, unit and perpendicular.
 };
 
 struct KitMesh {
@@ -27,11 +27,11 @@ struct KitMesh {
     Group group;
     std::string about;  ///< One sentence.
     Mesh mesh;
-    std::vector<glm::uvec4> quads;  ///< Where the triangles come from quads; else empty.
-    bool is_indexed = true;         ///< Else the file has three vertices for each triangle.
+    std::vector<glm::uvec4> quads;  ///< Empty if the mesh does not consist of quads.
+    bool is_indexed = true;         ///< Otherwise the file has three vertices per triangle.
 };
 
-/// All of them. The same bits on every run.
+/// All meshes of the kit. Every run computes the same bits.
 std::vector<KitMesh> kit_meshes();
 
 /// "conformance", "defect", "stability"

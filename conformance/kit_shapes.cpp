@@ -6,14 +6,14 @@
 
 namespace relief::conformance {
 
-glm::vec2 survivor(const glm::dvec2& texcoord) {
+glm::vec2 invertible(const glm::dvec2& texcoord) {
     return glm::round(texcoord * 65536.0) / 65536.0;
 }
 
 std::uint32_t add(Mesh& mesh, const Point& point) {
     mesh.positions.emplace_back(point.position);
     mesh.normals.emplace_back(glm::normalize(point.normal));
-    mesh.texcoords.push_back(survivor(point.texcoord));
+    mesh.texcoords.push_back(invertible(point.texcoord));
     return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
@@ -62,7 +62,7 @@ Point on_sphere(double x, double y) {
 
 Mesh sphere(int slices, int stacks) {
     const auto at = [&](int slice, int stack) {
-        // A pole belongs to one slice each: its u is that of the slice's middle.
+        // Each slice has its own vertex at a pole, with the u of the center of the slice.
         const bool is_pole = stack == 0 || stack == stacks;
         Point point = on_sphere((slice + (is_pole ? 0.5 : 0.0)) / slices,
                                 static_cast<double>(stack) / stacks);
@@ -101,7 +101,7 @@ Mesh sphere(int slices, int stacks) {
 
 Mesh torus(int slices, int sides) {
     const auto point = [&](double x, double y) {
-        // Both ends of a turn are the same place, to the last bit.
+        // Both ends of the circle have exactly the same position.
         const double around = 2.0 * std::numbers::pi * (x == 1.0 ? 0.0 : x);
         const double tube = 2.0 * std::numbers::pi * (y == 1.0 ? 0.0 : y);
         const glm::dvec3 out(std::sin(around), 0.0, std::cos(around));
@@ -174,7 +174,7 @@ Mesh soup(const Mesh& mesh) {
 
 Mesh retextured(Mesh mesh, const std::function<glm::dvec2(glm::dvec2)>& change) {
     for (glm::vec2& texcoord : mesh.texcoords)
-        texcoord = survivor(change(glm::dvec2(texcoord)));
+        texcoord = invertible(change(glm::dvec2(texcoord)));
     return mesh;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the kit's meshes are made from: surfaces by formula, and changes to them.
+/// The surfaces of which the meshes of the kit consist, and changes to them.
 ///
-/// Object space. Computed in double and rounded once; random numbers come from the generator that
-/// the C++ standard fixes, by a rule of our own, so that every machine draws the same.
+/// Object space. Values are computed in double and rounded once. Random numbers are those of
+/// std::mt19937 without a standard distribution, so that they are the same on all machines.
 /// Tests: tests/tools/conformance_kit_test.cpp.
 #pragma once
 
@@ -20,7 +20,7 @@ class Random {
   public:
     explicit Random(std::uint32_t seed) : generator_(seed) {}
 
-    /// From 0 to 1.
+    /// A number in [0, 1).
     double unit() { return static_cast<double>(generator_()) / 4294967296.0; }
 
     std::uint32_t below(std::uint32_t limit) {
@@ -37,41 +37,41 @@ struct Point {
     glm::dvec2 texcoord;
 };
 
-/// A texture coordinate that survives being turned over twice, as programs do in which v runs up:
-/// 1 - (1 - v) is v again. A multiple of 1/65536.
-glm::vec2 survivor(const glm::dvec2& texcoord);
+/// Rounds a texture coordinate to a multiple of 1/65536, so that 1 - (1 - v) is exactly v in
+/// programs that invert v twice.
+glm::vec2 invertible(const glm::dvec2& texcoord);
 
-/// Appends a vertex, its normal made unit, its texture coordinate a survivor.
+/// Appends a vertex with a unit normal and an invertible texture coordinate.
 std::uint32_t add(Mesh& mesh, const Point& point);
 
-/// A surface over [0,1]^2 in columns x rows cells, each cut from its lower left to its upper
-/// right corner: what is to the left of growing x, as y grows, is its front.
+/// A surface over [0,1]^2 with columns x rows cells. The diagonal of each cell is from its lower
+/// left to its upper right corner. The front is that of cross(d/dx, d/dy).
 Mesh patch(int columns, int rows, const std::function<Point(double x, double y)>& point);
 
-/// Hills over [-1,1]^2, seen from +z; the image upright on it from above.
+/// Hills over [-1,1]^2, which face +z. The image is projected from above and upright.
 Point hill(double x, double y);
 
 /// `cells` x `cells` cells of hills.
 Mesh hills(int cells);
 
-/// The unit sphere by longitude and latitude, u eastwards; triangles at the poles, no collapsed
-/// ones.
+/// The unit sphere by longitude and latitude, u eastwards. The poles have triangles without
+/// collapsed ones.
 Mesh sphere(int slices, int stacks);
 
-/// A torus about the y axis, its image once around.
+/// A torus about the y axis, which the image covers once.
 Mesh torus(int slices, int sides);
 
-/// The cube from -1 to 1, `cells` x `cells` on every side, every side with a place of its own in
-/// the image; some of those are mirrored.
+/// The cube from -1 to 1 with `cells` x `cells` cells per side. Each side has its own region of the
+/// image; some regions are mirrored.
 Mesh cube(int cells, bool is_smooth);
 
-/// `count` triangles all the way around one vertex.
+/// A closed fan of `count` triangles around one vertex.
 Mesh fan(int count);
 
-/// Three vertices of its own for every triangle.
+/// The mesh with three separate vertices per triangle.
 Mesh soup(const Mesh& mesh);
 
-/// Replaces the texture coordinates by survivors.
+/// Changes the texture coordinates. The results are made invertible.
 Mesh retextured(Mesh mesh, const std::function<glm::dvec2(glm::dvec2)>& change);
 
 }  // namespace relief::conformance

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes what the MikkTSpace reference answers for every corner of the kit's meshes:
-// relief-make-conformance-expected FOLDER, one NAME.f32 for each mesh that has expected results,
-// and a table of the corners that are not judged, to stdout. Built only against the reference's own
-// sources (expected.cmake). Exit 0 done, 1 failed, 2 wrong usage.
+// Writes the tangents of the MikkTSpace reference for all corners of the kit's meshes:
+// relief-make-conformance-expected FOLDER writes NAME.f32 for each mesh with expected results, and
+// a table of the corners that are not judged to stdout. It needs the sources of the reference
+// (expected.cmake). Exit codes: 0 done, 1 failed, 2 wrong usage.
 //
 // NAME.f32: little-endian floats x, y, z, w for each corner, in the order of the mesh's triangles,
-// by glTF's convention: bitangent = w * cross(normal, xyz) points to where v decreases. The
-// reference is given the stored texture coordinates, and its sign is negated: the same numbers as
-// for (u, -v). All four are 0 where a corner is not judged (README.md says when).
+// by glTF's convention: bitangent = w * cross(normal, xyz) points towards decreasing v. The
+// reference gets the stored texture coordinates, and its sign is negated, which gives the same
+// numbers as (u, -v). All four are 0 if a corner is not judged (see README.md).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 
 extern "C" {
 #include <mikktspace.h>
-tbool mended_genTangSpaceDefault(const SMikkTSpaceContext* context);
+tbool corrected_genTangSpaceDefault(const SMikkTSpaceContext* context);
 }
 
 namespace {
@@ -38,7 +38,7 @@ constexpr int random_orders = 64;
 
 using Face = std::vector<std::uint32_t>;  // Vertex indices.
 
-/// What the reference's callbacks see.
+/// The data of the reference's callbacks.
 struct Subject {
     const relief::Mesh& mesh;
     std::vector<Face> faces;
@@ -60,8 +60,9 @@ void copy(const Vector& from, float* to) {
         to[i] = from[i];
 }
 
-std::vector<std::vector<glm::vec4>> answer(const relief::Mesh& mesh, const std::vector<Face>& faces,
-                                           tbool (*generate)(const SMikkTSpaceContext*)) {
+std::vector<std::vector<glm::vec4>> reference_tangents(
+    const relief::Mesh& mesh, const std::vector<Face>& faces,
+    tbool (*generate)(const SMikkTSpaceContext*)) {
     Subject subject{mesh, faces, {}};
     for (const Face& face : faces)
         subject.tangents.emplace_back(face.size());
@@ -81,7 +82,8 @@ std::vector<std::vector<glm::vec4>> answer(const relief::Mesh& mesh, const std::
     calls.m_getTexCoord = [](const SMikkTSpaceContext* c, float* out, const int f, const int i) {
         copy(subject_of(c).mesh.texcoords[vertex_of(c, f, i)], out);
     };
-    // Those that it has not touched keep lengths of exactly 1 and the axes.
+    // If the reference computes nothing for a corner, the lengths are exactly 1, and the vectors
+    // are the axes.
     calls.m_setTSpace = [](const SMikkTSpaceContext* c, const float* tangent,
                            const float* bitangent, const float u_length, const float v_length,
                            const tbool is_upright, const int f, const int i) {
@@ -93,22 +95,22 @@ std::vector<std::vector<glm::vec4>> answer(const relief::Mesh& mesh, const std::
             is_untouched ? glm::vec4(0.0F) : glm::vec4(t, is_upright != 0 ? -1.0F : 1.0F);
     };
     SMikkTSpaceContext context{&calls, &subject};
-    if (generate(&context) == 0) throw std::runtime_error("the reference gives up");
+    if (generate(&context) == 0) throw std::runtime_error("the reference failed");
     return subject.tangents;
 }
 
-/// The answer for faces in another order, each begun at another corner; in the old order.
-std::vector<std::vector<glm::vec4>> reordered_answer(const relief::Mesh& mesh,
-                                                     const std::vector<Face>& faces,
-                                                     const std::vector<std::size_t>& order,
-                                                     const std::vector<std::size_t>& begin) {
+/// The tangents for faces in another order and with other first corners, in the original order.
+std::vector<std::vector<glm::vec4>> reordered_tangents(const relief::Mesh& mesh,
+                                                       const std::vector<Face>& faces,
+                                                       const std::vector<std::size_t>& order,
+                                                       const std::vector<std::size_t>& begin) {
     std::vector<Face> other;
     for (const std::size_t f : order) {
         Face face = faces[f];
         std::rotate(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(begin[f]), face.end());
         other.push_back(face);
     }
-    auto found = answer(mesh, other, mended_genTangSpaceDefault);
+    auto found = reference_tangents(mesh, other, corrected_genTangSpaceDefault);
     std::vector<std::vector<glm::vec4>> result(faces.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         std::vector<glm::vec4>& face = found[i];
@@ -123,14 +125,14 @@ bool agree(const glm::vec4& a, const glm::vec4& b) {
     return a.w == b.w && relief::degrees_between(glm::dvec3(a), glm::dvec3(b)) <= same_degrees;
 }
 
-/// Why corners are not judged, and how many.
+/// The numbers of corners that are not judged, by reason.
 struct Tally {
     std::size_t corners = 0;
     std::size_t unjudged = 0;
-    std::size_t order = 0;      ///< Another order of faces or corners gives another answer.
-    std::size_t untouched = 0;  ///< The reference leaves what it began with.
-    std::size_t quads = 0;      ///< It answers otherwise for the quads.
-    std::size_t defect = 0;     ///< As it stands it answers otherwise than mended.
+    std::size_t order = 0;      ///< Another order of faces or corners gives other tangents.
+    std::size_t untouched = 0;  ///< The reference computes nothing.
+    std::size_t quads = 0;      ///< The quads have other tangents.
+    std::size_t defect = 0;     ///< The corrected reference gives other tangents.
 };
 
 std::vector<Face> faces_of(const relief::Mesh& mesh) {
@@ -140,12 +142,12 @@ std::vector<Face> faces_of(const relief::Mesh& mesh) {
     return faces;
 }
 
-/// The answer for the quads, at the corners of the triangles.
-std::vector<glm::vec4> quads_answer(const kit::KitMesh& mesh) {
+/// The tangents of the quads, at the corners of the triangles.
+std::vector<glm::vec4> quad_tangents(const kit::KitMesh& mesh) {
     std::vector<Face> faces;
     for (const glm::uvec4& quad : mesh.quads)
         faces.push_back({quad.x, quad.y, quad.z, quad.w});
-    const auto found = answer(mesh.mesh, faces, mended_genTangSpaceDefault);
+    const auto found = reference_tangents(mesh.mesh, faces, corrected_genTangSpaceDefault);
     std::vector<glm::vec4> corners;
     for (std::size_t t = 0; t < mesh.mesh.triangles.size(); ++t) {
         for (int i = 0; i < 3; ++i) {
@@ -164,43 +166,43 @@ std::vector<glm::vec4> flattened(const std::vector<std::vector<glm::vec4>>& face
     return corners;
 }
 
-/// Every order gives a vote on which corners have one answer.
-std::vector<std::vector<glm::vec4>> other_answers(const relief::Mesh& mesh,
-                                                  const std::vector<Face>& faces) {
+/// The tangents for other orders. They show which corners are unambiguous.
+std::vector<std::vector<glm::vec4>> other_tangents(const relief::Mesh& mesh,
+                                                   const std::vector<Face>& faces) {
     std::vector<std::size_t> order(faces.size());
     std::vector<std::size_t> begin(faces.size(), 0);
     std::iota(order.rbegin(), order.rend(), std::size_t{0});
-    std::vector<std::vector<glm::vec4>> answers = {
-        flattened(reordered_answer(mesh, faces, order, begin))};
+    std::vector<std::vector<glm::vec4>> all = {
+        flattened(reordered_tangents(mesh, faces, order, begin))};
     kit::Random random(20);
     for (int i = 0; i < random_orders; ++i) {
         for (std::size_t f = faces.size(); f > 1; --f)
             std::swap(order[f - 1], order[random.below(static_cast<std::uint32_t>(f))]);
         for (std::size_t& first : begin)
             first = random.below(3);
-        answers.push_back(flattened(reordered_answer(mesh, faces, order, begin)));
+        all.push_back(flattened(reordered_tangents(mesh, faces, order, begin)));
     }
-    return answers;
+    return all;
 }
 
 Tally write_expected(const std::filesystem::path& file, const kit::KitMesh& mesh) {
     const std::vector<Face> faces = faces_of(mesh.mesh);
     std::vector<glm::vec4> expected =
-        flattened(answer(mesh.mesh, faces, mended_genTangSpaceDefault));
-    const std::vector<glm::vec4> as_it_stands =
-        flattened(answer(mesh.mesh, faces, genTangSpaceDefault));
-    const auto others = other_answers(mesh.mesh, faces);
-    const std::vector<glm::vec4> by_quads = mesh.quads.empty() ? expected : quads_answer(mesh);
+        flattened(reference_tangents(mesh.mesh, faces, corrected_genTangSpaceDefault));
+    const std::vector<glm::vec4> uncorrected =
+        flattened(reference_tangents(mesh.mesh, faces, genTangSpaceDefault));
+    const auto others = other_tangents(mesh.mesh, faces);
+    const std::vector<glm::vec4> by_quads = mesh.quads.empty() ? expected : quad_tangents(mesh);
     Tally tally;
     tally.corners = expected.size();
     for (std::size_t corner = 0; corner < expected.size(); ++corner) {
-        const glm::vec4 answer = expected[corner];
-        const bool is_defect = !agree(answer, as_it_stands[corner]);
+        const glm::vec4 tangent = expected[corner];
+        const bool is_defect = !agree(tangent, uncorrected[corner]);
         const bool is_stable = std::all_of(others.begin(), others.end(), [&](const auto& other) {
-            return agree(answer, other[corner]);
+            return agree(tangent, other[corner]);
         });
-        const bool is_untouched = answer == glm::vec4(0.0F);
-        const bool is_quads = agree(answer, by_quads[corner]);
+        const bool is_untouched = tangent == glm::vec4(0.0F);
+        const bool is_quads = agree(tangent, by_quads[corner]);
         const bool is_excused = is_defect && mesh.group != kit::Group::defect;
         tally.defect += is_defect ? 1U : 0U;
         if (is_stable && !is_untouched && is_quads && !is_excused) continue;
