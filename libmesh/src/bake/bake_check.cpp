@@ -1,24 +1,99 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of baked maps against a reference bake of many samples, in strips of rows.
-// Tests: tests/mesh/bake/bake_check_test.cpp.
+// Compares baked maps with a reference bake of many samples, in strips of rows: the error of each
+// texel in degrees, in the space of the meshes, and its causes. The benchmark compares several
+// sample counts and encodings on bands spread over the map, whose reference is baked once. Tests:
+// tests/mesh/bake/bake_check_test.cpp.
 #include "relief/mesh/bake_check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <span>
+#include <vector>
 
-#include "bake/bake_check_rows.h"
 #include "bake/texel_frame.h"
+#include "geometry/angle_sum.h"
 #include "geometry/direction.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
 namespace {
+
+/// The bake of some rows.
+struct CastRows {
+    std::vector<float> normals, heights;
+    std::vector<TexelState> states;
+    std::size_t rays = 0;
+
+    [[nodiscard]] bool is_baked(std::size_t texel) const {
+        return states[texel] == TexelState::baked;
+    }
+    [[nodiscard]] glm::dvec3 normal(std::size_t texel) const {
+        return {normals[3 * texel], normals[3 * texel + 1], normals[3 * texel + 2]};
+    }
+};
+
+/// Bakes rows [first, last).
+CastRows cast_rows(const Baker& baker, BakeMapOptions map, int first, int last, Report& report);
+
+/// Normals encoded as map codes and decoded again.
+std::vector<float> coded(const std::vector<float>& normals, int width,
+                         const NormalMapFormat& format);
+
+/// Sums of errors over texels.
+struct CheckSums {
+    AngleSum error, center, rebaked;
+    std::array<AngleSum, bake_stage_count> stages;
+    /// The part of each stage in the squared error vector.
+    std::array<double, bake_stage_count> squares{};
+    std::size_t missed = 0, frameless = 0, discontinuous = 0;
+    /// Squared angles between codes and normals, in tangent and in object space.
+    double tangent_squares = 0.0, object_squares = 0.0;
+    std::vector<WorstTexel> worst;
+    std::vector<KnownTexel> known;
+
+    void add(const CheckSums& other);
+};
+
+/// Returns the options of the reference bake of a map. \param samples  0: the default of
+/// BakeCheckOptions
+BakeMapOptions reference_of(const BakeMapOptions& map, int samples);
+
+/// The bakes for a check of some rows.
+struct BakeCasts {
+    CastRows reference;               ///< Many samples.
+    CastRows center;                  ///< One sample, at the center of each texel.
+    std::optional<CastRows> several;  ///< The number of samples of the map, if not one.
+
+    /// \param report  gets the findings of the bake with the options of the map
+    BakeCasts(const Baker& baker, const BakeMapOptions& map, int reference_samples, int first,
+              int last, Report& report);
+
+    [[nodiscard]] const CastRows& made() const { return several ? *several : center; }
+    [[nodiscard]] std::size_t rays() const {
+        return reference.rays + center.rays + (several ? several->rays : 0);
+    }
+};
+
+/// Compares rows with the reference, in parallel.
+/// \param made     the bake with the options of the map, which may be one of `casts`
+/// \param remade   `made`, encoded and decoded
+/// \param shown    the map, decoded; empty: `remade`
+/// \param first    the first row
+/// \param step     the distance, along and across, of texels stored in CheckSums::known; 0: none
+/// \param degrees  gets the errors, NaN if there is none
+CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const BakeCasts& casts,
+                       const CastRows& made, std::span<const float> rebaked,
+                       std::span<const float> shown, int first, int step, std::span<float> degrees);
 
 constexpr double reference_angle = 0.5;  // In degrees.
 constexpr int usual_max_samples = 256;   // Of a reference, unless the map has as many.
@@ -331,8 +406,6 @@ ConventionFit convention_of(const Baker& baker, const Image& map, const BakeChec
     return find_convention(map, known, search);
 }
 
-}  // namespace
-
 void CheckSums::add(const CheckSums& other) {
     error.add(other.error);
     center.add(other.center);
@@ -419,6 +492,8 @@ CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const Bake
     return check_texels(baker, rows, step, degrees);
 }
 
+}  // namespace
+
 BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOptions& options,
                      const std::function<void(int first_row, std::span<const float> degrees)>& take,
                      Report& report) {
@@ -447,6 +522,170 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
     if (options.finds_convention)
         result.convention = convention_of(baker, map, options, sums.known);
     return result;
+}
+
+namespace {
+
+/// Rows with their reference.
+struct Band {
+    BakeRowRange rows;
+    BakeCasts casts;
+};
+
+}  // namespace
+
+struct BakeBenchmark::Implementation {
+    const Baker& baker;
+    BakeMapOptions map;  ///< With one sample.
+    int reference_samples;
+    std::vector<Band> bands;
+    bool is_whole = true;
+
+    [[nodiscard]] BakeMapOptions map_by(const BakeSampling& way) const {
+        BakeMapOptions made = map;
+        made.samples = way.samples;
+        if (way.sample_degrees) made.sample_angle = glm::radians(*way.sample_degrees);
+        return made;
+    }
+
+    [[nodiscard]] std::size_t texels_of(const BakeRowRange& rows) const {
+        return static_cast<std::size_t>(map.width) *
+               static_cast<std::size_t>(rows.last - rows.first);
+    }
+};
+
+BakeBenchmark::BakeBenchmark(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
+                             int reference_samples)
+    : implementation_(new Implementation{baker, map, 0, {}, true}) {
+    Implementation& data = *implementation_;
+    data.map.samples = 1;
+    data.map.sample_angle.reset();
+    data.reference_samples =
+        reference_of(map, reference_samples > 0 ? reference_samples : 256).samples;
+    constexpr int band = TexelRasterizer::band_rows;
+    const int bands = (map.height + band - 1) / band;
+    const std::size_t band_texels =
+        static_cast<std::size_t>(map.width) * static_cast<std::size_t>(band);
+    const auto count =
+        static_cast<int>(std::min(texels / band_texels + 1, static_cast<std::size_t>(bands)));
+    data.is_whole = count == bands;
+    Report ignored;
+    for (int i = 0; i < count; ++i) {
+        // The middle band of each of `count` equal parts.
+        const int first = (2 * i + 1) * bands / (2 * count) * band;
+        const BakeRowRange rows{first, std::min(first + band, map.height)};
+        data.bands.push_back({rows, BakeCasts(baker, data.map, data.reference_samples, rows.first,
+                                              rows.last, ignored)});
+    }
+}
+
+BakeBenchmark::~BakeBenchmark() = default;
+
+BakeMeasurement BakeBenchmark::measure(const BakeSampling& way,
+                                       std::span<const NormalMapFormat> formats) const {
+    const Implementation& data = *implementation_;
+    const BakeMapOptions map = data.map_by(way);
+    BakeMeasurement trial;
+    trial.code_seconds.resize(formats.size());
+    std::vector<CheckSums> sums(formats.size());
+    Report ignored;
+    for (const Band& part : data.bands) {
+        CastRows made;
+        trial.cast_seconds += seconds_of(
+            [&] { made = cast_rows(data.baker, map, part.rows.first, part.rows.last, ignored); });
+        trial.rays += made.rays;
+        std::vector<float> degrees(data.texels_of(part.rows));
+        for (std::size_t f = 0; f < formats.size(); ++f) {
+            std::vector<float> rebaked;
+            trial.code_seconds[f] +=
+                seconds_of([&] { rebaked = coded(made.normals, map.width, formats[f]); });
+            sums[f].add(compare_rows(data.baker, map, part.casts, made, rebaked, {},
+                                     part.rows.first, 0, degrees));
+        }
+    }
+    for (const CheckSums& sum : sums) {
+        trial.errors.push_back(sum.error.summary());
+        const auto codes = static_cast<std::size_t>(BakeStage::quantization);
+        trial.quantization.push_back(sum.stages[codes].summary());
+        trial.center.push_back(sum.center.summary());
+    }
+    if (!sums.empty()) {
+        const auto samples = static_cast<std::size_t>(BakeStage::sampling);
+        trial.sampling = sums.front().stages[samples].summary();
+    }
+    return trial;
+}
+
+Image BakeBenchmark::error_map(const BakeSampling& way, const NormalMapFormat& format) const {
+    const Implementation& data = *implementation_;
+    const BakeMapOptions map = data.map_by(way);
+    Image errors =
+        make_image(map.width, static_cast<int>(texels()) / map.width, 1, 32, ColorSpace::data);
+    std::span<float> left = errors.as<float>();
+    Report ignored;
+    for (const Band& part : data.bands) {
+        const CastRows made = cast_rows(data.baker, map, part.rows.first, part.rows.last, ignored);
+        const std::vector<float> rebaked = coded(made.normals, map.width, format);
+        const std::span<float> rows = left.first(data.texels_of(part.rows));
+        compare_rows(data.baker, map, part.casts, made, rebaked, {}, part.rows.first, 0, rows);
+        left = left.subspan(rows.size());
+    }
+    return errors;
+}
+
+std::size_t BakeBenchmark::texels() const {
+    std::size_t sum = 0;
+    for (const Band& part : implementation_->bands)
+        sum += implementation_->texels_of(part.rows);
+    return sum;
+}
+
+bool BakeBenchmark::is_whole() const {
+    return implementation_->is_whole;
+}
+
+int BakeBenchmark::reference_samples() const {
+    return implementation_->reference_samples;
+}
+
+std::size_t BakeBenchmark::reference_rays() const {
+    std::size_t sum = 0;
+    for (const Band& part : implementation_->bands)
+        sum += part.casts.reference.rays;
+    return sum;
+}
+
+std::span<const BakeSampling> default_bake_samplings() {
+    static const std::array<BakeSampling, 7> ways = {
+        {{1, {}}, {4, {}}, {16, {}}, {64, {}}, {16, 8.0}, {16, 2.0}, {16, 0.5}}};
+    return ways;
+}
+
+std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format) {
+    std::vector<NormalMapFormat> formats(4, format);
+    for (NormalMapFormat& one : formats)
+        one.dither = Dither::none;
+    formats[0].bits = formats[1].bits = 8;
+    formats[1].dither = Dither::blue_noise;
+    formats[2].bits = 16;
+    formats[3].bits = 32;
+    return formats;
+}
+
+std::vector<TimedBakeMeasurement> measure_interleaved(const BakeBenchmark& trials,
+                                                      std::span<const BakeSampling> ways,
+                                                      std::span<const NormalMapFormat> formats,
+                                                      const Repeats& repeats) {
+    std::vector<TimedBakeMeasurement> results(ways.size());
+    interleave(ways.size(), repeats, [&](std::size_t way, bool counted) {
+        check_cancelled();
+        TimedBakeMeasurement& one = results[way];
+        one.trial = trials.measure(ways[way], formats);
+        one.seconds.resize(formats.size());
+        for (std::size_t f = 0; counted && f < formats.size(); ++f)
+            one.seconds[f].push_back(one.trial.cast_seconds + one.trial.code_seconds[f]);
+    });
+    return results;
 }
 
 }  // namespace relief

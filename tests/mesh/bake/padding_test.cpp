@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "bake/bake_work.h"
 #include "bake/edge_padding.h"
-#include "bake/low_surface.h"
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"

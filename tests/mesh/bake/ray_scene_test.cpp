@@ -8,7 +8,6 @@
 #include <numeric>
 #include <random>
 
-#include "bake/projection.h"
 #include "bake/ray_scene.h"
 #include "relief/mesh/mesh.h"
 

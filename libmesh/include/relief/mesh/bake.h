@@ -342,7 +342,7 @@ struct BakePart {
 /// the outer one of two stacked sheets is baked, because it is the visible one. The inner side of a
 /// fold and the far side of a thin wall are not baked: on the way outwards from the point, the line
 /// leaves the solid, and a surface behind the next solid belongs to another part. If the point lies
-/// inside of several intersecting solids, their outermost surface counts. See projection.h.
+/// inside of several intersecting solids, their outermost surface counts. See ray_scene.h.
 ///
 /// Hits of Embree are refined in double precision. The result is the same bits for any number of
 /// threads. Memory: about 100 bytes per triangle of the high meshes, and for each map the memory of

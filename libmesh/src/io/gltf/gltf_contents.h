@@ -138,6 +138,10 @@ struct GltfDocument::Contents {
     GltfContents data;
 };
 
+/// Reads and checks a file with its buffers, see GltfDocument::read(). Images are not opened; only
+/// their existence is checked.
+GltfContents read_gltf(const std::filesystem::path& file, Report& report);
+
 /// Names of the extension that compresses a buffer view.
 inline constexpr std::array meshopt_extensions = {"EXT_meshopt_compression",
                                                   "KHR_meshopt_compression"};

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Summaries of a glTF document: texture coordinate sets and the one of the tangents, compression,
-// and contents that other formats cannot hold.
+// Reads .gltf and .glb files: container, JSON, checks, buffers, decompression, in this order; and
+// summarizes a document: texture coordinate sets and the one of the tangents, compression, and
+// contents that other formats cannot hold.
+//
+// The content decides, not the name: a file that begins with "glTF" is a GLB. Every length is
+// checked before it is used; a wrong one is a FileError. Source: glTF 2.0 (ISO/IEC 12113), chapters
+// 3 and 4.
 #include "relief/mesh/gltf_document.h"
 
 #include <fmt/format.h>
@@ -8,12 +13,243 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <new>
 #include <string_view>
 
+#include "file_bytes.h"
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_reader.h"
+#include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_compression.h"
+#include "io/gltf/gltf_uri.h"
+#include "progress_stage.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
+namespace {
+
+constexpr std::uint32_t json_chunk = 0x4E4F534A;
+constexpr std::uint32_t binary_chunk = 0x004E4942;
+constexpr std::size_t deepest_json = 256;
+
+/// The parts of a file. A .gltf has only the JSON.
+struct Container {
+    std::string bytes;  ///< The whole file.
+    std::size_t json_begin = 0;
+    std::size_t json_size = 0;
+    std::size_t binary_begin = 0;
+    std::size_t binary_size = 0;
+    bool has_binary = false;
+    std::vector<std::pair<std::uint32_t, std::string>> extra_chunks;
+};
+
+std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + offset, sizeof(word));
+    return word;
+}
+
+/// Parses the chunks of a GLB.
+void parse_chunks(Container& container, std::size_t end, const std::filesystem::path& file) {
+    std::size_t at = 12;
+    for (std::size_t number = 0; at < end; ++number) {
+        if (end - at < 8) throw FileError(file, fmt::format("ends inside chunk {}", number));
+        const std::uint32_t size = word_at(container.bytes, at);
+        const std::uint32_t type = word_at(container.bytes, at + 4);
+        at += 8;
+        if (size > end - at) {
+            throw FileError(file, fmt::format("chunk {} claims {} bytes, but only {} are left",
+                                              number, size, end - at));
+        }
+        if ((number == 0) != (type == json_chunk)) {
+            throw FileError(
+                file, fmt::format("chunk {} is {}JSON", number, number == 0 ? "not " : "another "));
+        }
+        if (number == 0) {
+            container.json_begin = at;
+            container.json_size = size;
+        } else if (type == binary_chunk) {
+            if (number != 1) throw FileError(file, "the binary chunk is not the second");
+            container.binary_begin = at;
+            container.binary_size = size;
+            container.has_binary = true;
+        } else {
+            container.extra_chunks.emplace_back(type, container.bytes.substr(at, size));
+        }
+        at += size;
+    }
+}
+
+Container parse_container(std::string bytes, const std::filesystem::path& file, Report& report) {
+    if (bytes.empty()) throw FileError(file, "is empty");
+    Container container;
+    container.bytes = std::move(bytes);
+    if (!container.bytes.starts_with("glTF")) {
+        container.json_size = container.bytes.size();
+        return container;
+    }
+    const std::size_t size = container.bytes.size();
+    if (size < 20) throw FileError(file, fmt::format("ends after {} bytes of its header", size));
+    const std::uint32_t version = word_at(container.bytes, 4);
+    if (version != 2) throw FileError(file, fmt::format("is GLB version {}, not 2", version));
+    const std::uint32_t length = word_at(container.bytes, 8);
+    if (length > size) {
+        throw FileError(file, fmt::format("claims {} bytes, but has only {}", length, size));
+    }
+    if (length < size) report.add("bytes behind the GLB", "byte", length, "left out");
+    parse_chunks(container, length, file);
+    return container;
+}
+
+/// Limits the depth of nesting, which recursion would turn into a stack overflow.
+void check_depth(std::string_view text, const std::filesystem::path& file) {
+    std::size_t depth = 0;
+    bool is_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (is_string) {
+            if (c == '\\') ++i;
+            if (c == '"') is_string = false;
+        } else if (c == '"') {
+            is_string = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > deepest_json) {
+                throw FileError(file,
+                                fmt::format("its JSON is nested deeper than {}", deepest_json));
+            }
+        } else if ((c == '}' || c == ']') && depth > 0) {
+            --depth;
+        }
+    }
+}
+
+Json parse_json(std::string_view text, const std::filesystem::path& file) {
+    // GLB pads its JSON with blanks, and some writers with zeros.
+    while (text.ends_with('\0'))
+        text.remove_suffix(1);
+    check_depth(text, file);
+    try {
+        return Json::parse(text);
+    } catch (const Json::exception& error) {
+        // The library's message begins with its own error name in brackets.
+        const std::string_view what = error.what();
+        throw FileError(
+            file, fmt::format("its JSON is malformed: {}",
+                              what.substr(what.find("] ") == what.npos ? 0 : what.find("] ") + 2)));
+    }
+}
+
+GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents& contents,
+                       Container& container, const std::filesystem::path& file) {
+    const auto name = [&] { return fmt::format("buffers[{}]", index); };
+    const std::size_t size = size_in(buffer, "byteLength");
+    GltfBuffer result;
+    const Json* uri = find(buffer, "uri");
+    if (uri == nullptr) {
+        const bool is_chunk = index == 0 && container.has_binary;
+        if (!is_chunk) throw FileError(file, name() + " has no data");
+        result = {{}, container.binary_begin, container.binary_size};
+        result.storage = std::move(container.bytes);
+    } else if (is_data_uri(uri->get_ref<const std::string&>())) {
+        try {
+            result.storage = decode_data_uri(uri->get_ref<const std::string&>()).bytes;
+        } catch (const InvalidInput& error) {
+            throw FileError(file, fmt::format("{}.uri: {}", name(), error.what()));
+        }
+        result.size = result.storage.size();
+    } else {
+        const auto path = path_inside(contents.folder, uri->get_ref<const std::string&>());
+        if (!path) {
+            throw FileError(file, fmt::format("{}.uri '{}' lies outside the document's folder",
+                                              name(), uri->get<std::string>()));
+        }
+        try {
+            result.storage = read_file(*path);
+        } catch (const FileError& error) {
+            throw FileError(file, fmt::format("{}: {}", name(), error.what()));
+        }
+        result.size = result.storage.size();
+    }
+    if (result.size < size) {
+        throw FileError(
+            file, fmt::format("{} claims {} bytes, but has only {}", name(), size, result.size));
+    }
+    result.size = size;
+    return result;
+}
+
+/// Reports images whose file is missing or outside the folder. Images are not decoded.
+void check_images(const GltfContents& contents, Report& report) {
+    const Json& images = array_in(contents.root, "images");
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (!images[i].contains("uri")) continue;
+        const std::string uri = text_in(images[i], "uri");
+        if (is_data_uri(uri)) {
+            try {
+                decode_data_uri(uri);
+            } catch (const InvalidInput& error) {
+                throw InvalidInput(fmt::format("images[{}].uri: {}", i, error.what()));
+            }
+            continue;
+        }
+        const auto path = path_inside(contents.folder, uri);
+        std::error_code ignored;
+        if (!path && !uri.empty()) {
+            report.add("image outside the document's folder", "image", i, "kept by name, not read");
+        } else if (!path || !std::filesystem::is_regular_file(*path, ignored)) {
+            report.add("missing image", "image", i, "kept by name");
+        }
+    }
+}
+
+void count_position_uses(GltfContents& contents) {
+    contents.position_uses.assign(array_in(contents.root, "accessors").size(), 0);
+    for (const Json& mesh : array_in(contents.root, "meshes")) {
+        for (const Json& primitive : mesh["primitives"]) {
+            const auto position = index_in(primitive["attributes"], "POSITION");
+            if (position) ++contents.position_uses[*position];
+        }
+    }
+}
+
+}  // namespace
+
+GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
+    try {
+        Container container = parse_container(read_file(file), file, report);
+        const ProgressStage stage("parsing");
+        GltfContents contents;
+        contents.root = parse_json(
+            std::string_view(container.bytes).substr(container.json_begin, container.json_size),
+            file);
+        contents.folder = std::filesystem::absolute(file).parent_path();
+        check_gltf(contents.root);
+        contents.extra_chunks = std::move(container.extra_chunks);
+        const Json& buffers = array_in(contents.root, "buffers");
+        const auto placeholders = meshopt_placeholders(contents.root, container.has_binary);
+        for (std::size_t i = 0; i < buffers.size(); ++i) {
+            if (placeholders[i]) {
+                contents.buffers.emplace_back().is_placeholder = true;
+            } else {
+                contents.buffers.push_back(read_buffer(buffers[i], i, contents, container, file));
+            }
+        }
+        unpack_meshopt(contents);
+        unpack_draco(contents, report);
+        check_images(contents, report);
+        count_position_uses(contents);
+        return contents;
+    } catch (const InvalidInput& error) {
+        throw FileError(file, error.what());
+    } catch (const std::bad_alloc&) {
+        throw FileError(file, "needs more memory than there is");
+    }
+}
+
+GltfDocument GltfDocument::read(const std::filesystem::path& file, Report& report) {
+    return GltfDocument(std::make_unique<Contents>(Contents{read_gltf(file, report)}));
+}
+
 namespace {
 
 /// A texture of a material that is sampled in tangent space.

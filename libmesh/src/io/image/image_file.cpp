@@ -3,9 +3,13 @@
 // others from memory: bytes -> container checks -> decoder -> Image. Common PNG and JPEG files have
 // a direct decoder; all others go to the image module. Damaged, truncated, empty and oversized
 // files are FileErrors.
+//
+// JPEG is decoded with libjpeg-turbo, which OpenImageIO uses too, to the same samples. No other
+// file uses libjpeg-turbo.
 #include "relief/mesh/image_file.h"
 
 #include <fmt/format.h>
+#include <turbojpeg.h>
 
 #include <array>
 #include <cstdint>
@@ -18,13 +22,106 @@
 
 #include "file_bytes.h"
 #include "io/image/image_file_container.h"
-#include "io/image/image_file_direct.h"
 #include "io/image/image_module_client.h"
 #include "io/image/row_codec.h"
+#include "io/png/png_decoder.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
 namespace {
+
+/// The header of a JPEG.
+struct PlainJpeg {
+    int width = 0;
+    int height = 0;
+    int channels = 0;  ///< 1 for gray, 3 for RGB.
+};
+
+struct Destroy {
+    void operator()(void* decoder) const { tjDestroy(decoder); }
+};
+using Decoder = std::unique_ptr<void, Destroy>;
+
+Decoder make_decoder() {
+    Decoder decoder(tjInitDecompress());
+    if (!decoder) throw std::bad_alloc();
+    return decoder;
+}
+
+const unsigned char* data_of(std::span<const std::byte> bytes) {
+    return reinterpret_cast<const unsigned char*>(bytes.data());
+}
+
+/// Returns nullopt if the JPEG is not plain: gray or color, 8 bits, not CMYK.
+/// \param stripped  the file without Exif and the like (image_file_container.h)
+std::optional<PlainJpeg> open_plain_jpeg(std::span<const std::byte> stripped) {
+    const Decoder decoder = make_decoder();
+    PlainJpeg jpeg;
+    int subsampling = 0;
+    int colors = 0;
+    if (tjDecompressHeader3(decoder.get(), data_of(stripped), stripped.size(), &jpeg.width,
+                            &jpeg.height, &subsampling, &colors) != 0) {
+        return std::nullopt;
+    }
+    if (colors != TJCS_GRAY && colors != TJCS_RGB && colors != TJCS_YCbCr) return std::nullopt;
+    jpeg.channels = colors == TJCS_GRAY ? 1 : 3;
+    const std::size_t max_rows = max_image_samples / static_cast<std::size_t>(jpeg.channels) /
+                                 static_cast<std::size_t>(jpeg.width);
+    if (static_cast<std::size_t>(jpeg.height) > max_rows) return std::nullopt;
+    return jpeg;
+}
+
+/// Returns the samples; nullopt if the decoder reports any problem.
+std::optional<std::vector<std::uint8_t>> decode(const PlainJpeg& jpeg,
+                                                std::span<const std::byte> stripped) {
+    const Decoder decoder = make_decoder();
+    std::vector<std::uint8_t> samples(static_cast<std::size_t>(jpeg.width) *
+                                      static_cast<std::size_t>(jpeg.height) *
+                                      static_cast<std::size_t>(jpeg.channels));
+    const int format = jpeg.channels == 1 ? TJPF_GRAY : TJPF_RGB;
+    if (tjDecompress2(decoder.get(), data_of(stripped), stripped.size(), samples.data(), jpeg.width,
+                      0, jpeg.height, format, TJFLAG_STOPONWARNING) != 0) {
+        return std::nullopt;
+    }
+    return samples;
+}
+
+/// \param samples  the decoder's result
+template <typename Header, typename Samples>
+std::optional<Image> image_of(const Header& header, std::optional<Samples> samples) {
+    if (!samples) return std::nullopt;
+    return Image{header.width, header.height, header.channels, ColorSpace::data,
+                 std::move(*samples)};
+}
+
+}  // namespace
+
+std::optional<Image> read_directly(const ImageContainer& container) {
+    const std::string_view format = container.format;
+    if (format == "png") {
+        if (const auto png = open_plain_png(container.stripped))
+            return image_of(*png, decode(*png));
+    } else if (format == "jpeg") {
+        if (const auto jpeg = open_plain_jpeg(container.stripped))
+            return image_of(*jpeg, decode(*jpeg, container.stripped));
+    }
+    return std::nullopt;
+}
+
+namespace {
+
+/// Returns the header and text of common files; nullopt for other kinds.
+std::optional<ImageInfo> read_info_directly(const ImageContainer& container) {
+    const std::string_view format = container.format;
+    if (format == "png") {
+        if (const auto png = open_plain_png(container.stripped))
+            return ImageInfo{png->width, png->height, png->channels, png->bits(), container.text};
+    } else if (format == "jpeg") {
+        if (const auto jpeg = open_plain_jpeg(container.stripped))
+            return ImageInfo{jpeg->width, jpeg->height, jpeg->channels, 8, {}};
+    }
+    return std::nullopt;
+}
 
 ColorSpace color_space_of(ImageUse use, int bits) {
     if (use == ImageUse::data) return ColorSpace::data;

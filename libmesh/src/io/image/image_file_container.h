@@ -12,10 +12,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "relief/mesh/image.h"
 
 namespace relief {
 
@@ -67,5 +70,10 @@ void check_png_size(std::span<const std::byte> header, std::uint64_t compressed,
 /// \return false if these are not enough
 bool check_exr(std::span<const std::byte> start, std::uint64_t size,
                const std::filesystem::path& name);
+
+/// Decodes common PNG and JPEG files without the image module, which takes 0.2 s to load; nullopt
+/// for other kinds and damaged files, which are left to the module. The caller sets the color
+/// space.
+std::optional<Image> read_directly(const ImageContainer& container);
 
 }  // namespace relief

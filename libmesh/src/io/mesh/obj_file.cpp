@@ -30,7 +30,6 @@
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/obj_parser.h"
 #include "io/mesh/polygon_mesh.h"
-#include "io/mesh/vertex_dedup.h"
 #include "progress_stage.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"

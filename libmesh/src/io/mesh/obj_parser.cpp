@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/mesh/mesh_text.h"
+#include "io/mesh/mesh_formats.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"

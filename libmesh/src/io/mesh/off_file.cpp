@@ -11,7 +11,6 @@
 
 #include "file_bytes.h"
 #include "io/mesh/mesh_formats.h"
-#include "io/mesh/mesh_text.h"
 #include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"

@@ -28,9 +28,7 @@
 #include "file_bytes.h"
 #include "file_replacement.h"
 #include "io/mesh/mesh_formats.h"
-#include "io/mesh/mesh_text.h"
 #include "io/mesh/polygon_mesh.h"
-#include "io/mesh/vertex_dedup.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 

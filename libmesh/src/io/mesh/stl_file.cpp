@@ -13,8 +13,7 @@
 
 #include "file_bytes.h"
 #include "io/mesh/mesh_formats.h"
-#include "io/mesh/mesh_text.h"
-#include "io/mesh/vertex_dedup.h"
+#include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_reader.h"
+#include "io/gltf/gltf_contents.h"
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"

@@ -17,7 +17,7 @@
 
 #include "file_bytes.h"
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_reader.h"
+#include "io/gltf/gltf_contents.h"
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"

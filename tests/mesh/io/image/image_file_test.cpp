@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "io/image/image_file_container.h"
-#include "io/image/image_file_direct.h"
 #include "io/png/png_format.h"
 #include "mesh/io/image/module_reference.h"
 #include "relief/mesh/image_file.h"

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "io/image/image_file_direct.h"
+#include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
 #include "io/png/deflate_encoder.h"
 #include "io/png/inflate.h"
