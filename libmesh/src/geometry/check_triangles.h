@@ -5,20 +5,19 @@
 #pragma once
 
 #include <cstddef>
-#include <glm/glm.hpp>
 #include <optional>
-#include <span>
+
+#include "relief/mesh/buffers.h"
 
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
 
 /// Returns the first corner (3 per triangle) that refers to a vertex that does not exist.
-std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
-                                         std::size_t vertex_count);
+std::optional<std::size_t> corner_beyond(TriangleSpan triangles, std::size_t vertex_count);
 
 /// \throws InvalidInput if there are too many corners for 32-bit indices, or for the first invalid
 ///         index: "triangle 7 names vertex 12, but there are only 8"
-void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
+void check_triangles(TriangleSpan triangles, std::size_t vertex_count);
 
 }  // namespace relief

@@ -17,6 +17,7 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
+#include "relief/mesh/buffers.h"
 
 namespace relief {
 
@@ -38,7 +39,7 @@ inline Corner previous_in_triangle(Corner corner) {
     return corner % 3 == 0 ? corner + 2 : corner - 1;
 }
 
-inline std::uint32_t vertex_of(Corner corner, std::span<const glm::uvec3> triangles) {
+inline std::uint32_t vertex_of(Corner corner, TriangleSpan triangles) {
     return triangles[corner / 3][static_cast<int>(corner % 3)];
 }
 
@@ -46,13 +47,12 @@ inline std::uint32_t vertex_of(Corner corner, std::span<const glm::uvec3> triang
 class CornersByVertex {
   public:
     /// Counting sort of the corners of all triangles.
-    CornersByVertex(std::size_t vertex_count, std::span<const glm::uvec3> triangles)
+    CornersByVertex(std::size_t vertex_count, TriangleSpan triangles)
         : CornersByVertex(vertex_count, triangles, [](std::size_t) { return true; }) {}
 
     /// Considers only the triangles for which `counts(index)` is true.
     template <typename Counts>
-    CornersByVertex(std::size_t vertex_count, std::span<const glm::uvec3> triangles,
-                    const Counts& counts)
+    CornersByVertex(std::size_t vertex_count, TriangleSpan triangles, const Counts& counts)
         : first_(vertex_count + 1, 0) {
         // Each part of the triangles first counts its corners at each vertex, which gives the
         // position of its corners.

@@ -19,11 +19,10 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
-std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
-                                         std::size_t vertex_count) {
+std::optional<std::size_t> corner_beyond(TriangleSpan triangles, std::size_t vertex_count) {
     glm::uvec3 largest(0);
-    for (const glm::uvec3& triangle : triangles)
-        largest = glm::max(largest, triangle);
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        largest = glm::max(largest, triangles[t]);
     if (triangles.empty() || std::max({largest.x, largest.y, largest.z}) < vertex_count)
         return std::nullopt;
     for (std::size_t corner = 0;; ++corner) {
@@ -31,7 +30,7 @@ std::optional<std::size_t> corner_beyond(std::span<const glm::uvec3> triangles,
     }
 }
 
-void check_triangles(std::span<const glm::uvec3> triangles, std::size_t vertex_count) {
+void check_triangles(TriangleSpan triangles, std::size_t vertex_count) {
     constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 3;
     if (triangles.size() > most) {
         throw InvalidInput(fmt::format(

@@ -39,6 +39,16 @@ using Lanes = double __attribute__((vector_size(32), may_alias));
 
 using Block = std::span<const glm::uvec3>;
 
+/// Returns triangles in memory, with indices of 32 bits; indices of 16 bits are converted into
+/// `wide`.
+RELIEF_INLINE Block block_of(const TriangleSpan& triangles, std::size_t first, std::size_t size,
+                             std::array<glm::uvec3, triangles_at_once>& wide) {
+    if (triangles.longs() != nullptr) return {triangles.longs() + first, size};
+    for (std::size_t i = 0; i < size; ++i)
+        wide[i] = triangles[first + i];
+    return {wide.data(), size};
+}
+
 /// One value per triangle of a block.
 template <typename T>
 struct alignas(64) PerTriangle : std::array<T, triangles_at_once> {};
@@ -55,8 +65,8 @@ struct BlockContributions {
 
 /// Output of the summation of a range of triangles.
 struct Job {
-    std::span<const glm::vec3> positions;
-    std::span<const glm::uvec3> triangles;
+    StridedSpan<const glm::vec3> positions;
+    TriangleSpan triangles;
     std::uint32_t first_triangle;
     float scale;
     PartialSums* sums;
@@ -77,7 +87,8 @@ RELIEF_INLINE VertexRange range_of(Block block) {
 }
 
 /// Loads corners one by one, for blocks that are not full or that use the last vertex.
-inline void gather_each(Block block, const glm::vec3* positions, BlockCorners& corners) {
+inline void gather_each(Block block, StridedSpan<const glm::vec3> positions,
+                        BlockCorners& corners) {
     for (std::size_t i = 0; i < block.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::vec3& position = positions[block[i][static_cast<int>(k)]];
@@ -90,15 +101,18 @@ inline void gather_each(Block block, const glm::vec3* positions, BlockCorners& c
 
 /// Loads the corners of a full block, four triangles at a time. Each position is loaded together
 /// with the following number, which must exist.
-RELIEF_INLINE void gather_four(Block block, const glm::vec3* positions, BlockCorners& corners) {
+RELIEF_INLINE void gather_four(Block block, StridedSpan<const glm::vec3> positions,
+                               BlockCorners& corners) {
     using Floats = float __attribute__((vector_size(16)));
+    const auto* const first = reinterpret_cast<const std::byte*>(positions.data());
+    const std::size_t stride = positions.stride();
     for (std::size_t i = 0; i < triangles_at_once; i += 4) {
         for (std::size_t k = 0; k < 3; ++k) {
             Floats a, b, c, d;
-            std::memcpy(&a, positions + block[i][static_cast<int>(k)], sizeof a);
-            std::memcpy(&b, positions + block[i + 1][static_cast<int>(k)], sizeof b);
-            std::memcpy(&c, positions + block[i + 2][static_cast<int>(k)], sizeof c);
-            std::memcpy(&d, positions + block[i + 3][static_cast<int>(k)], sizeof d);
+            std::memcpy(&a, first + stride * block[i][static_cast<int>(k)], sizeof a);
+            std::memcpy(&b, first + stride * block[i + 1][static_cast<int>(k)], sizeof b);
+            std::memcpy(&c, first + stride * block[i + 2][static_cast<int>(k)], sizeof c);
+            std::memcpy(&d, first + stride * block[i + 3][static_cast<int>(k)], sizeof d);
             const Floats xy_ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
             const Floats xy_cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
             const Floats z_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7);
@@ -198,11 +212,12 @@ template <NormalWeight weight, typename Real, typename Contribution>
 RELIEF_INLINE void add_contributions(Job& job, const Contribution& contribution) {
     BlockCorners corners{};
     BlockContributions contributions{};
+    std::array<glm::uvec3, triangles_at_once> wide;
     VertexRange touched{std::numeric_limits<std::uint32_t>::max(), 0};
     for (std::size_t first = 0; first < job.triangles.size(); first += triangles_at_once) {
         check_cancelled(first);
         const std::size_t size = std::min(triangles_at_once, job.triangles.size() - first);
-        const Block block = job.triangles.subspan(first, size);
+        const Block block = block_of(job.triangles, first, size, wide);
         const VertexRange range = range_of(block);
         if (range.highest >= job.positions.size()) {
             job.out_of_range = true;
@@ -213,9 +228,9 @@ RELIEF_INLINE void add_contributions(Job& job, const Contribution& contribution)
         touched.highest = std::max(touched.highest, range.highest);
 
         if (size == triangles_at_once && range.highest + 1 < job.positions.size())
-            gather_four(block, job.positions.data(), corners);
+            gather_four(block, job.positions, corners);
         else
-            gather_each(block, job.positions.data(), corners);
+            gather_each(block, job.positions, corners);
         contribution(corners, static_cast<Real>(job.scale), contributions);
         if (any_odd(contributions, size))
             set_odd_aside(contributions, job.first_triangle + first, size, *job.odd);
@@ -314,8 +329,8 @@ glm::vec3 triangle_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec
     return rounded(direction_or_zero(area_vector_of(a, b, c).second));
 }
 
-std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
-                                       std::span<const glm::uvec3> triangles) {
+std::vector<glm::vec3> normals_or_zero(StridedSpan<const glm::vec3> positions,
+                                       TriangleSpan triangles) {
     constexpr std::size_t grain = 4096;
     std::vector<glm::vec3> normals(triangles.size());
     parallel_for(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -327,10 +342,11 @@ std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
     return normals;
 }
 
-float scale_for(std::span<const glm::vec3> positions) {
+float scale_for(StridedSpan<const glm::vec3> positions) {
     float lowest = std::numeric_limits<float>::infinity();
     float highest = -lowest;
-    for (const glm::vec3& position : positions) {
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        const glm::vec3& position = positions[v];
         for (int i = 0; i < 3; ++i) {
             if (!std::isfinite(position[i])) continue;
             lowest = std::min(lowest, position[i]);
@@ -356,9 +372,8 @@ PartialSums::PartialSums(std::size_t vertex_count) {
     expect_filling(sums_, vertex_count * sizeof(WeightedNormalSum));
 }
 
-NormalSums sum_contributions(std::span<const glm::vec3> positions,
-                             std::span<const glm::uvec3> triangles, NormalWeight weight,
-                             Arithmetic arithmetic) {
+NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                             NormalWeight weight, Arithmetic arithmetic) {
     constexpr std::size_t worth_a_thread = 64 * triangles_at_once;
     // A larger number of parts would cost more memory than the threads save time.
     constexpr std::size_t max_parts = 8;
@@ -508,7 +523,7 @@ RELIEF_TARGET_256 void round_block_256(const BlockSums& sums, BlockNormals& norm
 /// Rounds the normals of a block of vertices and marks uncertain ones in `doubt`.
 template <typename RoundBlock>
 RELIEF_INLINE void round_vertices(const NormalSums& sums, std::size_t begin, std::size_t size,
-                                  glm::vec3* normals, BlockNormals& rounded,
+                                  StridedSpan<glm::vec3> normals, BlockNormals& rounded,
                                   const RoundBlock& round) {
     BlockSums block;
     load(sums, begin, size, block);
@@ -518,17 +533,17 @@ RELIEF_INLINE void round_vertices(const NormalSums& sums, std::size_t begin, std
 }
 
 RELIEF_TARGET_512 void round_vertices_512(const NormalSums& sums, std::size_t begin,
-                                          std::size_t size, glm::vec3* normals,
+                                          std::size_t size, StridedSpan<glm::vec3> normals,
                                           BlockNormals& rounded) {
     round_vertices(sums, begin, size, normals, rounded, round_block_512);
 }
 RELIEF_TARGET_256 void round_vertices_256(const NormalSums& sums, std::size_t begin,
-                                          std::size_t size, glm::vec3* normals,
+                                          std::size_t size, StridedSpan<glm::vec3> normals,
                                           BlockNormals& rounded) {
     round_vertices(sums, begin, size, normals, rounded, round_block_256);
 }
 void round_vertices_any(const NormalSums& sums, std::size_t begin, std::size_t size,
-                        glm::vec3* normals, BlockNormals& rounded) {
+                        StridedSpan<glm::vec3> normals, BlockNormals& rounded) {
     round_vertices(sums, begin, size, normals, rounded, round_block_any);
 }
 
@@ -586,12 +601,12 @@ glm::vec3 on_grid(double x, double y, double z) {
             to_float(nearest(z * normal_grid))};
 }
 
-std::vector<std::uint32_t> round_normals(const NormalSums& sums, std::span<glm::vec3> normals) {
+std::vector<std::uint32_t> round_normals(const NormalSums& sums, StridedSpan<glm::vec3> normals) {
     Gathered doubtful;
     const auto round = best_round_vertices();
     for_blocks(normals.size(), [&](std::size_t begin, std::size_t size) {
         BlockNormals rounded;
-        round(sums, begin, size, normals.data(), rounded);
+        round(sums, begin, size, normals, rounded);
         doubtful.add(rounded, begin, size);
     });
     return doubtful.sorted();
@@ -600,7 +615,7 @@ std::vector<std::uint32_t> round_normals(const NormalSums& sums, std::span<glm::
 std::vector<std::uint32_t> round_shared_normals(const NormalSums& sums,
                                                 std::span<const std::uint32_t> first,
                                                 std::span<const std::uint32_t> members,
-                                                std::span<glm::vec3> normals) {
+                                                StridedSpan<glm::vec3> normals) {
     if (first.empty()) return {};
     Gathered doubtful;
     for_blocks(first.size() - 1, [&](std::size_t begin, std::size_t size) {

@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "relief/mesh/buffers.h"
 #include "relief/mesh/normals.h"
 
 namespace relief {
@@ -44,11 +45,11 @@ TriangleKind kind_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c)
 glm::vec3 triangle_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 /// Unit normals of all triangles, zero for triangles that are not valid.
-std::vector<glm::vec3> normals_or_zero(std::span<const glm::vec3> positions,
-                                       std::span<const glm::uvec3> triangles);
+std::vector<glm::vec3> normals_or_zero(StridedSpan<const glm::vec3> positions,
+                                       TriangleSpan triangles);
 
 /// Power of two that scales the edges of a mesh to about 1, for float arithmetic.
-float scale_for(std::span<const glm::vec3> positions);
+float scale_for(StridedSpan<const glm::vec3> positions);
 
 /// Number of triangles per block: small enough for all data of a block to stay in the first-level
 /// cache.
@@ -92,9 +93,8 @@ struct NormalSums {
 };
 
 /// \throws InvalidInput if a triangle names a vertex that does not exist
-NormalSums sum_contributions(std::span<const glm::vec3> positions,
-                             std::span<const glm::uvec3> triangles, NormalWeight weight,
-                             Arithmetic arithmetic);
+NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                             NormalWeight weight, Arithmetic arithmetic);
 
 /// Grid steps per unit to which unit vectors are rounded. The error is at most 1.9e-9, a sixteenth
 /// of the spacing of floats next to 1.
@@ -105,7 +105,7 @@ glm::vec3 on_grid(double x, double y, double z);
 
 /// Computes the normals of all vertices. \return the vertices whose rounding is uncertain or that
 /// have no normal, ascending
-std::vector<std::uint32_t> round_normals(const NormalSums& sums, std::span<glm::vec3> normals);
+std::vector<std::uint32_t> round_normals(const NormalSums& sums, StridedSpan<glm::vec3> normals);
 
 /// Computes the normals of groups of vertices that share a normal. Group i is `members` from
 /// first[i] up to first[i + 1]. \return the groups whose rounding is uncertain or that have no
@@ -113,6 +113,6 @@ std::vector<std::uint32_t> round_normals(const NormalSums& sums, std::span<glm::
 std::vector<std::uint32_t> round_shared_normals(const NormalSums& sums,
                                                 std::span<const std::uint32_t> first,
                                                 std::span<const std::uint32_t> members,
-                                                std::span<glm::vec3> normals);
+                                                StridedSpan<glm::vec3> normals);
 
 }  // namespace relief

@@ -98,8 +98,7 @@ class PlacesOfVertices {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> places_;
 };
 
-std::vector<CornerAtPlace> corners_at(std::span<const glm::uvec3> triangles,
-                                      std::span<const VertexRange> ranges,
+std::vector<CornerAtPlace> corners_at(TriangleSpan triangles, std::span<const VertexRange> ranges,
                                       const PlacesOfVertices& places) {
     std::vector<CornerAtPlace> found;
     for (std::size_t block = 0; block < ranges.size(); ++block) {
@@ -187,7 +186,7 @@ void decide(std::vector<Term>& terms, bool any_triangle, Place& place) {
 template <NormalWeight weight>
 class ExactNormals {
   public:
-    ExactNormals(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+    ExactNormals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                  Arithmetic arithmetic)
         : positions_(positions),
           triangles_(triangles),
@@ -216,8 +215,8 @@ class ExactNormals {
                                    : exact_term<weight>({at[i], at[(i + 1) % 3], at[(i + 2) % 3]}));
     }
 
-    std::span<const glm::vec3> positions_;
-    std::span<const glm::uvec3> triangles_;
+    StridedSpan<const glm::vec3> positions_;
+    TriangleSpan triangles_;
     bool in_float_;
     float scale_;
     std::vector<Term> terms_;
@@ -227,7 +226,7 @@ class ExactNormals {
 ///
 /// The time is one test per block of triangles, plus 1 microsecond per triangle at the places.
 /// \param ranges  vertex ranges of the blocks, from sum_contributions()
-void find_exact_normals(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+void find_exact_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                         std::span<const VertexRange> ranges, NormalWeight weight,
                         Arithmetic arithmetic, std::span<Place> places) {
     if (places.empty()) return;
@@ -252,8 +251,8 @@ void find_exact_normals(std::span<const glm::vec3> positions, std::span<const gl
 /// Normal of vertices and triangles whose direction is undefined.
 constexpr glm::vec3 fallback_normal{0.0F, 0.0F, 1.0F};
 
-struct AveragedNormals {
-    std::vector<glm::vec3> normals;  ///< The fallback for vertices with problems.
+/// The findings of averaging.
+struct AveragingResult {
     /// Vertices without a direction, ascending, with the reason.
     std::vector<std::pair<std::uint32_t, PlaceKind>> problems;
     /// Triangles that are not valid, and some that are, ascending.
@@ -279,11 +278,12 @@ std::vector<Place> doubtful_places(std::size_t vertex_count,
     return places;
 }
 
-void take_over(std::span<const Place> places, AveragedNormals& result) {
+void take_over(std::span<const Place> places, StridedSpan<glm::vec3> normals,
+               AveragingResult& result) {
     for (const Place& place : places) {
         const bool sound = place.kind == PlaceKind::sound;
         for (const std::uint32_t vertex : place.vertices) {
-            result.normals[vertex] = sound ? place.normal : fallback_normal;
+            normals[vertex] = sound ? place.normal : fallback_normal;
             if (!sound) result.problems.emplace_back(vertex, place.kind);
         }
     }
@@ -292,9 +292,10 @@ void take_over(std::span<const Place> places, AveragedNormals& result) {
 
 /// Marks vertices (1) with an adjacent triangle that faces away from the normal or is edge-on.
 /// Vertices that share a normal share the mark.
-std::vector<std::uint8_t> folded_vertices(std::span<const glm::vec3> positions,
-                                          std::span<const glm::uvec3> triangles,
-                                          const AveragedNormals& averaged, const Groups& shared) {
+std::vector<std::uint8_t> folded_vertices(StridedSpan<const glm::vec3> positions,
+                                          TriangleSpan triangles,
+                                          StridedSpan<const glm::vec3> normals,
+                                          const Groups& shared) {
     std::vector<std::uint8_t> folded(positions.size(), 0);
     parallel_for(triangles.size(), few_triangles, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
@@ -303,7 +304,7 @@ std::vector<std::uint8_t> folded_vertices(std::span<const glm::vec3> positions,
             const glm::dvec3 area_vector = glm::cross(glm::dvec3(positions[triangle.y]) - a,
                                                       glm::dvec3(positions[triangle.z]) - a);
             for (int i = 0; i < 3; ++i) {
-                const glm::dvec3 normal(averaged.normals[triangle[i]]);
+                const glm::dvec3 normal(normals[triangle[i]]);
                 if (!(glm::dot(area_vector, normal) <= 0.0)) continue;
                 // Triangles without a normal do not count.
                 if (kind_of(positions[triangle.x], positions[triangle.y], positions[triangle.z]) !=
@@ -325,7 +326,7 @@ std::vector<std::uint8_t> folded_vertices(std::span<const glm::vec3> positions,
 }
 
 /// Groups of vertices that share their normal. \throws InvalidInput if the tolerance is invalid
-Groups sharing_vertices(std::span<const glm::vec3> positions,
+Groups sharing_vertices(StridedSpan<const glm::vec3> positions,
                         const std::optional<double>& weld_tolerance) {
     if (!weld_tolerance) return {};
     if (!(*weld_tolerance >= 0.0) || std::isinf(*weld_tolerance)) {
@@ -336,45 +337,48 @@ Groups sharing_vertices(std::span<const glm::vec3> positions,
                                            : weld_positions(positions));
 }
 
+/// Computes the normals of all vertices; the fallback for vertices with problems.
+///
 /// \param shared  returns the groups of vertices that share a normal; runs in parallel with the
 /// summation
 /// \throws InvalidInput if a triangle names a vertex that does not exist
-AveragedNormals averaged_normals(std::span<const glm::vec3> positions,
-                                 std::span<const glm::uvec3> triangles, NormalWeight weight,
-                                 Arithmetic arithmetic, const std::function<Groups()>& shared) {
-    AveragedNormals result;
+AveragingResult averaged_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                                 NormalWeight weight, Arithmetic arithmetic,
+                                 const std::function<Groups()>& shared,
+                                 StridedSpan<glm::vec3> normals) {
+    AveragingResult result;
     Groups groups;
     NormalSums sums;
     parallel_tasks({[&] { sums = sum_contributions(positions, triangles, weight, arithmetic); },
                     [&] { groups = shared(); }},
                    triangles.size() < few_triangles);
     result.odd_triangles = std::move(sums.odd);
-    result.normals.resize(positions.size());
-    const auto vertices = round_normals(sums, result.normals);
-    const auto doubtful = round_shared_normals(sums, groups.first, groups.members, result.normals);
+    const auto vertices = round_normals(sums, normals);
+    const auto doubtful = round_shared_normals(sums, groups.first, groups.members, normals);
     std::vector<Place> places = doubtful_places(positions.size(), vertices, groups, doubtful);
     find_exact_normals(positions, triangles, sums.ranges, weight, arithmetic, places);
-    take_over(places, result);
+    take_over(places, normals, result);
     return result;
 }
 
 /// Averages with the weighting that suits each vertex.
-AveragedNormals averaged_normals_by_choice(std::span<const glm::vec3> positions,
-                                           std::span<const glm::uvec3> triangles,
-                                           Arithmetic arithmetic, const Groups& shared) {
+AveragingResult averaged_normals_by_choice(StridedSpan<const glm::vec3> positions,
+                                           TriangleSpan triangles, Arithmetic arithmetic,
+                                           const Groups& shared, StridedSpan<glm::vec3> normals) {
     const auto sharing = [&] { return shared; };
-    AveragedNormals result =
-        averaged_normals(positions, triangles, NormalWeight::max, arithmetic, sharing);
-    std::vector<std::uint8_t> by_area = folded_vertices(positions, triangles, result, shared);
+    AveragingResult result =
+        averaged_normals(positions, triangles, NormalWeight::max, arithmetic, sharing, normals);
+    std::vector<std::uint8_t> by_area = folded_vertices(positions, triangles, normals, shared);
     for (const auto& [vertex, kind] : result.problems)
         by_area[vertex] = kind == PlaceKind::cancelling ? 1 : 0;
     result.by_area = static_cast<std::size_t>(std::count(by_area.begin(), by_area.end(), 1));
     if (result.by_area == 0) return result;
 
-    AveragedNormals area =
-        averaged_normals(positions, triangles, NormalWeight::area, arithmetic, sharing);
+    std::vector<glm::vec3> area_normals(positions.size());
+    AveragingResult area = averaged_normals(positions, triangles, NormalWeight::area, arithmetic,
+                                            sharing, area_normals);
     for (std::size_t v = 0; v < by_area.size(); ++v) {
-        if (by_area[v] != 0) result.normals[v] = area.normals[v];
+        if (by_area[v] != 0) normals[v] = area_normals[v];
     }
     // Vertices that cancel by area but not by Max's weights keep the latter.
     std::erase_if(area.problems, [&](const auto& problem) {
@@ -385,7 +389,7 @@ AveragedNormals averaged_normals_by_choice(std::span<const glm::vec3> positions,
 }
 
 /// Counts triangles without a normal in the report.
-void report_triangles(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+void report_triangles(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                       std::span<const std::uint32_t> odd, std::string_view outcome,
                       Report& report) {
     for (const std::uint32_t t : odd) {
@@ -424,8 +428,8 @@ void report_vertex(PlaceKind kind, std::size_t vertex, Report& report) {
     }
 }
 
-void report_all(const AveragedNormals& averaged, std::span<const glm::vec3> positions,
-                std::span<const glm::uvec3> triangles, Report& report) {
+void report_all(const AveragingResult& averaged, StridedSpan<const glm::vec3> positions,
+                TriangleSpan triangles, Report& report) {
     report_triangles(positions, triangles, averaged.odd_triangles,
                      "has no say in its vertices' normals", report);
     for (const auto& [vertex, kind] : averaged.problems)
@@ -434,36 +438,47 @@ void report_all(const AveragedNormals& averaged, std::span<const glm::vec3> posi
 
 }  // namespace
 
-std::vector<glm::vec3> vertex_normals(std::span<const glm::vec3> positions,
-                                      std::span<const glm::uvec3> triangles,
-                                      const NormalOptions& options, Report& report) {
-    AveragedNormals averaged =
-        averaged_normals(positions, triangles, options.weight, options.arithmetic,
-                         [&] { return sharing_vertices(positions, options.weld_tolerance); });
-    report_all(averaged, positions, triangles, report);
-    return std::move(averaged.normals);
+void vertex_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                    const NormalOptions& options, StridedSpan<glm::vec3> normals, Report* report) {
+    if (normals.size() != positions.size()) {
+        throw InvalidInput(fmt::format("there is memory for {} normals, but there are {} positions",
+                                       normals.size(), positions.size()));
+    }
+    const AveragingResult averaged = averaged_normals(
+        positions, triangles, options.weight, options.arithmetic,
+        [&] { return sharing_vertices(positions, options.weld_tolerance); }, normals);
+    if (report != nullptr) report_all(averaged, positions, triangles, *report);
 }
 
-std::vector<glm::vec3> vertex_normals(std::span<const glm::vec3> positions,
-                                      std::span<const glm::uvec3> triangles, NormalWeight weight,
+std::vector<glm::vec3> vertex_normals(StridedSpan<const glm::vec3> positions,
+                                      TriangleSpan triangles, const NormalOptions& options,
                                       Report& report) {
+    std::vector<glm::vec3> normals(positions.size());
+    vertex_normals(positions, triangles, options, normals, &report);
+    return normals;
+}
+
+std::vector<glm::vec3> vertex_normals(StridedSpan<const glm::vec3> positions,
+                                      TriangleSpan triangles, NormalWeight weight, Report& report) {
     NormalOptions options;
     options.weight = weight;
     return vertex_normals(positions, triangles, options, report);
 }
 
-ChosenNormals chosen_normals(std::span<const glm::vec3> positions,
-                             std::span<const glm::uvec3> triangles, const NormalOptions& options,
-                             Report& report) {
-    AveragedNormals averaged =
-        averaged_normals_by_choice(positions, triangles, options.arithmetic,
-                                   sharing_vertices(positions, options.weld_tolerance));
+ChosenNormals chosen_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                             const NormalOptions& options, Report& report) {
+    ChosenNormals result;
+    result.normals.resize(positions.size());
+    const AveragingResult averaged = averaged_normals_by_choice(
+        positions, triangles, options.arithmetic,
+        sharing_vertices(positions, options.weld_tolerance), result.normals);
     report_all(averaged, positions, triangles, report);
-    return {std::move(averaged.normals), averaged.by_area};
+    result.by_area = averaged.by_area;
+    return result;
 }
 
-std::vector<glm::vec3> triangle_normals(std::span<const glm::vec3> positions,
-                                        std::span<const glm::uvec3> triangles, Report& report) {
+std::vector<glm::vec3> triangle_normals(StridedSpan<const glm::vec3> positions,
+                                        TriangleSpan triangles, Report& report) {
     check_triangles(triangles, positions.size());
     std::vector<glm::vec3> normals = normals_or_zero(positions, triangles);
     std::vector<std::uint32_t> odd;
@@ -492,7 +507,7 @@ void check(const HardEdges& hard_edges, std::size_t triangle_count) {
 }
 
 /// Replaces each vertex index by the first vertex at its place.
-std::vector<glm::uvec3> over_places(std::span<const glm::uvec3> triangles, std::size_t vertex_count,
+std::vector<glm::uvec3> over_places(TriangleSpan triangles, std::size_t vertex_count,
                                     const Groups& shared) {
     std::vector<std::uint32_t> place(vertex_count);
     std::iota(place.begin(), place.end(), 0U);
@@ -511,8 +526,8 @@ struct FanMesh {
     Groups fans;                        ///< Groups of vertices that belong to one fan.
 };
 
-FanMesh mesh_of(const SmoothFans& fans, std::span<const glm::vec3> positions,
-                std::span<const glm::uvec3> triangles) {
+FanMesh mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
+                TriangleSpan triangles) {
     // Vertices of a fan can have different positions, because welding has a tolerance.
     using FanVertex = std::pair<std::uint32_t, std::uint32_t>;
     std::vector<FanVertex> vertices;
@@ -544,8 +559,7 @@ FanMesh mesh_of(const SmoothFans& fans, std::span<const glm::vec3> positions,
 
 }  // namespace
 
-CornerNormals corner_normals(std::span<const glm::vec3> positions,
-                             std::span<const glm::uvec3> triangles,
+CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                              std::optional<NormalWeight> weight, const NormalOptions& options,
                              const HardEdges& hard_edges, Report& report) {
     check_triangles(triangles, positions.size());
@@ -555,12 +569,13 @@ CornerNormals corner_normals(std::span<const glm::vec3> positions,
         mesh_of(smooth_fans(positions.size(), over_places(triangles, positions.size(), shared),
                             normals_or_zero(positions, triangles), hard_edges),
                 positions, triangles);
-    const auto by_fan = [&] { return fans.fans; };
-    const AveragedNormals averaged =
-        weight
-            ? averaged_normals(fans.positions, fans.triangles, *weight, options.arithmetic, by_fan)
-            : averaged_normals_by_choice(fans.positions, fans.triangles, options.arithmetic,
-                                         fans.fans);
+    std::vector<glm::vec3> normals(fans.positions.size());
+    const AveragingResult averaged =
+        weight ? averaged_normals(
+                     fans.positions, fans.triangles, *weight, options.arithmetic,
+                     [&] { return fans.fans; }, normals)
+               : averaged_normals_by_choice(fans.positions, fans.triangles, options.arithmetic,
+                                            fans.fans, normals);
 
     report_triangles(positions, triangles, averaged.odd_triangles,
                      "has no say in its vertices' normals", report);
@@ -571,7 +586,7 @@ CornerNormals corner_normals(std::span<const glm::vec3> positions,
     result.normals.reserve(3 * triangles.size());
     for (const glm::uvec3& triangle : fans.triangles) {
         for (int i = 0; i < 3; ++i)
-            result.normals.push_back(averaged.normals[triangle[i]]);
+            result.normals.push_back(normals[triangle[i]]);
     }
     return result;
 }

@@ -64,11 +64,11 @@ CornerContribution contribution_of(const glm::dvec3& vector, std::int8_t side, s
 
 /// Input of the tangents. Arrays by vertex have equal lengths; all values are allowed.
 struct TangentInput {
-    std::span<const glm::vec3> positions;
+    StridedSpan<const glm::vec3> positions;
     /// Any length. If undefined, tangents may have any direction.
-    std::span<const glm::vec3> normals;
-    std::span<const glm::vec2> texcoords;
-    std::span<const glm::uvec3> triangles;
+    StridedSpan<const glm::vec3> normals;
+    StridedSpan<const glm::vec2> texcoords;
+    TriangleSpan triangles;
 };
 
 /// Contributions of one triangle, for any values. compute_contributions() uses this for unusual

@@ -63,7 +63,7 @@ std::array<Uses, 3> by_kind(Uses uses) {
 
 }  // namespace
 
-CornerLinker::CornerLinker(std::span<const glm::uvec3> triangles, std::span<const Gradient> kinds)
+CornerLinker::CornerLinker(TriangleSpan triangles, std::span<const Gradient> kinds)
     : triangles_(triangles), kinds_(kinds) {}
 
 CornerLinker::~CornerLinker() = default;
@@ -151,7 +151,7 @@ namespace {
 /// Participating triangles without a gradient, and their neighbors across edges.
 class OpenTriangles {
   public:
-    OpenTriangles(std::span<const glm::uvec3> triangles, const CornersByVertex& corners,
+    OpenTriangles(TriangleSpan triangles, const CornersByVertex& corners,
                   const TriangleGradients& gradients) {
         for (const std::uint32_t triangle : gradients.without) {
             if (gradients.kinds[triangle] == Gradient::none) triangles_.push_back(triangle);
@@ -180,7 +180,7 @@ class OpenTriangles {
 
   private:
     /// Visits every vertex of the open triangles.
-    void link(std::span<const glm::uvec3> triangles, const CornersByVertex& corners,
+    void link(TriangleSpan triangles, const CornersByVertex& corners,
               std::span<const Gradient> kinds) {
         std::vector<std::uint32_t> vertices;
         for (const std::uint32_t triangle : triangles_) {
@@ -297,7 +297,7 @@ class SignFinder {
 
 }  // namespace
 
-TriangleSigns triangle_signs(std::span<const glm::uvec3> triangles, const CornersByVertex& corners,
+TriangleSigns triangle_signs(TriangleSpan triangles, const CornersByVertex& corners,
                              const TriangleGradients& gradients) {
     const std::vector<Gradient>& kinds = gradients.kinds;
     if (std::none_of(gradients.without.begin(), gradients.without.end(),

@@ -35,7 +35,7 @@ class CornerLinker {
     static constexpr Place nowhere = std::numeric_limits<Place>::max();
 
     /// \param triangles  with indices of welded vertices
-    CornerLinker(std::span<const glm::uvec3> triangles, std::span<const Gradient> kinds);
+    CornerLinker(TriangleSpan triangles, std::span<const Gradient> kinds);
     ~CornerLinker();
     CornerLinker(const CornerLinker&) = delete;
     CornerLinker& operator=(const CornerLinker&) = delete;
@@ -59,7 +59,7 @@ class CornerLinker {
     void pair_up(std::span<EdgeUse>& leaving, std::span<EdgeUse>& arriving);
     void link(const EdgeUse& leaving, const EdgeUse& arriving);
 
-    std::span<const glm::uvec3> triangles_;
+    TriangleSpan triangles_;
     std::span<const Gradient> kinds_;
     std::vector<EdgeUse> uses_;
     std::vector<Place> across_;
@@ -144,7 +144,7 @@ class TriangleSigns {
 /// \return signs that do not depend on the order of triangles. The time is linear except for
 /// sorting the edges of vertices of triangles without a gradient.
 ///         of triangles without a gradient
-TriangleSigns triangle_signs(std::span<const glm::uvec3> triangles, const CornersByVertex& corners,
+TriangleSigns triangle_signs(TriangleSpan triangles, const CornersByVertex& corners,
                              const TriangleGradients& gradients);
 
 }  // namespace relief

@@ -116,7 +116,7 @@ float majority_sign(std::uint32_t triangle, const GroupInput& input, const Offer
     return contributions[0] > 0 && contributions[0] >= contributions[1] ? 1.0F : -1.0F;
 }
 
-void copy_twin(const GroupFindings::Repeated& repeated, std::span<const glm::uvec3> triangles,
+void copy_twin(const GroupFindings::Repeated& repeated, TriangleSpan triangles,
                std::span<glm::vec4> tangents) {
     const Corner first = 3 * repeated.triangle;
     for (Corner corner = first; corner < first + 3; ++corner) {
@@ -197,7 +197,7 @@ void check(const TangentInput& input) {
     check_triangles(input.triangles, positions);
 }
 
-void report_normals(std::span<const glm::vec3> normals, Report& report) {
+void report_normals(StridedSpan<const glm::vec3> normals, Report& report) {
     parallel_for_reporting(normals.size(), 16384, report,
                            [&](std::size_t begin, std::size_t end, Report& found) {
                                for (std::size_t v = begin; v < end; ++v) {
@@ -257,11 +257,11 @@ class WeldedTriangles {
         welded_ = welded_triangles(input.triangles, first);
         triangles_ = welded_;
     }
-    [[nodiscard]] std::span<const glm::uvec3> get() const { return triangles_; }
+    [[nodiscard]] TriangleSpan get() const { return triangles_; }
 
   private:
     std::vector<glm::uvec3> welded_;
-    std::span<const glm::uvec3> triangles_;
+    TriangleSpan triangles_;
 };
 
 std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, TangentGroups groups,
@@ -296,29 +296,104 @@ std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, Tan
     return tangents;
 }
 
+/// Writes the tangent of a vertex's first corner, and w = 0 for vertices without a triangle.
+/// \return the vertices with corners that differ, ascending
+std::vector<std::uint32_t> write_first_tangents(std::span<const glm::vec4> of_corners,
+                                                TriangleSpan triangles,
+                                                StridedSpan<glm::vec4> tangents) {
+    for (std::size_t v = 0; v < tangents.size(); ++v)
+        tangents[v] = glm::vec4(0.0F);
+    std::vector<std::uint32_t> differing;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const glm::uvec3 triangle = triangles[t];
+        for (int i = 0; i < 3; ++i) {
+            const glm::vec4& tangent = of_corners[3 * t + static_cast<std::size_t>(i)];
+            glm::vec4& result = tangents[triangle[i]];
+            if (result.w == 0.0F)
+                result = tangent;
+            else if (result != tangent)
+                differing.push_back(triangle[i]);
+        }
+    }
+    std::sort(differing.begin(), differing.end());
+    differing.erase(std::unique(differing.begin(), differing.end()), differing.end());
+    return differing;
+}
+
+/// Writes the most frequent tangent of the corners at each listed vertex; ties: the first by value.
+void settle_differing(std::span<const glm::vec4> of_corners, TriangleSpan triangles,
+                      std::span<const std::uint32_t> differing, StridedSpan<glm::vec4> tangents,
+                      Report& report) {
+    if (differing.empty()) return;
+    const auto comes_first = [](const glm::vec4& a, const glm::vec4& b) {
+        return std::tie(a.x, a.y, a.z, a.w) < std::tie(b.x, b.y, b.z, b.w);
+    };
+    const CornersByVertex corners(tangents.size(), triangles);
+    std::vector<glm::vec4> values;
+    for (const std::uint32_t vertex : differing) {
+        values.clear();
+        for (const Corner corner : corners.at(vertex))
+            values.push_back(of_corners[corner]);
+        std::sort(values.begin(), values.end(), comes_first);
+        std::ptrdiff_t most = 0;
+        for (auto first = values.begin(); first != values.end();) {
+            const auto last = std::upper_bound(first, values.end(), *first, comes_first);
+            if (last - first > most) {
+                most = last - first;
+                tangents[vertex] = *first;
+            }
+            first = last;
+        }
+        report.add("vertex whose corners have different tangents", "vertex", vertex,
+                   "gets the tangent of most of its corners (split it to keep all)");
+    }
+}
+
 }  // namespace
 
-std::vector<glm::vec4> mikktspace_tangents(std::span<const glm::vec3> positions,
-                                           std::span<const glm::vec3> normals,
-                                           std::span<const glm::vec2> texcoords,
-                                           std::span<const glm::uvec3> triangles, Report& report) {
+std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> positions,
+                                           StridedSpan<const glm::vec3> normals,
+                                           StridedSpan<const glm::vec2> texcoords,
+                                           TriangleSpan triangles, Report& report) {
     return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::angle,
                        TangentGroups::connected, report);
 }
 
-std::vector<glm::vec4> area_weighted_tangents(std::span<const glm::vec3> positions,
-                                              std::span<const glm::vec3> normals,
-                                              std::span<const glm::vec2> texcoords,
-                                              std::span<const glm::uvec3> triangles,
-                                              Report& report) {
+void vertex_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const glm::vec3> normals,
+                     StridedSpan<const glm::vec2> texcoords, TriangleSpan triangles,
+                     StridedSpan<glm::vec4> tangents, Report* report) {
+    if (tangents.size() != positions.size()) {
+        throw InvalidInput(
+            fmt::format("there is memory for {} tangents, but there are {} positions",
+                        tangents.size(), positions.size()));
+    }
+    Report ignored;
+    Report& findings = report != nullptr ? *report : ignored;
+    const std::vector<glm::vec4> of_corners =
+        mikktspace_tangents(positions, normals, texcoords, triangles, findings);
+    const std::vector<std::uint32_t> differing =
+        write_first_tangents(of_corners, triangles, tangents);
+    settle_differing(of_corners, triangles, differing, tangents, findings);
+    for (std::size_t v = 0; v < tangents.size(); ++v) {
+        if (tangents[v].w != 0.0F) continue;
+        tangents[v] = glm::vec4(perpendicular_to(normals[v]), -1.0F);
+        findings.add("isolated vertex", "vertex", v,
+                     "gets a fixed tangent perpendicular to its normal");
+    }
+}
+
+std::vector<glm::vec4> area_weighted_tangents(StridedSpan<const glm::vec3> positions,
+                                              StridedSpan<const glm::vec3> normals,
+                                              StridedSpan<const glm::vec2> texcoords,
+                                              TriangleSpan triangles, Report& report) {
     return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::area,
                        TangentGroups::connected, report);
 }
 
-std::vector<glm::vec4> lengyel_tangents(std::span<const glm::vec3> positions,
-                                        std::span<const glm::vec3> normals,
-                                        std::span<const glm::vec2> texcoords,
-                                        std::span<const glm::uvec3> triangles, Report& report) {
+std::vector<glm::vec4> lengyel_tangents(StridedSpan<const glm::vec3> positions,
+                                        StridedSpan<const glm::vec3> normals,
+                                        StridedSpan<const glm::vec2> texcoords,
+                                        TriangleSpan triangles, Report& report) {
     return tangents_of({positions, normals, texcoords, triangles}, TangentWeight::stretch,
                        TangentGroups::all, report);
 }

@@ -81,8 +81,8 @@ TriangleGradient gradient_of(const glm::vec3 (&p)[3], const glm::vec2 (&t)[3]) {
 
 }  // namespace
 
-TriangleGradient triangle_gradient(std::span<const glm::vec3> positions,
-                                   std::span<const glm::vec2> texcoords,
+TriangleGradient triangle_gradient(StridedSpan<const glm::vec3> positions,
+                                   StridedSpan<const glm::vec2> texcoords,
                                    const glm::uvec3& triangle) {
     const glm::vec3 p[] = {positions[triangle.x], positions[triangle.y], positions[triangle.z]};
     const glm::vec2 t[] = {upright(texcoords[triangle.x]), upright(texcoords[triangle.y]),
@@ -90,9 +90,9 @@ TriangleGradient triangle_gradient(std::span<const glm::vec3> positions,
     return gradient_of(p, t);
 }
 
-std::vector<Gradient> gradient_kinds(std::span<const glm::vec3> positions,
-                                     std::span<const glm::vec2> texcoords,
-                                     std::span<const glm::uvec3> triangles) {
+std::vector<Gradient> gradient_kinds(StridedSpan<const glm::vec3> positions,
+                                     StridedSpan<const glm::vec2> texcoords,
+                                     TriangleSpan triangles) {
     std::vector<Gradient> kinds(triangles.size());
     parallel_for(triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

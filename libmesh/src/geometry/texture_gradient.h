@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "relief/mesh/buffers.h"
 #include "vector_targets.h"
 
 namespace relief {
@@ -76,13 +77,13 @@ struct TriangleGradient {
 ///
 /// Edges start at the triangle's first corner, as in the reference implementation: rotating the
 /// corners changes the last bits.
-TriangleGradient triangle_gradient(std::span<const glm::vec3> positions,
-                                   std::span<const glm::vec2> texcoords,
+TriangleGradient triangle_gradient(StridedSpan<const glm::vec3> positions,
+                                   StridedSpan<const glm::vec2> texcoords,
                                    const glm::uvec3& triangle);
 
 /// Returns only the kinds, of all triangles.
-std::vector<Gradient> gradient_kinds(std::span<const glm::vec3> positions,
-                                     std::span<const glm::vec2> texcoords,
-                                     std::span<const glm::uvec3> triangles);
+std::vector<Gradient> gradient_kinds(StridedSpan<const glm::vec3> positions,
+                                     StridedSpan<const glm::vec2> texcoords,
+                                     TriangleSpan triangles);
 
 }  // namespace relief

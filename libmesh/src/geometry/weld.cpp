@@ -144,16 +144,16 @@ std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
 
 }  // namespace
 
-std::vector<std::uint32_t> weld_positions(std::span<const glm::vec3> positions) {
+std::vector<std::uint32_t> weld_positions(StridedSpan<const glm::vec3> positions) {
     return weld(positions.size(), [&](std::size_t i) {
         const glm::vec3& p = positions[i];
         return std::array{p.x, p.y, p.z};
     });
 }
 
-std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
-                                         std::span<const glm::vec3> normals,
-                                         std::span<const glm::vec2> texcoords) {
+std::vector<std::uint32_t> weld_vertices(StridedSpan<const glm::vec3> positions,
+                                         StridedSpan<const glm::vec3> normals,
+                                         StridedSpan<const glm::vec2> texcoords) {
     return weld(positions.size(), [&](std::size_t i) {
         const glm::vec3& p = positions[i];
         const glm::vec3& n = normals[i];
@@ -191,7 +191,7 @@ Groups groups_of(std::span<const std::uint32_t> representatives) {
     return groups;
 }
 
-std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
+std::vector<glm::uvec3> welded_triangles(TriangleSpan triangles,
                                          std::span<const std::uint32_t> representatives) {
     std::vector<glm::uvec3> welded;
     reserve_to_fill(welded, triangles.size());
@@ -226,7 +226,7 @@ struct Cells {
     std::vector<std::vector<std::uint32_t>> vertices;
 };
 
-Cells cells_of(std::span<const glm::vec3> positions, double size) {
+Cells cells_of(StridedSpan<const glm::vec3> positions, double size) {
     Cells cells;
     cells.index.reserve(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -245,7 +245,7 @@ Cells cells_of(std::span<const glm::vec3> positions, double size) {
     return cells;
 }
 
-bool any_near(std::span<const glm::vec3> positions, std::span<const std::uint32_t> some,
+bool any_near(StridedSpan<const glm::vec3> positions, std::span<const std::uint32_t> some,
               std::span<const std::uint32_t> others, double tolerance) {
     return std::any_of(some.begin(), some.end(), [&](std::uint32_t a) {
         return std::any_of(others.begin(), others.end(), [&](std::uint32_t b) {
@@ -271,7 +271,7 @@ std::vector<CellKey> offsets_onwards() {
 
 }  // namespace
 
-std::vector<std::uint32_t> weld_near_positions(std::span<const glm::vec3> positions,
+std::vector<std::uint32_t> weld_near_positions(StridedSpan<const glm::vec3> positions,
                                                double tolerance) {
     // The cell is slightly smaller than tolerance / sqrt(3), so that rounding joins no vertices
     // beyond the tolerance.

@@ -15,16 +15,17 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/buffers.h"
 
 namespace RELIEF_API relief {
 /// For every vertex, the smallest index of a vertex with an equal position (its position class).
-std::vector<std::uint32_t> weld_positions(std::span<const glm::vec3> positions);
+std::vector<std::uint32_t> weld_positions(StridedSpan<const glm::vec3> positions);
 
 /// The same for vertices that are equal in position, normal and texture coordinate. The spans are
 /// equally long.
-std::vector<std::uint32_t> weld_vertices(std::span<const glm::vec3> positions,
-                                         std::span<const glm::vec3> normals,
-                                         std::span<const glm::vec2> texcoords);
+std::vector<std::uint32_t> weld_vertices(StridedSpan<const glm::vec3> positions,
+                                         StridedSpan<const glm::vec3> normals,
+                                         StridedSpan<const glm::vec2> texcoords);
 
 /// For every value, the smallest index of a value with the same bits: a NaN equals the same NaN,
 /// and +0 does not equal -0. Values are glm::vec2, glm::vec3 and seven floats.
@@ -46,7 +47,7 @@ struct Groups {
 Groups groups_of(std::span<const std::uint32_t> representatives);
 
 /// Triangles over class representatives instead of over vertices.
-std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
+std::vector<glm::uvec3> welded_triangles(TriangleSpan triangles,
                                          std::span<const std::uint32_t> representatives);
 
 /// For every vertex, the smallest index of the vertices that it is joined with.
@@ -58,7 +59,7 @@ std::vector<glm::uvec3> welded_triangles(std::span<const glm::uvec3> triangles,
 /// The time is nearly linear if few vertices are within the tolerance of each other, as for
 /// tolerances of seams. It is quadratic in the number of vertices that are close to that distance.
 /// \param tolerance  finite and above 0
-std::vector<std::uint32_t> weld_near_positions(std::span<const glm::vec3> positions,
+std::vector<std::uint32_t> weld_near_positions(StridedSpan<const glm::vec3> positions,
                                                double tolerance);
 
 /// Disjoint sets of numbers that can be joined, in nearly constant time per operation. The

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The peak memory of tangent computation. The program is separate because it replaces operator
+// The peak memory of normals and tangents. The program is separate because it replaces operator
 // new.
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <new>
 
 #include "relief/mesh/execution.h"
+#include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
 #include "support/shapes.h"
 
@@ -67,6 +68,57 @@ double peak_ratio(const Mesh& mesh) {
         mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
     const std::size_t needed = bytes_of(mesh) + tangents.size() * sizeof(glm::vec4);
     return static_cast<double>(bytes_of(mesh) + max_used - before) / static_cast<double>(needed);
+}
+
+/// Returns the peak memory of a call in bytes, without what was in use before.
+template <typename Call>
+std::size_t peak_of(const Call& call) {
+    const std::size_t before = in_use;
+    max_used = before;
+    call();
+    return max_used - before;
+}
+
+TEST(BufferMemory, InterleavedVerticesAndShortIndicesAreNotCopied) {
+    struct Vertex {
+        glm::vec3 position;
+        glm::vec3 normal;
+        glm::vec2 texcoord;
+        glm::vec4 tangent;
+    };
+    const Mesh mesh = test::grid(250);
+    std::vector<Vertex> vertices;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        vertices.push_back({mesh.positions[v], mesh.normals[v], mesh.texcoords[v], {}});
+    std::vector<std::uint16_t> indices;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int i = 0; i < 3; ++i)
+            indices.push_back(static_cast<std::uint16_t>(triangle[i]));
+    }
+    const std::size_t count = vertices.size();
+    const TriangleSpan triangles{std::span<const std::uint16_t>(indices)};
+    const StridedSpan<const glm::vec3> positions(&vertices[0].position, count, sizeof(Vertex));
+    const StridedSpan<glm::vec3> normals(&vertices[0].normal, count, sizeof(Vertex));
+    const StridedSpan<const glm::vec2> texcoords(&vertices[0].texcoord, count, sizeof(Vertex));
+    const StridedSpan<glm::vec4> tangents(&vertices[0].tangent, count, sizeof(Vertex));
+    Report report;
+    set_thread_limit(1);
+
+    // Arrays of relief's own layout need no conversion. The results of these calls are vectors,
+    // which the others do without.
+    const NormalOptions options;
+    const std::size_t normals_peak =
+        peak_of([&] { (void)vertex_normals(mesh.positions, mesh.triangles, options, report); });
+    EXPECT_LE(peak_of([&] { vertex_normals(positions, triangles, options, normals); }),
+              normals_peak - count * sizeof(glm::vec3));
+    const std::size_t tangents_peak = peak_of([&] {
+        (void)mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles,
+                                  report);
+    });
+    EXPECT_LE(peak_of([&] { vertex_tangents(positions, normals, texcoords, triangles, tangents); }),
+              tangents_peak);
+    EXPECT_EQ(vertices[count / 2].tangent, glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
+    set_thread_limit(0);
 }
 
 TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {

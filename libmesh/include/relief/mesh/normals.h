@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/buffers.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
@@ -64,14 +65,22 @@ struct NormalOptions {
 /// number of threads, the compiler and the processor. Components are multiples of 2^-28 before they
 /// are rounded to float. Scaling the mesh by factors from 1e-30 to 1e30 does not change the
 /// normals.
-std::vector<glm::vec3> vertex_normals(std::span<const glm::vec3> positions,
-                                      std::span<const glm::uvec3> triangles,
-                                      const NormalOptions& options, Report& report);
+std::vector<glm::vec3> vertex_normals(StridedSpan<const glm::vec3> positions,
+                                      TriangleSpan triangles, const NormalOptions& options,
+                                      Report& report);
+
+/// Writes the normals into the caller's memory, for example into an interleaved vertex buffer.
+///
+/// \param normals  one per position; must not overlap the inputs
+/// \param report  may be null
+/// \throws InvalidInput also if there are not as many normals as positions
+void vertex_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                    const NormalOptions& options, StridedSpan<glm::vec3> normals,
+                    Report* report = nullptr);
 
 /// The same with a weighting and default options.
-std::vector<glm::vec3> vertex_normals(std::span<const glm::vec3> positions,
-                                      std::span<const glm::uvec3> triangles, NormalWeight weight,
-                                      Report& report);
+std::vector<glm::vec3> vertex_normals(StridedSpan<const glm::vec3> positions,
+                                      TriangleSpan triangles, NormalWeight weight, Report& report);
 
 /// Normals with automatic weighting.
 struct ChosenNormals {
@@ -90,9 +99,8 @@ struct ChosenNormals {
 /// \param options  its weight is ignored
 /// \return as vertex_normals()
 /// \throws as vertex_normals()
-ChosenNormals chosen_normals(std::span<const glm::vec3> positions,
-                             std::span<const glm::uvec3> triangles, const NormalOptions& options,
-                             Report& report);
+ChosenNormals chosen_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                             const NormalOptions& options, Report& report);
 
 /// The edges across which a surface is not smooth. By default there are none.
 struct HardEdges {
@@ -121,8 +129,7 @@ struct CornerNormals {
 ///
 /// Vertices whose corners differ must be split: see frames.h. The same input gives the same bits,
 /// as for vertex_normals().
-CornerNormals corner_normals(std::span<const glm::vec3> positions,
-                             std::span<const glm::uvec3> triangles,
+CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                              std::optional<NormalWeight> weight, const NormalOptions& options,
                              const HardEdges& hard_edges, Report& report);
 
@@ -131,8 +138,8 @@ CornerNormals corner_normals(std::span<const glm::vec3> positions,
 /// \return one unit vector per triangle; (0,0,1) for a triangle without area or with a non-finite
 ///         corner
 /// \throws InvalidInput if a triangle names a vertex that does not exist
-std::vector<glm::vec3> triangle_normals(std::span<const glm::vec3> positions,
-                                        std::span<const glm::uvec3> triangles, Report& report);
+std::vector<glm::vec3> triangle_normals(StridedSpan<const glm::vec3> positions,
+                                        TriangleSpan triangles, Report& report);
 
 // Estimates reference normals of a mesh without a known formula: the normals of a smooth surface
 // that is fitted through its vertices.

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/buffers.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
@@ -57,21 +58,34 @@ namespace RELIEF_API relief {
 /// bucket that its sorting of edges omits.
 ///
 /// Source: [Mikkelsen 2008]; deviations from the reference implementation are marked in the code.
-std::vector<glm::vec4> mikktspace_tangents(std::span<const glm::vec3> positions,
-                                           std::span<const glm::vec3> normals,
-                                           std::span<const glm::vec2> texcoords,
-                                           std::span<const glm::uvec3> triangles, Report& report);
+std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> positions,
+                                           StridedSpan<const glm::vec3> normals,
+                                           StridedSpan<const glm::vec2> texcoords,
+                                           TriangleSpan triangles, Report& report);
+
+/// Writes one tangent per vertex into the caller's memory, for meshes whose vertices are already
+/// split where the texture is mirrored or has a seam.
+///
+/// \param tangents  one per position; must not overlap the inputs. If the corners at a vertex
+///         differ, it is the most frequent one (ties: the first by value), and the vertex is
+///         reported: split such vertices by frames.h instead. Vertices without a triangle get a
+///         tangent perpendicular to their normal with w = -1
+/// \param report  may be null
+/// \throws InvalidInput as mikktspace_tangents(), and if there are not as many tangents as
+///         positions
+void vertex_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const glm::vec3> normals,
+                     StridedSpan<const glm::vec2> texcoords, TriangleSpan triangles,
+                     StridedSpan<glm::vec4> tangents, Report* report = nullptr);
 
 /// Computes the same frames with weights by the area of a triangle instead of its angle at the
 /// corner: thin bevels, whose corners have angles like any other, then do not affect large adjacent
 /// faces.
 ///
 /// This is not MikkTSpace: a map that was baked for one of the two shows seams with the other.
-std::vector<glm::vec4> area_weighted_tangents(std::span<const glm::vec3> positions,
-                                              std::span<const glm::vec3> normals,
-                                              std::span<const glm::vec2> texcoords,
-                                              std::span<const glm::uvec3> triangles,
-                                              Report& report);
+std::vector<glm::vec4> area_weighted_tangents(StridedSpan<const glm::vec3> positions,
+                                              StridedSpan<const glm::vec3> normals,
+                                              StridedSpan<const glm::vec2> texcoords,
+                                              TriangleSpan triangles, Report& report);
 
 /// Computes the same, but averages all triangles of the same handedness at a vertex, adjacent or
 /// not, weighted by the stretch of the texture along u: the sum of the gradients of position along
@@ -79,10 +93,10 @@ std::vector<glm::vec4> area_weighted_tangents(std::span<const glm::vec3> positio
 /// vertex with triangles of both handednesses; this one has one for each.
 ///
 /// Source: [Lengyel 2001].
-std::vector<glm::vec4> lengyel_tangents(std::span<const glm::vec3> positions,
-                                        std::span<const glm::vec3> normals,
-                                        std::span<const glm::vec2> texcoords,
-                                        std::span<const glm::uvec3> triangles, Report& report);
+std::vector<glm::vec4> lengyel_tangents(StridedSpan<const glm::vec3> positions,
+                                        StridedSpan<const glm::vec3> normals,
+                                        StridedSpan<const glm::vec2> texcoords,
+                                        TriangleSpan triangles, Report& report);
 
 // Identifies the method with which the stored tangents of a mesh were computed.
 //
