@@ -109,7 +109,7 @@ CodedHeights coded_heights(const Image& heights, int bits) {
     return coded;
 }
 
-DirectionError normal_error(const Image& normals, const AnalyticHeights& reference, int margin) {
+ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, int margin) {
     if (normals.width != reference.heights.width || normals.height != reference.heights.height ||
         normals.channels != 3) {
         throw InvalidInput(fmt::format("normals of {} x {} texels and a truth of {} x {}",
@@ -403,7 +403,7 @@ std::span<const FieldRecipe> evaluation_fields() {
     return all;
 }
 
-DirectionError field_error(const Image& normals, const BumpField& field) {
+ErrorStats field_error(const Image& normals, const BumpField& field) {
     const std::span<const float> samples = normals.as<float>();
     if (normals.channels != 3 || samples.size() != 3 * field.normals.size())
         throw InvalidInput("normals of another size than the field");

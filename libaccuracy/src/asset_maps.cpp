@@ -100,8 +100,8 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
     experiment.items = static_cast<double>(result.texels);
     std::vector<AssetMethod> measured;
     for (const BumpMeasurement& one : result.measurements) {
-        measured.push_back({measured_method(one.method, figures_of(one.error)),
-                            command_of(one.method, bump, options)});
+        measured.push_back(
+            {measured_method(one.method, one.error), command_of(one.method, bump, options)});
         measured.back().measured.work = work_of(one.method, sample, bump);
         measured.back().natural_cost = nominal_cost(one.method);
     }
@@ -144,7 +144,7 @@ AssetMethod as_it_is(const NormalMapStorage& file, std::size_t texels,
     method.measured.choices = {
         {"layout", "as it is"}, {"bits", fmt::format("{} bit", file.bits)}, {"rounding", "none"}};
     method.measured.stored_bytes = file.channels * file.bits / 8.0;
-    method.measured.error = figures_of(angle_distribution(std::vector<float>(texels, 0.0F)));
+    method.measured.error = error_stats(std::vector<float>(texels, 0.0F));
     method.measured.note = "Every code is kept; there is no work to time.";
     method.command = fmt::format("relief-bake convert {} OUT{}", options.arguments, file.extension);
     return method;
@@ -181,7 +181,7 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
         std::vector<float> degrees;
         for (const Image& part : parts)
             add_angles(code.stored(part), part, degrees);
-        method.measured.error = figures_of(angle_distribution(std::move(degrees)));
+        method.measured.error = error_stats(std::move(degrees));
         method.measured.work = [&parts, code] {
             for (const Image& part : parts)
                 static_cast<void>(code.stored(part));
@@ -257,7 +257,7 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
     for (std::size_t way = 0; way < ways.size(); ++way) {
         for (std::size_t f = 0; f < formats.size(); ++f) {
             methods.push_back(method_of(ways[way], formats[f], size, options));
-            methods.back().measured.error = figures_of(trial_results[way].trial.errors[f]);
+            methods.back().measured.error = trial_results[way].trial.errors[f];
             if (options.run.is_timed)
                 methods.back().known_time = Timing{trial_results[way].seconds[f]};
         }

@@ -133,8 +133,8 @@ CornerGroundTruth by_file(const Mesh& mesh, const CreaseRule& creases) {
 }
 
 /// \param normals  one per corner, or one per vertex
-ErrorFigures errors_of(const std::vector<glm::vec3>& normals, bool are_by_corner, const Mesh& mesh,
-                       const CornerGroundTruth& ground_truth) {
+ErrorStats errors_of(const std::vector<glm::vec3>& normals, bool are_by_corner, const Mesh& mesh,
+                     const CornerGroundTruth& ground_truth) {
     std::vector<float> degrees;
     for (std::size_t i = 0; i < ground_truth.corners.size(); ++i) {
         const std::uint32_t corner = ground_truth.corners[i];
@@ -144,7 +144,7 @@ ErrorFigures errors_of(const std::vector<glm::vec3>& normals, bool are_by_corner
         degrees.push_back(
             static_cast<float>(degrees_between(glm::dvec3(actual), ground_truth.normals[i])));
     }
-    return figures_of(angle_distribution(std::move(degrees)));
+    return error_stats(std::move(degrees));
 }
 
 std::vector<glm::vec3> with_creases(const NormalMethod& method, const Mesh& mesh,
@@ -325,7 +325,7 @@ AssetMethod method_of(const Basis& basis, std::vector<float> degrees) {
     AssetMethod method;
     method.measured = {.name = basis.name,
                        .choices = {{"basis", basis.name}},
-                       .error = figures_of(angle_distribution(std::move(degrees))),
+                       .error = error_stats(std::move(degrees)),
                        .work = basis.work,
                        .note = basis.work ? "" : "There is no work to time."};
     method.command = basis.command;

@@ -302,7 +302,7 @@ Experiment measured(const BumpyBake& bake, std::span<const BakeSampling> ways,
             experiment.measurements.push_back(
                 {.method = fmt::format("{}, {}", name_of(ways[i]), depth_name(depth.bits)),
                  .choices = {{"rays", name_of(ways[i])}, {"depth", depth_name(depth.bits)}},
-                 .error = figures_of(results[i].trial.errors[format]),
+                 .error = nan_if_empty(results[i].trial.errors[format]),
                  .cost = nominal_cost(results[i], format),
                  .note = fmt::format("{:.2f} rays per texel.", rays_per_texel(results[i], bake))});
         }
@@ -315,8 +315,7 @@ Curve curve_of(const std::string& name, const BumpyBake& bake,
                std::span<const BakeWayResult> results, std::size_t format) {
     Curve curve{.method = name};
     for (const BakeWayResult& one : results)
-        curve.points.push_back(
-            {rays_per_texel(one, bake), curve_error(figures_of(one.trial.errors[format]))});
+        curve.points.push_back({rays_per_texel(one, bake), curve_error(one.trial.errors[format])});
     return curve;
 }
 
@@ -398,7 +397,7 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
     for (std::ptrdiff_t i = adaptive - 1; i >= 0; --i) {
         const auto at = static_cast<std::size_t>(i);
         thresholds.curves.front().points.push_back(
-            {*ways[at].sample_degrees, curve_error(figures_of(results[at].trial.errors[2]))});
+            {*ways[at].sample_degrees, curve_error(results[at].trial.errors[2])});
     }
     experiment.charts = {std::move(rays), std::move(thresholds)};
     const std::array maps = {BakedMap{ways.front(), {.bits = 32}}, BakedMap{ways[2], {.bits = 32}},

@@ -82,8 +82,7 @@ WaveMap oblique_wave(int side, double wavelength, int bits) {
     return map;
 }
 
-AngleDistribution wave_errors(const WaveMap& wave, const NamedKernel& kernel,
-                              Arithmetic arithmetic) {
+ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmetic arithmetic) {
     BumpOptions options = wave.options;
     options.kernel = kernel.kernel;
     options.gaussian_radius = kernel.radius;
@@ -124,7 +123,7 @@ std::string name_of(const Wraps& wraps) {
     return fmt::format("{},{}", x, words.at(static_cast<std::size_t>(wraps.y)));
 }
 
-MeasuredMethod measured_method(const BumpMethod& method, const ErrorFigures& error) {
+MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error) {
     const std::string kernel = method.kernel == Kernel::gaussian
                                    ? fmt::format("gaussian {}", method.gaussian_radius)
                                    : name_of(method.kernel);
@@ -166,7 +165,7 @@ Chart kernel_chart(const char* id, const char* title, const char* x_label) {
 /// Adds a point to the curve of each kernel.
 void add_points(Chart& chart, double x, const WaveMap& wave) {
     for (std::size_t k = 0; k < chart.curves.size(); ++k) {
-        const AngleDistribution errors = wave_errors(wave, named_kernels()[k], Arithmetic::float64);
+        const ErrorStats errors = wave_errors(wave, named_kernels()[k], Arithmetic::float64);
         chart.curves[k].points.push_back({x, curve_error(errors)});
     }
 }
@@ -259,7 +258,7 @@ Experiment on_wave(int bits, const RunOptions& options) {
             MeasuredMethod method;
             method.name = fmt::format("{}, {}", kernel.name, name_of(arithmetic));
             method.choices = {{"kernel", kernel.name}, {"arithmetic", name_of(arithmetic)}};
-            method.error = figures_of(wave_errors(wave, kernel, arithmetic));
+            method.error = wave_errors(wave, kernel, arithmetic);
             method.work = [&wave, chosen = with_kernel(wave.options, kernel, arithmetic)] {
                 Report report;
                 normals_from_height(wave.heights, chosen, report);
@@ -326,7 +325,7 @@ Experiment on_recipe(const std::string& id, const FieldRecipe& recipe, int side,
                                   one.method.destaircased ? ", steps smoothed away" : "");
         method.choices = {
             {"kernel", kernel}, {"arithmetic", name_of(one.method.arithmetic)}, {"steps", steps}};
-        method.error = figures_of(one.error);
+        method.error = one.error;
         method.work = [&field, chosen = one.method] { convert(field, chosen); };
         measured.push_back(std::move(method));
     }

@@ -51,8 +51,7 @@ inline constexpr int wave_margin = 16;
 WaveMap oblique_wave(int side, double wavelength, int bits);
 
 /// The errors of the unrounded normals of a wave map.
-AngleDistribution wave_errors(const WaveMap& wave, const NamedKernel& kernel,
-                              Arithmetic arithmetic);
+ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmetic arithmetic);
 
 /// The same surface at several resolutions: waves that tile a square of `side` texels.
 WaveMap surface_at(int side);
@@ -64,7 +63,7 @@ std::string name_of(Kernel kernel);
 std::string name_of(const Wraps& wraps);
 
 /// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel.
-MeasuredMethod measured_method(const BumpMethod& method, const ErrorFigures& error);
+MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error);
 
 /// Runs bump_plan().
 std::vector<Experiment> bump_experiments(const RunOptions& options);

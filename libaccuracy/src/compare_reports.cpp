@@ -95,8 +95,8 @@ ErrorChange change_of(const Experiment& experiment, const Chart& chart, const Cu
 ErrorChange change_of(const Experiment& experiment, const Measurement& before,
                       const Measurement& after) {
     ErrorChange change{experiment.id, "", before.method, {}};
-    const ErrorFigures& old_error = before.error;
-    const ErrorFigures& new_error = after.error;
+    const ErrorStats& old_error = before.error;
+    const ErrorStats& new_error = after.error;
     add_if_changed(change, "rms", old_error.rms, new_error.rms);
     add_if_changed(change, "mean", old_error.mean, new_error.mean);
     add_if_changed(change, "p99", old_error.p99, new_error.p99);

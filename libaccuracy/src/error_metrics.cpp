@@ -43,17 +43,16 @@ std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3
     return counted;
 }
 
-AngleDistribution map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth,
-                             int margin) {
-    return angle_distribution(inner_angles(normals, ground_truth, margin));
+ErrorStats map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth, int margin) {
+    return error_stats(inner_angles(normals, ground_truth, margin));
 }
 
 namespace {
 
-/// Statistics of any float map; angle_distribution() accepts all numbers.
-ErrorFigures figures_of_map(const Image& map) {
+/// Statistics of any float map; error_stats() accepts all numbers.
+ErrorStats stats_of_map(const Image& map) {
     const std::span<const float> errors = map.as<float>();
-    return figures_of(angle_distribution({errors.begin(), errors.end()}));
+    return error_stats({errors.begin(), errors.end()});
 }
 
 }  // namespace
@@ -61,7 +60,7 @@ ErrorFigures figures_of_map(const Image& map) {
 PictureError picture_error(const Image& ground_truth, const Image& picture) {
     const Image shown = to_srgb(ground_truth, 8);
     FlipDifference flip = flip_difference(shown, picture);
-    PictureError error{figures_of_map(flip.map), std::move(flip.map)};
+    PictureError error{stats_of_map(flip.map), std::move(flip.map)};
     error.figures.psnr = compare(shown, picture).psnr;
     return error;
 }

@@ -26,11 +26,11 @@ std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3
                                 int margin);
 
 /// Statistics of inner_angles().
-AngleDistribution map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth,
-                             int margin = 0);
+ErrorStats map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth,
+                      int margin = 0);
 
 struct PictureError {
-    ErrorFigures
+    ErrorStats
         figures;  ///< FLIP per pixel, 0 to 1; psnr is of sRGB codes, infinite if all are equal.
     Image map;    ///< FLIP per pixel: one float channel.
 };

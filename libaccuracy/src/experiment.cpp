@@ -14,33 +14,13 @@ namespace {
 
 constexpr double undefined_error = std::numeric_limits<double>::quiet_NaN();
 
-/// \param angles  an AngleDistribution or an AngleSummary; without angles both contain 0, which
-/// would
-///                mean no error
-template <typename Angles>
-ErrorFigures figures_of_summary(const Angles& angles, std::size_t undefined) {
-    if (angles.count == 0)
-        return {.undefined = undefined,
-                .rms = undefined_error,
-                .mean = undefined_error,
-                .p99 = undefined_error,
-                .max = undefined_error};
-    return {.count = angles.count,
-            .undefined = undefined,
-            .rms = angles.rms,
-            .mean = angles.mean,
-            .p99 = angles.p99,
-            .max = angles.max};
-}
-
 }  // namespace
 
-ErrorFigures figures_of(const AngleDistribution& angles) {
-    return figures_of_summary(angles, angles.undefined);
-}
-
-ErrorFigures figures_of(const AngleSummary& angles) {
-    return figures_of_summary(angles, 0);
+ErrorStats nan_if_empty(const ErrorStats& error) {
+    if (error.count > 0) return error;
+    ErrorStats none = error;
+    none.rms = none.mean = none.median = none.p90 = none.p99 = none.max = undefined_error;
+    return none;
 }
 
 double median_seconds(const Measurement& measurement) {
@@ -49,12 +29,8 @@ double median_seconds(const Measurement& measurement) {
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-double curve_error(const ErrorFigures& error) {
-    return error.undefined > 0 ? undefined_error : error.rms;
-}
-
-double curve_error(const AngleDistribution& angles) {
-    return curve_error(figures_of(angles));
+double curve_error(const ErrorStats& error) {
+    return error.undefined > 0 || error.count == 0 ? undefined_error : error.rms;
 }
 
 std::vector<bool> pareto_optimal(std::span<const MethodCost> prices) {

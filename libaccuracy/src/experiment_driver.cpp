@@ -36,7 +36,7 @@ void measure_methods(std::span<const MeasuredMethod> methods, const RunOptions& 
         Measurement measurement;
         measurement.method = method.name;
         measurement.choices = method.choices;
-        measurement.error = method.error;
+        measurement.error = nan_if_empty(method.error);
         if (method.work) measurement.cost = costs[timed++];
         measurement.cost.stored_bytes = method.stored_bytes;
         measurement.note = method.note;

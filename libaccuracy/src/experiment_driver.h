@@ -21,7 +21,7 @@ namespace relief {
 struct MeasuredMethod {
     std::string name;
     std::vector<std::pair<std::string, std::string>> choices;
-    ErrorFigures error;
+    ErrorStats error;
     std::function<void()> work{};  ///< Empty: the method has no time of its own.
     double stored_bytes = 0.0;
     std::string note{};

@@ -84,11 +84,11 @@ FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& act
         for (const glm::dvec3& texel : tilted_texels)
             texels.push_back(degrees_of(basis * texel, expected * texel));
     }
-    errors.normal = angle_distribution(normals);
-    errors.tangent = angle_distribution(tangents);
+    errors.normal = error_stats(normals);
+    errors.tangent = error_stats(tangents);
     normals.insert(normals.end(), tangents.begin(), tangents.end());
-    errors.both = angle_distribution(std::move(normals));
-    errors.texel = angle_distribution(std::move(texels));
+    errors.both = error_stats(std::move(normals));
+    errors.texel = error_stats(std::move(texels));
     return errors;
 }
 
@@ -101,7 +101,7 @@ MeasuredMethod FrameCode::measured(const SampleFrames& frames) const {
     method.name = fmt::format("{}, {}", name_of(encoding), rounding_name());
     method.choices = {{"encoding", std::string(name_of(encoding))}, {"rounding", rounding_name()}};
     const FrameCodeErrors errors = frame_code_errors(frames, encoding, rounding);
-    method.error = figures_of(errors.both);
+    method.error = errors.both;
     method.stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding));
     if (errors.flipped_frames > 0)
         method.note = fmt::format("The handedness of {} frames changed.", errors.flipped_frames);

@@ -194,7 +194,7 @@ void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
             add_angles(maps[part], format_of(methods[i], options.format), trial.ground_truth[part],
                        trial.margin, angles);
         experiment.measurements[i].method = methods[i];
-        experiment.measurements[i].error = angle_distribution(std::move(angles));
+        experiment.measurements[i].error = error_stats(std::move(angles));
     }
     if (options.repeats.counted > 0) take_times(methods, trial, options, experiment);
     mark_pareto_optimal(experiment.measurements);

@@ -277,7 +277,7 @@ std::vector<glm::dvec3> smooth_surface(int side) {
     return wave_heights(side, side, tiling_waves(side, side, 5, side / 2.0, 0.2, 41)).normals;
 }
 
-AngleDistribution patch_errors(const Image& normals, const Image& ground_truth, int block) {
+ErrorStats patch_errors(const Image& normals, const Image& ground_truth, int block) {
     const int columns = ground_truth.width / block;
     const auto patches = static_cast<std::size_t>(columns * (ground_truth.height / block));
     const auto sums_of = [&](const Image& map) {
@@ -295,12 +295,12 @@ AngleDistribution patch_errors(const Image& normals, const Image& ground_truth, 
     std::vector<float> degrees;
     for (std::size_t i = 0; i < patches; ++i)
         degrees.push_back(static_cast<float>(degrees_between(actual[i], expected[i])));
-    return angle_distribution(std::move(degrees));
+    return error_stats(std::move(degrees));
 }
 
 namespace {
 
-MeasuredMethod method_of(const NormalCode& code, const ErrorFigures& error) {
+MeasuredMethod method_of(const NormalCode& code, const ErrorStats& error) {
     MeasuredMethod method;
     method.name = code.name;
     method.choices = code.choices;
@@ -399,8 +399,7 @@ Experiment normal_reading_experiment(const RunOptions& options) {
     std::vector<MeasuredMethod> measured;
     for (const NormalCode& code : codes) {
         const Image stored = code.encode(normals);
-        MeasuredMethod method =
-            method_of(code, figures_of(map_errors(code.decode(stored), directions)));
+        MeasuredMethod method = method_of(code, map_errors(code.decode(stored), directions));
         method.work = [stored, decode = code.decode] { decode(stored); };
         measured.push_back(std::move(method));
     }
@@ -426,8 +425,7 @@ Experiment normal_writing_experiment(const RunOptions& options) {
     experiment.input = fmt::format("{} x {} texels of waves of 128 texels and more", side, side);
     std::vector<MeasuredMethod> measured;
     for (const NormalCode& code : codes) {
-        MeasuredMethod method =
-            method_of(code, figures_of(map_errors(code.stored(ground_truth), surface)));
+        MeasuredMethod method = method_of(code, map_errors(code.stored(ground_truth), surface));
         method.work = [&ground_truth, encode = code.encode] { encode(ground_truth); };
         measured.push_back(std::move(method));
     }

@@ -60,25 +60,24 @@ std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics
     return methods;
 }
 
-AngleDistribution normal_errors(std::span<const glm::vec3> normals,
-                                const AnalyticMesh& ground_truth) {
+ErrorStats normal_errors(std::span<const glm::vec3> normals, const AnalyticMesh& ground_truth) {
     std::vector<float> degrees;
     for (std::size_t v = 0; v < normals.size(); ++v) {
         if (ground_truth.inner[v] == 0) continue;
         degrees.push_back(
             static_cast<float>(degrees_between(glm::dvec3(normals[v]), ground_truth.normals[v])));
     }
-    return angle_distribution(std::move(degrees));
+    return error_stats(std::move(degrees));
 }
 
-AngleDistribution fan_errors(const NormalMethod& method, int valence, std::uint32_t fans) {
+ErrorStats fan_errors(const NormalMethod& method, int valence, std::uint32_t fans) {
     constexpr glm::dvec3 up(0.0, 0.0, 1.0);
     std::vector<float> degrees;
     for (std::uint32_t seed = 0; seed < fans; ++seed) {
         const std::vector<glm::vec3> normals = method.normals(cubic_fan(valence, seed));
         degrees.push_back(static_cast<float>(degrees_between(glm::dvec3(normals.front()), up)));
     }
-    return angle_distribution(std::move(degrees));
+    return error_stats(std::move(degrees));
 }
 
 namespace {
@@ -197,7 +196,7 @@ Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
         measured.push_back(
             {.name = method.name(),
              .choices = method.choices(),
-             .error = figures_of(normal_errors(method.normals(ground_truth.mesh), ground_truth)),
+             .error = normal_errors(method.normals(ground_truth.mesh), ground_truth),
              .work = [normals = method.normals, &ground_truth] { normals(ground_truth.mesh); }});
     }
     measure_methods(measured, options, costs, experiment);
@@ -259,12 +258,11 @@ Experiment on_fans(const RunOptions& options) {
     for (const NormalMethod& method : normal_methods(float64_alone)) {
         std::vector<CurvePoint> points;
         for (int valence = 3; valence <= 9; ++valence) {
-            const AngleDistribution errors = fan_errors(method, valence, fans);
+            const ErrorStats errors = fan_errors(method, valence, fans);
             points.push_back({static_cast<double>(valence), curve_error(errors)});
             if (valence == usual_valence)
-                measured.push_back({.name = method.name(),
-                                    .choices = method.choices(),
-                                    .error = figures_of(errors)});
+                measured.push_back(
+                    {.name = method.name(), .choices = method.choices(), .error = errors});
         }
         chart.curves.emplace_back().method = method.name();
         chart.curves.back().points = std::move(points);

@@ -38,11 +38,10 @@ std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics
 
 /// The angles between normals and those of the surface, at the inner vertices of the mesh.
 /// \param normals  one per position of the mesh
-AngleDistribution normal_errors(std::span<const glm::vec3> normals,
-                                const AnalyticMesh& ground_truth);
+ErrorStats normal_errors(std::span<const glm::vec3> normals, const AnalyticMesh& ground_truth);
 
 /// The angles at the center vertices of random fans (cubic_fan() with seeds 0 to `fans` - 1).
-AngleDistribution fan_errors(const NormalMethod& method, int valence, std::uint32_t fans);
+ErrorStats fan_errors(const NormalMethod& method, int valence, std::uint32_t fans);
 
 /// Runs normals_plan().
 std::vector<Experiment> normals_experiments(const RunOptions& options);

@@ -44,7 +44,7 @@ struct FormulaMethod {
 };
 
 /// Statistics of the absolute differences. NaN counts as undefined.
-ErrorFigures formula_error(const FormulaMethod& method, std::span<const double> ground_truth);
+ErrorStats formula_error(const FormulaMethod& method, std::span<const double> ground_truth);
 
 /// Adds a measurement of each method to the experiment; the time is that of all inputs on one
 /// thread.

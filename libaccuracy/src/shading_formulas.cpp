@@ -16,13 +16,13 @@
 
 namespace relief {
 
-ErrorFigures formula_error(const FormulaMethod& method, std::span<const double> ground_truth) {
+ErrorStats formula_error(const FormulaMethod& method, std::span<const double> ground_truth) {
     std::vector<float> results(ground_truth.size());
     method.compute(results);
     for (std::size_t i = 0; i < ground_truth.size(); ++i)
         results[i] =
             static_cast<float>(std::abs(static_cast<double>(results[i]) - ground_truth[i]));
-    return figures_of(angle_distribution(std::move(results)));
+    return error_stats(std::move(results));
 }
 
 void measure_formulas(std::span<const FormulaMethod> methods, std::span<const double> ground_truth,
@@ -174,7 +174,7 @@ const std::array boundaries = {Boundary{"water, 1.33", 1.33},
                                Boundary{"iron, 2.95 + 2.93i", {2.95, 2.93}}};
 
 /// Statistics of the error of Schlick's approximation.
-ErrorFigures schlick_error(std::complex<double> index, std::span<const float> cosines) {
+ErrorStats schlick_error(std::complex<double> index, std::span<const float> cosines) {
     const std::vector<FormulaMethod> methods = fresnel_methods(index, cosines);
     return formula_error(methods.at(1), exact_reflectances(index, cosines));
 }
@@ -233,7 +233,7 @@ Experiment described(const Boundary& boundary, std::size_t angles) {
 }
 
 std::string figures(const Experiment& experiment, const char* method) {
-    const ErrorFigures& error = method_in(experiment, method).error;
+    const ErrorStats& error = method_in(experiment, method).error;
     return fmt::format("{:.2g} (RMS; at most {:.2g})", error.rms, error.max);
 }
 

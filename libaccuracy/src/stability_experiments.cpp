@@ -64,7 +64,7 @@ void Sweeps::add(const std::string& id, const std::string& title, const std::str
             const double value = std::pow(10.0, decade);
             const std::vector<float> degrees = errors(method, value);
             degrees_[method].insert(degrees_[method].end(), degrees.begin(), degrees.end());
-            const double error = curve_error(angle_distribution(degrees));
+            const double error = curve_error(error_stats(degrees));
             curve.points.push_back({value, error});
             if (!curve.breaks_at && !(error <= bound_)) curve.breaks_at = value;
         }
@@ -73,8 +73,8 @@ void Sweeps::add(const std::string& id, const std::string& title, const std::str
     charts_.push_back(std::move(chart));
 }
 
-ErrorFigures Sweeps::figures(std::size_t method) const {
-    return figures_of(angle_distribution(degrees_[method]));
+ErrorStats Sweeps::figures(std::size_t method) const {
+    return error_stats(degrees_[method]);
 }
 
 std::string Sweeps::breaks() const {

@@ -42,7 +42,7 @@ class Sweeps {
     [[nodiscard]] const std::vector<Chart>& charts() const { return charts_; }
 
     /// The errors of a method in all charts together.
-    [[nodiscard]] ErrorFigures figures(std::size_t method) const;
+    [[nodiscard]] ErrorStats figures(std::size_t method) const;
 
     /// "Larger (...): plain area fails from 1e+18 on, all others are within the limit." for each
     /// chart.

@@ -48,7 +48,7 @@ std::vector<glm::dvec3> smooth_surface(int side);
 /// The angles between sums of normals over squares of `block` texels and the exact sums, in
 /// degrees. A mip level or the eye averages a patch in the same way.
 /// \param ground_truth  of the same size; `block` divides it
-AngleDistribution patch_errors(const Image& normals, const Image& ground_truth, int block);
+ErrorStats patch_errors(const Image& normals, const Image& ground_truth, int block);
 
 /// Frames before and after rounding to float; the error of float itself therefore counts.
 struct SampleFrames {
@@ -70,10 +70,10 @@ SampleFrames even_frames(std::size_t count);
 
 /// Angles to the frames in double, in degrees.
 struct FrameCodeErrors {
-    AngleDistribution normal;
-    AngleDistribution tangent;
-    AngleDistribution both;          ///< Normals and tangents together.
-    AngleDistribution texel;         ///< Normals of texels tilted by 30 degrees.
+    ErrorStats normal;
+    ErrorStats tangent;
+    ErrorStats both;                 ///< Normals and tangents together.
+    ErrorStats texel;                ///< Normals of texels tilted by 30 degrees.
     std::size_t flipped_frames = 0;  ///< Number of frames whose handedness changed.
 };
 

@@ -123,9 +123,7 @@ class Angles {
     void add(const glm::dvec3& actual, const glm::dvec3& expected) {
         degrees_.push_back(static_cast<float>(degrees_between(actual, expected)));
     }
-    [[nodiscard]] AngleDistribution distribution() && {
-        return angle_distribution(std::move(degrees_));
-    }
+    [[nodiscard]] ErrorStats distribution() && { return error_stats(std::move(degrees_)); }
 
   private:
     std::vector<float> degrees_;
@@ -150,8 +148,8 @@ TangentMethod made_unit(TangentMethod method) {
     return method;
 }
 
-AngleDistribution texel_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
-                               ShaderBasis basis) {
+ErrorStats texel_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
+                        ShaderBasis basis) {
     Angles angles;
     for (const Sample& sample : samples_of(ground_truth)) {
         const glm::dmat3 actual = basis_at(ground_truth.mesh, tangents, basis, sample);
@@ -162,8 +160,8 @@ AngleDistribution texel_errors(const TexturedMesh& ground_truth, const CornerTan
     return std::move(angles).distribution();
 }
 
-AngleDistribution inner_tangent_errors(const TexturedMesh& ground_truth,
-                                       const CornerTangents& tangents, ShaderBasis basis) {
+ErrorStats inner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
+                                ShaderBasis basis) {
     Angles angles;
     for (const Sample& sample : samples_of(ground_truth)) {
         angles.add(basis_at(ground_truth.mesh, tangents, basis, sample)[0],
@@ -172,8 +170,7 @@ AngleDistribution inner_tangent_errors(const TexturedMesh& ground_truth,
     return std::move(angles).distribution();
 }
 
-AngleDistribution corner_tangent_errors(const TexturedMesh& ground_truth,
-                                        const CornerTangents& tangents) {
+ErrorStats corner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents) {
     const CornerTangents expected = exact_tangents(ground_truth);
     Angles angles;
     for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
@@ -185,8 +182,8 @@ AngleDistribution corner_tangent_errors(const TexturedMesh& ground_truth,
     return std::move(angles).distribution();
 }
 
-AngleDistribution mismatch_errors(const TexturedMesh& ground_truth, const TangentMethod& baker,
-                                  const TangentMethod& reader) {
+ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentMethod& baker,
+                           const TangentMethod& reader) {
     const CornerTangents baked = baker.tangents_of(ground_truth.mesh);
     const CornerTangents read = reader.tangents_of(ground_truth.mesh);
     Angles angles;

@@ -70,20 +70,19 @@ inline constexpr std::array<glm::dvec3, 4> tilted_texels = {
     glm::dvec3(0.0, 0.5, 0.8660254037844386), glm::dvec3(0.0, -0.5, 0.8660254037844386)};
 
 /// The errors of the normals of tilted texels inside the triangles, in degrees.
-AngleDistribution texel_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
-                               ShaderBasis basis);
+ErrorStats texel_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
+                        ShaderBasis basis);
 
 /// The errors of tangents inside the triangles.
-AngleDistribution inner_tangent_errors(const TexturedMesh& ground_truth,
-                                       const CornerTangents& tangents, ShaderBasis basis);
+ErrorStats inner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
+                                ShaderBasis basis);
 
 /// The errors of tangents at the corners of inner vertices.
-AngleDistribution corner_tangent_errors(const TexturedMesh& ground_truth,
-                                        const CornerTangents& tangents);
+ErrorStats corner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents);
 
 /// The errors of tilted normals that are baked without rounding in one basis and read in another.
-AngleDistribution mismatch_errors(const TexturedMesh& ground_truth, const TangentMethod& baker,
-                                  const TangentMethod& reader);
+ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentMethod& baker,
+                           const TangentMethod& reader);
 
 struct TexturedCase {
     std::string id;    ///< "torus-jittered-mirrored"

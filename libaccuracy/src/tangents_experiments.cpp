@@ -177,8 +177,8 @@ MeasuredMethod exact_frames(const TexturedMesh& ground_truth) {
     MeasuredMethod method;
     method.name = "surface's own";
     method.choices = {{"frames", "surface's own"}, {"shader", "as interpolated"}};
-    method.error = figures_of(
-        texel_errors(ground_truth, exact_tangents(ground_truth), ShaderBasis::as_interpolated));
+    method.error =
+        texel_errors(ground_truth, exact_tangents(ground_truth), ShaderBasis::as_interpolated);
     method.stored_bytes = 28.0;
     method.note =
         "Not a method: the exact frames at the vertices. The error that remains is that of "
@@ -192,8 +192,7 @@ std::vector<MeasuredMethod> measured_on(const TexturedMesh& ground_truth) {
         MeasuredMethod one;
         one.name = method.name;
         one.choices = choices_of(method);
-        one.error = figures_of(
-            texel_errors(ground_truth, method.tangents_of(ground_truth.mesh), method.basis));
+        one.error = texel_errors(ground_truth, method.tangents_of(ground_truth.mesh), method.basis);
         one.stored_bytes = stored_bytes_of(method);
         if (method.tangents)
             one.work = [tangents = method.tangents, &ground_truth] { tangents(ground_truth.mesh); };
@@ -345,7 +344,7 @@ Experiment mismatches(const RunOptions& options) {
             measured.push_back(
                 {.name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
                  .choices = {{"baked in", baker.name}, {"read in", reader.name}},
-                 .error = figures_of(mismatch_errors(ground_truth, baker, reader))});
+                 .error = mismatch_errors(ground_truth, baker, reader)});
         }
     }
     measure_methods(measured, options, {}, experiment);

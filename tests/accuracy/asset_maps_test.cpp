@@ -53,7 +53,7 @@ TEST(AssetHeights, AreThoseOfTheBumpExperiment) {
     how.repeats = {0, 0};
     const BumpMethod method{Kernel::sobel3, 2, Arithmetic::float32, 8, false};
     const BumpExperiment same = measure_bump(sample_of(field.heights), std::span(&method, 1), how);
-    EXPECT_EQ(found(own, "sobel3, float32, 8 bit").error, figures_of(same.measurements[0].error));
+    EXPECT_EQ(found(own, "sobel3, float32, 8 bit").error, same.measurements[0].error);
     // Smooth waves in floats: the kernel of the highest order, in double, is the reference.
     EXPECT_THAT(own.recommendation.words, HasSubstr("central7, float64, 32 bit: "));
     EXPECT_THAT(own.command(), HasSubstr("relief-bake bump map.png OUT.exr --strength "));
@@ -234,7 +234,7 @@ TEST(AssetNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
         measure_asset_normals(image_of_normals(directions, 32), {.bits = 32}, untimed_map());
     // x and y in 16 bits have an error of 2^-16, which leaves 0.01 degrees in the computed z so
     // near to the horizon.
-    const ErrorFigures lost = found(own, "xy 16 bit").error;
+    const ErrorStats lost = found(own, "xy 16 bit").error;
     EXPECT_NEAR(lost.rms, 2.0 * below, 0.01);
     EXPECT_NEAR(lost.mean, 2.0 * below, 0.01);
     EXPECT_NEAR(lost.max, 2.0 * below, 0.02);
@@ -341,7 +341,7 @@ TEST(AssetBake, OfSamplesThatAreADegreeOffIsADegreeOff) {
         const AssetExperiment own = measured(striped(degrees), false);
         // 16 bits resolve 2^-15: 0.0017 degrees.
         constexpr double code = 0.0017;
-        const ErrorFigures& one = found(own, "1 sample, 16 bit").error;
+        const ErrorStats& one = found(own, "1 sample, 16 bit").error;
         EXPECT_NEAR(one.rms, degrees, code);
         EXPECT_NEAR(one.mean, degrees, code);
         EXPECT_NEAR(one.p99, degrees, code + degrees / 64.0) << "binned";

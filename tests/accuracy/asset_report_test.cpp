@@ -93,7 +93,7 @@ TEST(Recommended, KeepsWithinAnError) {
     EXPECT_EQ(recommended(usual(), rule).method, 3U);
     rule.request.max_error = 2.0;
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
-    rule.request.figure = &ErrorFigures::max;  // 3, 3.6, 0.15, 0.12
+    rule.request.figure = &ErrorStats::max;  // 3, 3.6, 0.15, 0.12
     EXPECT_EQ(recommended(usual(), rule).method, 2U);
     rule.request.max_error = 0.01;
     const Recommendation none = recommended(usual(), rule);

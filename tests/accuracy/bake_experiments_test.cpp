@@ -149,7 +149,7 @@ TEST(BakeExperiments, ShowWhereMapsErrAndWhatTheyLookLike) {
             EXPECT_EQ(map.errors.height, 128);
             const double rms = test::measurement_of(one, map.method).error.rms;
             const std::span<const float> errors = map.errors.as<float>();
-            EXPECT_NEAR(angle_distribution({errors.begin(), errors.end()}).rms, rms, 1e-4 * rms)
+            EXPECT_NEAR(error_stats({errors.begin(), errors.end()}).rms, rms, 1e-4 * rms)
                 << map.method;
         }
     }

@@ -235,7 +235,7 @@ TEST(CompareReports, AMethodThatTakesTwiceAsLongOnABusyMachineIsFoundOrCannotBeT
     EXPECT_GE(found, 170) << "in the others, the rounds of the method scatter by 1.5 and more";
 }
 
-Experiment one_measurement(const ErrorFigures& error) {
+Experiment one_measurement(const ErrorStats& error) {
     Experiment experiment;
     experiment.id = "bump/waves";
     experiment.error_unit = "degrees";
@@ -247,12 +247,12 @@ Experiment one_measurement(const ErrorFigures& error) {
 }
 
 TEST(CompareReports, ErrorsCountBeyondRounding) {
-    const ErrorFigures before{100, 0, 0.1, 0.05, 0.2, 0.3, {}};
-    ErrorFigures rounded = before;
+    const ErrorStats before{.count = 100, .rms = 0.1, .mean = 0.05, .p99 = 0.2, .max = 0.3};
+    ErrorStats rounded = before;
     rounded.rms *= 1.0 + 1e-8;
     EXPECT_TRUE(compare_reports({one_measurement(before)}, {one_measurement(rounded)}, true)
                     .errors.empty());
-    ErrorFigures worse = before;
+    ErrorStats worse = before;
     worse.rms = 0.10001;
     worse.max = 0.33;
     const ReportComparison result =
@@ -267,8 +267,8 @@ TEST(CompareReports, ErrorsCountBeyondRounding) {
 }
 
 TEST(CompareReports, ResultsThatBecameUnusableAreEndlessGrowth) {
-    ErrorFigures before{100, 0, 0.0, 0.0, 0.0, 0.0, {}};
-    ErrorFigures after = before;
+    ErrorStats before{.count = 100};
+    ErrorStats after = before;
     after.undefined = 1;
     after.count = 99;
     const ReportComparison result =

@@ -92,7 +92,7 @@ TEST(PictureError, IsOfWhatAScreenShows) {
     Image picture = gray(100);
     for (std::size_t i = 0; i < picture.sample_count(); i += 3)
         picture.as<std::uint8_t>()[i] = 101;
-    const ErrorFigures figures = picture_error(ground_truth, picture).figures;
+    const ErrorStats figures = picture_error(ground_truth, picture).figures;
     EXPECT_NEAR(figures.psnr.value(), 20.0 * std::log10(255.0 * std::sqrt(3.0)), 1e-6);
     EXPECT_GT(figures.mean, 0.0);
 }

@@ -46,7 +46,7 @@ inline const Curve& curve_of(const Chart& chart, const std::string& method) {
     throw std::runtime_error(chart.id + " has no curve " + method);
 }
 
-inline void expect_sound(const ErrorFigures& error) {
+inline void expect_sound(const ErrorStats& error) {
     EXPECT_GT(error.count, 0U);
     EXPECT_EQ(error.undefined, 0U);
     EXPECT_TRUE(std::isfinite(error.rms));

@@ -20,6 +20,7 @@ MeasuredMethod method_of(const std::string& name, double rms, std::function<void
     MeasuredMethod method;
     method.name = name;
     method.choices = {{"kind", name}};
+    method.error.count = 1;
     method.error.rms = rms;
     method.work = std::move(work);
     method.stored_bytes = 4.0;
@@ -66,6 +67,7 @@ TEST(Truest, HasTheLeastErrorOfThoseThatAreDefined) {
     EXPECT_EQ(most_accurate(experiment), nullptr);
     for (const double rms : {3.0, 1.0, 2.0}) {
         experiment.measurements.emplace_back();
+        experiment.measurements.back().error.count = 1;
         experiment.measurements.back().error.rms = rms;
     }
     EXPECT_EQ(most_accurate(experiment), &experiment.measurements[1]);

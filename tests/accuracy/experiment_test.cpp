@@ -67,6 +67,7 @@ TEST(Frontier, IsThatOfTheDefinitionOnRandomPrices) {
 
 Measurement measured(double rms, double seconds) {
     Measurement measurement;
+    measurement.error.count = 1;
     measurement.error.rms = rms;
     measurement.cost.one_thread = Timing{{seconds, seconds, seconds}};
     return measurement;
@@ -110,17 +111,18 @@ TEST(FittedOrder, NeedsTwoPlaces) {
     EXPECT_FALSE(fitted_order({{8.0, 1.0}, {8.0, 2.0}}));
 }
 
-TEST(FiguresOf, NothingAreNoneNotExactlyRight) {
-    const ErrorFigures none = figures_of(angle_distribution({}));
+TEST(NanIfEmpty, DistinguishesNoErrorFromZero) {
+    const ErrorStats none = nan_if_empty(error_stats({}));
     EXPECT_EQ(none.count, 0U);
     for (const double figure : {none.rms, none.mean, none.p99, none.max})
         EXPECT_TRUE(std::isnan(figure));
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const ErrorFigures undefined = figures_of(angle_distribution({nan, nan}));
+    const ErrorStats undefined = nan_if_empty(error_stats({nan, nan}));
     EXPECT_EQ(undefined.undefined, 2U);
     EXPECT_TRUE(std::isnan(undefined.rms));
+    EXPECT_EQ(nan_if_empty(error_stats({0.0F})).rms, 0.0);
     Experiment experiment;
-    for (const ErrorFigures& error : {none, figures_of(angle_distribution({0.5F}))}) {
+    for (const ErrorStats& error : {none, error_stats({0.5F})}) {
         experiment.measurements.emplace_back().error = error;
         experiment.measurements.back().cost.one_thread = Timing{{1.0}};
     }
@@ -131,10 +133,10 @@ TEST(FiguresOf, NothingAreNoneNotExactlyRight) {
 }
 
 TEST(CurveError, HasNoNumberWhereASingleResultHasNone) {
-    EXPECT_EQ(curve_error(angle_distribution({3.0F, 4.0F, 0.0F, 0.0F})), 2.5);
+    EXPECT_EQ(curve_error(error_stats({3.0F, 4.0F, 0.0F, 0.0F})), 2.5);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_TRUE(std::isnan(curve_error(angle_distribution({3.0F, nan}))));
-    EXPECT_TRUE(std::isnan(curve_error(angle_distribution({}))));
+    EXPECT_TRUE(std::isnan(curve_error(error_stats({3.0F, nan}))));
+    EXPECT_TRUE(std::isnan(curve_error(error_stats({}))));
 }
 
 }  // namespace

@@ -175,9 +175,9 @@ WaveError error_on(Kernel kernel, double wavelength) {
     options.arithmetic = Arithmetic::float64;
     Report report;
     const Image normals = normals_from_height(field.heights, options, report);
-    const DirectionError all = normal_error(normals, field, 0);
-    const DirectionError but_border = normal_error(normals, field, 1);
-    const auto squares = [](const DirectionError& error) {
+    const ErrorStats all = normal_error(normals, field, 0);
+    const ErrorStats but_border = normal_error(normals, field, 1);
+    const auto squares = [](const ErrorStats& error) {
         return error.rms * error.rms * static_cast<double>(error.count);
     };
     const auto of_border = static_cast<double>(all.count - but_border.count);

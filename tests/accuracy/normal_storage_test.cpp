@@ -45,7 +45,7 @@ TEST(PatchErrors, OfTurnedNormalsAreTheTurnWhateverThePatch) {
     const Image ground_truth = image_of_normals(leaning(0.0), 16);
     const Image turned = image_of_normals(leaning(1.0), 16);
     for (const int block : {1, 2, 4, 8, 16}) {
-        const AngleDistribution errors = patch_errors(turned, ground_truth, block);
+        const ErrorStats errors = patch_errors(turned, ground_truth, block);
         EXPECT_EQ(errors.count, static_cast<std::size_t>(256 / (block * block)));
         EXPECT_NEAR(errors.rms, 1.0, 1e-5);  // Normals are rounded to float.
         EXPECT_NEAR(errors.max, 1.0, 1e-5);
@@ -78,7 +78,7 @@ TEST(NormalCodes, FlatComesBackFlatUnlessItsZeroIsNoCode) {
 }
 
 /// Decodes an 8-bit texture as glTF 2.0 and engines do: 2 c / 255 - 1.
-AngleDistribution errors_by_gltf(const Image& codes, std::span<const glm::dvec3> ground_truth) {
+ErrorStats errors_by_gltf(const Image& codes, std::span<const glm::dvec3> ground_truth) {
     Image read = make_image(codes.width, codes.height, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < read.sample_count(); ++i)
         read.as<float>()[i] =
@@ -94,12 +94,12 @@ TEST(NormalCodes, RowsTellWhatEitherDecoderReads) {
         return map_errors(code_named(name).stored(normals), directions);
     };
     Report report;
-    const AngleDistribution by_default =
+    const ErrorStats by_default =
         errors_by_gltf(encode_normal_map(normals, {.bits = 8}, report), directions);
     EXPECT_NEAR(row("xyz 8 bit").rms, by_default.rms, 1e-5);
     EXPECT_NEAR(by_default.rms, 0.184, 0.002);
     EXPECT_LT(by_default.max, 0.40);
-    const AngleDistribution misread = errors_by_gltf(
+    const ErrorStats misread = errors_by_gltf(
         encode_normal_map(normals, {.bits = 8, .flat = FlatCode::middle}, report), directions);
     EXPECT_NEAR(row("xyz 8 bit, zero at 128, read as glTF does").rms, misread.rms, 1e-5);
     EXPECT_NEAR(misread.rms, 0.368, 0.004);
@@ -168,7 +168,7 @@ TEST(NormalCodes, ThatLoseASignAreAsFarOffAsTheyMustBe) {
         return decoded;
     };
     EXPECT_LT(map_errors(right.stored(normals), directions).max, 0.002);
-    const AngleDistribution errors = map_errors(broken.stored(normals), directions);
+    const ErrorStats errors = map_errors(broken.stored(normals), directions);
     constexpr double half_turn_degrees = 180.0;
     // The integrals of 2 asin(x) and its square over 0 to 1, halved; 16384 directions approximate
     // the integral to a few thousandths.
@@ -205,8 +205,7 @@ TEST(NormalCodes, ErrAsPublished) {
                                  {"octahedral 2 x 12 bit", 0.021, 0.059},
                                  {"octahedral 2 x 16 bit", 0.0013, 0.0037},
                                  {"xy 8 bit", 0.468, 5.89}}) {
-        const AngleDistribution errors =
-            map_errors(code_named(row.code).stored(normals), directions);
+        const ErrorStats errors = map_errors(code_named(row.code).stored(normals), directions);
         EXPECT_NEAR(errors.mean, row.mean, 0.04 * row.mean + 5e-5) << row.code;
         EXPECT_NEAR(errors.max, row.max, 0.1 * row.max) << row.code;
         EXPECT_EQ(errors.undefined, 0U);
@@ -230,14 +229,14 @@ TEST(NormalCodes, HalvesHaveTheErrorsOfTheFilesThatAreWritten) {
     std::vector<glm::dvec3> directions = even_directions(2 * 256 * 256);
     directions.resize(directions.size() / 2);
     const Image normals = image_of_normals(directions, 256);
-    const AngleDistribution errors = map_errors(code_named("xyz half").stored(normals), directions);
+    const ErrorStats errors = map_errors(code_named("xyz half").stored(normals), directions);
     const std::filesystem::path file =
         std::filesystem::path(testing::TempDir()) / "relief_normal_codes_half.exr";
     Report report;
     write_image(file, encode_normal_map(normals, {.bits = 32}, report), {}, {.half = true});
     const Image read = read_image(file, ImageUse::data);
     std::filesystem::remove(file);
-    const AngleDistribution written =
+    const ErrorStats written =
         map_errors(decode_normal_map(read, Green::up, FlatCode::half, report), directions);
     // Numbers halfway between two half floats are rounded up here and to even in files.
     EXPECT_NEAR(errors.rms, written.rms, 1e-4 * written.rms);

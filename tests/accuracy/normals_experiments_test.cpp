@@ -36,8 +36,7 @@ TEST(NormalErrors, OfTrueNormalsAreFloatsOwnAndOfTurnedOnesTheTurn) {
     for (const AnalyticSurface surface : all_surfaces) {
         const AnalyticMesh ground_truth = analytic_mesh(surface, Triangulation::jittered, 16, 1);
         EXPECT_LE(normal_errors(turned_normals(ground_truth, 0.0), ground_truth).max, rounding);
-        const AngleDistribution turned =
-            normal_errors(turned_normals(ground_truth, 1.0), ground_truth);
+        const ErrorStats turned = normal_errors(turned_normals(ground_truth, 1.0), ground_truth);
         EXPECT_NEAR(turned.rms, 1.0, rounding);
         EXPECT_NEAR(turned.mean, 1.0, rounding);
         EXPECT_NEAR(turned.p99, 1.0, rounding);
@@ -54,7 +53,7 @@ TEST(NormalErrors, AreOfInnerVerticesAndCountWhatIsNoDirection) {
         if (ground_truth.inner[v] == 0) normals[v] = glm::vec3(1.0F, 0.0F, 0.0F);
         if (ground_truth.inner[v] != 0 && inner++ == 3) normals[v] = glm::vec3(0.0F);
     }
-    const AngleDistribution errors = normal_errors(normals, ground_truth);
+    const ErrorStats errors = normal_errors(normals, ground_truth);
     EXPECT_EQ(errors.count, 48U);
     EXPECT_EQ(errors.undefined, 1U);
     EXPECT_LE(errors.max, 1e-5);
@@ -92,7 +91,7 @@ TEST(FanErrors, AreThoseOfTheVertexInTheMiddle) {
                              normals.front() = glm::vec3(0.0F, 3.0F, 4.0F);
                              return normals;
                          }};
-    const AngleDistribution errors = fan_errors(leaning, 5, 10);
+    const ErrorStats errors = fan_errors(leaning, 5, 10);
     EXPECT_EQ(errors.count, 10U);
     EXPECT_NEAR(errors.rms, std::atan(0.75) * 180.0 / std::numbers::pi, 1e-5);
 }

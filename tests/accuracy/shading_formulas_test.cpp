@@ -20,7 +20,7 @@ FormulaMethod named(const std::vector<FormulaMethod>& methods, const std::string
                          [&](const FormulaMethod& one) { return one.name == name; });
 }
 
-ErrorFigures error_of(const std::string& name, std::complex<double> index) {
+ErrorStats error_of(const std::string& name, std::complex<double> index) {
     const std::vector<float> cosines = cosines_of_angles(9001);
     return formula_error(named(fresnel_methods(index, cosines), name),
                          exact_reflectances(index, cosines));
@@ -48,7 +48,7 @@ TEST(FresnelMethods, InFloatAreNearlyExactForGlassAndMetals) {
     for (const std::complex<double>& index :
          {std::complex<double>(1.33), std::complex<double>(4.0), std::complex<double>(0.43, 2.46),
           std::complex<double>(0.96, 6.69), std::complex<double>(2.95, 2.93)}) {
-        const ErrorFigures error = error_of("Fresnel, float32", index);
+        const ErrorStats error = error_of("Fresnel, float32", index);
         EXPECT_LT(error.max, 3e-6) << index;
         EXPECT_EQ(error.undefined, 0U) << index;
     }

@@ -150,7 +150,7 @@ TEST(TangentErrors, OfTurnedTangentsAreTheTurn) {
 TEST(TangentErrors, OfAWrongHandAreThoseOfAMirroredTexel) {
     const TexturedMesh square = level_square();
     const CornerTangents mirrored(6, glm::vec4(1.0F, 0.0F, 0.0F, -1.0F));
-    const AngleDistribution errors = texel_errors(square, mirrored, ShaderBasis::as_interpolated);
+    const ErrorStats errors = texel_errors(square, mirrored, ShaderBasis::as_interpolated);
     // Two of four texels are tilted up or down: by 30 degrees to one side instead of the other.
     EXPECT_NEAR(errors.max, 60.0, rounding);
     EXPECT_NEAR(errors.mean, 30.0, rounding);

@@ -62,7 +62,7 @@ std::string errors(const Image& seen, const std::vector<TexelReference>& referen
         degrees.push_back(
             static_cast<float>(degrees_between(glm::dvec3(n[0], n[1], n[2]), reference.*which)));
     }
-    const AngleDistribution all = angle_distribution(degrees);
+    const ErrorStats all = error_stats(degrees);
     const auto digits = [](double value) {
         return value < 0.1 ? fmt::format("{:.4f}", value) : fmt::format("{:.2f}", value);
     };

@@ -173,8 +173,7 @@ PageSection depth_tables() {
         text += arithmetic == Arithmetic::float32 ? "| float32 |" : "| float64 |";
         for (const int bits : depths) {
             const std::array method = {BumpMethod{Kernel::central7, 2, arithmetic, bits, false}};
-            const AngleDistribution error =
-                measure_bump(field, method, options).measurements[0].error;
+            const ErrorStats error = measure_bump(field, method, options).measurements[0].error;
             text += fmt::format(" {} / {} |", in_two_digits(error.rms), in_two_digits(error.max));
         }
         text += "\n";

@@ -185,7 +185,7 @@ std::string blend_row(double base_slope, double detail_slope, bool is_carved) {
         Image blended = normals_image(blend_side, blend_side, base);
         Report report;
         blend_normals(blended, normals_image(blend_side, blend_side, detail), method, report);
-        const DirectionError error = normal_error(blended, reference);
+        const ErrorStats error = normal_error(blended, reference);
         ranks.push_back(error.rms);
         cells.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
     }

@@ -32,8 +32,7 @@ std::string surface_table(const char* title, Triangulation triangulation) {
         std::vector<double> ranks;
         std::vector<std::string> entries;
         for (const NormalMethod& method : weightings()) {
-            const AngleDistribution error =
-                normal_errors(method.normals(reference.mesh), reference);
+            const ErrorStats error = normal_errors(method.normals(reference.mesh), reference);
             ranks.push_back(error.rms);
             entries.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
         }

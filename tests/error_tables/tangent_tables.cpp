@@ -39,7 +39,7 @@ const std::vector<NamedMesh>& meshes() {
     return all;
 }
 
-std::string rms_and_max(const AngleDistribution& errors) {
+std::string rms_and_max(const ErrorStats& errors) {
     return in_digits(errors.rms) + " / " + in_digits(errors.max);
 }
 
@@ -54,14 +54,14 @@ std::string method_table(const std::string& title, bool at_corners, Measured mea
         names.push_back(method.name);
     std::string text = "\n" + title + "\n\n" + table_header(names);
     for (const NamedMesh& mesh : meshes()) {
-        const AngleDistribution least =
+        const ErrorStats least =
             measured(mesh.reference, exact_tangents(mesh.reference), ShaderBasis::as_interpolated);
         std::vector<double> ranks = {not_compared};
         std::vector<std::string> cells = {rms_and_max(least)};
         for (const TangentMethod& method : methods()) {
             const bool none = at_corners && !method.tangents;
-            const AngleDistribution errors =
-                none ? AngleDistribution{}
+            const ErrorStats errors =
+                none ? ErrorStats{}
                      : measured(mesh.reference, method.tangents_of(mesh.reference.mesh),
                                 method.basis);
             ranks.push_back(none ? not_compared : errors.rms);
@@ -134,7 +134,7 @@ std::string mismatch_table(const std::string& title, const TexturedMesh& referen
         std::vector<double> ranks;
         std::vector<std::string> cells;
         for (const TangentMethod& reader : bases) {
-            const AngleDistribution errors = mismatch_errors(reference, baker, reader);
+            const ErrorStats errors = mismatch_errors(reference, baker, reader);
             ranks.push_back(errors.rms);
             cells.push_back(rms_and_max(errors));
         }
@@ -162,7 +162,7 @@ std::string encoding_tables() {
         "\n100,000 random frames: mean / largest error in degrees of the normal, the tangent, and "
         "the normal of a texel tilted by 30 degrees\n\n" +
         table_header({"rounding", "bytes", "normal", "tangent", "tilted texel", "hands lost"});
-    const auto mean_and_max = [](const AngleDistribution& errors) {
+    const auto mean_and_max = [](const ErrorStats& errors) {
         return fmt::format("{:.2g} / {:.2g}", errors.mean, errors.max);
     };
     for (const FrameEncoding encoding : all_frame_encodings) {

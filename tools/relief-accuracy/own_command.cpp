@@ -330,16 +330,16 @@ struct AssetCommandOptions {
 /// Longer tables show only the efficient and the recommended methods.
 constexpr std::size_t max_rows = 24;
 
-double ErrorFigures::*figure_of(BoundKind kind) {
+double ErrorStats::*figure_of(BoundKind kind) {
     switch (kind) {
         case BoundKind::p99:
-            return &ErrorFigures::p99;
+            return &ErrorStats::p99;
         case BoundKind::max:
-            return &ErrorFigures::max;
+            return &ErrorStats::max;
         case BoundKind::rms:
             break;
     }
-    return &ErrorFigures::rms;
+    return &ErrorStats::rms;
 }
 
 void check(const AssetCommandOptions& options) {

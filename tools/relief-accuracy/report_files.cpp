@@ -65,7 +65,7 @@ void add_times(Row& row, const std::optional<Timing>& timing) {
 }
 
 Row row_of(const Experiment& experiment, const Measurement& one) {
-    const ErrorFigures& error = one.error;
+    const ErrorStats& error = one.error;
     Row row = {experiment.id,
                std::string(name_of(experiment.subject)),
                one.method,
@@ -264,7 +264,7 @@ std::vector<TextColumn> columns_of(const Experiment& experiment) {
         {"undefined", {}}, {"expected", {}}, {"PSNR", {}},   {"1 thread", {}}, {"", {}},
         {"all", {}},       {"", {}},         {"memory", {}}, {"stored", {}}};
     for (const Measurement& one : experiment.measurements) {
-        const ErrorFigures& error = one.error;
+        const ErrorStats& error = one.error;
         const std::vector<std::string> cells = {
             one.method,
             table_number(error.rms),

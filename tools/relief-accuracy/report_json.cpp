@@ -36,7 +36,7 @@ Json json_of(const RunSettings& settings) {
             {"threads", settings.threads}};
 }
 
-Json json_of(const ErrorFigures& error) {
+Json json_of(const ErrorStats& error) {
     Json json = {{"count", error.count}, {"undefined", error.undefined},
                  {"rms", error.rms},     {"mean", error.mean},
                  {"p99", error.p99},     {"max", error.max}};
@@ -173,14 +173,14 @@ RunSettings settings_at(const JsonCursor& place) {
             .threads = static_cast<unsigned>(place.at("threads").unsigned_number())};
 }
 
-ErrorFigures error_at(const JsonCursor& place) {
-    ErrorFigures error{.count = place.at("count").unsigned_number(),
-                       .undefined = place.at("undefined").unsigned_number(),
-                       .rms = place.at("rms").number_or_nan(),
-                       .mean = place.at("mean").number_or_nan(),
-                       .p99 = place.at("p99").number_or_nan(),
-                       .max = place.at("max").number_or_nan(),
-                       .psnr = std::nullopt};
+ErrorStats error_at(const JsonCursor& place) {
+    ErrorStats error{.count = place.at("count").unsigned_number(),
+                     .undefined = place.at("undefined").unsigned_number(),
+                     .rms = place.at("rms").number_or_nan(),
+                     .mean = place.at("mean").number_or_nan(),
+                     .p99 = place.at("p99").number_or_nan(),
+                     .max = place.at("max").number_or_nan(),
+                     .psnr = std::nullopt};
     if (const auto psnr = place.find_value("psnr")) error.psnr = psnr->double_number();
     return error;
 }

@@ -532,7 +532,7 @@ std::vector<std::string> verdict_lines(const VerifiedMap& map) {
     return lines;
 }
 
-nlohmann::ordered_json summary_json(const AngleSummary& summary) {
+nlohmann::ordered_json summary_json(const ErrorStats& summary) {
     return {{"rms", summary.rms},
             {"mean", summary.mean},
             {"p99", summary.p99},
@@ -590,7 +590,7 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
     return verified;
 }
 
-std::string to_string(const AngleSummary& summary) {
+std::string to_string(const ErrorStats& summary) {
     return fmt::format("RMS {:.3g} degrees, mean {:.3g}, 99 of 100 within {:.3g}, {:.3g} at most",
                        summary.rms, summary.mean, summary.p99, summary.max);
 }

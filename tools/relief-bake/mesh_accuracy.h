@@ -25,9 +25,9 @@ struct MeasuredBake {
     SampleChoice samples;
     std::optional<double> sample_angle;  ///< In degrees, with `auto`.
     NormalMapFormat format;
-    AngleSummary error;
-    AngleSummary rounding;  ///< The error of the format alone.
-    AngleSummary sampling;  ///< The error of the samples alone.
+    ErrorStats error;
+    ErrorStats rounding;  ///< The error of the format alone.
+    ErrorStats sampling;  ///< The error of the samples alone.
     std::size_t rays = 0;
     double seconds = 0.0;  ///< Of the rays; with --compare the median, including the encoding.
     bool is_pareto_optimal =
@@ -86,7 +86,7 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
                        BakeMapOptions map, const VerifyRequest& request, Report& report);
 
 /// "RMS 0.131 degrees, mean 0.12, 99 of 100 within 0.3, 2.1 at most"
-std::string to_string(const AngleSummary& summary);
+std::string to_string(const ErrorStats& summary);
 
 void print_verified(const VerifiedMap& map);
 nlohmann::ordered_json verified_json(const VerifiedMap& map);

@@ -461,7 +461,7 @@ int bits_of(const LayerOptions& options, LayerKind kind) {
     return bits;
 }
 
-double ErrorBound::error(const AngleSummary& summary) const {
+double ErrorBound::error(const ErrorStats& summary) const {
     switch (kind.value_or(BoundKind::rms)) {
         case BoundKind::p99:
             return summary.p99;

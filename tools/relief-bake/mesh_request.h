@@ -65,8 +65,8 @@ struct ErrorBound {
     std::optional<BoundKind> kind;  ///< Absent: rms.
 
     /// The error that the limit applies to.
-    [[nodiscard]] double error(const AngleSummary& summary) const;
-    [[nodiscard]] bool allows(const AngleSummary& summary) const {
+    [[nodiscard]] double error(const ErrorStats& summary) const;
+    [[nodiscard]] bool allows(const ErrorStats& summary) const {
         return !degrees || error(summary) <= *degrees;
     }
 };

@@ -204,7 +204,7 @@ std::string variant_of(const TangentAgreement& agreement) {
 }
 
 /// Angles below 0.001 degrees are shown as 0.001.
-std::string angles_text(AngleDistribution angles) {
+std::string angles_text(ErrorStats angles) {
     for (double* degrees : {&angles.median, &angles.p90, &angles.p99, &angles.max})
         *degrees = std::max(*degrees, 0.001);
     return fmt::format("median {:.2g}, 90 % within {:.2g}, 99 % within {:.2g}, maximum {:.2g}",
@@ -259,11 +259,11 @@ nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
     const IdentifiedTangents& identified = tangents.identified;
     nlohmann::ordered_json agreements = nlohmann::ordered_json::array();
     for (const TangentAgreement& agreement : identified.agreements) {
-        const AngleDistribution& angles = agreement.angles;
+        const ErrorStats& angles = agreement.angles;
         nlohmann::ordered_json histogram = nlohmann::ordered_json::array();
         for (std::size_t i = 0; i < angles.histogram.size(); ++i)
             histogram.push_back(
-                {{"up_to", AngleDistribution::bounds[i]}, {"corners", angles.histogram[i]}});
+                {{"up_to", ErrorStats::bounds[i]}, {"corners", angles.histogram[i]}});
         agreements.push_back({{"basis", name_of(agreement.basis)},
                               {"agreeing", agreement.agreeing()},
                               {"variant", variant_of(agreement)},

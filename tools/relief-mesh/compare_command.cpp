@@ -54,18 +54,17 @@ ModelComparison compare_files(const CompareRequest& request) {
                           {request.tolerance, request.uv_tolerance, !request.ignore_uv});
 }
 
-std::string degrees_text(const AngleDistribution& angles) {
+std::string degrees_text(const ErrorStats& angles) {
     return fmt::format("{}: rms {:.4g}, mean {:.4g}, 99 % within {:.4g}, maximum {:.4g} degrees",
                        counted(angles.count, "corner"), angles.rms, angles.mean, angles.p99,
                        angles.max);
 }
 
-std::string histogram_text(const AngleDistribution& angles) {
+std::string histogram_text(const ErrorStats& angles) {
     std::vector<std::string> bins;
     for (std::size_t i = 0; i < angles.histogram.size(); ++i) {
         if (angles.histogram[i] != 0)
-            bins.push_back(
-                fmt::format("{} up to {}", angles.histogram[i], AngleDistribution::bounds[i]));
+            bins.push_back(fmt::format("{} up to {}", angles.histogram[i], ErrorStats::bounds[i]));
     }
     return fmt::format("{} degrees", fmt::join(bins, ", "));
 }
@@ -75,7 +74,7 @@ std::string absence(bool in_a, bool in_b) {
     return in_a ? "only in A" : in_b ? "only in B" : "in neither";
 }
 
-std::vector<std::string> attribute_lines(const AngleDistribution& angles, bool in_a, bool in_b,
+std::vector<std::string> attribute_lines(const ErrorStats& angles, bool in_a, bool in_b,
                                          std::size_t in_one) {
     if (!in_a || !in_b) return {absence(in_a, in_b)};
     std::vector<std::string> lines;
@@ -228,11 +227,10 @@ void print_text(const CompareRequest& request, const ModelComparison& compared) 
     print_entry("parts", part_lines(compared));
 }
 
-nlohmann::ordered_json json_of(const AngleDistribution& angles) {
+nlohmann::ordered_json json_of(const ErrorStats& angles) {
     nlohmann::ordered_json histogram = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < angles.histogram.size(); ++i)
-        histogram.push_back(
-            {{"up_to", AngleDistribution::bounds[i]}, {"corners", angles.histogram[i]}});
+        histogram.push_back({{"up_to", ErrorStats::bounds[i]}, {"corners", angles.histogram[i]}});
     return {{"corners", angles.count},
             {"undefined", angles.undefined},
             {"rms", angles.rms},
@@ -311,7 +309,7 @@ struct CompareOptions {
 /// Returns the differences above the limit.
 std::string above_limit(const FrameComparison& all, double max_angle) {
     std::vector<std::string> words;
-    const auto add = [&](const AngleDistribution& angles, const char* what) {
+    const auto add = [&](const ErrorStats& angles, const char* what) {
         if (angles.max > max_angle)
             words.push_back(fmt::format("{} by {:.4g} degrees", what, angles.max));
         if (angles.undefined != 0)

@@ -175,7 +175,7 @@ Judgment judge(const KitMesh& kit, const Mesh& mesh) {
         }
         degrees.push_back(static_cast<float>(off));
     }
-    judgment.degrees = angle_distribution(std::move(degrees));
+    judgment.degrees = error_stats(std::move(degrees));
     return judgment;
 }
 

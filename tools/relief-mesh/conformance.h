@@ -62,7 +62,7 @@ struct Judgment {
     // Differences from the reference, except in the stability group.
     std::size_t other_sign = 0;
     std::size_t too_far = 0;
-    AngleDistribution degrees;
+    ErrorStats degrees;
     std::size_t worst_corner = 0;  ///< In the kit's mesh: 3 * triangle + 0, 1 or 2.
 
     [[nodiscard]] bool passes(KitGroup group) const;

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "bake/texel_frame.h"
-#include "geometry/angle_sum.h"
 #include "geometry/direction.h"
+#include "geometry/error_accumulator.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/error_stats.h"
@@ -51,8 +51,8 @@ std::vector<float> coded(const std::vector<float>& normals, int width,
 
 /// Sums of errors over texels.
 struct CheckSums {
-    AngleSum error, center, rebaked;
-    std::array<AngleSum, bake_stage_count> stages;
+    ErrorAccumulator error, center, rebaked;
+    std::array<ErrorAccumulator, bake_stage_count> stages;
     /// The part of each stage in the squared error vector.
     std::array<double, bake_stage_count> squares{};
     std::size_t missed = 0, frameless = 0, discontinuous = 0;
@@ -359,9 +359,9 @@ void check(const Image& map, const BakeMapOptions& options) {
 }
 
 void summarize(const CheckSums& sums, BakeCheck& check) {
-    check.error = sums.error.summary();
-    check.center = sums.center.summary();
-    check.rebaked = sums.rebaked.summary();
+    check.error = sums.error.stats();
+    check.center = sums.center.stats();
+    check.rebaked = sums.rebaked.stats();
     check.missed = sums.missed;
     check.frameless = sums.frameless;
     check.discontinuous = sums.discontinuous;
@@ -371,14 +371,14 @@ void summarize(const CheckSums& sums, BakeCheck& check) {
         all += squares;
     const auto index = [](BakeStage stage) { return static_cast<std::size_t>(stage); };
     for (std::size_t i = 0; i < bake_stage_count; ++i) {
-        check.stages[i].rms = sums.stages[i].summary().rms;
+        check.stages[i].rms = sums.stages[i].stats().rms;
         check.stages[i].share = all > 0.0 ? sums.squares[i] / all : 0.0;
     }
     // The error of the codes in object space minus that in tangent space is the error of the basis.
     StageError& codes = check.stages[index(BakeStage::quantization)];
     StageError& basis = check.stages[index(BakeStage::basis)];
     const double texels =
-        static_cast<double>(sums.stages[index(BakeStage::quantization)].summary().count);
+        static_cast<double>(sums.stages[index(BakeStage::quantization)].stats().count);
     const double more = sums.object_squares - sums.tangent_squares;
     if (!(more > 0.0)) return;
     // This is the difference of two mean squares, not a mean of angles.
@@ -604,14 +604,14 @@ BakeMeasurement BakeBenchmark::measure(const BakeSampling& way,
         }
     }
     for (const CheckSums& sum : sums) {
-        trial.errors.push_back(sum.error.summary());
+        trial.errors.push_back(sum.error.stats());
         const auto codes = static_cast<std::size_t>(BakeStage::quantization);
-        trial.quantization.push_back(sum.stages[codes].summary());
-        trial.center.push_back(sum.center.summary());
+        trial.quantization.push_back(sum.stages[codes].stats());
+        trial.center.push_back(sum.center.stats());
     }
     if (!sums.empty()) {
         const auto samples = static_cast<std::size_t>(BakeStage::sampling);
-        trial.sampling = sums.front().stages[samples].summary();
+        trial.sampling = sums.front().stages[samples].stats();
     }
     return trial;
 }

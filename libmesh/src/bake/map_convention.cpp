@@ -9,8 +9,8 @@
 #include <cmath>
 #include <map>
 
-#include "geometry/angle_sum.h"
 #include "geometry/direction.h"
+#include "geometry/error_accumulator.h"
 #include "parallel.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/tangents.h"
@@ -114,7 +114,7 @@ class Readings {
         std::sort(degrees.begin(), degrees.end());
         const auto count =
             static_cast<std::size_t>(std::ceil(kept_share * static_cast<double>(degrees.size())));
-        AngleMoments kept;
+        ErrorMoments kept;
         for (std::size_t i = 0; i < count; ++i)
             kept.add(degrees[i]);
         return kept.rms();

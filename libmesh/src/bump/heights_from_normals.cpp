@@ -27,7 +27,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/angle_sum.h"
+#include "geometry/error_accumulator.h"
 #include "geometry/portable_math.h"
 #include "image/fft.h"
 #include "image/texel_loops.h"
@@ -554,7 +554,7 @@ void measure_residual(const SlopeOperator& slopes, const SlopeOperator::SlopeRow
                       const Field& heights, IntegratedHeights& result) {
     struct Row {
         double slope = 0.0, rest = 0.0;  // Squares of slopes, not of angles.
-        AngleMoments angles;
+        ErrorMoments angles;
     };
     const auto width = static_cast<std::size_t>(slopes.width());
     std::vector<Row> rows(static_cast<std::size_t>(slopes.height()));
@@ -581,7 +581,7 @@ void measure_residual(const SlopeOperator& slopes, const SlopeOperator::SlopeRow
     const auto count = static_cast<double>(heights.size());
     result.rms_slope = std::sqrt(all.slope / count);
     result.residual_slope = std::sqrt(all.rest / count);
-    result.residual = {all.angles.rms(), all.angles.mean(), all.angles.max(), all.angles.count()};
+    result.residual = all.angles.stats();
 }
 
 /// Stores the heights above the lowest one as floats.

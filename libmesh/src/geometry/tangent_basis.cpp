@@ -199,7 +199,7 @@ TangentAgreement agreement_with(const Method& method, const Mesh& mesh,
         result.negated += (mesh.tangents[v].w < 0.0F) != (computed[corner].w < 0.0F) ? 1 : 0;
     }
     if (!angles.empty()) result.mean_clamped = sum / static_cast<double>(angles.size());
-    result.angles = angle_distribution(std::move(angles));
+    result.angles = error_stats(std::move(angles));
     return result;
 }
 

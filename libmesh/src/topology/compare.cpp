@@ -657,11 +657,11 @@ FrameComparison compared(const CornerDifferences& differences, const CornerMatch
     for (std::size_t corner = first; corner < first + count; ++corner)
         result.corners += match.corners[corner] != no_corner_matched ? 1 : 0;
     if (!differences.normals.empty()) {
-        result.normals = angle_distribution(
+        result.normals = error_stats(
             gather(differences.normals, match, first, count, worst, result.worst_normals));
     }
     if (!differences.tangents.empty()) {
-        result.tangents = angle_distribution(
+        result.tangents = error_stats(
             gather(differences.tangents, match, first, count, worst, result.worst_tangents));
         for (std::size_t corner = first; corner < first + count; ++corner)
             result.sign_differences += differences.sign_differs[corner];

@@ -127,14 +127,11 @@ AngleDifference angle_difference(const Image& a, const Image& b) {
         }
     });
 
+    result.angles = error_stats({map.begin(), map.end()});
     for (std::size_t i = 0; i < map.size(); ++i) {
         if (!has_direction(direction(from, i)) || !has_direction(direction(to, i)))
-            ++result.undefined;
+            ++result.angles.undefined;
     }
-    const AngleDistribution angles = angle_distribution({map.begin(), map.end()});
-    result.mean = angles.mean;
-    result.p99 = angles.p99;
-    result.max = angles.max;
     return result;
 }
 

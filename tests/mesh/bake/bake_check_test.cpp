@@ -351,8 +351,7 @@ TEST(BakeBenchmark, ErrorMapsHoldTheErrorsOfEachTexel) {
         EXPECT_EQ(map.width, 64);
         EXPECT_EQ(static_cast<std::size_t>(map.height), trials.texels() / 64);
         const std::span<const float> texel_errors = map.as<float>();
-        const AngleDistribution all_errors =
-            angle_distribution({texel_errors.begin(), texel_errors.end()});
+        const ErrorStats all_errors = error_stats({texel_errors.begin(), texel_errors.end()});
         EXPECT_EQ(all_errors.count, trial.errors[0].count);
         EXPECT_NEAR(all_errors.rms, trial.errors[0].rms, 1e-6);
         EXPECT_NEAR(all_errors.max, trial.errors[0].max, 1e-6);

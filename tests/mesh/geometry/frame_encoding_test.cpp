@@ -68,8 +68,8 @@ ReferenceFrames special_frames() {
 }
 
 struct RoundTrip {
-    DirectionError normal;
-    DirectionError tangent;
+    ErrorStats normal;
+    ErrorStats tangent;
     std::size_t wrong_hands = 0;
     double worst_length = 0.0;
     double worst_cosine = 0.0;

@@ -290,7 +290,7 @@ Image in_8_bits(int width, int height, const std::function<double(int, int)>& st
     return codes;
 }
 
-DirectionError error_by(const BumpField& field, Kernel kernel, int radius) {
+ErrorStats error_by(const BumpField& field, Kernel kernel, int radius) {
     BumpOptions options = field.options;
     options.kernel = kernel;
     options.gaussian_radius = radius;

@@ -122,16 +122,16 @@ TEST(AngleDifference, IsInDegreesWhateverTheLengths) {
     EXPECT_EQ(map[1], 90.0F);
     EXPECT_EQ(map[2], 0.0F);
     EXPECT_EQ(map[3], 180.0F);
-    EXPECT_NEAR(difference.mean, 75.0, 1e-5);
-    EXPECT_EQ(difference.max, 180.0);
-    EXPECT_EQ(difference.undefined, 0U);
+    EXPECT_NEAR(difference.angles.mean, 75.0, 1e-5);
+    EXPECT_EQ(difference.angles.max, 180.0);
+    EXPECT_EQ(difference.angles.undefined, 0U);
 }
 
 TEST(AngleDifference, TellsTinyAnglesFromNone) {
     // The cosine of this angle is 1 in float. In double, only the last bit differs from 1.
     const AngleDifference difference =
         angle_difference(of_directions({{0, 0, 1}}), of_directions({{1e-8F, 0, 1}}));
-    EXPECT_NEAR(difference.max, glm::degrees(1e-8), 1e-14);
+    EXPECT_NEAR(difference.angles.max, glm::degrees(1e-8), 1e-14);
 }
 
 TEST(AngleDifference, ThePercentileLeavesOneTexelInAHundredAbove) {
@@ -142,9 +142,9 @@ TEST(AngleDifference, ThePercentileLeavesOneTexelInAHundredAbove) {
     const AngleDifference difference =
         angle_difference(of_directions(straight), of_directions(bent));
     // Of the 200 angles 0, 0.5, ..., 99.5, 198 do not exceed 98.5.
-    EXPECT_NEAR(difference.p99, 98.5, 1e-4);
-    EXPECT_NEAR(difference.max, 99.5, 1e-4);
-    EXPECT_NEAR(difference.mean, 49.75, 1e-4);
+    EXPECT_NEAR(difference.angles.p99, 98.5, 1e-4);
+    EXPECT_NEAR(difference.angles.max, 99.5, 1e-4);
+    EXPECT_NEAR(difference.angles.mean, 49.75, 1e-4);
 }
 
 TEST(AngleDifference, NoDirectionIsOppositeToAnyAndEqualToNone) {
@@ -158,8 +158,8 @@ TEST(AngleDifference, NoDirectionIsOppositeToAnyAndEqualToNone) {
     EXPECT_EQ(map[1], 0.0F);
     EXPECT_EQ(map[2], 180.0F);
     EXPECT_EQ(map[3], 0.0F);
-    EXPECT_EQ(difference.undefined, 3U);
-    EXPECT_EQ(difference.mean, 90.0);
+    EXPECT_EQ(difference.angles.undefined, 3U);
+    EXPECT_EQ(difference.angles.mean, 90.0);
 }
 
 TEST(AngleDifference, CodesOfANormalMapAreRefusedWithTheRemedy) {

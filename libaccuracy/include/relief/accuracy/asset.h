@@ -37,7 +37,7 @@ struct MethodRequest {
     /// In the unit of the experiment, for the statistic `figure`.
     std::optional<double> max_error;
     std::optional<double> max_seconds;  ///< Maximum time in seconds; ignored for CostKind::bytes.
-    double ErrorFigures::*figure = &ErrorFigures::rms;  ///< The statistic that `max_error` limits.
+    double ErrorStats::*figure = &ErrorStats::rms;  ///< The statistic that `max_error` limits.
 };
 
 struct RecommendationRule {

@@ -29,28 +29,12 @@ class PassHistory;  // measure.h
 /// The subjects of experiments, with the names of `relief-accuracy run`.
 enum class Subject { normals, tangents, bump, storage, bake, shading, stability };
 
-/// Statistics of errors of directions, pixels or other items, in the unit of the experiment.
-struct ErrorFigures {
-    std::size_t count = 0;  ///< Number of items with a defined error.
-    /// Number of items without one: NaN, or a direction of length zero.
-    std::size_t undefined = 0;
-    double rms = 0.0;  ///< Root mean square; NaN, like the others, if count is 0.
-    double mean = 0.0;
-    double p99 = 0.0;  ///< 99% of all errors do not exceed it.
-    double max = 0.0;
-    std::optional<double> psnr{};  ///< For pictures, in decibels: 20 log10(peak / rms).
-
-    friend bool operator==(const ErrorFigures&, const ErrorFigures&) = default;
-};
-
-/// Converts statistics of angles; NaN without angles.
-ErrorFigures figures_of(const AngleDistribution& angles);
-ErrorFigures figures_of(const AngleSummary& angles);
+/// Returns statistics with NaN instead of zeros if there is no defined error, for reports.
+ErrorStats nan_if_empty(const ErrorStats& error);
 
 /// Returns the value of a curve (CurvePoint::error): the RMS; NaN without errors, or if any error
 /// is undefined, so that it is not hidden in a mean.
-double curve_error(const ErrorFigures& error);
-double curve_error(const AngleDistribution& angles);
+double curve_error(const ErrorStats& error);
 
 /// The time of each counted repetition in seconds, in order. Methods of an experiment are
 /// interleaved, so round i of all methods was measured at about the same time.
@@ -78,7 +62,7 @@ struct Measurement {
     std::string method{};  ///< Unique in its experiment, and the same in every run: "max, float64".
     /// The options of the method and their values: {"weighting", "max"}, {"arithmetic", "float64"}.
     std::vector<std::pair<std::string, std::string>> choices{};
-    ErrorFigures error{};
+    ErrorStats error{};  ///< NaN if there is no defined error (nan_if_empty()).
     Cost cost{};
     /// Both parts of the error, if the reference has an error (Experiment::reference_error).
     std::optional<ExpectedError> expected{};

@@ -82,7 +82,7 @@ CodedHeights coded_heights(const Image& heights, int bits);
 /// \param normals  three float channels, of the same size
 /// \param margin  width of the border that is ignored, in texels
 /// \throws InvalidInput if the sizes differ
-DirectionError normal_error(const Image& normals, const AnalyticHeights& reference, int margin = 0);
+ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, int margin = 0);
 
 // Height maps like those in files, with exact normals, for tuning and evaluating the choice of a
 // kernel.
@@ -137,7 +137,7 @@ std::span<const FieldRecipe> tuning_fields();
 std::span<const FieldRecipe> evaluation_fields();
 
 /// Computes the angles between normals and the exact normals of the field, in degrees.
-DirectionError field_error(const Image& normals, const BumpField& field);
+ErrorStats field_error(const Image& normals, const BumpField& field);
 
 // Meshes of surfaces whose normals and tangents are known in closed form.
 

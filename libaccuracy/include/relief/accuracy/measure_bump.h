@@ -40,7 +40,7 @@ double nominal_cost(const BumpMethod& method);
 struct BumpMeasurement {
     BumpMethod method;
     /// The angles between the stored normals and the reference, in degrees.
-    AngleDistribution error;
+    ErrorStats error;
     /// The time of a conversion in memory, including smoothing (BumpExperiment::smoothing); zeros
     /// if it was not timed.
     TimeStatistics seconds;

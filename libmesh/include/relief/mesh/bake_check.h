@@ -82,13 +82,13 @@ struct BakeCheckOptions {
 struct BakeCheck {
     /// The error against the mean normal over the texel's area, which a map should show from afar
     /// or at its own resolution.
-    AngleSummary error;
+    ErrorStats error;
     /// The error against the normal at the texel's center, which a map should show in a close view.
     /// A map of one sample per texel has only rounding errors here; a map of many samples differs
     /// by design.
-    AngleSummary center;
+    ErrorStats center;
     /// The value of `error` for the codes that this bake produces now.
-    AngleSummary rebaked;
+    ErrorStats rebaked;
     std::array<StageError, bake_stage_count> stages{};  ///< Indexed by BakeStage.
     std::size_t missed = 0;         ///< Texels on the mesh without a reference: all rays miss.
     std::size_t frameless = 0;      ///< Texels where the low mesh has no tangent frame.
@@ -131,11 +131,11 @@ struct BakeSampling {
 
 /// The errors and times of one bake in several formats.
 struct BakeMeasurement {
-    std::vector<AngleSummary> errors;  ///< By format, against the mean normal over the texel.
+    std::vector<ErrorStats> errors;  ///< By format, against the mean normal over the texel.
     /// By format, the error of rounding to codes alone, which more samples do not reduce.
-    std::vector<AngleSummary> quantization;
-    AngleSummary sampling;             ///< The error of sampling alone, which no format reduces.
-    std::vector<AngleSummary> center;  ///< By format, against the normal at the texel's center.
+    std::vector<ErrorStats> quantization;
+    ErrorStats sampling;             ///< The error of sampling alone, which no format reduces.
+    std::vector<ErrorStats> center;  ///< By format, against the normal at the texel's center.
     std::size_t rays = 0;
     double cast_seconds = 0.0;         ///< The time of the bake without encoding.
     std::vector<double> code_seconds;  ///< The time of encoding, by format.

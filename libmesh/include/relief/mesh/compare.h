@@ -80,8 +80,8 @@ struct WorstCorner {
 /// Statistics of the differences of some triangles.
 struct FrameComparison {
     std::size_t corners = 0;  ///< Number of matched corners.
-    AngleDistribution normals;
-    AngleDistribution tangents;
+    ErrorStats normals;
+    ErrorStats tangents;
     std::size_t sign_differences = 0;
     /// Largest angle first; corners without a difference are omitted.
     std::vector<WorstCorner> worst_normals;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,65 +15,51 @@
 
 namespace RELIEF_API relief {
 
-// Computes angles between directions in degrees, and their RMS, mean and maximum.
-
 /// Returns the angle between two directions of any length, in degrees, 0 to 180. It is computed by
 /// atan2 in double precision, which is accurate for small angles, unlike the arc cosine. NaN if one
 /// direction is zero or not finite.
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b);
 
-/// Statistics of angles in degrees.
-struct DirectionError {
-    double rms = 0.0;  ///< Root mean square.
-    double mean = 0.0;
-    double max = 0.0;
-    std::size_t count = 0;
-};
-
-/// Computes the statistics of the angles between corresponding directions.
-///
-/// \param truth  the exact directions, of any length
-/// \param counts  1 for each direction to include, 0 for the others; or empty to include all
-/// \return all zeros without directions; NaN for rms, mean and max if a direction is zero or not
-///         finite, so that the error is not hidden in a mean
-/// \throws InvalidInput if the spans differ in length
-DirectionError direction_error(std::span<const glm::vec3> directions,
-                               std::span<const glm::dvec3> reference,
-                               std::span<const unsigned char> counts = {});
-
-// Computes statistics of many angles in degrees: mean, RMS, percentiles and a histogram.
-
-/// Statistics of angles in degrees, from 0 to 180; all are zero if there is no angle.
-struct AngleDistribution {
-    /// Upper limits of the histogram bins; each bin holds the angles above the previous limit.
+/// Statistics of errors, such as angles in degrees; all are zero if there is no error.
+struct ErrorStats {
+    /// Upper limits of the histogram bins, for angles in degrees; each bin holds the errors above
+    /// the previous limit, and the last one also larger errors.
     static constexpr std::array bounds = {0.01, 0.1, 1.0, 5.0, 45.0, 90.0, 180.0};
 
-    std::size_t count = 0;      ///< Number of angles that are not NaN.
-    std::size_t undefined = 0;  ///< Number of NaNs: one of two directions was zero or not finite.
-    double rms = 0.0;           ///< Root mean square.
-    double mean = 0.0;
-    double median = 0.0;  ///< The smallest angle that half of all angles do not exceed.
-    double p90 = 0.0;     ///< The same for 90% of all angles.
-    double p99 = 0.0;     ///< The same for 99% of all angles.
-    double max = 0.0;
-    std::array<std::size_t, bounds.size()> histogram{};
-
-    friend bool operator==(const AngleDistribution&, const AngleDistribution&) = default;
-};
-
-/// Statistics of angles that are too many to store; all are zero if there is no angle.
-struct AngleSummary {
-    std::size_t count = 0;
+    std::size_t count = 0;  ///< Number of defined errors.
+    /// Number of undefined errors: NaN, such as the angle to a direction that is zero or not
+    /// finite. The other statistics ignore them.
+    std::size_t undefined = 0;
     double rms = 0.0;  ///< Root mean square.
     double mean = 0.0;
-    double p99 = 0.0;  ///< 99% of all angles do not exceed it; too large by at most 1/64.
+    double median = 0.0;  ///< The smallest error that half of all errors do not exceed.
+    double p90 = 0.0;     ///< The same for 90% of all errors.
+    double p99 = 0.0;     ///< The same for 99% of all errors.
     double max = 0.0;
+    std::array<std::size_t, bounds.size()> histogram{};
+    std::optional<double> psnr{};  ///< Only for images, in decibels: 20 log10(peak / rms).
+
+    /// Returns the index of the histogram bin of an error.
+    static std::size_t bin_of(double error);
+
+    friend bool operator==(const ErrorStats&, const ErrorStats&) = default;
 };
 
-/// Computes the statistics of angles.
+/// Computes the statistics of errors.
 ///
-/// \param degrees  in any order; the order affects only the last bits of rms and mean. NaNs are
+/// \param errors  in any order; the order affects only the last bits of rms and mean. NaNs are
 ///         counted as undefined and otherwise ignored
-AngleDistribution angle_distribution(std::vector<float> degrees);
+ErrorStats error_stats(std::vector<float> errors);
+
+/// Computes the statistics of the angles between corresponding directions, in degrees.
+///
+/// \param reference  the exact directions, of any length
+/// \param counts  1 for each direction to include, 0 for the others; or empty to include all
+/// \return percentiles are too large by at most 1/64. NaN for rms, mean and max if an angle is
+///         undefined, so that the error is not hidden in a mean
+/// \throws InvalidInput if the spans differ in length
+ErrorStats direction_error(std::span<const glm::vec3> directions,
+                           std::span<const glm::dvec3> reference,
+                           std::span<const unsigned char> counts = {});
 
 }  // namespace relief

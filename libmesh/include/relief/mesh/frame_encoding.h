@@ -119,8 +119,8 @@ Frames decode_frames(std::span<const std::uint32_t> words, FrameEncoding encodin
 
 /// The angles between the original and the decoded directions, in degrees.
 struct FrameEncodingError {
-    DirectionError normal;
-    DirectionError tangent;
+    ErrorStats normal;
+    ErrorStats tangent;
 };
 
 /// Measures the error of an encoding for given frames. Invalid frames are compared with their

@@ -176,8 +176,8 @@ struct IntegratedHeights {
     /// The RMS of the remaining difference of slopes over both axes, which no height field can
     /// have. 0 if the map was made from heights by the same kernel.
     double residual_slope = 0.0;
-    DirectionError residual;  ///< The remaining angles between the normals, in degrees.
-    double rms_slope = 0.0;   ///< The RMS slope of the map, for comparison.
+    ErrorStats residual;     ///< The remaining angles between the normals, in degrees.
+    double rms_slope = 0.0;  ///< The RMS slope of the map, for comparison.
     /// The mean slope of the map to the right and upwards, before `level` is applied.
     glm::dvec2 mean_slope{};
     int rounds = 1;  ///< Number of iterations; 1 unless a wrap is clamp.

@@ -128,8 +128,8 @@ struct TangentAgreement {
     /// Number of corners within the tolerance of the method's tangent, its bitangent (rotated by 90
     /// degrees), and the opposites of both.
     std::array<std::size_t, 4> within{};
-    int quarter_turns = 0;     ///< The rotation with the most corners, in units of 90 degrees.
-    AngleDistribution angles;  ///< The angles to that direction.
+    int quarter_turns = 0;  ///< The rotation with the most corners, in units of 90 degrees.
+    ErrorStats angles;      ///< The angles to that direction.
     /// Number of the corners within the tolerance of that direction whose w is opposite to the
     /// method's.
     std::size_t negated = 0;

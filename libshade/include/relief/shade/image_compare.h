@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "relief/export.h"
+#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 
 namespace RELIEF_API relief {
@@ -53,11 +54,9 @@ FlipDifference flip_difference(const Image& reference, const Image& test,
 
 /// Angles between corresponding directions, in degrees.
 struct AngleDifference {
-    double mean = 0;
-    double p99 = 0;  ///< 99 of 100 texels have at most this angle.
-    double max = 0;
-    /// Texels without a direction (zero or not finite) in one image or in both.
-    std::size_t undefined = 0;
+    /// Of all texels. `undefined` counts those without a direction (zero or not finite) in one
+    /// image or in both, which count as angles as well.
+    ErrorStats angles;
     Image map;  ///< Degrees for each texel: one float channel, data.
 };
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Angles added up as they come, in constant memory, in double, in degrees: the one place where
-/// their mean, root of the mean square and greatest are formed, and AngleSummary for those who
-/// cannot keep all of them. Of none, all zeros. Tests:
-/// tests/mesh/geometry/error_statistics_test.cpp.
+/// Accumulates errors in constant memory, in double. All statistics of errors are computed here.
+/// Tests: tests/mesh/geometry/error_statistics_test.cpp.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -15,20 +14,19 @@
 
 namespace relief {
 
-/// What takes no more than sums.
-class AngleMoments {
+/// Accumulates the root mean square, the mean and the maximum.
+class ErrorMoments {
   public:
-    /// \param degrees  NaN makes rms() and mean() NaN, and is no greatest: whoever may meet one
-    ///                 says what becomes of it
-    void add(double degrees) {
+    /// \param error  NaN makes rms() and mean() NaN and does not change max()
+    void add(double error) {
         ++count_;
-        sum_ += degrees;
-        squares_ += degrees * degrees;
-        max_ = std::max(max_, degrees);
+        sum_ += error;
+        squares_ += error * error;
+        max_ = std::max(max_, error);
     }
 
-    /// What another saw after this. The last bits depend on the order in which sums are added.
-    void add(const AngleMoments& other) {
+    /// Adds the errors of another accumulator. The last bits depend on the order of addition.
+    void add(const ErrorMoments& other) {
         count_ += other.count_;
         sum_ += other.sum_;
         squares_ += other.squares_;
@@ -44,32 +42,58 @@ class AngleMoments {
     }
     [[nodiscard]] double max() const { return max_; }
 
+    /// Returns the statistics without percentiles and histogram; all zeros without errors.
+    [[nodiscard]] ErrorStats stats() const {
+        ErrorStats stats;
+        stats.count = count_;
+        stats.rms = rms();
+        stats.mean = mean();
+        stats.max = max_;
+        return stats;
+    }
+
   private:
     std::size_t count_ = 0;
     double sum_ = 0.0, squares_ = 0.0, max_ = 0.0;
 };
 
-/// Those, and the 99th percentile, to within a bin.
-class AngleSum {
+/// Accumulates angles in degrees for all statistics. Percentiles are exact to 1/64.
+class ErrorAccumulator {
   public:
-    /// \param degrees  a number; 0 to 180
+    /// \param degrees  0 to 180; NaN counts as undefined
     void add(double degrees) {
+        if (std::isnan(degrees)) {
+            ++undefined_;
+            return;
+        }
         moments_.add(degrees);
         if (bins_.empty()) bins_.resize(bin_count, 0);
         ++bins_[bin_of(degrees)];
+        ++histogram_[ErrorStats::bin_of(degrees)];
     }
 
-    /// What another saw after this.
-    void add(const AngleSum& other) {
+    /// Adds the angles of another accumulator.
+    void add(const ErrorAccumulator& other) {
         moments_.add(other.moments_);
+        undefined_ += other.undefined_;
+        for (std::size_t i = 0; i < histogram_.size(); ++i)
+            histogram_[i] += other.histogram_[i];
+        if (other.bins_.empty()) return;
         if (bins_.empty()) bins_.resize(bin_count, 0);
         for (std::size_t i = 0; i < other.bins_.size(); ++i)
             bins_[i] += other.bins_[i];
     }
 
-    [[nodiscard]] AngleSummary summary() const {
-        if (moments_.count() == 0) return {};
-        return {moments_.count(), moments_.rms(), moments_.mean(), percentile_99(), moments_.max()};
+    /// Returns the statistics; all zeros without angles.
+    [[nodiscard]] ErrorStats stats() const {
+        ErrorStats stats = moments_.stats();
+        stats.undefined = undefined_;
+        if (stats.count == 0) return stats;
+        stats.median = percentile(50);
+        stats.p90 = percentile(90);
+        stats.p99 = percentile(99);
+        stats.histogram = histogram_;
+        return stats;
     }
 
   private:
@@ -92,8 +116,9 @@ class AngleSum {
         const double mantissa = 0.5 + (index % steps + 1) / (2.0 * steps);
         return std::ldexp(mantissa, index / steps + lowest + 1);
     }
-    [[nodiscard]] double percentile_99() const {
-        const std::size_t wanted = moments_.count() - moments_.count() / 100;
+    /// Returns the smallest angle, to within a bin, that `percent` of 100 angles do not exceed.
+    [[nodiscard]] double percentile(std::size_t percent) const {
+        const std::size_t wanted = moments_.count() - moments_.count() * (100 - percent) / 100;
         std::size_t seen = 0;
         for (std::size_t i = 0; i < bins_.size(); ++i) {
             seen += bins_[i];
@@ -102,7 +127,9 @@ class AngleSum {
         return moments_.max();
     }
 
-    AngleMoments moments_;
+    ErrorMoments moments_;
+    std::size_t undefined_ = 0;
+    std::array<std::size_t, ErrorStats::bounds.size()> histogram_{};
     std::vector<std::size_t> bins_;
 };
 

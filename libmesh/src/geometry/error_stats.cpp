@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Angles between directions by atan2 in double, and statistics of stored errors. Percentiles are
+// values that occur (nearest rank). Linear expected time.
+// Tests: tests/mesh/geometry/error_statistics_test.cpp.
+#include "relief/mesh/error_stats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "geometry/error_accumulator.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+namespace {
+
+/// Returns the smallest value that `percent` of 100 of the values do not exceed. It reorders the
+/// values.
+double percentile(std::vector<float>& values, std::size_t percent) {
+    const std::size_t rank = (values.size() * percent + 99) / 100;
+    const auto place =
+        values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+}
+
+}  // namespace
+
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+    const double sine = glm::length(glm::cross(a, b));
+    const double cosine = glm::dot(a, b);
+    if (!std::isfinite(sine) || !std::isfinite(cosine) || (sine == 0.0 && cosine == 0.0))
+        return std::numeric_limits<double>::quiet_NaN();
+    return std::atan2(sine, cosine) * 180.0 / std::numbers::pi;
+}
+
+std::size_t ErrorStats::bin_of(double degrees) {
+    const auto bin = std::lower_bound(bounds.begin(), bounds.end() - 1, degrees);
+    return static_cast<std::size_t>(bin - bounds.begin());
+}
+
+ErrorStats error_stats(std::vector<float> errors) {
+    const std::size_t all = errors.size();
+    std::erase_if(errors, [](float error) { return std::isnan(error); });
+    ErrorMoments moments;
+    ErrorStats stats;
+    for (const float error : errors) {
+        const auto value = static_cast<double>(error);
+        moments.add(value);
+        ++stats.histogram[ErrorStats::bin_of(value)];
+    }
+    stats.count = errors.size();
+    stats.undefined = all - errors.size();
+    if (errors.empty()) return stats;
+    stats.rms = moments.rms();
+    stats.mean = moments.mean();
+    stats.max = moments.max();
+    stats.median = percentile(errors, 50);
+    stats.p90 = percentile(errors, 90);
+    stats.p99 = percentile(errors, 99);
+    return stats;
+}
+
+ErrorStats direction_error(std::span<const glm::vec3> directions,
+                           std::span<const glm::dvec3> reference,
+                           std::span<const unsigned char> counts) {
+    if (directions.size() != reference.size() ||
+        (!counts.empty() && counts.size() != directions.size())) {
+        throw InvalidInput(fmt::format("{} directions cannot be compared with {}",
+                                       directions.size(), reference.size()));
+    }
+    ErrorAccumulator angles;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        if (!counts.empty() && counts[i] == 0) continue;
+        angles.add(degrees_between(glm::dvec3(directions[i]), reference[i]));
+    }
+    ErrorStats error = angles.stats();
+    if (error.undefined > 0)
+        error.rms = error.mean = error.max = std::numeric_limits<double>::quiet_NaN();
+    return error;
+}
+
+}  // namespace relief
