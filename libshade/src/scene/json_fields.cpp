@@ -106,8 +106,8 @@ void read_material(const JsonCursor& object, JsonImages& images, Material& mater
 }
 
 Environment environment_from(const JsonCursor& object, JsonImages& images) {
-    object.allow({"faces", "folder", "cross", "panorama", "angular_map", "intensity", "skybox",
-                  "lights", "left_handed"});
+    allow_fields<Environment>(
+        object, {"faces", "folder", "cross", "panorama", "angular_map", "left_handed"});
     Environment environment;
     int sources = 0;
     if (const auto faces = object.find("faces")) {

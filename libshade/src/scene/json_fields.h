@@ -64,10 +64,19 @@ auto one_of(const JsonCursor& cursor, const Names& names) {
     cursor.fail_unknown(cursor.text(), known);
 }
 
+/// The keys of the fields of T, including those of a member whose fields are in the same object.
 template <typename T>
 std::vector<std::string> field_names() {
     std::vector<std::string> names;
-    for_each_field<T>([&](const auto& field) { names.emplace_back(field.name); });
+    for_each_field<T>([&](const auto& field) {
+        if (*field.name != '\0') {
+            names.emplace_back(field.name);
+            return;
+        }
+        using Member = std::decay_t<decltype(field.default_value())>;
+        const std::vector<std::string> inner = field_names<Member>();
+        names.insert(names.end(), inner.begin(), inner.end());
+    });
     return names;
 }
 
@@ -199,6 +208,10 @@ Json value_json(const Field& field, const Value& value, const ImageName& name) {
         return field.unit == FieldUnit::radians ? degrees_json(value) : number_json(value);
     } else if constexpr (std::is_same_v<Value, glm::vec3>) {
         return vector_json(value);
+    } else if constexpr (std::is_same_v<Value, glm::vec4>) {
+        Json numbers = vector_json(glm::vec3(value));
+        numbers.push_back(number_json(value.a));
+        return numbers;
     } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::string>) {
         return value;
     } else if constexpr (std::is_enum_v<Value>) {

@@ -43,16 +43,9 @@ glm::vec3 vector_in(const JsonCursor& object, const char* key, const glm::vec3& 
 // Lights and cameras
 
 /// Refuses members that this type of light does not have.
-void check_light_members(const JsonCursor& object, LightType type) {
-    std::vector<std::string> known = {"type",    "color",    "intensity",
-                                      "diffuse", "specular", "ambient"};
-    const auto add = [&](std::initializer_list<const char*> more) {
-        known.insert(known.end(), more.begin(), more.end());
-    };
-    if (type != LightType::point) add({"direction"});
-    if (type != LightType::directional) add({"position", "range", "falloff"});
-    if (type == LightType::spot) add({"inner_cone", "outer_cone"});
-    object.allow(known);
+template <typename Light>
+void check_light_members(const JsonCursor& object) {
+    allow_fields<Light>(object, {"type", "intensity", "diffuse", "ambient"});
     if (object.find("color") && object.find("diffuse"))
         object.at("diffuse").fail("says the same as 'color': give one of them");
 }
@@ -86,9 +79,9 @@ void hang(std::vector<Carried>& carried, std::size_t index, std::optional<std::s
 void add_light(const JsonCursor& object, std::optional<std::size_t> node, JsonImages& images,
                SceneGraph& graph) {
     const LightType type = one_of(object.at("type"), enum_names<LightType>);
-    check_light_members(object, type);
     Scene& scene = graph.scene;
     if (type == LightType::directional) {
+        check_light_members<DirectionalLight>(object);
         DirectionalLight light;
         check_direction(object, node.has_value(), light.direction_world);
         read_fields(object, images, light);
@@ -97,6 +90,7 @@ void add_light(const JsonCursor& object, std::optional<std::size_t> node, JsonIm
              looking_along(glm::vec3(0.0F), light.direction_world));
         scene.directional_lights.push_back(light);
     } else if (type == LightType::point) {
+        check_light_members<PointLight>(object);
         PointLight light;
         read_fields(object, images, light);
         finish_colors(object, light.intensity, light.highlight_intensity, scene);
@@ -104,6 +98,7 @@ void add_light(const JsonCursor& object, std::optional<std::size_t> node, JsonIm
              looking_along(light.position_world, {0.0F, 0.0F, -1.0F}));
         scene.point_lights.push_back(light);
     } else {
+        check_light_members<SpotLight>(object);
         SpotLight light;
         check_direction(object, node.has_value(), light.direction_world);
         read_fields(object, images, light);
@@ -144,10 +139,12 @@ Camera camera_by_matrix(const JsonCursor& object, JsonImages& images, bool& sees
 /// \param aspect  of the picture
 Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, JsonImages& images,
                    bool& sees_all) {
-    object.allow({"eye", "target", "azimuth", "elevation", "distance_factor", "matrix", "fov",
-                  "near", "far"});
+    allow_fields<Camera>(
+        object, {"eye", "target", "azimuth", "elevation", "distance_factor", "matrix"});
     if (object.find("matrix")) return camera_by_matrix(object, images, sees_all);
-    const float fov = degrees_in(object, "fov", default_vertical_fov);
+    Camera given;
+    given.vertical_fov = default_vertical_fov;
+    read_fields(object, images, given);
     Camera camera;
     float depth = 0.0F;  // From the eye to the target.
     if (object.find("eye") || object.find("target")) {
@@ -162,15 +159,15 @@ Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, J
         camera.world_from_view = looking_along(eye, forward);
     } else {
         camera = framed(scene, degrees_in(object, "azimuth", default_azimuth),
-                        degrees_in(object, "elevation", default_elevation), fov, aspect,
-                        number_in(object, "distance_factor", 1.0F));
+                        degrees_in(object, "elevation", default_elevation), given.vertical_fov,
+                        aspect, number_in(object, "distance_factor", 1.0F));
         depth = 0.5F * (camera.near + camera.far);
     }
-    camera.vertical_fov = fov;
+    camera.vertical_fov = given.vertical_fov;
     // The near plane is close, since objects may move towards the eye later.
-    camera.near = number_in(object, "near", 0.01F * depth);
+    camera.near = object.find("near") ? given.near : 0.01F * depth;
     sees_all = !object.find("far");
-    camera.far = number_in(object, "far", std::max(camera.far, 2.0F * camera.near));
+    camera.far = sees_all ? std::max(camera.far, 2.0F * camera.near) : given.far;
     return camera;
 }
 
@@ -259,9 +256,9 @@ class SceneReader {
         : options_(options), report_(report), images_(file, graph_.scene.images) {}
 
     SceneGraph read(const JsonCursor& root) {
-        root.allow({"relief_scene", "description", "materials", "nodes", "lights", "camera",
-                    "ambient", "environment", "background", "exposure", "tone_mapping",
-                    "light_markers", "picture", "material_edits", "only_lights"});
+        allow_fields<Scene>(
+            root, {"relief_scene", "description", "materials", "nodes", "lights", "camera",
+                   "light_markers", "picture", "material_edits", "only_lights"});
         if (root.at("relief_scene").whole_number(0, 1000000) != format_version) {
             root.at("relief_scene")
                 .fail(fmt::format("must be {}, the only version", format_version));

@@ -137,16 +137,18 @@ class SceneWriter {
         if (lights_json(loaded_) == lights_json(scene_) && loaded_.ambient == scene_.ambient)
             return;
         json_["only_lights"] = lights_json(scene_);
-        json_["ambient"] = vector_json(scene_.ambient);
+        json_[ambient_field.name] = value_json(ambient_field, scene_.ambient, {});
     }
 
     void write_settings() {
-        const glm::vec4& back = scene_.background;
-        Json background = vector_json(glm::vec3(back));
-        background.push_back(number_json(back.a));
-        json_["background"] = std::move(background);
-        json_["exposure"] = number_json(scene_.exposure);
-        json_["tone_mapping"] = enum_name(scene_.tone_mapping);
+        for_each_field<Scene>([&](const auto& field) {
+            const auto& value = scene_.*field.member;
+            // The environment follows below, and the ambient light belongs to the lights.
+            if constexpr (!is_optional_value<std::decay_t<decltype(value)>>) {
+                if (std::string_view(field.name) != ambient_field.name)
+                    json_[field.name] = value_json(field, value, {});
+            }
+        });
         json_.erase("environment");
         if (!scene_.environment) return;
         json_["environment"] =

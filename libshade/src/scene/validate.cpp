@@ -67,8 +67,12 @@ class FieldChecker {
             fail(field, value, "must be positive and finite");
         }
         if (value >= field.range.min && value <= field.range.max) return;
+        constexpr FieldRange unlimited;
         fail(field, value,
-             fmt::format("must be within [{}, {}]", field.range.min, field.range.max));
+             field.range == unlimited ? "must be finite"
+             : field.range.max == unlimited.max
+                 ? fmt::format("must be finite and at least {}", field.range.min)
+                 : fmt::format("must be within [{}, {}]", field.range.min, field.range.max));
     }
 
     template <typename Field>
@@ -287,23 +291,13 @@ void validate_motion(const SceneGraph& graph, const std::string& thing,
 
 void validate_motion(const SceneGraph& graph, const std::string& thing, const Orbit& orbit) {
     check_parts(graph, thing, orbit.node);
-    const bool finite = is_finite(orbit.center) && std::isfinite(orbit.azimuth) &&
-                        std::isfinite(orbit.elevation) && std::isfinite(orbit.azimuth_speed) &&
-                        std::isfinite(orbit.elevation_speed);
-    if (!finite) throw InvalidInput(thing + " has a number that is not finite");
-    if (!(orbit.radius >= 0.0F && std::isfinite(orbit.radius))) {
-        throw InvalidInput(fmt::format("{} has radius {}, but it must be finite and not negative",
-                                       thing, orbit.radius));
-    }
+    FieldChecker(thing + ": ", 0).check(orbit);
 }
 
 void validate_motion(const SceneGraph& graph, const std::string& thing,
                      const Turntable& turntable) {
     check_node(graph, thing, turntable.node);
-    if (!is_finite(turntable.axis) || turntable.axis == glm::vec3(0.0F))
-        throw InvalidInput(thing + " has an axis without a length");
-    if (!std::isfinite(turntable.speed) || !std::isfinite(turntable.angle))
-        throw InvalidInput(thing + " has a number that is not finite");
+    FieldChecker(thing + ": ", 0).check(turntable);
 }
 
 }  // namespace

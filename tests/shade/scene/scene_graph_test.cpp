@@ -272,9 +272,9 @@ TEST(ValidateGraph, NamesTheFirstOffence) {
               "number 0 of the cameras names node 6, but there are only 6");
     EXPECT_EQ(verdict(with(Orbit{.node = 7})), "animation 0 names node 7, but there are only 6");
     EXPECT_EQ(verdict(with(Orbit{.node = 1, .radius = -1})),
-              "animation 0 has radius -1, but it must be finite and not negative");
+              "animation 0: radius is -1, but must be finite and at least 0");
     EXPECT_EQ(verdict(with(Turntable{.node = 1, .axis = {0, 0, 0}})),
-              "animation 0 has an axis without a length");
+              "animation 0: axis is (0, 0, 0), but must have a length");
     EXPECT_EQ(verdict([&](SceneGraph& g) {
                   g.nodes[1].matrix = glm::mat4(1.0F);
                   g.animations = {Orbit{.node = 1}};
