@@ -12,7 +12,7 @@
 #include <optional>
 #include <string_view>
 
-#include "effects/effect_table.h"
+#include "effects/features.h"
 #include "near_names.h"
 #include "relief/mesh/report.h"
 

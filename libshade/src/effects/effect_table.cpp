@@ -3,7 +3,7 @@
 // it, whether it is neutral when forced on, and why it may be hidden. An effect is left out only if
 // its contribution is exactly zero. Pure.
 // Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
-#include "effects/effect_table.h"
+#include "effects/features.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Questions about a set of effects that planning, shader assembly and drawing share. Pure.
-/// Tests: tests/shade/effects/effects_test.cpp.
+/// Effects as planning, shader assembly and drawing share them: questions about a set of effects,
+/// and the table of effects, in which one row describes everything that planning and forcing know
+/// of an effect. Its shader code is in surface_program.cpp, since parts depend on several effects
+/// at once. Pure. Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
 #pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "relief/shade/effects.h"
 
 namespace relief {
+
+// Questions about a set of effects
 
 /// The number of directional, point and spot lights.
 inline std::uint32_t light_count(const Features& f) {
@@ -46,5 +54,56 @@ struct EnvironmentNeeds {
 };
 
 EnvironmentNeeds environment_needs(const FramePlan& plan);
+
+// The table of effects
+
+/// The input of the decisions for one draw.
+struct DrawSubject {
+    const Scene& scene;
+    const Material& material;
+    const Mesh& mesh;
+    std::string name;     ///< "material 'body'", for the reasons.
+    bool tinted = false;  ///< The mesh's vertex colors change the picture, or its alpha does.
+    Features lights;      ///< The scene's lights: counts, falloff, ranges, highlight colors.
+};
+
+DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
+                         const Mesh& mesh);
+
+/// The decision whether the scene calls for an effect, with its reason.
+struct Decision {
+    bool on = false;
+    std::string reason;
+};
+
+/// A draw on which effects are forced.
+struct ForcingSubject {
+    const Scene& scene;
+    const Material& material;
+    const Features& planned;
+};
+
+struct EffectRow {
+    Effect effect;  ///< Name, test, setter, and why canonical() drops it.
+    Decision (*decide)(const DrawSubject& subject) = nullptr;
+    /// If the effect changes the picture when it is forced on: whose choice it is.
+    const char* choice = nullptr;
+    /// With a choice: true if the effect is neutral on this draw all the same. Null: it never is.
+    bool (*neutral)(const ForcingSubject& subject) = nullptr;
+    /// A more specific reason than effect.hidden; "" if it does not apply.
+    const char* (*hidden_by)(const Features& requested, const Features& shown) = nullptr;
+    bool phong_only = false;  ///< glTF's model has its own form of it, or none.
+};
+
+/// All rows, in the order of the plan's reasons.
+const std::vector<EffectRow>& effect_rows();
+
+/// The row of this name; null if there is none.
+const EffectRow* find_effect(std::string_view name);
+
+/// The reason why canonical() dropped an effect.
+///
+/// \param requested  the effects that were asked for  \param shown  what canonical() left of them
+std::string hidden_reason(const EffectRow& row, const Features& requested, const Features& shown);
 
 }  // namespace relief

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "effects/effect_table.h"
 #include "effects/features.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"

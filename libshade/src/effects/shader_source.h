@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// GLSL assembled from parts of the files in shaders/, with the origin of each line.
+/// GLSL assembled from parts of the files in shaders/, with the origin of each line; the parts that
+/// a set of effects chooses; and the source of its program.
 ///
 /// A file holds parts, each after a line `#part NAME`; the lines before the first are comments. The
 /// address of a part is "light.glsl#point"; a file without parts has the address "bump_map.glsl". A
 /// part includes another by its address, `#include "inputs.glsl#texcoord"`, or by the step that it
 /// implements, `#include <normal>`; the caller chooses the code of each step. Each part enters a
 /// shader once. The files are embedded at build; a part in a file of the same name in
-/// $RELIEF_SHADER_DIR takes precedence. Tests: tests/shade/effects/shader_source_test.cpp.
+/// $RELIEF_SHADER_DIR takes precedence.
+///
+/// One table (surface_program.cpp) has a row for every step: the parts that implement it, the
+/// condition of each, what it takes from outside, and the neutral code for a step whose effect is
+/// absent. planned_interface() (effects.h) is read from the same table. Pure. Tests:
+/// tests/shade/effects/shader_source_test.cpp, tests/shade/render/render_cache_test.cpp.
 #pragma once
 
 #include <compare>
@@ -15,6 +21,9 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "effects/shader_source.h"
+#include "relief/shade/effects.h"
 
 namespace relief {
 
@@ -59,5 +68,25 @@ struct EmbeddedShader {
     std::string_view text;
 };
 const std::vector<EmbeddedShader>& embedded_shaders();
+
+struct SurfaceProgram {
+    ShaderSource vertex;
+    ShaderSource fragment;
+};
+
+/// \param features  canonical, or a canonical set with more effects on
+/// \throws GpuError if a part is missing (an override folder may hold broken files)
+SurfaceProgram surface_program(const Features& features);
+
+/// The code of each step of a stage.
+struct ChosenSteps {
+    ShaderSteps vertex;
+    ShaderSteps fragment;
+};
+ChosenSteps chosen_steps(const Features& features);
+
+/// The steps that code a picture, with the scene's exposure and tone curve if this coding has them:
+/// for passes that draw no surface.
+ShaderSteps output_steps(OutputCoding coding, const Scene& scene);
 
 }  // namespace relief

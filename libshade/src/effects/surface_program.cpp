@@ -7,7 +7,7 @@
 
 #include "effects/features.h"
 #include "effects/light_rows.h"
-#include "effects/surface_program.h"
+#include "effects/shader_source.h"
 #include "relief/shade/effects.h"
 
 namespace relief {

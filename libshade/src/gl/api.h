@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The OpenGL entry points of one context, the messages of its driver, and the owners of OpenGL
-/// names.
+/// The OpenGL entry points of one context, the messages of its driver, the owners of OpenGL names,
+/// and the libraries that provide contexts: OSMesa and EGL, behind one interface.
 ///
 /// OSMesa's functions differ from EGL's, and a call of one has no effect while the other is
 /// current. So there is no global table: callers of OpenGL receive the Api of their context.
+/// Neither library notices the other: each context is released before another is made current.
 #pragma once
 
 #include <glad/gl.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "gl/api.h"
 
 namespace relief::gl {
 
@@ -180,5 +184,36 @@ using Renderbuffer =
     Handle<kind::Generated<&GladGLContext::GenRenderbuffers, &GladGLContext::DeleteRenderbuffers>>;
 using Program = Handle<kind::Program>;
 using Shader = Handle<kind::Shader>;
+
+/// A context that is current on the thread that made it; its destructor, on the same thread,
+/// releases and destroys it.
+class PlatformContext {
+  public:
+    PlatformContext() = default;
+    virtual ~PlatformContext() = default;
+    PlatformContext(const PlatformContext&) = delete;
+    PlatformContext& operator=(const PlatformContext&) = delete;
+
+    [[nodiscard]] virtual Api::Loader loader() const = 0;
+};
+
+/// \throws GpuError saying why not
+std::unique_ptr<PlatformContext> make_osmesa_context();
+
+/// A display that EGL offers.
+struct EglDisplay {
+    enum class Kind { hardware, software, unknown };
+
+    void* display = nullptr;  ///< EGLDisplay, not initialized yet.
+    Kind kind = Kind::unknown;
+    std::string name;  ///< For messages: "device 1 (/dev/dri/card0)", "surfaceless".
+};
+
+/// All displays: the devices in EGL's order, then Mesa's surfaceless platform.
+/// \throws GpuError if EGL is missing or offers none
+std::vector<EglDisplay> egl_displays();
+
+/// \throws GpuError saying why not
+std::unique_ptr<PlatformContext> make_egl_context(const EglDisplay& display);
 
 }  // namespace relief::gl

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "environment/convolution.h"
 #include "environment/environment_images.h"
-#include "environment/ggx.h"
 #include "geometry/direction.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"

@@ -131,7 +131,7 @@ class EnvironmentLookup {
     IrradianceSh irradiance_{};   ///< Multiplied by the intensity.
 };
 
-/// GGX's directional albedo: x multiplies f0, y is added (environment/ggx.h).
+/// GGX's directional albedo: x multiplies f0, y is added (environment/convolution.h).
 glm::dvec2 directional_albedo(double n_dot_v, double roughness);
 
 }  // namespace reference

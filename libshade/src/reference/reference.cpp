@@ -14,7 +14,6 @@
 #include "parallel.h"
 #include "reference/shading.h"
 #include "reference/surface.h"
-#include "reference/visibility.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

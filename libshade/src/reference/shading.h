@@ -7,7 +7,6 @@
 #include <glm/glm.hpp>
 
 #include "reference/surface.h"
-#include "reference/visibility.h"
 #include "relief/export.h"
 #include "relief/shade/material.h"
 

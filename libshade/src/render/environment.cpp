@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "effects/features.h"
-#include "effects/surface_program.h"
+#include "effects/shader_source.h"
+#include "environment/convolution.h"
 #include "environment/environment_images.h"
-#include "environment/ggx.h"
 #include "gl/cube_map.h"
 #include "gl/resources.h"
 #include "parallel.h"
@@ -71,8 +71,8 @@ std::array<glm::vec4, 9> padded(const IrradianceSh& sh, float intensity) {
     return rows;
 }
 
-/// Returns the albedo table of environment/ggx.h: columns are sqrt(n.v), rows are roughness; red is
-/// A, green is B.
+/// Returns the albedo table of environment/convolution.h: columns are sqrt(n.v), rows are
+/// roughness; red is A, green is B.
 gl::Texture brdf_texture(const gl::Api& api) {
     constexpr int size = 64;
     gl::Texture texture =

@@ -16,7 +16,7 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/scene.h"
 #include "render/program_cache.h"
-#include "scene/image_identity.h"
+#include "render/textures.h"
 
 namespace relief {
 
@@ -95,7 +95,7 @@ class EnvironmentMaps {
 /// Draws the environment behind all surfaces.
 class Skybox {
   public:
-    /// \param output  the encoding that surfaces write (picture.h)
+    /// \param output  the encoding that surfaces write
     /// \throws GpuError
     Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output);
 

@@ -13,7 +13,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "render/draw_values.h"
-#include "scene/is_finite.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 namespace {

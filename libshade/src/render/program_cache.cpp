@@ -10,7 +10,7 @@
 #include <cassert>
 #include <utility>
 
-#include "effects/surface_program.h"
+#include "effects/shader_source.h"
 #include "relief/mesh/timing.h"
 #include "relief/shade/context.h"
 

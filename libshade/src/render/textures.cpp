@@ -205,6 +205,32 @@ bool has_textures(const Material& material) {
                        [&](const TextureRow& row) { return row.texture(material) != nullptr; });
 }
 
+/// A file whose stamp cannot be read counts as missing; reading it reports the reason.
+ImageIdentity::File::File(std::filesystem::path name)
+    : path(std::move(name)), stamp(stamp_of(path)) {}
+
+decltype(ImageIdentity::identity_) ImageIdentity::identity_of(const ImageSource& source) {
+    if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) return File(*file);
+    if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
+        return bytes->identity();
+    return std::get<Shared<Image>>(source.source).identity();
+}
+
+ImageIdentity::ImageIdentity(const ImageSource& source) : identity_(identity_of(source)) {}
+
+bool ImageIdentity::is(const ImageSource& source) const {
+    if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) {
+        const auto* known = std::get_if<File>(&identity_);
+        return known != nullptr && *known == File(*file);
+    }
+    if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source)) {
+        const auto* known = std::get_if<Shared<std::vector<std::byte>>::Identity>(&identity_);
+        return known != nullptr && known->is(*bytes);
+    }
+    const auto* known = std::get_if<Shared<Image>::Identity>(&identity_);
+    return known != nullptr && known->is(std::get<Shared<Image>>(source.source));
+}
+
 std::shared_ptr<const GpuImage> TextureCache::find(const ImageSource& source,
                                                    const ImagePurpose& purpose) {
     const auto entry = std::find_if(images_.begin(), images_.end(), [&](const Entry& known) {

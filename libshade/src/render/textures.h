@@ -8,15 +8,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "gl/resources.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh.h"
@@ -26,7 +29,6 @@
 #include "relief/shade/material.h"
 #include "relief/shade/scene.h"
 #include "render/program_cache.h"
-#include "scene/image_identity.h"
 
 namespace relief {
 
@@ -77,6 +79,28 @@ struct GpuImage {
 struct BoundTexture {
     GLuint texture = 0;
     GLuint sampler = 0;
+};
+
+/// Tells whether an image is unchanged since it was decoded.
+class ImageIdentity {
+  public:
+    explicit ImageIdentity(const ImageSource& source);
+
+    /// Tells whether the source is the same value in memory, or a file of the same name and stamp.
+    [[nodiscard]] bool is(const ImageSource& source) const;
+
+  private:
+    struct File {
+        std::filesystem::path path;
+        FileStamp stamp;
+
+        explicit File(std::filesystem::path name);
+        bool operator==(const File&) const = default;
+    };
+
+    std::variant<File, Shared<std::vector<std::byte>>::Identity, Shared<Image>::Identity> identity_;
+
+    static decltype(identity_) identity_of(const ImageSource& source);
 };
 
 /// The images of a context by identity and use.

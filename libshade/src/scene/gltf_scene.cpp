@@ -23,7 +23,7 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
-#include "scene/scene_import.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 

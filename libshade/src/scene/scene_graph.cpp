@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "relief/mesh/report.h"
-#include "scene/graph.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 

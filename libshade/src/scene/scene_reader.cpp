@@ -12,9 +12,8 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
-#include "scene/graph.h"
 #include "scene/json_fields.h"
-#include "scene/scene_import.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 
@@ -139,8 +138,8 @@ Camera camera_by_matrix(const JsonCursor& object, JsonImages& images, bool& sees
 /// \param aspect  of the picture
 Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, JsonImages& images,
                    bool& sees_all) {
-    allow_fields<Camera>(
-        object, {"eye", "target", "azimuth", "elevation", "distance_factor", "matrix"});
+    allow_fields<Camera>(object,
+                         {"eye", "target", "azimuth", "elevation", "distance_factor", "matrix"});
     if (object.find("matrix")) return camera_by_matrix(object, images, sees_all);
     Camera given;
     given.vertical_fov = default_vertical_fov;

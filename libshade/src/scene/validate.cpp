@@ -11,8 +11,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene_fields.h"
-#include "scene/graph.h"
-#include "scene/is_finite.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 

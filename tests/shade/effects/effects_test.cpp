@@ -7,7 +7,7 @@
 #include <set>
 
 #include "effects/features.h"
-#include "effects/surface_program.h"
+#include "effects/shader_source.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"

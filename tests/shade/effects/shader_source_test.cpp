@@ -10,7 +10,6 @@
 
 #include "effects/light_rows.h"
 #include "effects/shader_source.h"
-#include "effects/surface_program.h"
 #include "relief/shade/context.h"
 #include "relief/shade/effects.h"
 #include "shade/effects/feature_sets.h"

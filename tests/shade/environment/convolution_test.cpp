@@ -11,7 +11,6 @@
 #include <set>
 
 #include "environment/convolution.h"
-#include "environment/ggx.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"

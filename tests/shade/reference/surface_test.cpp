@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reference/visibility.h"
+#include "reference/surface.h"
 #include "shade/reference/traced.h"
 #include "support/angle.h"
 #include "support/shapes.h"

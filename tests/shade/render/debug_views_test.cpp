@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "effects/surface_program.h"
+#include "effects/shader_source.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/reference.h"
 #include "render/program_cache.h"

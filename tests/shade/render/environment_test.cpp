@@ -8,7 +8,6 @@
 
 #include "environment/convolution.h"
 #include "environment/environment_images.h"
-#include "environment/ggx.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
 #include "shade/environment/test_environments.h"

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "effects/surface_program.h"
+#include "effects/shader_source.h"
 #include "gl/api.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/context.h"

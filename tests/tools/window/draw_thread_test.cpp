@@ -8,7 +8,7 @@
 #include <atomic>
 #include <memory>
 
-#include "gl/platform_context.h"
+#include "gl/api.h"
 #include "relief/mesh/report.h"
 #include "support/gl_environment.h"
 #include "support/shapes.h"

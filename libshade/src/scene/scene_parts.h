@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The parts of load_scene_graph (scene_file.h): one function for each kind of file, and what their
-/// materials share.
+/// What scene files, validation, poses and framing share: parts of scene graphs (scene_graph.h),
+/// and parts of load_scene_graph (scene_file.h), one function for each kind of file. World space,
+/// radians, seconds.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <glm/glm.hpp>
 
@@ -12,8 +15,51 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_graph.h"
 
 namespace relief {
+
+// Numbers
+
+inline bool is_finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+inline bool is_finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+inline bool is_finite(const glm::mat4& matrix) {
+    for (int column = 0; column < 4; ++column) {
+        if (!is_finite(glm::vec3(matrix[column])) || !std::isfinite(matrix[column].w)) return false;
+    }
+    return true;
+}
+
+// Scene graphs
+
+/// The axes of a viewer who looks at a point from a direction on the sphere. Defined at the poles
+/// too.
+///
+/// \param azimuth    from +z towards +x
+/// \param elevation  above the xz plane
+/// \return right, up, and back: the unit vector towards the eye
+glm::mat3 orbit_axes(double azimuth, double elevation);
+
+/// The value of a channel at a time.
+/// \return rotations as unit quaternions x, y, z, w
+/// \throws InvalidInput as pose() does for keys
+glm::vec4 value_at(const KeyChannel& channel, double seconds);
+
+/// Checks that keys are as KeyChannel requires. \throws InvalidInput naming the first offence
+void check_keys(const KeyChannel& channel);
+
+/// Adds a model to a graph as a part that hangs on a node: the world of the part becomes the space
+/// of the node, and its animations play along. Its ambient light is added; its camera, environment
+/// and settings are not.
+void append(SceneGraph& graph, SceneGraph part, std::size_t node);
+
+// Scenes from files
 
 /// The default scene of a glTF document, not posed yet.
 ///
