@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <utility>
 
 #include "common/command.h"
 #include "common/text.h"
-#include "relief/mesh/frames.h"
-#include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
@@ -171,137 +169,9 @@ std::vector<std::string> write_model(const std::filesystem::path& file, const Mo
 
 // Models for maps.
 
-namespace {
-
-MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& report) {
-    const int set = document.tangent_texcoords(id).set;
-    Mesh mesh = document.mesh(id, set);
-    if (mesh.normals.empty()) {
-        if (!mesh.tangents.empty()) {
-            report.add("tangents without normals", "primitive", id.primitive,
-                       "are ignored, as glTF requires");
-        }
-        FrameOptions options;
-        options.if_missing = NormalMode::flat;
-        options.tangents = TangentMode::none;
-        mesh = with_frames(std::move(mesh), options, report).mesh;
-    }
-    return {document.describe(id), std::move(mesh), {}, {}, set};
-}
-
-/// Converts materials by the rules of GltfDocument::from_mesh().
-MapAppearance appearance_of(const std::vector<MtlMaterial>& materials) {
-    MapAppearance appearance;
-    const auto texture = [&](const std::optional<std::filesystem::path>& file) {
-        std::optional<GltfTexture> result;
-        if (file) {
-            result.emplace();
-            result->image = appearance.images.size();
-            appearance.images.push_back({file->filename().string(), *file});
-        }
-        return result;
-    };
-    for (const MtlMaterial& material : materials) {
-        GltfMaterial converted;
-        converted.name = material.name;
-        converted.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), 1.0F);
-        converted.base_color_texture = texture(material.diffuse_map);
-        converted.normal_texture = texture(material.normal_map);
-        appearance.materials.push_back(std::move(converted));
-    }
-    return appearance;
-}
-
-/// If some parts have tangents, the others get those of MikkTSpace.
-void add_missing_tangents(MapModel& model, Report& report) {
-    const auto has_tangents = [](const MapModelPart& part) { return !part.mesh.tangents.empty(); };
-    if (std::none_of(model.parts.begin(), model.parts.end(), has_tangents)) return;
-    for (MapModelPart& part : model.parts) {
-        if (has_tangents(part) || part.mesh.texcoords.empty()) continue;
-        FrameOptions options;
-        options.tangents = TangentMode::mikktspace;
-        part.mesh = with_frames(std::move(part.mesh), options, report).mesh;
-    }
-}
-
-MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report) {
-    MapModel model;
-    if (space == ModelSpace::object) {
-        for (const GltfPrimitiveId id : document.triangle_primitives())
-            model.parts.push_back(part_of(document, id, report));
-        return model;
-    }
-    GltfView view = document.view();
-    for (const GltfMaterial& material : view.materials)
-        model.materials.push_back(material.name);
-    for (const auto& primitive : view.primitives) {
-        MapModelPart part = part_of(document, primitive.what, report);
-        part.objects = {primitive.name};
-        part.mesh = placed(std::move(part.mesh), primitive.world_from_object);
-        model.parts.push_back(std::move(part));
-    }
-    model.appearance = {std::move(view.materials), std::move(view.images)};
-    add_missing_tangents(model, report);
-    if (view.primitives.size() == 1)
-        model.world_from_object = glm::dmat3(glm::dmat4(view.primitives[0].world_from_object));
-    return model;
-}
-
-/// Parts without colors are white if others have colors.
-std::vector<glm::vec4> joined_colors(const std::vector<MapModelPart>& parts) {
-    const auto has_colors = [](const MapModelPart& part) { return !part.mesh.colors.empty(); };
-    std::vector<glm::vec4> all;
-    if (std::none_of(parts.begin(), parts.end(), has_colors)) return all;
-    for (const MapModelPart& part : parts) {
-        all.insert(all.end(), part.mesh.colors.begin(), part.mesh.colors.end());
-        if (!has_colors(part)) all.resize(all.size() + part.mesh.positions.size(), glm::vec4(1.0F));
-    }
-    return all;
-}
-
-/// Joins an attribute of all parts. The result is empty if a part lacks it.
-template <typename Value>
-std::vector<Value> joined(const std::vector<MapModelPart>& parts,
-                          std::vector<Value> Mesh::*attribute) {
-    std::vector<Value> all;
-    for (const MapModelPart& part : parts) {
-        const std::vector<Value>& values = part.mesh.*attribute;
-        if (values.empty() && !part.mesh.positions.empty()) return {};
-        all.insert(all.end(), values.begin(), values.end());
-    }
-    return all;
-}
-
-/// Appends the material ranges of a part, before its triangles are added.
-void append_ranges(Mesh& all, const Mesh& part) {
-    const auto first = static_cast<std::uint32_t>(all.triangles.size());
-    const auto count = static_cast<std::uint32_t>(part.triangles.size());
-    if (part.material_ranges.empty() && count > 0)
-        all.material_ranges.push_back({first, count, std::nullopt});
-    for (MaterialRange range : part.material_ranges) {
-        range.first_triangle += first;
-        all.material_ranges.push_back(range);
-    }
-}
-
-}  // namespace
-
 MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Report& report) {
-    Model read = read_model(file, report);
-    return about(file, [&] {
-        if (const auto* document = std::get_if<GltfDocument>(&read))
-            return model_of(*document, space, report);
-        auto& contents = std::get<MeshFile>(read);
-        MapModel model;
-        model.parts.push_back({"", std::move(contents.mesh), std::move(contents.objects),
-                               std::move(contents.object_of), 0});
-        for (const MtlMaterial& material : contents.materials)
-            model.materials.push_back(material.name);
-        model.appearance = appearance_of(contents.materials);
-        model.origin = contents.origin;
-        model.world_from_object = glm::dmat3(1.0);
-        return model;
-    });
+    Model model = read_model(file, report);
+    return about(file, [&] { return map_model(std::move(model), space, report); });
 }
 
 void require_texcoords(const std::filesystem::path& file, const MapModel& model,
@@ -309,38 +179,6 @@ void require_texcoords(const std::filesystem::path& file, const MapModel& model,
     for (const MapModelPart& part : model.parts) {
         if (!part.mesh.texcoords.empty()) continue;
         throw failure(file, part.name.empty() ? problem : part.name + ": " + problem, remedy);
-    }
-}
-
-Mesh joined(std::vector<MapModelPart> parts) {
-    if (parts.size() == 1) return std::move(parts.front().mesh);
-    Mesh all;
-    all.positions = joined(parts, &Mesh::positions);
-    all.normals = joined(parts, &Mesh::normals);
-    all.tangents = joined(parts, &Mesh::tangents);
-    all.texcoords = joined(parts, &Mesh::texcoords);
-    all.colors = joined_colors(parts);
-    if (all.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
-        throw InvalidInput(
-            fmt::format("{} vertices are too many for one mesh", all.positions.size()));
-    }
-    std::uint32_t first = 0;
-    for (const MapModelPart& part : parts) {
-        append_ranges(all, part.mesh);
-        for (const glm::uvec3& triangle : part.mesh.triangles)
-            all.triangles.push_back(triangle + first);
-        first += static_cast<std::uint32_t>(part.mesh.positions.size());
-    }
-    return all;
-}
-
-void move_to(MapModel& model, const glm::dvec3& origin) {
-    const glm::dvec3 by = model.origin - origin;
-    model.origin = origin;
-    if (by == glm::dvec3(0.0)) return;
-    for (MapModelPart& part : model.parts) {
-        for (glm::vec3& position : part.mesh.positions)
-            position = glm::vec3(glm::dvec3(position) + by);
     }
 }
 

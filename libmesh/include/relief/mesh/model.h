@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Operations on all meshes of a model: normals and tangents, new triangles, and comparison.
+/// Operations on all meshes of a model: normals and tangents, new triangles, models for maps, and
+/// comparison.
 /// Tests: tests/tools/relief_mesh_test.cpp, process_tangents_test.cpp, reshaping_test.cpp,
-/// tests/tools/relief_mesh_compare_test.cpp.
+/// tests/tools/relief_mesh_compare_test.cpp, map_models_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -91,6 +92,56 @@ struct ChangedModel {
 /// \param normals  the mode of the change: with `keep`, primitives without normals get none
 /// \throws InvalidInput if there are no triangles, or if none of a mesh file is left
 ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleChange& change);
+
+// Models for maps: the meshes, objects and materials that a bake or a conversion of a map needs.
+
+/// object: each primitive of a document once, in object space. world: each instance in the scene.
+enum class ModelSpace { object, world };
+
+/// A primitive of a document, or the mesh of another file.
+struct MapModelPart {
+    std::string name;  ///< "mesh 'Body' primitive 0"; empty for the mesh of another file.
+    Mesh mesh;
+    /// The names of its objects: those of an OBJ file (MeshFile::objects), or the node.
+    std::vector<std::string> objects{};
+    std::vector<std::uint32_t> object_of{};  ///< By triangle; empty for a single object.
+    int texcoord_set = 0;                    ///< The set in `mesh.texcoords` for a document.
+};
+
+/// The materials and images of a scene, without decoded pixels.
+struct MapAppearance {
+    std::vector<GltfMaterial> materials;
+    std::vector<GltfImage> images;
+};
+
+/// A model for maps, with separate parts.
+struct MapModel {
+    std::vector<MapModelPart> parts;
+    MapAppearance appearance;            ///< In the order of `materials`; only in world space.
+    std::vector<std::string> materials;  ///< Names, by the indices in the material ranges.
+    glm::dvec3 origin{0.0};              ///< The origin of the positions (mesh_file.h).
+    /// The transform of the only primitive of a scene, or the identity for a mesh file; absent for
+    /// several primitives.
+    std::optional<glm::dmat3> world_from_object;
+};
+
+/// Returns all triangles of a model with their attributes.
+///
+/// Texture coordinates are the set of a primitive's normal texture
+/// (GltfDocument::tangent_texcoords). Normals and tangents are those of the file. A glTF primitive
+/// without normals gets flat ones, as glTF requires, and no tangents. If only some primitives of a
+/// scene have tangents, the others get those of MikkTSpace, as in a renderer. Other files without
+/// normals get none.
+/// \throws InvalidInput if the document is not valid
+MapModel map_model(Model model, ModelSpace space, Report& report);
+
+/// Joins the parts in their order to one mesh with their material ranges and the attributes that
+/// all of them have. Colors are kept if any part has them; the other parts are white, as in glTF.
+/// \throws InvalidInput if there are too many vertices for 32-bit indices
+Mesh joined(std::vector<MapModelPart> parts);
+
+/// Changes the origin of the positions.
+void move_to(MapModel& model, const glm::dvec3& origin);
 
 // The differences between the normals and tangents of two models.
 
