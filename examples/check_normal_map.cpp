@@ -45,7 +45,8 @@ int main(int count, char** arguments) {
                                                                                : "up");
         std::printf("confidence: %.3f\n", check.green.confidence);
         std::printf("mean length: %.3f\n", check.lengths.mean);
-        for (const relief::Finding& finding : relief::to_report(check).findings())
+        const relief::Report report = relief::to_report(check);
+        for (const relief::Finding& finding : report.findings())
             std::printf("%s\n", relief::to_string(finding).c_str());
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes normals and MikkTSpace tangents of a mesh in buffers of your own, and writes them into a
-// vertex buffer.
+// Computes normals and MikkTSpace tangents of an interleaved vertex buffer with 16-bit indices, in
+// place.
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
+#include "relief/mesh/buffers.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
@@ -18,38 +22,36 @@ struct Vertex {
 int main() {
     // A wave over the unit square, as an engine holds it: a grid of 33 by 33 vertices.
     const int side = 33;
-    std::vector<glm::vec3> positions;
-    std::vector<glm::vec2> texcoords;
-    std::vector<glm::uvec3> triangles;
+    std::vector<Vertex> vertices;
     for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
-            const glm::vec2 at(x / float{side - 1}, y / float{side - 1});
-            positions.emplace_back(at, 0.1F * glm::sin(6.2831853F * at.x));
-            texcoords.emplace_back(at.x, 1.0F - at.y);  // v points down
+            Vertex vertex{};
+            vertex.texcoord = glm::vec2(x, side - 1 - y) / float{side - 1};  // v points down.
+            vertex.position = {vertex.texcoord.x, 1.0F - vertex.texcoord.y,
+                               0.1F * std::sin(6.2831853F * vertex.texcoord.x)};
+            vertices.push_back(vertex);
         }
     }
-    for (unsigned y = 0; y + 1 < side; ++y) {
-        for (unsigned x = 0; x + 1 < side; ++x) {
-            const unsigned corner = y * side + x;
-            triangles.emplace_back(corner, corner + 1, corner + side + 1);
-            triangles.emplace_back(corner, corner + side + 1, corner + side);
+    std::vector<std::uint16_t> indices;
+    for (int y = 0; y + 1 < side; ++y) {
+        for (int x = 0; x + 1 < side; ++x) {
+            for (const int offset : {0, 1, side + 1, 0, side + 1, side})
+                indices.push_back(static_cast<std::uint16_t>(y * side + x + offset));
         }
     }
 
-    relief::Report report;  // Counts what was degenerate.
-    const std::vector<glm::vec3> normals =
-        relief::vertex_normals(positions, triangles, relief::NormalWeight::angle, report);
+    // Views of the buffers; nothing is copied.
+    const std::size_t count = vertices.size();
+    const std::size_t stride = sizeof(Vertex);
+    const relief::StridedSpan<const glm::vec3> positions(&vertices[0].position, count, stride);
+    const relief::StridedSpan<glm::vec3> normals(&vertices[0].normal, count, stride);
+    const relief::StridedSpan<glm::vec4> tangents(&vertices[0].tangent, count, stride);
+    const relief::StridedSpan<const glm::vec2> texcoords(&vertices[0].texcoord, count, stride);
+    const relief::TriangleSpan triangles{std::span<const std::uint16_t>(indices)};
 
-    // MikkTSpace's tangents belong to the corners of triangles; those of one vertex are equal here.
-    std::vector<glm::vec4> tangents(positions.size());
-    const std::vector<glm::vec4> corner_tangents =
-        relief::mikktspace_tangents(positions, normals, texcoords, triangles, report);
-    for (std::size_t corner = 0; corner < corner_tangents.size(); ++corner)
-        tangents[triangles[corner / 3][static_cast<int>(corner % 3)]] = corner_tangents[corner];
-
-    std::vector<Vertex> vertices(positions.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-        vertices[i] = {positions[i], normals[i], tangents[i], texcoords[i]};
+    relief::Report report;  // Counts degenerate elements. It is optional.
+    relief::vertex_normals(positions, triangles, relief::NormalOptions{}, normals, &report);
+    relief::vertex_tangents(positions, normals, texcoords, triangles, tangents, &report);
 
     for (const relief::Finding& finding : report.findings())
         std::printf("%s\n", relief::to_string(finding).c_str());

@@ -14,7 +14,9 @@
 #include <span>
 #include <type_traits>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
 
 /// Values of type T in the caller's memory at equal distances, as in an interleaved vertex buffer.
 /// T is const if the values are only read.
