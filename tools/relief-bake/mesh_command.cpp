@@ -77,22 +77,21 @@ void add_high_texture_option(CLI::App& app, const std::string& name,
 struct LayerInfo {
     LayerKind kind;
     const char* option;
-    const char* name;
     const char* description;
 };
 
 constexpr LayerInfo all_layers[] = {
-    {LayerKind::height, "--height-map", "height map",
+    {LayerKind::height, "--height-map",
      "Write the height of the high surface above the low mesh along the ray, in the unit of the "
      "mesh."},
-    {LayerKind::occlusion, "--occlusion-map", "ambient occlusion",
+    {LayerKind::occlusion, "--occlusion-map",
      "Write the ambient occlusion by the high meshes: 1 is not occluded."},
-    {LayerKind::curvature, "--curvature-map", "curvature",
+    {LayerKind::curvature, "--curvature-map",
      "Write the mean curvature of the high meshes per unit of length: convex surfaces are "
      "positive; a sphere of radius r has 1/r."},
-    {LayerKind::position, "--position-map", "positions",
+    {LayerKind::position, "--position-map",
      "Write the world positions of the points that rays hit."},
-    {LayerKind::color, "--color-map", "colors",
+    {LayerKind::color, "--color-map",
      "Write the color of the high meshes: the product of vertex color, material color and "
      "texture."},
 };
@@ -435,10 +434,6 @@ void add_error_map_option(CLI::App& app, std::optional<std::filesystem::path>& f
              "Write the error of every texel: .png from black (no error) to pale yellow (the "
              "printed maximum of the scale), .exr or .tif in degrees.")
         .group("Accuracy");
-}
-
-std::string layer_name(LayerKind kind) {
-    return layer_info(kind).name;
 }
 
 int bits_of(const LayerOptions& options, LayerKind kind) {

@@ -89,38 +89,6 @@ std::string to_string(const BakeRecord& record);
 
 // Written files.
 
-/// The encoding of a layer. Floats store values as they are, colors linearly. With 8 and 16 bits,
-/// occlusion is code / 255 or code / 65535, and colors are sRGB; signed layers are
-/// range * (code - 128) / 127 or range * (code - 32768) / 32767, so that 0 is exact.
-struct LayerCoding {
-    LayerKind kind = LayerKind::height;
-    int bits = 16;
-    double range = 1.0;  ///< Of signed layers in 8 and 16 bits.
-
-    [[nodiscard]] bool is_signed() const {
-        return kind != LayerKind::occlusion && kind != LayerKind::color;
-    }
-    [[nodiscard]] std::size_t channels() const {
-        return kind == LayerKind::position || kind == LayerKind::color ? 3 : 1;
-    }
-    [[nodiscard]] ColorSpace color_space() const;
-
-    /// The code of zero in signed layers: 128 or 32768.
-    [[nodiscard]] int zero_code() const { return bits == 8 ? 128 : 32768; }
-
-    /// The parameters of a displacement (value - midlevel) * strength, for values from 0 to 1.
-    [[nodiscard]] double strength() const;
-    [[nodiscard]] double midlevel() const;
-};
-
-/// Encodes rows of a layer.
-/// \param has_alpha    appends an alpha channel, which is 1 for baked and padded texels
-/// \param first_texel  the index of the first texel in the map
-/// \param report       counts values outside the range, which are clamped
-std::vector<std::byte> encode_layer(std::span<const float> values,
-                                    std::span<const TexelState> states, const LayerCoding& coding,
-                                    bool has_alpha, std::size_t first_texel, Report& report);
-
 struct WrittenLayer {
     std::filesystem::path file;
     LayerCoding coding;

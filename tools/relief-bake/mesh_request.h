@@ -36,11 +36,6 @@ struct HighTextureOptions {
     std::optional<std::filesystem::path> normal_map, color;
 };
 
-enum class LayerKind { height, occlusion, curvature, position, color };
-
-/// "height map", "ambient occlusion", ..., which is also the "relief:content" of files.
-std::string layer_name(LayerKind kind);
-
 /// The layers that are written beside the normal map.
 struct LayerOptions {
     std::map<LayerKind, std::filesystem::path> files;

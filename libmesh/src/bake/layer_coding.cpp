@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Encodes the layers of a bake for image files. Tests: tests/tools/relief_bake_layers_test.cpp.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+#include "parallel.h"
+#include "relief/mesh/bake.h"
+
+namespace relief {
+namespace {
+
+/// Full alpha.
+template <typename Sample>
+constexpr Sample full_sample = std::is_floating_point_v<Sample>
+                                   ? Sample{1}
+                                   : std::numeric_limits<Sample>::max();
+
+/// Encodes a value. \param is_outside  becomes true if the value is outside the range of the codes
+template <typename Sample>
+Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
+    if constexpr (std::is_floating_point_v<Sample>) {
+        return value;
+    } else {
+        constexpr double largest = std::numeric_limits<Sample>::max();
+        double place = static_cast<double>(value);
+        double min = 0.0;
+        if (coding.is_signed()) {
+            place /= coding.range;
+            min = -1.0;
+        }
+        is_outside = is_outside || !(place >= min && place <= 1.0);
+        // NaN becomes 0.
+        place = place >= min ? std::min(place, 1.0) : place < min ? min : 0.0;
+        if (coding.is_signed()) {
+            constexpr double middle = (largest + 1.0) / 2.0;
+            return static_cast<Sample>(middle + std::round((middle - 1.0) * place));
+        }
+        if (coding.kind == LayerKind::color)
+            place = static_cast<double>(srgb_from_linear(static_cast<float>(place)));
+        return static_cast<Sample>(std::round(largest * place));
+    }
+}
+
+template <typename Sample>
+std::vector<std::byte> encode(std::span<const float> values, std::span<const TexelState> states,
+                              const LayerCoding& coding, bool has_alpha, std::size_t first_texel,
+                              Report& report) {
+    constexpr std::size_t texels_per_task = 1 << 14;
+    const std::size_t channels = coding.channels();
+    const std::size_t stride = channels + (has_alpha ? 1 : 0);
+    std::vector<std::byte> bytes(states.size() * stride * sizeof(Sample));
+    const auto put = [&](std::size_t index, Sample sample) {
+        std::memcpy(&bytes[index * sizeof(Sample)], &sample, sizeof(Sample));
+    };
+    parallel_for_reporting(
+        states.size(), texels_per_task, report,
+        [&](std::size_t begin, std::size_t end, Report& task_report) {
+            for (std::size_t i = begin; i < end; ++i) {
+                bool is_outside = false;
+                for (std::size_t channel = 0; channel < channels; ++channel) {
+                    put(i * stride + channel,
+                        encode_value<Sample>(coding, values[i * channels + channel], is_outside));
+                }
+                if (is_outside) {
+                    task_report.add(layer_name(coding.kind) + " outside the range of its file",
+                                    "texel", first_texel + i, "is clamped to the range");
+                }
+                if (!has_alpha) continue;
+                const bool is_filled =
+                    states[i] == TexelState::baked || states[i] == TexelState::padded;
+                put(i * stride + channels, is_filled ? full_sample<Sample> : Sample{0});
+            }
+        });
+    return bytes;
+}
+
+}  // namespace
+
+std::string layer_name(LayerKind kind) {
+    switch (kind) {
+        case LayerKind::height:
+            return "height map";
+        case LayerKind::occlusion:
+            return "ambient occlusion";
+        case LayerKind::curvature:
+            return "curvature";
+        case LayerKind::position:
+            return "positions";
+        case LayerKind::color:
+            break;
+    }
+    return "colors";
+}
+
+std::span<const float> layer_values(LayerKind kind, const BakedRows& rows) {
+    switch (kind) {
+        case LayerKind::height:
+            return rows.heights;
+        case LayerKind::occlusion:
+            return rows.occlusion;
+        case LayerKind::curvature:
+            return rows.curvature;
+        case LayerKind::position:
+            return rows.positions;
+        default:
+            return rows.colors;
+    }
+}
+
+ColorSpace LayerCoding::color_space() const {
+    if (kind != LayerKind::color) return ColorSpace::data;
+    return bits == 32 ? ColorSpace::linear : ColorSpace::srgb;
+}
+
+double LayerCoding::strength() const {
+    if (bits == 32) return 1.0;
+    const double largest = bits == 8 ? 255.0 : 65535.0;
+    return range * largest / (zero_code() - 1);
+}
+
+double LayerCoding::midlevel() const {
+    if (bits == 32) return 0.0;
+    return zero_code() / (bits == 8 ? 255.0 : 65535.0);
+}
+
+std::vector<std::byte> encode_layer(std::span<const float> values,
+                                    std::span<const TexelState> states, const LayerCoding& coding,
+                                    bool has_alpha, std::size_t first_texel, Report& report) {
+    if (coding.bits == 8)
+        return encode<std::uint8_t>(values, states, coding, has_alpha, first_texel, report);
+    if (coding.bits == 16)
+        return encode<std::uint16_t>(values, states, coding, has_alpha, first_texel, report);
+    return encode<float>(values, states, coding, has_alpha, first_texel, report);
+}
+
+}  // namespace relief
