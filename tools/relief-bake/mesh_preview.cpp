@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "portable_math.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
@@ -44,8 +45,9 @@ std::vector<double> facing_areas(const Mesh& mesh, const std::vector<glm::dvec3>
 }
 
 glm::dvec3 direction_to_eye(const ViewDirection& view) {
-    return {std::cos(view.elevation) * std::sin(view.azimuth), std::sin(view.elevation),
-            std::cos(view.elevation) * std::cos(view.azimuth)};
+    const double across = portable::cos(view.elevation);
+    return {across * portable::sin(view.azimuth), portable::sin(view.elevation),
+            across * portable::cos(view.azimuth)};
 }
 
 Material gray() {

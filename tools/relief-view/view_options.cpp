@@ -12,6 +12,7 @@
 #include "common/text.h"
 #include "effect_options.h"
 #include "picture_comparison.h"
+#include "portable_math.h"
 #include "scene_options.h"
 #include "view_command.h"
 #include "window/window_system.h"
@@ -97,8 +98,14 @@ SpotLight spot(const std::string& subject, std::string_view text) {
 }  // namespace
 
 glm::vec3 towards(float azimuth, float elevation) {
-    return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-            std::cos(elevation) * std::cos(azimuth)};
+    const auto sine = [](float angle) {
+        return static_cast<float>(portable::sin(static_cast<double>(angle)));
+    };
+    const auto cosine = [](float angle) {
+        return static_cast<float>(portable::cos(static_cast<double>(angle)));
+    };
+    return {cosine(elevation) * sine(azimuth), sine(elevation),
+            cosine(elevation) * cosine(azimuth)};
 }
 
 LightOption parse_light(const std::string& subject, const std::string& text) {

@@ -12,8 +12,8 @@
 #include "bake/layers.h"
 #include "bake/texel_frame.h"
 #include "geometry/direction.h"
-#include "geometry/portable_math.h"
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "geometry/direction.h"
-#include "geometry/portable_math.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

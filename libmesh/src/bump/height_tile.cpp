@@ -9,9 +9,9 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/portable_math.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

@@ -28,10 +28,10 @@
 #include <vector>
 
 #include "geometry/error_accumulator.h"
-#include "geometry/portable_math.h"
 #include "image/fft.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/report.h"
 

@@ -25,9 +25,9 @@
 
 #include "bump/height_tile.h"
 #include "bump/power_spectrum.h"
-#include "geometry/portable_math.h"
 #include "image/height_holes.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "random.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"

@@ -9,9 +9,9 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/portable_math.h"
 #include "image/fft.h"
 #include "image/texel_loops.h"
+#include "portable_math.h"
 #include "random.h"
 
 namespace relief {

@@ -9,9 +9,9 @@
 
 #include "geometry/check_triangles.h"
 #include "geometry/direction.h"
-#include "geometry/portable_math.h"
 #include "geometry/weld.h"
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

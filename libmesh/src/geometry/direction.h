@@ -11,7 +11,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "geometry/portable_math.h"
+#include "portable_math.h"
 
 namespace relief {
 

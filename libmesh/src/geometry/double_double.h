@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "geometry/corner_angle.h"
+#include "corner_angle.h"
 
 namespace relief {
 

@@ -18,7 +18,7 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/corner_angle.h"
+#include "corner_angle.h"
 #include "relief/mesh/normals.h"
 #include "vector_targets.h"
 

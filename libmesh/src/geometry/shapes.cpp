@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/portable_math.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -11,9 +11,9 @@
 
 #include "geometry/corners.h"
 #include "geometry/direction.h"
-#include "geometry/portable_math.h"
 #include "geometry/texture_gradient.h"
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

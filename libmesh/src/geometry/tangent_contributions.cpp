@@ -12,7 +12,7 @@
 #include <mutex>
 #include <numbers>
 
-#include "geometry/corner_angle.h"
+#include "corner_angle.h"
 #include "geometry/direction.h"
 #include "geometry/tangent_contributions.h"
 #include "parallel.h"

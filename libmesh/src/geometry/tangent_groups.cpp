@@ -19,7 +19,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "geometry/corner_angle.h"
+#include "corner_angle.h"
 #include "geometry/direction.h"
 #include "geometry/tangent_groups.h"
 #include "geometry/tangent_signs.h"

@@ -14,8 +14,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/portable_math.h"
 #include "image/fft.h"
+#include "portable_math.h"
 #include "vector_targets.h"
 
 namespace relief {

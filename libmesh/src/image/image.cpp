@@ -17,10 +17,10 @@
 #include <string_view>
 #include <type_traits>
 
-#include "geometry/portable_math.h"
 #include "image/texel_loops.h"
 #include "large_memory.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -19,9 +19,9 @@
 #include <numbers>
 #include <span>
 
-#include "geometry/portable_math.h"
 #include "image/map_statistics.h"
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

@@ -16,8 +16,8 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/portable_math.h"
 #include "image/texel_loops.h"
+#include "portable_math.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
 
@@ -61,7 +62,7 @@ ImageDifference difference(const std::vector<T>& a, const std::vector<T>& b, std
     if (!a.empty()) {
         result.mean = sum / static_cast<double>(a.size());
         result.rms = std::sqrt(sum_of_squares / static_cast<double>(a.size()));
-        result.psnr = 20.0 * std::log10(peak / result.rms);
+        result.psnr = 20.0 / std::numbers::ln10 * portable::log(peak / result.rms);
     }
     return result;
 }
@@ -272,7 +273,7 @@ Kernel1d balanced(const Weights& weights) {
 Weights gaussian(const Sensitivity& sensitivity, int radius, double pixels_per_degree) {
     return sampled(radius, [&](double x) {
         const double degrees = x / pixels_per_degree;
-        return std::exp(-pi * pi * degrees * degrees / sensitivity.b);
+        return portable::exp(-pi * pi * degrees * degrees / sensitivity.b);
     });
 }
 
@@ -384,7 +385,9 @@ FlipFilters::FlipFilters(double pixels_per_degree) {
     cz_narrow = padded(scaled(narrow, std::sqrt(factor(sensitivity_cz_narrow) / total)), radius);
     cz_wide = padded(scaled(wide, std::sqrt(factor(sensitivity_cz_wide) / total)), radius);
 
-    const auto bell = [&](double x) { return std::exp(-0.5 * x * x / (deviation * deviation)); };
+    const auto bell = [&](double x) {
+        return portable::exp(-0.5 * x * x / (deviation * deviation));
+    };
     smooth = normalized(sampled(feature_radius, bell));
     edge =
         padded(balanced(sampled(feature_radius, [&](double x) { return -x * bell(x); })), radius);
@@ -419,7 +422,6 @@ namespace {
 constexpr float color_exponent = 0.7F;
 constexpr float bend_at = 0.4F;
 constexpr float bend_to = 0.95F;
-constexpr float feature_exponent = 0.5F;
 
 /// The rows that a thread processes at a time: large against the radius of the filters, small
 /// enough for the cache.
@@ -493,6 +495,12 @@ float hyab(const glm::vec3& a, const glm::vec3& b) {
            std::sqrt(difference.y * difference.y + difference.z * difference.z);
 }
 
+/// x^y for x and y of at least 0.
+float power(float x, float y) {
+    if (y == 0.0F) return 1.0F;
+    return static_cast<float>(portable::pow(static_cast<double>(x), static_cast<double>(y)));
+}
+
 /// The last steps, from two filtered pixels to their error.
 class PixelError {
   public:
@@ -501,7 +509,7 @@ class PixelError {
           rgb_from_xyz_(glm::inverse(relative_xyz_from_rgb())) {
         const glm::vec3 green = hunt_adjusted_lab(xyz_from_rgb_ * glm::vec3(0, 1, 0));
         const glm::vec3 blue = hunt_adjusted_lab(xyz_from_rgb_ * glm::vec3(0, 0, 1));
-        max_ = std::pow(hyab(green, blue), color_exponent);
+        max_ = power(hyab(green, blue), color_exponent);
     }
 
     /// Lab of a filtered opponent color, clamped to the gamut of a screen.
@@ -513,10 +521,10 @@ class PixelError {
     /// \param feature  the larger difference of the strengths of edges and points
     [[nodiscard]] float operator()(const glm::vec3& lab_a, const glm::vec3& lab_b,
                                    float feature) const {
-        const float color = redistributed(std::pow(hyab(lab_a, lab_b), color_exponent));
-        const float raise =
-            std::pow(std::min(feature / std::numbers::sqrt2_v<float>, 1.0F), feature_exponent);
-        return std::min(std::pow(color, 1.0F - raise), 1.0F);
+        const float color = redistributed(power(hyab(lab_a, lab_b), color_exponent));
+        // The exponent of features is 1 / 2.
+        const float raise = std::sqrt(std::min(feature / std::numbers::sqrt2_v<float>, 1.0F));
+        return std::min(power(color, 1.0F - raise), 1.0F);
     }
 
   private:

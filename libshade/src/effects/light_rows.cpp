@@ -3,6 +3,7 @@
 // are normalized in double precision, so that every length of a float works.
 // Tests: tests/shade/effects/shader_source_test.cpp.
 #include "effects/light_rows.h"
+#include "portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +37,8 @@ void add(std::vector<glm::vec4>& rows, const PointLight& light) {
 void add(std::vector<glm::vec4>& rows, const SpotLight& light) {
     // A smaller difference between the cones is one sharp edge (KHR_lights_punctual).
     constexpr double min_difference = 1e-3;
-    const double outer = std::cos(static_cast<double>(light.outer_cone));
-    const double inner = std::cos(static_cast<double>(light.inner_cone));
+    const double outer = portable::cos(static_cast<double>(light.outer_cone));
+    const double inner = portable::cos(static_cast<double>(light.inner_cone));
     const double scale = 1.0 / std::max(inner - outer, min_difference);
     const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction_world));
     rows.push_back(position_row(light.point));

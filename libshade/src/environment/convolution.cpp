@@ -25,6 +25,7 @@
 
 #include "environment/environment_images.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -61,7 +62,7 @@ glm::dvec3 ggx_facet(const glm::dvec2& point, double alpha) {
     const double cosine = 1.0 / std::sqrt(1.0 + tan_squared);
     const double sine = std::sqrt(tan_squared) * cosine;
     const double angle = 2.0 * std::numbers::pi * point.y;
-    return {sine * std::cos(angle), sine * std::sin(angle), cosine};
+    return {sine * portable::cos(angle), sine * portable::sin(angle), cosine};
 }
 
 // Directional albedo
@@ -97,9 +98,9 @@ const std::array<DiscPoint, radial_points * arc_points>& disc_points() {
             const double radius = std::sqrt(1.0 - root * root);
             for (int j = 0; j < arc_points; ++j) {
                 const double angle = std::numbers::pi * ((j + 0.5) / arc_points - 0.5);
-                const double across = radius * std::cos(angle);
+                const double across = radius * portable::cos(angle);
                 all.at(static_cast<std::size_t>(i * arc_points + j)) = {
-                    across, radius * std::sin(angle), std::sqrt(1.0 - across * across),
+                    across, radius * portable::sin(angle), std::sqrt(1.0 - across * across),
                     2.0 * root / (radial_points * arc_points)};
             }
         }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -49,7 +50,7 @@ constexpr Cells vertical_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}}}
 
 /// The integral of 1 / (1 + s^2 + t^2)^(3/2) from (0, 0).
 double corner_solid_angle(double s, double t) {
-    return std::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
+    return portable::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
 }
 
 }  // namespace
@@ -151,7 +152,7 @@ double angular_map_reach(int width) {
 
 glm::dvec2 angular_map_place(const glm::dvec3& direction, int width) {
     const double across = std::hypot(direction.x, direction.y);
-    const double angle = std::atan2(across, -direction.z) / std::numbers::pi;
+    const double angle = portable::atan2(across, -direction.z) / std::numbers::pi;
     const double radius = std::min(angle, angular_map_reach(width));
     const glm::dvec2 side = across > 0.0 ? glm::dvec2(direction) / across : glm::dvec2(1.0, 0.0);
     return {0.5 + 0.5 * radius * side.x, 0.5 - 0.5 * radius * side.y};

@@ -17,6 +17,7 @@
 #include "environment/environment_images.h"
 #include "gl/program.h"
 #include "gl/resources.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/context.h"
 
@@ -370,7 +371,8 @@ void draw_mirror_pictures(const Api& api, const CubeMap& environment, const Cube
         const double shrinking = static_cast<double>(environment.size) / (cube.size >> level);
         painter.paint(cube, level, 1, [&](const LinkedProgram& program) {
             program.set("environment", 0);
-            program.set("level", static_cast<float>(std::max(0.0, std::log2(shrinking))));
+            program.set("level", static_cast<float>(
+                                     std::max(0.0, portable::log(shrinking) / std::numbers::ln2)));
         });
     }
     api->BindTexture(GL_TEXTURE_CUBE_MAP, 0);

@@ -11,6 +11,7 @@
 #include "environment/convolution.h"
 #include "environment/environment_images.h"
 #include "geometry/direction.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
 
@@ -213,8 +214,8 @@ glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const 
         result = face_radiance(d);
     } else if (layout_ == Layout::equirectangular) {
         const double across = std::hypot(d.x, d.z);
-        const glm::dvec2 uv(0.5 + std::atan2(d.x, -d.z) / (2.0 * pi),
-                            0.5 - std::atan2(d.y, across) / pi);
+        const glm::dvec2 uv(0.5 + portable::atan2(d.x, -d.z) / (2.0 * pi),
+                            0.5 - portable::atan2(d.y, across) / pi);
         result = images_.front().bilinear(uv, TextureWrap::repeat, TextureWrap::clamp);
     } else {
         const glm::dvec2 uv = angular_map_place(d, images_.front().width());

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "parallel.h"
+#include "portable_math.h"
 #include "reference/shading.h"
 #include "reference/surface.h"
 #include "relief/mesh/report.h"
@@ -80,7 +81,7 @@ class Tracer {
           settings_(settings),
           visibility_(view_meshes(prepared), static_cast<double>(camera().near),
                       static_cast<double>(camera().far)) {
-        top_ = std::tan(static_cast<double>(camera().vertical_fov) * 0.5);
+        top_ = portable::tan(static_cast<double>(camera().vertical_fov) * 0.5);
     }
 
     /// \param x, y  in pixels from the upper left corner

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "portable_math.h"
 #include "reference/surface.h"
 #include "relief/shade/scene.h"
 
@@ -40,7 +41,7 @@ glm::dvec3 fresnel_factor(const Material& material, double n_dot_v) {
     switch (material.fresnel) {
         case FresnelModel::schlick:
             factor = reflectivity + (glm::dvec3(material.grazing_reflectivity) - reflectivity) *
-                                        std::pow(1.0 - cosine, 5.0);
+                                        portable::pow(1.0 - cosine, 5.0);
             break;
         case FresnelModel::dielectric:
             factor = reflectivity * fresnel(static_cast<double>(material.refractive_index), cosine);
@@ -103,8 +104,8 @@ double cone_share(const SpotLight& spot, const glm::dvec3& light_world) {
     // Cones with a smaller difference of cosines have a sharp edge (KHR_lights_punctual).
     constexpr double min_difference = 1e-3;
     const double cosine = glm::dot(-light_world, glm::normalize(glm::dvec3(spot.direction_world)));
-    const double inner = std::cos(static_cast<double>(spot.inner_cone));
-    const double outer = std::cos(static_cast<double>(spot.outer_cone));
+    const double inner = portable::cos(static_cast<double>(spot.inner_cone));
+    const double outer = portable::cos(static_cast<double>(spot.outer_cone));
     const double share =
         std::clamp((cosine - outer) / std::max(min_difference, inner - outer), 0.0, 1.0);
     return share * share;
@@ -151,7 +152,7 @@ struct Context {
 
 /// The power of a cosine; 1 for the exponent 0, for every cosine.
 double power(double cosine, double exponent) {
-    return exponent == 0.0 ? 1.0 : std::pow(std::max(cosine, 0.0), exponent);
+    return exponent == 0.0 ? 1.0 : portable::pow(std::max(cosine, 0.0), exponent);
 }
 
 /// The term s of the formula.
@@ -313,7 +314,7 @@ glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm:
     const double visibility =
         0.5 / (n_dot_l * std::sqrt(n_dot_v * n_dot_v * (1.0 - squared) + squared) +
                n_dot_v * std::sqrt(n_dot_l * n_dot_l * (1.0 - squared) + squared));
-    const glm::dvec3 fresnel = facets.f0 + (1.0 - facets.f0) * std::pow(1.0 - v_dot_h, 5.0);
+    const glm::dvec3 fresnel = facets.f0 + (1.0 - facets.f0) * portable::pow(1.0 - v_dot_h, 5.0);
     return (1.0 - fresnel) * facets.scattering +
            fresnel * (std::numbers::pi * distribution * visibility);
 }

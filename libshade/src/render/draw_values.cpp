@@ -8,6 +8,7 @@
 #include <map>
 
 #include "effects/light_rows.h"
+#include "portable_math.h"
 #include "render/program_cache.h"
 
 namespace relief {
@@ -145,7 +146,7 @@ void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode
 glm::dmat4 clip_from_world(const Camera& camera, double aspect) {
     const double near = static_cast<double>(camera.near);
     const double far = static_cast<double>(camera.far);
-    const double y = 1.0 / std::tan(static_cast<double>(camera.vertical_fov) * 0.5);
+    const double y = 1.0 / portable::tan(static_cast<double>(camera.vertical_fov) * 0.5);
     glm::dmat4 clip_from_view(0.0);
     clip_from_view[0][0] = y / aspect;
     clip_from_view[1][1] = y;

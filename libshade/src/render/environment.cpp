@@ -13,6 +13,7 @@
 #include "gl/cube_map.h"
 #include "gl/resources.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "progress_stage.h"
 #include "relief/shade/scene_file.h"
 
@@ -211,7 +212,8 @@ Skybox::Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, O
       exposure_(scene.exposure) {}
 
 void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const {
-    const float y = std::tan(camera.vertical_fov * 0.5F);
+    const auto y =
+        static_cast<float>(portable::tan(static_cast<double>(camera.vertical_fov) * 0.5));
     const glm::mat3 world_from_view(camera.world_from_view);
     const glm::mat3 world_from_screen(world_from_view[0] * (y * aspect), world_from_view[1] * y,
                                       -world_from_view[2]);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
@@ -119,6 +120,10 @@ std::array<glm::vec3, 8> corners_in(const glm::mat3& world_from_view, const glm:
     return corners;
 }
 
+float tan_of_half(float angle) {
+    return static_cast<float>(portable::tan(static_cast<double>(angle) * 0.5));
+}
+
 void check_view(float azimuth, float elevation, float vertical_fov, float aspect) {
     if (!std::isfinite(azimuth) || !std::isfinite(elevation)) {
         throw InvalidInput(
@@ -147,7 +152,7 @@ float distance_to_see(const glm::vec3& point, float tan_x, float tan_y) {
 /// every finite vertex. 1 if there is none.
 float fitting_factor(const Scene& scene, const Camera& camera, const glm::vec3& target,
                      float aspect) {
-    const float tan_y = std::tan(0.5F * camera.vertical_fov);
+    const float tan_y = tan_of_half(camera.vertical_fov);
     const float tan_x = aspect * tan_y;
     const glm::mat3 view_from_world = glm::transpose(glm::mat3(camera.world_from_view));
     float needed = 0;
@@ -176,7 +181,7 @@ Camera framed(const Bounds& world, float azimuth, float elevation, float vertica
     const glm::vec3 half_size =
         world.empty() ? glm::vec3(0.0F) : (world.max - world.min) * (0.5F * box_margin);
 
-    const float tan_y = std::tan(vertical_fov * 0.5F);
+    const float tan_y = tan_of_half(vertical_fov);
     const float tan_x = tan_y * aspect;
     float distance = 0.0F;
     float depth = 0.0F;  // Half of the extent of the box along the view.

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <utility>
 
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "scene/scene_parts.h"
 
@@ -34,9 +35,14 @@ const glm::vec4& key_value(const KeyChannel& channel, std::size_t key) {
 
 /// Interpolates two unit quaternions along the shortest arc.
 glm::vec4 slerp(const glm::vec4& a, const glm::vec4& b, float t) {
-    const glm::quat result =
-        glm::slerp(glm::quat(a.w, a.x, a.y, a.z), glm::quat(b.w, b.x, b.y, b.z), t);
-    return {result.x, result.y, result.z, result.w};
+    const glm::dvec4 from(a);
+    const glm::dvec4 to = glm::dot(from, glm::dvec4(b)) < 0.0 ? -glm::dvec4(b) : glm::dvec4(b);
+    const double angle = 2.0 * portable::atan2(glm::length(to - from), glm::length(to + from));
+    const double sine = portable::sin(angle);
+    const auto share = static_cast<double>(t);
+    if (!(sine > 0.0)) return glm::vec4(glm::mix(from, to, share));
+    return glm::vec4(
+        (portable::sin((1.0 - share) * angle) * from + portable::sin(share * angle) * to) / sine);
 }
 
 /// Hermite interpolation between a key and the next one; tangents are per second.
@@ -145,6 +151,16 @@ glm::vec3 unit_or(const glm::vec3& direction, const glm::vec3& fallback) {
     return length > 0.0 && std::isfinite(length) ? glm::vec3(precise / length) : fallback;
 }
 
+/// Rotates by an angle about a unit vector, counter-clockwise seen from its tip.
+glm::mat3 rotation_about(const glm::dvec3& axis, double angle) {
+    const double cosine = portable::cos(angle);
+    const glm::dvec3 s = portable::sin(angle) * axis;
+    const glm::dvec3 c = (1.0 - cosine) * axis;
+    return {glm::dvec3(c.x * axis.x + cosine, c.x * axis.y + s.z, c.x * axis.z - s.y),
+            glm::dvec3(c.y * axis.x - s.z, c.y * axis.y + cosine, c.y * axis.z + s.x),
+            glm::dvec3(c.z * axis.x + s.y, c.z * axis.y - s.x, c.z * axis.z + cosine)};
+}
+
 glm::mat4 matrix_of(const LocalTransform& transform) {
     glm::mat4 matrix(1.0F);
     if (transform.matrix) {
@@ -209,7 +225,7 @@ class Animator {
     void operator()(const Turntable& turntable) const {
         const double turned = angle(turntable.angle, turntable.speed);
         const glm::dvec3 axis = glm::normalize(glm::dvec3(turntable.axis));
-        at(turntable.node).turntable = glm::mat4(glm::rotate(glm::dmat4(1.0), turned, axis));
+        at(turntable.node).turntable = glm::mat4(rotation_about(axis, turned));
     }
 
   private:
@@ -393,9 +409,11 @@ double duration(const SceneGraph& graph) {
 }
 
 glm::mat3 orbit_axes(double azimuth, double elevation) {
-    const glm::dvec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                          std::cos(azimuth) * std::cos(elevation));
-    const glm::dvec3 right(std::cos(azimuth), 0.0, -std::sin(azimuth));
+    const glm::dvec2 azimuth_sincos(portable::sin(azimuth), portable::cos(azimuth));
+    const glm::dvec2 elevation_sincos(portable::sin(elevation), portable::cos(elevation));
+    const glm::dvec3 back(azimuth_sincos.x * elevation_sincos.y, elevation_sincos.x,
+                          azimuth_sincos.y * elevation_sincos.y);
+    const glm::dvec3 right(azimuth_sincos.y, 0.0, -azimuth_sincos.x);
     return {glm::vec3(right), glm::vec3(glm::cross(back, right)), glm::vec3(back)};
 }
 

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "file_bytes.h"
+#include "portable_math.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
@@ -228,7 +229,9 @@ glm::quat rotation_from(const JsonCursor& cursor) {
     }
     cursor.allow({"axis", "angle"});
     const glm::vec3 axis = direction_from(cursor.at("axis"));
-    return glm::angleAxis(glm::radians(cursor.at("angle").number()), glm::normalize(axis));
+    const double half = 0.5 * static_cast<double>(glm::radians(cursor.at("angle").number()));
+    return {static_cast<float>(portable::cos(half)),
+            static_cast<float>(portable::sin(half)) * glm::normalize(axis)};
 }
 
 /// The name and the transform of a node.

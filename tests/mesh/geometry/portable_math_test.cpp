@@ -9,9 +9,9 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/corner_angle.h"
+#include "corner_angle.h"
 #include "geometry/double_double.h"
-#include "geometry/portable_math.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {
@@ -30,6 +30,9 @@ TEST(PortableMath, IsWithinAFewUnitsOfTheLastPlace) {
         // Near zeros, the error is that of the reduced angle.
         EXPECT_NEAR(portable::sin(x), std::sin(x), 2.0 * ulp * std::abs(std::sin(x)) + 1e-19) << x;
         EXPECT_NEAR(portable::cos(x), std::cos(x), 2.0 * ulp * std::abs(std::cos(x)) + 1e-19) << x;
+    });
+    each_between(-1.5, 1.5, [](double x) {
+        EXPECT_NEAR(portable::tan(x), std::tan(x), 4.0 * ulp * std::abs(std::tan(x))) << x;
     });
     each_between(-1e5, 1e5, [](double x) {
         EXPECT_NEAR(portable::sin(x), std::sin(x), 2.0 * ulp) << x;

@@ -17,9 +17,9 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "geometry/direction.h"
-#include "geometry/portable_math.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_uri.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plain additions, multiplications and divisions, which IEEE 754 rounds in one way only; relief is
 // compiled without contraction.
-#include "geometry/portable_math.h"
+#include "portable_math.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "geometry/corner_angle.h"
+#include "corner_angle.h"
 
 namespace relief::portable {
 namespace {
@@ -94,6 +94,10 @@ double cos(double x) {
     Reduced later = reduced(x);
     later.quarters = (later.quarters + 1) & 3;
     return sine_of(later);
+}
+
+double tan(double x) {
+    return sin(x) / cos(x);
 }
 
 double atan2(double y, double x) {

@@ -15,6 +15,9 @@ namespace RELIEF_API portable {
 double sin(double x);
 double cos(double x);
 
+/// \param x  radians, as for sin()
+double tan(double x);
+
 /// Range -pi to pi; 0 for (0, 0).
 double atan2(double y, double x);
 
