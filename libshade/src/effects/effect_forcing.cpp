@@ -20,20 +20,6 @@ namespace relief {
 
 namespace {
 
-/// The frame-wide effects. All but the skybox follow from the draws and the settings.
-const std::vector<std::pair<std::string_view, bool FramePlan::*>>& frame_effects() {
-    static const std::vector<std::pair<std::string_view, bool FramePlan::*>> all = {
-        {"skybox", &FramePlan::skybox},
-        {"environment map", &FramePlan::environment_map},
-        {"prefiltered environment", &FramePlan::prefiltered_map},
-        {"environment BRDF table", &FramePlan::environment_brdf},
-        {"environment irradiance", &FramePlan::environment_irradiance},
-        {"sorted blending", &FramePlan::sorted_blending},
-        {"finishing pass", &FramePlan::finishing_pass},
-    };
-    return all;
-}
-
 /// Names are compared by their letters and digits, in lower case.
 std::string bare(std::string_view name) {
     std::string result;
@@ -48,7 +34,7 @@ std::vector<std::string> all_names() {
     std::vector<std::string> names;
     for (const Effect& effect : effects())
         names.emplace_back(effect.name);
-    for (const auto& [name, member] : frame_effects())
+    for (const auto& [name, member] : frame_effects)
         names.emplace_back(name);
     return names;
 }
@@ -253,7 +239,7 @@ void check_finishing(const Scene& scene, const FrameSettings& settings, const Fr
 
 /// Refuses requests for frame-wide effects that the draws do not lead to.
 void check_frame(const FramePlan& plan, const Requests& requests) {
-    for (const auto& [name, member] : frame_effects()) {
+    for (const auto& [name, member] : frame_effects) {
         const bool is_on = plan.*member;
         if (name == "skybox" && requests.on(name) && !is_on) {
             throw InvalidInput(

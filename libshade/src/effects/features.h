@@ -6,6 +6,7 @@
 /// at once. Pure. Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -93,6 +94,21 @@ struct EffectRow {
     /// A more specific reason than effect.hidden; "" if it does not apply.
     const char* (*hidden_by)(const Features& requested, const Features& shown) = nullptr;
     bool phong_only = false;  ///< glTF's model has its own form of it, or none.
+};
+
+/// A frame-wide effect. All but the skybox follow from the draws and the settings.
+struct FrameEffect {
+    std::string_view name;
+    bool FramePlan::*member;
+};
+inline constexpr std::array frame_effects = {
+    FrameEffect{"skybox", &FramePlan::skybox},
+    FrameEffect{"environment map", &FramePlan::environment_map},
+    FrameEffect{"prefiltered environment", &FramePlan::prefiltered_map},
+    FrameEffect{"environment BRDF table", &FramePlan::environment_brdf},
+    FrameEffect{"environment irradiance", &FramePlan::environment_irradiance},
+    FrameEffect{"sorted blending", &FramePlan::sorted_blending},
+    FrameEffect{"finishing pass", &FramePlan::finishing_pass},
 };
 
 /// All rows, in the order of the plan's reasons.

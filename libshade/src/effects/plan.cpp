@@ -64,49 +64,53 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
     return draw;
 }
 
+/// Sets a frame-wide effect and adds its reason.
+void set_frame_effect(FramePlan& plan, bool FramePlan::*effect, bool on, std::string reason) {
+    const auto row = std::find_if(frame_effects.begin(), frame_effects.end(),
+                                  [&](const FrameEffect& r) { return r.member == effect; });
+    plan.*effect = on;
+    plan.reasons.push_back({std::string(row->name), on, std::move(reason)});
+}
+
 void plan_environment(const Scene& scene, const FrameSettings& settings, FramePlan& plan) {
-    const auto decide = [&](const char* effect, bool on, const char* if_on, const char* if_off) {
-        plan.reasons.push_back({effect, on,
-                                on                  ? if_on
-                                : scene.environment ? if_off
-                                                    : "the scene has no environment"});
-        return on;
+    const auto decide = [&](bool FramePlan::*effect, bool on, const char* if_on,
+                            const char* if_off) {
+        set_frame_effect(plan, effect, on,
+                         on                  ? if_on
+                         : scene.environment ? if_off
+                                             : "the scene has no environment");
     };
     const bool is_picture = settings.view == DebugView::picture;
-    plan.skybox = decide("skybox", scene.environment && scene.environment->skybox && is_picture,
-                         "the environment is to be seen behind the model",
-                         is_picture ? "the environment is not to be seen itself"
-                                    : "a debug view shows surfaces alone");
+    decide(&FramePlan::skybox, scene.environment && scene.environment->skybox && is_picture,
+           "the environment is to be seen behind the model",
+           is_picture ? "the environment is not to be seen itself"
+                      : "a debug view shows surfaces alone");
     const EnvironmentNeeds needs = environment_needs(plan);
-    plan.prefiltered_map = decide("prefiltered environment", needs.blurred,
-                                  "a rough material reflects it", "no rough material reflects it");
-    plan.environment_brdf = decide("environment BRDF table", needs.brdf,
-                                   "a metallic-roughness material reflects the environment",
-                                   "no metallic-roughness material reflects it");
-    plan.environment_irradiance =
-        decide("environment irradiance", needs.irradiance, "a material scatters its light",
-               "no material scatters its light");
-    plan.environment_map =
-        decide("environment map", plan.skybox || needs.any(),
-               needs.sharp ? "a material mirrors it" : "the effects above are made from it",
-               "nothing shows it");
+    decide(&FramePlan::prefiltered_map, needs.blurred, "a rough material reflects it",
+           "no rough material reflects it");
+    decide(&FramePlan::environment_brdf, needs.brdf,
+           "a metallic-roughness material reflects the environment",
+           "no metallic-roughness material reflects it");
+    decide(&FramePlan::environment_irradiance, needs.irradiance, "a material scatters its light",
+           "no material scatters its light");
+    decide(&FramePlan::environment_map, plan.skybox || needs.any(),
+           needs.sharp ? "a material mirrors it" : "the effects above are made from it",
+           "nothing shows it");
 }
 
 void plan_finishing(const FrameSettings& settings, FramePlan& plan) {
-    plan.sorted_blending =
-        std::any_of(plan.draws.begin(), plan.draws.end(),
-                    [](const DrawPlan& draw) { return draw.features.alpha == AlphaMode::blend; });
-    plan.reasons.push_back({"sorted blending", plan.sorted_blending,
-                            plan.sorted_blending ? "a material lets through what is behind it"
-                                                 : "every material is opaque or has holes only"});
+    const bool blends = std::any_of(plan.draws.begin(), plan.draws.end(), [](const DrawPlan& draw) {
+        return draw.features.alpha == AlphaMode::blend;
+    });
+    set_frame_effect(plan, &FramePlan::sorted_blending, blends,
+                     blends ? "a material lets through what is behind it"
+                            : "every material is opaque or has holes only");
     const bool averaged = settings.samples > 1 && !is_data(settings.view);
-    plan.finishing_pass = averaged || plan.sorted_blending;
-    plan.reasons.push_back(
-        {"finishing pass", plan.finishing_pass,
-         averaged ? fmt::format("{} samples a pixel are averaged in linear light", settings.samples)
-         : plan.sorted_blending
-             ? "what is blended must be in linear light"
-             : "one sample a pixel, and nothing is blended: surfaces write codes"});
+    set_frame_effect(
+        plan, &FramePlan::finishing_pass, averaged || blends,
+        averaged ? fmt::format("{} samples a pixel are averaged in linear light", settings.samples)
+        : blends ? "what is blended must be in linear light"
+                 : "one sample a pixel, and nothing is blended: surfaces write codes");
 }
 
 }  // namespace

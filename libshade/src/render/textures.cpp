@@ -14,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "effects/features.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
@@ -25,11 +26,11 @@ namespace {
 
 const char* const unreadable_reason = "its image cannot be read";
 
-/// A texture of a material: its unit, its use, and access to it.
+/// A texture of a material: its unit, its use, the effects that sample it, and access to it.
 struct TextureRow {
     TextureUnit unit;
     ImageUse use;
-    bool (*sampled)(const Features& f);
+    std::vector<std::string_view> effects;  ///< At most one of them is on.
     const Texture* (*texture)(const Material& m);
     void (*remove)(Material& m);
 };
@@ -39,85 +40,90 @@ const Texture* optional_texture(const Material& m) {
     return m.*Member ? &*(m.*Member) : nullptr;
 }
 template <auto Member>
+const Texture* texture_of_map(const Material& m) {
+    return m.*Member ? &(m.*Member)->texture : nullptr;
+}
+template <auto Member>
 void remove_optional(Material& m) {
     (m.*Member).reset();
 }
 
+/// The rows, in the order of TextureUnit.
 const std::array<TextureRow, material_unit_count>& texture_rows() {
-    using F = const Features&;
-    using M = const Material&;
+    using M = Material;
     static const std::array<TextureRow, material_unit_count> all{{
-        {TextureUnit::diffuse_texture, ImageUse::color, [](F f) { return f.diffuse_texture; },
-         optional_texture<&Material::diffuse_texture>, remove_optional<&Material::diffuse_texture>},
-        {TextureUnit::specular_texture, ImageUse::color, [](F f) { return f.specular_texture; },
-         optional_texture<&Material::specular_texture>,
-         remove_optional<&Material::specular_texture>},
-        {TextureUnit::emission_texture, ImageUse::color, [](F f) { return f.emission_texture; },
-         optional_texture<&Material::emission_texture>,
-         [](Material& m) {
+        {TextureUnit::diffuse_texture,
+         ImageUse::color,
+         {"diffuse texture"},
+         optional_texture<&M::diffuse_texture>,
+         remove_optional<&M::diffuse_texture>},
+        {TextureUnit::specular_texture,
+         ImageUse::color,
+         {"specular texture"},
+         optional_texture<&M::specular_texture>,
+         remove_optional<&M::specular_texture>},
+        {TextureUnit::emission_texture,
+         ImageUse::color,
+         {"emission texture"},
+         optional_texture<&M::emission_texture>,
+         [](M& m) {
              m.emission_texture.reset();
              m.emission = glm::vec3(0.0F);
          }},
-        {TextureUnit::occlusion_texture, ImageUse::data, [](F f) { return f.occlusion_texture; },
-         optional_texture<&Material::occlusion_texture>,
-         remove_optional<&Material::occlusion_texture>},
-        {TextureUnit::opacity_texture, ImageUse::data, [](F f) { return f.opacity_texture; },
-         optional_texture<&Material::opacity_texture>, remove_optional<&Material::opacity_texture>},
-        {TextureUnit::metallic_roughness_texture, ImageUse::data,
-         [](F f) { return f.metallic_roughness_texture; },
-         [](M m) -> const Texture* {
+        {TextureUnit::occlusion_texture,
+         ImageUse::data,
+         {"occlusion texture"},
+         optional_texture<&M::occlusion_texture>,
+         remove_optional<&M::occlusion_texture>},
+        {TextureUnit::opacity_texture,
+         ImageUse::data,
+         {"opacity texture"},
+         optional_texture<&M::opacity_texture>,
+         remove_optional<&M::opacity_texture>},
+        {TextureUnit::metallic_roughness_texture,
+         ImageUse::data,
+         {"metallic-roughness texture"},
+         [](const M& m) -> const Texture* {
              const auto& model = m.metallic_roughness;
              return model && model->texture ? &*model->texture : nullptr;
          },
-         [](Material& m) { m.metallic_roughness->texture.reset(); }},
-        {TextureUnit::normal_texture, ImageUse::data,
-         [](F f) {
-             return f.detail == NormalDetail::normal_map ||
-                    f.detail == NormalDetail::object_normal_map;
-         },
-         [](M m) { return m.normal_map ? &m.normal_map->texture : nullptr; },
-         remove_optional<&Material::normal_map>},
-        {TextureUnit::bump_texture, ImageUse::data,
-         [](F f) { return f.detail == NormalDetail::bump_map; },
-         [](M m) { return m.bump_map ? &m.bump_map->texture : nullptr; },
-         remove_optional<&Material::bump_map>},
+         [](M& m) { m.metallic_roughness->texture.reset(); }},
+        {TextureUnit::normal_texture,
+         ImageUse::data,
+         {"normal map", "object-space normal map"},
+         texture_of_map<&M::normal_map>,
+         remove_optional<&M::normal_map>},
+        {TextureUnit::bump_texture,
+         ImageUse::data,
+         {"bump map"},
+         texture_of_map<&M::bump_map>,
+         remove_optional<&M::bump_map>},
     }};
     return all;
 }
 
-/// Returns the name in effects() of the effect of a texture.
-const char* effect_of(TextureUnit unit, const Features& features) {
-    switch (unit) {
-        case TextureUnit::diffuse_texture:
-            return "diffuse texture";
-        case TextureUnit::specular_texture:
-            return "specular texture";
-        case TextureUnit::emission_texture:
-            return "emission texture";
-        case TextureUnit::occlusion_texture:
-            return "occlusion texture";
-        case TextureUnit::opacity_texture:
-            return "opacity texture";
-        case TextureUnit::metallic_roughness_texture:
-            return "metallic-roughness texture";
-        case TextureUnit::bump_texture:
-            return "bump map";
-        default:
-            return features.detail == NormalDetail::object_normal_map ? "object-space normal map"
-                                                                      : "normal map";
+const TextureRow& row_of(TextureUnit unit) {
+    return texture_rows().at(static_cast<std::size_t>(unit));
+}
+
+/// The effect by which these features sample a texture, or null.
+const Effect* sampling_effect(const TextureRow& row, const Features& features) {
+    for (const std::string_view name : row.effects) {
+        const Effect& effect = find_effect(name)->effect;
+        if (effect.on(features)) return &effect;
     }
+    return nullptr;
 }
 
 void omit_effect(Features& features, TextureUnit unit) {
-    const std::string_view name = effect_of(unit, features);
-    const auto effect = std::find_if(effects().begin(), effects().end(),
-                                     [&](const Effect& entry) { return entry.name == name; });
-    effect->set(features, false);
+    if (const Effect* effect = sampling_effect(row_of(unit), features))
+        effect->set(features, false);
     if (unit == TextureUnit::emission_texture) features.emission = false;
 }
 
-void report_omitted(const Scene& scene, std::optional<std::uint32_t> material, const char* effect,
-                    const std::pair<const std::size_t, std::string>& image, Report& report) {
+void report_omitted(const Scene& scene, std::optional<std::uint32_t> material,
+                    std::string_view effect, const std::pair<const std::size_t, std::string>& image,
+                    Report& report) {
     report.add(fmt::format("unreadable {} of {}", effect, material_label(scene, material)), "image",
                image.first,
                "drawn without it: " + with_origin(scene.images[image.first], image.second));
@@ -157,7 +163,7 @@ std::vector<UsedTexture> used_textures(const Features& features, const Material&
                                        const Mesh& mesh) {
     std::vector<UsedTexture> used;
     for (const TextureRow& row : texture_rows()) {
-        if (!row.sampled(features)) continue;
+        if (sampling_effect(row, features) == nullptr) continue;
         const Texture* texture = mesh.texcoords.empty() ? nullptr : row.texture(material);
         used.push_back({row.unit, texture, row.use});
     }
@@ -178,7 +184,8 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
             if (entry == unreadable.end()) continue;
             omit_effect(draw.features, used.unit);
             if (!reported.emplace(number, used.unit).second) continue;
-            report_omitted(scene, number, effect_of(used.unit, planned), *entry, report);
+            report_omitted(scene, number, sampling_effect(row_of(used.unit), planned)->name, *entry,
+                           report);
         }
         if (draw.features == planned) continue;
         draw.features = canonical(draw.features);
@@ -188,14 +195,15 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
 
 void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
                         std::uint32_t number, Material& material, Report& report) {
-    Features features;
-    if (material.normal_map && material.normal_map->space == NormalSpace::object)
-        features.detail = NormalDetail::object_normal_map;
+    const bool has_object_map =
+        material.normal_map && material.normal_map->space == NormalSpace::object;
     for (const TextureRow& row : texture_rows()) {
         const Texture* const texture = row.texture(material);
         const auto entry = texture == nullptr ? unreadable.end() : unreadable.find(texture->image);
         if (entry == unreadable.end()) continue;
-        report_omitted(scene, number, effect_of(row.unit, features), *entry, report);
+        const bool is_object_map = has_object_map && row.unit == TextureUnit::normal_texture;
+        report_omitted(scene, number, is_object_map ? row.effects.back() : row.effects.front(),
+                       *entry, report);
         row.remove(material);
     }
 }
