@@ -200,11 +200,11 @@ AddedOption add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& desc
                      });
 }
 
-AddedOption add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::string& description) {
+AddedOption add_wrap(CLI::App& app, Wraps& target, const std::string& description) {
     return add_value(app, "--wrap", "WORD[,WORD]", description,
                      [&target](const std::string& subject, const std::string& text) {
                          const auto [x, y] = parse_axes(subject, text, wrap_choices());
-                         target = Wraps{x, y};
+                         target = {x, y};
                      });
 }
 

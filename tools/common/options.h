@@ -252,7 +252,7 @@ struct WrapsOrAuto {
 AddedOption add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& description);
 
 /// Adds --wrap WORD[,WORD] without "auto".
-AddedOption add_wrap(CLI::App& app, std::optional<Wraps>& target, const std::string& description);
+AddedOption add_wrap(CLI::App& app, Wraps& target, const std::string& description);
 
 /// Returns "repeat", or "repeat,clamp" for different axes.
 std::string wrap_text(const Wraps& wraps);

@@ -31,7 +31,7 @@ enum class AlphaChoice { keep, drop };
 
 struct DetailOptions {
     std::optional<std::filesystem::path> file;
-    std::optional<NormalBlend> blend;
+    NormalBlend blend = NormalBlend::reoriented;
     std::optional<double> strength;
     std::optional<glm::dvec2> repeat;
     MapInputOptions input;
@@ -39,9 +39,7 @@ struct DetailOptions {
 
 struct ResizeChoice {
     std::optional<SizeChoice> size;
-    std::optional<ResizeFilter> filter;
-    std::optional<ResizeDomain> domain;
-    std::optional<Wraps> wrap;
+    ResizeOptions options;
 };
 
 /// The treatment of texture coordinates outside the unit square.

@@ -226,15 +226,15 @@ void add_resize_options(CLI::App& app, ResizeChoice& resize) {
                   resize.size = parse_resize(subject, text);
               })
         .group(group);
-    add_choice(app, "--resize-filter", resize.filter, filter_choices(),
+    add_choice(app, "--resize-filter", resize.options.filter, filter_choices(),
                "Filter kernel. best is lanczos for reduction and cubic for enlargement. Default: "
                "best.")
         .group(group);
-    add_choice(app, "--resize-of", resize.domain, domain_choices(),
+    add_choice(app, "--resize-of", resize.options.domain, domain_choices(),
                "Filtered quantity: slopes give the normals of the filtered surface; vectors are "
                "the normals themselves, which gives steep texels less weight. Default: slopes.")
         .group(group);
-    add_wrap(app, resize.wrap,
+    add_wrap(app, resize.options.wrap,
              "Border mode: the opposite edge (repeat), the last texel (clamp) or the mirrored map "
              "(mirror). Two words set left and right, then top and bottom. Default: repeat.")
         .group(group);
@@ -315,8 +315,13 @@ void add_mip_options(CLI::App& app, MipOptions& mips) {
         .group(group);
 }
 
-void require_option(bool is_given, const std::string& option, const std::string& required) {
-    if (is_given) throw UsageError(option + ": has no effect without " + required);
+/// \throws UsageError if one of the options is given, because all need another one
+void refuse_given(const CLI::App& app, std::initializer_list<const char*> options,
+                  const std::string& required) {
+    for (const char* option : options) {
+        if (is_given(app, option))
+            throw UsageError(fmt::format("{}: has no effect without {}", option, required));
+    }
 }
 
 void check(const SpaceOptions& space) {
@@ -324,47 +329,37 @@ void check(const SpaceOptions& space) {
         throw UsageError("--to-object, --to-tangent: contradict each other");
     if (space.udim && space.outside)
         throw UsageError("--udim, --outside: both set what lies outside the unit square");
-    if (space.to_object || space.to_tangent) return;
-    const std::string required = "--to-object or --to-tangent";
-    require_option(space.tangents.has_value(), "--tangents", required);
-    require_option(space.outside.has_value(), "--outside", required);
-    require_option(space.udim.has_value(), "--udim", required);
 }
 
 /// \throws UsageError if options contradict each other, or have no effect
-void check(const ConvertRequest& request) {
-    const DetailOptions& detail = request.detail;
+void check(const CLI::App& app, const ConvertRequest& request) {
+    const bool has_detail = request.detail.file.has_value();
+    const bool changes_space = request.space.to_object || request.space.to_tangent;
     if (request.flip && request.axes) throw UsageError("--flip, --axes: both set the axes");
     if (request.flip && *request.flip != Flip::red && request.output.green)
         throw UsageError("--flip, --green: both set the direction of green");
     if (request.normalize && request.rebuild_z)
         throw UsageError("--normalize: has no effect with --rebuild-z, which normalizes");
     check(request.space);
+    if (!changes_space)
+        refuse_given(app, {"--tangents", "--outside", "--udim"}, "--to-object or --to-tangent");
     if (request.space.to_object && request.output.green)
         throw UsageError("--green, --to-object: object space has no green direction");
     if (request.space.to_tangent && (request.input.green || request.flip))
         throw UsageError(fmt::format("{}, --to-tangent: object space has no green direction",
                                      request.flip ? "--flip" : "--input-green"));
-    if (!detail.file) {
-        require_option(detail.blend.has_value(), "--blend", "--detail");
-        require_option(detail.strength.has_value(), "--detail-strength", "--detail");
-        require_option(detail.repeat.has_value(), "--detail-repeat", "--detail");
-        require_option(detail.input.green || detail.input.detects_green, "--detail-green",
-                       "--detail");
-        require_option(detail.input.flat.has_value(), "--detail-zero-code", "--detail");
+    if (!has_detail) {
+        refuse_given(app,
+                     {"--blend", "--detail-strength", "--detail-repeat", "--detail-green",
+                      "--detail-zero-code"},
+                     "--detail");
     }
     if (!request.resize.size) {
-        require_option(request.resize.domain.has_value(), "--resize-of", "--resize");
-        require_option(request.resize.wrap.has_value(), "--wrap", "--resize");
-        if (!detail.file) {
-            require_option(request.resize.filter.has_value(), "--resize-filter",
-                           "--resize or --detail");
-        }
+        refuse_given(app, {"--resize-of", "--wrap"}, "--resize");
+        if (!has_detail) refuse_given(app, {"--resize-filter"}, "--resize or --detail");
     }
-    if (!request.mips.wanted) {
-        require_option(request.mips.lengths, "--mip-lengths", "--mips");
-        require_option(request.mips.roughness.has_value(), "--roughness-from-variance", "--mips");
-    }
+    if (!request.mips.wanted)
+        refuse_given(app, {"--mip-lengths", "--roughness-from-variance"}, "--mips");
 }
 
 /// The input of each output file.
@@ -386,7 +381,7 @@ void check_files(const Job& job, const ConvertRequest& request, InputByOutput& i
 }
 
 ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& request) {
-    check(request);
+    check(app, request);
     MapWork work;
     work.head = {{"tool", "relief-bake convert"}, {"version", version()}};
     InputByOutput inputs;

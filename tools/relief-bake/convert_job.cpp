@@ -49,10 +49,7 @@ glm::ivec2 size_of(const SizeChoice& choice, const Image& image) {
 }
 
 ConvertStep resize_step(const ResizeChoice& choice) {
-    ResizeOptions options;
-    options.filter = choice.filter.value_or(options.filter);
-    options.domain = choice.domain.value_or(options.domain);
-    options.wrap = choice.wrap.value_or(options.wrap);
+    const ResizeOptions& options = choice.options;
     const SizeChoice& size = *choice.size;
     const std::string target = size.fraction > 0.0
                                    ? fmt::format("{:g} %", size.fraction * 100.0)
@@ -97,11 +94,10 @@ void add_with_suffix(const Report& other, const std::string& suffix, Report& rep
 
 ConvertStep detail_step(const DetailOptions& detail, const ResizeChoice& resize) {
     ResizeOptions options;
-    options.filter = resize.filter.value_or(options.filter);
+    options.filter = resize.options.filter;
     options.repeat = detail.repeat.value_or(options.repeat);
-    const NormalBlend method = detail.blend.value_or(NormalBlend::reoriented);
     std::string description = fmt::format("detail {} blended ({}", detail.file->string(),
-                                          name_of(method, blend_choices()));
+                                          name_of(detail.blend, blend_choices()));
     if (detail.repeat)
         description += fmt::format(", {:g} x {:g} times", detail.repeat->x, detail.repeat->y);
     if (detail.strength) description += fmt::format(", slopes times {:g}", *detail.strength);
@@ -111,7 +107,7 @@ ConvertStep detail_step(const DetailOptions& detail, const ResizeChoice& resize)
                     fitted_detail(read_detail(detail, field, detail_report), field.normals.width,
                                   field.normals.height, options, detail_report);
                 add_with_suffix(detail_report, " in the detail", report);
-                blend_normals(field.normals, normals, method, report);
+                blend_normals(field.normals, normals, detail.blend, report);
             }};
 }
 

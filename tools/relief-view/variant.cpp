@@ -14,7 +14,6 @@
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
 #include "scene_options.h"
-
 #include "view_options.h"
 
 namespace relief::tools {
