@@ -438,7 +438,8 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
     add_switch(app, "--left-handed", options.left_handed_environment,
                "Convert six images that were made for a left-handed coordinate system.")
         .group(environment_group);
-    add_number(app, "--environment-intensity", "I", options.environment_intensity, {0, 1e6, ""},
+    add_number(app, "--environment-intensity", "I", options.environment_intensity,
+               field_limits(&Environment::intensity),
                "Multiply the environment's light. Default: 1.")
         .group(environment_group);
     add_choice(

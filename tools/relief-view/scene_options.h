@@ -34,7 +34,7 @@ Choices<Enum> enum_choices() {
 
 template <typename Owner, typename Value>
 Range field_limits(Value Owner::*member) {
-    const FieldRange range = field_range(member);
+    const FieldRange range = field_of(member).range;
     return {static_cast<double>(range.min), static_cast<double>(range.max), ""};
 }
 

@@ -576,8 +576,8 @@ TEST_P(RenderTargets, SizesAndSamplesThatCannotBeAreRefusedWithTheLimit) {
     };
     EXPECT_EQ(error_of(0, 5, 1), "a picture of 0 x 5 pixels cannot be drawn");
     EXPECT_EQ(error_of(5, -1, 1), "a picture of 5 x -1 pixels cannot be drawn");
-    EXPECT_EQ(error_of(5, 5, 2), "2 samples a pixel are asked for; 1 or 4 can be");
-    EXPECT_EQ(error_of(5, 5, 0), "0 samples a pixel are asked for; 1 or 4 can be");
+    EXPECT_EQ(error_of(5, 5, 2), "2 samples per pixel were requested, but must be 1 or 4");
+    EXPECT_EQ(error_of(5, 5, 0), "0 samples per pixel were requested, but must be 1 or 4");
     const int limit = std::min(api().limits().texture_size, api().limits().viewport_width);
     EXPECT_THAT(error_of(limit + 1, 1, 1),
                 HasSubstr(fmt::format("a picture of {} x 1 pixels: ", limit + 1)));

@@ -326,6 +326,18 @@ TEST(SceneField, HasALabelForMessages) {
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }
 
+TEST(SceneField, HasATitleAndARangeForPanels) {
+    EXPECT_EQ(field_of(&Material::reflection_roughness).title(), "Reflection roughness");
+    EXPECT_EQ(field_of(&Material::refractive_index).range, (FieldRange{1.0F, 1e3F}));
+    EXPECT_EQ(field_of(&SpotLight::outer_cone).unit, FieldUnit::radians);
+}
+
+TEST(EnumNames, HaveLabelsForPanels) {
+    EXPECT_THAT(enum_labels<ToneMapping>(), testing::ElementsAre("None", "Reinhard", "ACES"));
+    EXPECT_THAT(enum_labels<Interpolation>(),
+                testing::ElementsAre("Per pixel", "Per vertex (Gouraud)", "Flat"));
+}
+
 TEST(EnumNames, NameEveryValueOnce) {
     EXPECT_STREQ(enum_name(FresnelModel::conductor), "conductor");
     EXPECT_STREQ(enum_name(FlatCode::middle), "128");

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <numbers>
 #include <utility>
 
 #include "relief/mesh/image_file.h"
@@ -199,8 +198,6 @@ void LightRows::advance(Scene& scene, double seconds, const glm::vec3& center) c
 
 namespace {
 
-constexpr LightType types[] = {LightType::directional, LightType::point, LightType::spot};
-
 /// Edits a color as a normalized color and an intensity.
 bool edit_light_color(glm::vec3& irradiance) {
     float strength = std::max({irradiance.x, irradiance.y, irradiance.z});
@@ -239,7 +236,7 @@ bool edit_cones(SpotLight& light) {
     bool changed = slide("Outer cone", outer, {1.0F, 90.0F, "%.0f deg"});
     changed |= slide("Inner cone", inner, {0.0F, 90.0F, "%.0f deg"});
     if (!changed) return false;
-    light.outer_cone = std::clamp(glm::radians(outer), 0.01F, 0.5F * std::numbers::pi_v<float>);
+    light.outer_cone = std::clamp(glm::radians(outer), 0.01F, outer_cone_field.range.max);
     light.inner_cone = std::clamp(glm::radians(inner), 0.0F, 0.99F * light.outer_cone);
     return true;
 }
@@ -259,7 +256,7 @@ bool edit_light(AnyLight& light) {
 /// Edits the kind, the parameters and the rotation. \return whether anything changed
 bool edit_row(LightRow& row, const BoundingSphere& sphere) {
     LightType type = type_of(row.light);
-    bool changed = choose("Kind", type, {"Directional", "Point", "Spot"});
+    bool changed = choose("Kind", type);
     if (changed) row.light = converted_to(row.light, type, sphere);
     changed |= edit_light(row.light);
     float speed = glm::degrees(row.speed);
@@ -295,13 +292,13 @@ bool edit_rows(std::vector<LightRow>& rows, const BoundingSphere& sphere) {
 bool add_rows(std::vector<LightRow>& rows, const BoundingSphere& sphere) {
     bool changed = false;
     ImGui::TextUnformatted("Add");
-    for (const LightType type : types) {
+    for (const EnumName<LightType>& type : enum_names<LightType>) {
         ImGui::SameLine();
-        if (ImGui::Button(enum_name(type))) {
-            rows.push_back({new_light(type, sphere)});
+        if (ImGui::Button(type.name)) {
+            rows.push_back({new_light(type.value, sphere)});
             changed = true;
         }
-        probe_item(fmt::format("Add {}", enum_name(type)));
+        probe_item(fmt::format("Add {}", type.name));
     }
     return changed;
 }
@@ -327,8 +324,7 @@ void draw_light_panel(const PanelInput& input) {
 
 namespace {
 
-/// Inverse of shininess = 2
-/// alpha^2 - 2, with alpha = roughness^2.
+/// The roughness for a shininess of 2 / alpha^2 - 2, with alpha = roughness^2.
 float roughness_of(float shininess) {
     return std::clamp(std::pow(2.0F / (shininess + 2.0F), 0.25F), 0.045F, 1.0F);
 }
@@ -450,36 +446,42 @@ void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
 
 namespace {
 
+/// Edits a color under the title of its field.
+template <typename Owner>
+bool edit_color(Owner& owner, glm::vec3 Owner::*member,
+                ImGuiColorEditFlags flags = ImGuiColorEditFlags_None) {
+    return ImGui::ColorEdit3(field_of(member).title().c_str(), &(owner.*member).x, flags);
+}
+
 bool edit_metallic_roughness(MetallicRoughness& model) {
-    bool changed = ImGui::ColorEdit3("Base color", &model.base_color.x);
-    changed |= slide("Metallic", model.metallic);
-    changed |= slide("Roughness", model.roughness);
+    bool changed = edit_color(model, &MetallicRoughness::base_color);
+    changed |= slide(model, &MetallicRoughness::metallic);
+    changed |= slide(model, &MetallicRoughness::roughness);
     return changed;
 }
 
 bool edit_phong(Material& material) {
-    bool changed = ImGui::ColorEdit3("Diffuse", &material.diffuse.x);
-    changed |= ImGui::ColorEdit3("Ambient", &material.ambient.x);
-    changed |= ImGui::ColorEdit3("Specular", &material.specular.x);
+    bool changed = edit_color(material, &Material::diffuse);
+    changed |= edit_color(material, &Material::ambient);
+    changed |= edit_color(material, &Material::specular);
     changed |= slide("Shininess", material.shininess, {0.0F, 1000.0F, "%.0f", true});
-    changed |= choose("Highlights", material.specular_model,
-                      {"Phong", "Blinn-Phong", "Blinn-Phong, normalized"});
+    changed |= choose("Highlights", material.specular_model);
     return changed;
 }
 
 /// Edits the reflection parameters of the Phong model, which need an environment.
 bool edit_reflection(Material& material) {
-    bool changed = ImGui::ColorEdit3("Reflectivity", &material.reflectivity.x);
-    changed |= choose("Fresnel", material.fresnel, {"Schlick", "Dielectric", "Conductor"});
-    changed |= slide("Reflection roughness", material.reflection_roughness);
-    changed |= slide("Transmission", material.transmission);
+    bool changed = edit_color(material, &Material::reflectivity);
+    changed |= choose("Fresnel", material.fresnel);
+    changed |= slide(material, &Material::reflection_roughness);
+    changed |= slide(material, &Material::transmission);
     changed |= slide("Refractive index", material.refractive_index, {1.0F, 3.0F});
     return changed;
 }
 
 bool edit_model(Material& material) {
     MaterialModel model = model_of(material);
-    bool changed = choose("Model", model, {"Phong", "Metallic-roughness", "Unlit"});
+    bool changed = choose("Model", model);
     if (changed) set_model(material, model);
     if (material.metallic_roughness) {
         changed |= edit_metallic_roughness(*material.metallic_roughness);
@@ -490,8 +492,8 @@ bool edit_model(Material& material) {
         changed |= edit_reflection(material);
     }
     if (!material.unlit) {
-        changed |= ImGui::ColorEdit3("Emission", &material.emission.x,
-                                     ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+        changed |= edit_color(material, &Material::emission,
+                              ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
     }
     return changed;
 }
@@ -501,14 +503,13 @@ bool edit_relief(Material& material) {
     bool changed = false;
     if (material.normal_map) {
         changed |= slide("Strength", material.normal_map->scale, {0.0F, 4.0F});
-        changed |=
-            choose("Green channel", material.normal_map->green, {"up (OpenGL)", "down (DirectX)"});
+        changed |= choose("Green channel", material.normal_map->green);
     }
     if (material.bump_map) {
         changed |= slide("Height", material.bump_map->strength, {0.0F, 128.0F, "%.1f texels"});
     }
     if (material.normal_map || material.bump_map) {
-        changed |= choose("Tangents", material.tangent_frame, {"Stored", "Derivatives"});
+        changed |= choose("Tangents", material.tangent_frame);
         changed |= ImGui::Checkbox("Specular antialiasing", &material.specular_antialiasing);
     }
     return changed;
@@ -528,10 +529,9 @@ void edit_maps(ViewerState& state, std::size_t index) {
 }
 
 bool edit_surface(Material& material) {
-    bool changed =
-        choose("Shading", material.interpolation, {"Per pixel", "Per vertex (Gouraud)", "Flat"});
-    changed |= choose("Alpha", material.alpha_mode, {"Opaque", "Mask", "Blend"});
-    if (material.alpha_mode != AlphaMode::opaque) changed |= slide("Opacity", material.opacity);
+    bool changed = choose("Shading", material.interpolation);
+    changed |= choose("Alpha", material.alpha_mode);
+    if (material.alpha_mode != AlphaMode::opaque) changed |= slide(material, &Material::opacity);
     if (material.alpha_mode == AlphaMode::mask)
         changed |= slide("Alpha cutoff", material.alpha_cutoff);
     changed |= ImGui::Checkbox("Double-sided", &material.double_sided);
@@ -555,14 +555,14 @@ void edit_material(ViewerState& state, std::size_t index) {
 void edit_all(ViewerState& state) {
     const Material& first = state.scene().materials.front();
     Interpolation interpolation = first.interpolation;
-    if (choose("Shading of all", interpolation, {"Per pixel", "Per vertex (Gouraud)", "Flat"})) {
+    if (choose("Shading of all", interpolation)) {
         state.edit([&](Scene& scene) {
             for (Material& material : scene.materials)
                 material.interpolation = interpolation;
         });
     }
     MaterialModel model = model_of(first);
-    if (choose("Model of all", model, {"Phong", "Metallic-roughness", "Unlit"})) {
+    if (choose("Model of all", model)) {
         state.edit([&](Scene& scene) {
             for (Material& material : scene.materials)
                 set_model(material, model);

@@ -5,11 +5,13 @@
 /// material_panel_test.cpp.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <variant>
 #include <vector>
 
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/shade/scene.h"
 #include "window/orbit_camera.h"
@@ -81,6 +83,21 @@ class LightRows {
 // Materials.
 
 enum class MaterialModel { phong, metallic_roughness, unlit };
+
+}  // namespace relief::tools
+
+namespace relief {
+
+template <>
+inline constexpr auto enum_names<tools::MaterialModel> =
+    std::to_array<EnumName<tools::MaterialModel>>(
+        {{"phong", tools::MaterialModel::phong},
+         {"metallic_roughness", tools::MaterialModel::metallic_roughness, "Metallic-roughness"},
+         {"unlit", tools::MaterialModel::unlit}});
+
+}  // namespace relief
+
+namespace relief::tools {
 
 MaterialModel model_of(const Material& material);
 

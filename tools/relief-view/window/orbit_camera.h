@@ -23,6 +23,10 @@ struct OrbitCamera {
     float vertical_fov = 0.610865238F;
 };
 
+/// The limits of vertical_fov in the window.
+inline constexpr float min_fov_degrees = 2.0F;
+inline constexpr float max_fov_degrees = 150.0F;
+
 /// The bounding sphere of a model.
 struct BoundingSphere {
     glm::vec3 center{0.0F};

@@ -63,14 +63,14 @@ nlohmann::ordered_json ui_probe_json() {
     return ui_probe().positions;
 }
 
-bool choose_index(const char* label, int& index, std::initializer_list<const char*> names) {
-    const bool is_open = ImGui::BeginCombo(label, names.begin()[index]);
+bool choose_index(const char* label, std::size_t& index, std::span<const std::string> names) {
+    const bool is_open = ImGui::BeginCombo(label, names[index].c_str());
     probe_item(label);
     if (!is_open) return false;
-    const int before = index;
-    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-        if (ImGui::Selectable(names.begin()[i], i == before)) index = i;
-        probe_item(std::string(label) + ": " + names.begin()[i]);
+    const std::size_t before = index;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (ImGui::Selectable(names[i].c_str(), i == before)) index = i;
+        probe_item(std::string(label) + ": " + names[i]);
     }
     ImGui::EndCombo();
     return index != before;
@@ -547,7 +547,7 @@ void draw_scene_panel(const PanelInput& input) {
     draw_findings(input);
     OrbitCamera& camera = state.camera();
     float degrees = glm::degrees(camera.vertical_fov);
-    if (slide("Field of view", degrees, {2.0F, 150.0F, "%.1f deg"}))
+    if (slide("Field of view", degrees, {min_fov_degrees, max_fov_degrees, "%.1f deg"}))
         camera.vertical_fov = glm::radians(degrees);
 }
 
@@ -576,7 +576,6 @@ const char* layout_of(const Environment& environment) {
 bool edit(Environment& environment) {
     ImGui::TextDisabled("%s", layout_of(environment));
     bool changed = drag_up("Intensity", environment.intensity);
-    environment.intensity = std::clamp(environment.intensity, 0.0F, 1e6F);
     changed |= ImGui::Checkbox("Show as background", &environment.skybox);
     probe_item("Show as background");
     changed |= ImGui::Checkbox("Light the scene", &environment.lights);
@@ -660,7 +659,7 @@ void draw_picture_panel(const PanelInput& input) {
     ToneMapping tone = scene.tone_mapping;
     glm::vec4 background = scene.background;
     bool changed = slide("Exposure", stops, {-8.0F, 8.0F, "%.1f stops"});
-    changed |= choose("Tone curve", tone, {"None", "Reinhard", "ACES"});
+    changed |= choose("Tone curve", tone);
     changed |= ImGui::ColorEdit3("Background", &background.x, ImGuiColorEditFlags_Float);
     if (!changed) return;
     input.state.edit([&](Scene& edited) {

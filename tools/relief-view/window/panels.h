@@ -6,17 +6,18 @@
 
 #include <atomic>
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "relief/mesh/execution.h"
 #include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/scene_fields.h"
 #include "variant.h"
 #include "window/background_jobs.h"
 #include "window/capture.h"
@@ -43,14 +44,18 @@ nlohmann::ordered_json ui_probe_json();
 
 /// A combo box. While it is open, the probe reports its entries as "Kind: Spot".
 /// \return whether the selection changed
-bool choose_index(const char* label, int& index, std::initializer_list<const char*> names);
+bool choose_index(const char* label, std::size_t& index, std::span<const std::string> names);
 
-/// The same for an enumeration. The names are in the order of its values.
-template <typename Choice>
-bool choose(const char* label, Choice& choice, std::initializer_list<const char*> names) {
-    int index = static_cast<int>(choice);
-    const bool changed = choose_index(label, index, names);
-    choice = static_cast<Choice>(index);
+/// The same for an enumeration, with the labels of its table of names.
+template <typename Enum>
+bool choose(const char* label, Enum& value) {
+    static const std::vector<std::string> labels = enum_labels<Enum>();
+    const auto& names = enum_names<Enum>;
+    std::size_t index = 0;
+    while (index + 1 < names.size() && names[index].value != value)
+        ++index;
+    const bool changed = choose_index(label, index, labels);
+    value = names[index].value;
     return changed;
 }
 
@@ -64,6 +69,13 @@ struct Slider {
 
 /// \return whether the value changed
 bool slide(const char* label, float& value, const Slider& slider = {});
+
+/// A slider with the title and the range of a scene field.
+template <typename Owner>
+bool slide(Owner& owner, float Owner::*member) {
+    const SceneField field = field_of(member);
+    return slide(field.title().c_str(), owner.*member, {field.range.min, field.range.max});
+}
 
 /// A drag field for values from 0 without an upper limit; `step` is the change per pixel.
 bool drag_up(const char* label, float& value, float step = 0.01F);

@@ -335,7 +335,7 @@ constexpr float turntable_speed = 0.5F;      // Radians per second.
 constexpr float fov_step = 1.1F;
 
 float changed_fov(float fov, float factor) {
-    return std::clamp(fov * factor, glm::radians(2.0F), glm::radians(150.0F));
+    return std::clamp(fov * factor, glm::radians(min_fov_degrees), glm::radians(max_fov_degrees));
 }
 
 }  // namespace

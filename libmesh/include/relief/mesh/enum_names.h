@@ -15,6 +15,7 @@ template <typename Enum>
 struct EnumName {
     const char* name;
     Enum value;
+    const char* label = nullptr;  ///< In panels, if the name is not suitable.
 };
 
 /// The names of all values of an enumeration; empty for a type without names.

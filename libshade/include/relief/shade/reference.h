@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Computes the reference picture of a scene: the formula of Material (material.h) in double
-/// precision on the CPU, implemented from that comment and not from the shaders. It is the ground
-/// truth for the renderer and for reports on accuracy.
+/// precision on the CPU, implemented from that comment and not from the shaders. The renderer
+/// and accuracy reports are compared with it.
 ///
 /// World space, linear light. It is a library of its own, relief::reference, because it needs
 /// Embree.

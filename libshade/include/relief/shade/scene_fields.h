@@ -5,6 +5,7 @@
 /// finds edits by them. The default of a field is that of its struct: default_value().
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <numbers>
@@ -12,6 +13,7 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 #include "relief/export.h"
 #include "relief/mesh/enum_names.h"
@@ -23,17 +25,17 @@ template <>
 inline constexpr auto enum_names<ToneMapping> =
     std::to_array<EnumName<ToneMapping>>({{"none", ToneMapping::none},
                                           {"reinhard", ToneMapping::reinhard},
-                                          {"aces", ToneMapping::aces}});
+                                          {"aces", ToneMapping::aces, "ACES"}});
 template <>
-inline constexpr auto enum_names<Interpolation> =
-    std::to_array<EnumName<Interpolation>>({{"per_pixel", Interpolation::per_pixel},
-                                            {"gouraud", Interpolation::gouraud},
-                                            {"flat", Interpolation::flat}});
+inline constexpr auto enum_names<Interpolation> = std::to_array<EnumName<Interpolation>>(
+    {{"per_pixel", Interpolation::per_pixel},
+     {"gouraud", Interpolation::gouraud, "Per vertex (Gouraud)"},
+     {"flat", Interpolation::flat}});
 template <>
 inline constexpr auto enum_names<SpecularModel> = std::to_array<EnumName<SpecularModel>>(
     {{"phong", SpecularModel::phong},
-     {"blinn_phong", SpecularModel::blinn_phong},
-     {"blinn_phong_normalized", SpecularModel::blinn_phong_normalized}});
+     {"blinn_phong", SpecularModel::blinn_phong, "Blinn-Phong"},
+     {"blinn_phong_normalized", SpecularModel::blinn_phong_normalized, "Blinn-Phong, normalized"}});
 template <>
 inline constexpr auto enum_names<FresnelModel> =
     std::to_array<EnumName<FresnelModel>>({{"schlick", FresnelModel::schlick},
@@ -46,8 +48,8 @@ template <>
 inline constexpr auto enum_names<NormalSpace> = std::to_array<EnumName<NormalSpace>>(
     {{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}});
 template <>
-inline constexpr auto enum_names<Green> = std::to_array<EnumName<Green>>({{"up", Green::up},
-                                                                          {"down", Green::down}});
+inline constexpr auto enum_names<Green> = std::to_array<EnumName<Green>>(
+    {{"up", Green::up, "up (OpenGL)"}, {"down", Green::down, "down (DirectX)"}});
 template <>
 inline constexpr auto enum_names<FlatCode> =
     std::to_array<EnumName<FlatCode>>({{"127.5", FlatCode::half}, {"128", FlatCode::middle}});
@@ -87,6 +89,28 @@ enum class FieldUnit {
     radians_per_second,
 };
 
+/// Replaces underscores by spaces.
+inline std::string spaced(std::string name) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+/// Begins an English text with a capital letter.
+inline std::string capitalized(std::string text) {
+    if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
+        text.front() = static_cast<char>(text.front() - 'a' + 'A');
+    return text;
+}
+
+/// The names of an enumeration's values in panels, in the order of its table of names.
+template <typename Enum>
+std::vector<std::string> enum_labels() {
+    std::vector<std::string> labels;
+    for (const EnumName<Enum>& entry : enum_names<Enum>)
+        labels.push_back(entry.label != nullptr ? entry.label : capitalized(spaced(entry.name)));
+    return labels;
+}
+
 /// The description of one member of a struct.
 template <typename Owner, typename Value>
 struct SceneField {
@@ -100,12 +124,10 @@ struct SceneField {
     /// The name of the field in messages: label_text, or the name with spaces instead of
     /// underscores.
     [[nodiscard]] std::string label() const {
-        std::string text = label_text != nullptr ? label_text : name;
-        for (char& c : text) {
-            if (c == '_') c = ' ';
-        }
-        return text;
+        return label_text != nullptr ? label_text : spaced(name);
     }
+    /// The name of the field in panels: the label with a capital initial.
+    [[nodiscard]] std::string title() const { return capitalized(label()); }
     [[nodiscard]] Value default_value() const { return Owner{}.*member; }
 };
 template <typename Owner, typename Value>
@@ -276,16 +298,16 @@ inline constexpr auto fields_of<Turntable> =
                SceneField{"speed", &Turntable::speed, {}, FieldUnit::radians_per_second},
                SceneField{"angle", &Turntable::angle, {}, FieldUnit::radians}};
 
-/// Returns the range of the field that sets a member.
+/// Returns the description of a member that has one.
 template <typename Owner, typename Value>
-constexpr FieldRange field_range(Value Owner::*member) {
-    FieldRange range;
+constexpr SceneField<Owner, Value> field_of(Value Owner::*member) {
+    SceneField<Owner, Value> found{"", member};
     for_each_field<Owner>([&](const auto& field) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(field.member)>, Value Owner::*>) {
-            if (field.member == member) range = field.range;
+        if constexpr (std::is_same_v<std::decay_t<decltype(field)>, SceneField<Owner, Value>>) {
+            if (field.member == member) found = field;
         }
     });
-    return range;
+    return found;
 }
 
 }  // namespace relief
