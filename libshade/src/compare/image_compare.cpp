@@ -35,7 +35,8 @@ namespace relief {
 
 namespace {
 
-/// The distance of two samples; 0 for two NaN or two equal infinities, infinite for one NaN.
+/// Returns the distance of two samples; 0 for two NaN or two equal infinities, infinite for one
+/// NaN.
 double distance(double a, double b) {
     if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0;
     if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<double>::infinity();
@@ -104,7 +105,8 @@ bool has_direction(const glm::dvec3& vector) {
 
 void check(const Image& a, const Image& b) {
     for (const Image* image : {&a, &b}) {
-        if (image->empty()) throw InvalidInput("angles are asked for of an image without texels");
+        if (image->empty())
+            throw InvalidInput("angles cannot be computed for an image without texels");
         if (image->channels != 3 || image->bits() != 32) {
             throw InvalidInput(
                 fmt::format("angles are between directions in three float channels, not {} "
@@ -250,7 +252,7 @@ Kernel1d scaled(const Weights& weights, double factor) {
     return kernel;
 }
 
-/// The kernel, padded with zeros on both sides.
+/// Returns the kernel, padded with zeros on both sides.
 Kernel1d padded(const Kernel1d& kernel, int radius) {
     const std::size_t missing = static_cast<std::size_t>(radius) - kernel.size() / 2;
     Kernel1d longer(kernel.size() + 2 * missing);
@@ -277,7 +279,7 @@ Weights gaussian(const Sensitivity& sensitivity, int radius, double pixels_per_d
     });
 }
 
-/// out[x] = sum of kernel[k] in[x + k].
+/// Computes out[x], the sum of kernel[k] in[x + k].
 void filter_row(const Kernel1d& kernel, const float* in, float* out, std::size_t width) {
     std::fill(out, out + width, 0.0F);
     for (std::size_t k = 0; k < kernel.size(); ++k) {
@@ -288,7 +290,7 @@ void filter_row(const Kernel1d& kernel, const float* in, float* out, std::size_t
     }
 }
 
-/// The row with its end pixels repeated `radius` times.
+/// Writes the row with its end pixels repeated `radius` times.
 void extend(const float* row, std::size_t width, std::size_t radius, std::vector<float>& extended) {
     extended.resize(width + 2 * radius);
     std::fill_n(extended.begin(), radius, row[0]);
@@ -327,7 +329,7 @@ Rows filtered(const Band& band, const Rows& in, const Kernel1d& rows, const Kern
     return out;
 }
 
-/// The length of the response of a filter in x and y.
+/// Returns the length of the response of a filter in x and y.
 /// \param smoothed  the luminance, smoothed along the rows
 Rows strength(const Band& band, const FlipFilters& filters, const Kernel1d& kernel,
               const Rows& luminance, const Rows& smoothed) {
@@ -345,8 +347,8 @@ Rows strength(const Band& band, const FlipFilters& filters, const Kernel1d& kern
     return out;
 }
 
-/// Linear sRGB to XYZ relative to the white point; the rows add up to 1. Computed from the
-/// primaries and the white point of the standard [IEC 61966-2-1].
+/// Returns the matrix from linear sRGB to XYZ relative to the white point; its rows add up to 1.
+/// Computed from the primaries and the white point of the standard [IEC 61966-2-1].
 const glm::dmat3& relative_xyz_from_rgb() {
     static const glm::dmat3 matrix = [] {
         const auto xyz = [](double x, double y) { return glm::dvec3(x, y, 1.0 - x - y); };
@@ -446,7 +448,7 @@ class LinearPicture {
         return false;
     }
 
-    /// The color on a screen.
+    /// Returns the color on a screen.
     [[nodiscard]] glm::vec3 color(std::size_t pixel, float background) const {
         const float* sample = samples_ + pixel * channels_;
         const glm::vec3 color(shown(sample[0]), shown(sample[is_gray_ ? 0 : 1]),
@@ -475,7 +477,7 @@ class LinearPicture {
     bool has_alpha_;
 };
 
-/// CIELAB with weaker a and b in the dark (the Hunt effect).
+/// Returns CIELAB with weaker a and b in the dark (the Hunt effect).
 glm::vec3 hunt_adjusted_lab(const glm::vec3& relative_xyz) {
     constexpr float bound = 6.0F / 29.0F;
     const auto f = [](float t) {
@@ -495,7 +497,7 @@ float hyab(const glm::vec3& a, const glm::vec3& b) {
            std::sqrt(difference.y * difference.y + difference.z * difference.z);
 }
 
-/// x^y for x and y of at least 0.
+/// Returns x^y for x and y of at least 0.
 float power(float x, float y) {
     if (y == 0.0F) return 1.0F;
     return static_cast<float>(portable::pow(static_cast<double>(x), static_cast<double>(y)));
@@ -512,7 +514,7 @@ class PixelError {
         max_ = power(hyab(green, blue), color_exponent);
     }
 
-    /// Lab of a filtered opponent color, clamped to the gamut of a screen.
+    /// Returns Lab of a filtered opponent color, clamped to the gamut of a screen.
     [[nodiscard]] glm::vec3 lab(float y, float cx, float cz) const {
         const glm::vec3 rgb = rgb_from_xyz_ * glm::vec3(y + cx, y, y - cz);
         return hunt_adjusted_lab(xyz_from_rgb_ * glm::clamp(rgb, 0.0F, 1.0F));
@@ -540,7 +542,8 @@ class PixelError {
     float max_ = 0;
 };
 
-/// The opponent colors of a band with its halo; beyond the picture its outermost row repeats.
+/// Returns the opponent colors of a band with its halo; beyond the picture its outermost row
+/// repeats.
 std::array<Rows, 3> opponent_colors(const LinearPicture& picture, const Band& band, int height,
                                     float background) {
     const glm::mat3 xyz_from_rgb(relative_xyz_from_rgb());

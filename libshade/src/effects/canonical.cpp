@@ -137,7 +137,7 @@ void keep_normal(const Features& f, Features& kept) {
         kept.frame = f.frame;
 }
 
-/// The effects that a view of data needs; nothing_to_show if the draw has no such data.
+/// Returns the effects that a view of data needs; nothing_to_show if the draw has no such data.
 Features data_features(const Features& f) {
     Features kept;
     kept.view = f.view;
@@ -172,7 +172,7 @@ Features data_features(const Features& f) {
     return kept;
 }
 
-/// The effects that contribute to one term of the light; not canonical yet.
+/// Returns the effects that contribute to one term of the light; not canonical yet.
 Features term_features(Features f) {
     const DebugView term = f.view;
     const bool is_lights = term == DebugView::diffuse || term == DebugView::specular;

@@ -96,7 +96,7 @@ NormalDetail detail_of(const Drawn& drawn) {
                                                                    : NormalDetail::normal_map;
 }
 
-/// The effect whose reason explains why there is no such term.
+/// Returns the effect whose reason explains why there is no such term.
 std::string_view effect_of(DebugView term, bool physical) {
     switch (term) {
         case DebugView::ambient:
@@ -126,7 +126,7 @@ std::string missing_term_reason(const DrawPlan& draw, const Drawn& drawn, DebugV
                                         : reason->reason;
 }
 
-/// The reason why a draw has nothing to show in a view of data; empty if it has something.
+/// Returns the reason why a draw has nothing to show in a view of data; empty if it has something.
 std::string missing_data_reason(const Drawn& drawn, DebugView view) {
     const bool has_texcoords = !drawn.mesh.texcoords.empty();
     const std::string no_texcoords = drawn.mesh_name + " has no texture coordinates";

@@ -20,7 +20,7 @@ namespace relief {
 
 namespace {
 
-/// Names are compared by their letters and digits, in lower case.
+/// Returns the letters and digits of a name in lower case, by which names are compared.
 std::string bare(std::string_view name) {
     std::string result;
     for (const char c : name) {
@@ -39,7 +39,7 @@ std::vector<std::string> all_names() {
     return names;
 }
 
-/// The name as relief writes it.
+/// Returns the name as relief writes it.
 std::string known_name(std::string_view wanted) {
     const std::vector<std::string> names = all_names();
     const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
@@ -76,8 +76,8 @@ class Requests {
     std::map<std::string, bool, std::less<>> by_name_;
 };
 
-/// The name of an effect that is on in `before` and excluded by what made `after` of it; "" if
-/// there is none. Mixed falloff excludes nothing: it is both laws.
+/// Returns the name of an effect that is on in `before` and excluded by what made `after` of it; ""
+/// if there is none. Mixed falloff excludes nothing: it is both laws.
 std::string displaced_effect(const Features& before, const Features& after) {
     const bool mixes = after.falloff == FalloffTerm::mixed;
     for (const Effect& effect : effects()) {
@@ -87,8 +87,8 @@ std::string displaced_effect(const Features& before, const Features& after) {
     return "";
 }
 
-/// The reason why an effect that is not planned would change the picture of this draw if it were
-/// forced on; "" if it is neutral.
+/// Returns the reason why an effect that is not planned would change the picture of this draw if it
+/// were forced on; "" if it is neutral.
 std::string refusal_reason(const ForcingSubject& subject, const EffectRow& row) {
     const bool neutral = row.neutral != nullptr && row.neutral(subject);
     if (row.choice != nullptr && !neutral) return row.choice;

@@ -19,14 +19,15 @@ using Subject = const DrawSubject&;
 using Forced = const ForcingSubject&;
 using F = Features;
 
-/// An effect that is one switch.
+/// Returns an effect that is one switch.
 template <bool Features::*Member>
 Effect one_switch(const char* name, const char* hidden) {
     return {name, [](const Features& f) { return f.*Member; },
             [](Features& f, bool on) { f.*Member = on; }, hidden};
 }
 
-/// An effect that is one value of an enumeration; switched off, its first value takes its place.
+/// Returns an effect that is one value of an enumeration; switched off, its first value takes its
+/// place.
 template <auto Member, auto Value>
 Effect one_value(const char* name, const char* hidden) {
     return {name, [](const Features& f) { return f.*Member == Value; },
@@ -40,7 +41,7 @@ Effect one_value(const char* name, const char* hidden) {
             hidden};
 }
 
-/// Lights of one kind; switched on without any, there is one.
+/// Returns the effect of the lights of one kind; switched on without any, there is one.
 template <std::uint32_t Features::*Member>
 Effect lights(const char* name) {
     return {name, [](const Features& f) { return f.*Member > 0; },
@@ -91,7 +92,7 @@ bool has_no_map(Forced s) {
 bool has_no_positional_lights(Forced s) {
     return s.planned.point_lights + s.planned.spot_lights == 0;
 }
-/// A black environment, or none, or a surface that is black to it.
+/// Tells whether the environment is missing, or the surface is black to it.
 bool is_dark_around(Forced s) {
     if (!s.scene.environment) return true;
     return !s.material.metallic_roughness && s.material.diffuse == glm::vec3(0.0F);
@@ -103,7 +104,7 @@ bool mirrors_nothing(Forced s) {
     return s.planned.reflection == ReflectionTerm::none;
 }
 
-/// A decision with a reason about the material: "material 'body' is unlit".
+/// Returns a decision with a reason about the material: "material 'body' is unlit".
 Decision of_material(Subject s, bool on, const char* if_on, const char* if_off) {
     return {on, fmt::format("{} {}", s.name, on ? if_on : if_off)};
 }
@@ -489,7 +490,7 @@ std::uint32_t shining_count(const std::vector<Light>& lights) {
         lights.begin(), lights.end(), [](const Light& light) { return shines(light); }));
 }
 
-/// The point and spot lights that shine.
+/// Returns the point and spot lights that shine.
 std::vector<const PointLight*> positional_lights(const Scene& scene) {
     std::vector<const PointLight*> result;
     for (const PointLight& light : scene.point_lights)
@@ -499,7 +500,7 @@ std::vector<const PointLight*> positional_lights(const Scene& scene) {
     return result;
 }
 
-/// The scene's lights as features.
+/// Returns the scene's lights as features.
 Features lights_of(const Scene& scene) {
     const std::vector<const PointLight*> positional = positional_lights(scene);
     const auto any = [&](const auto& condition) {

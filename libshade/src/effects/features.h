@@ -17,7 +17,7 @@ namespace relief {
 
 // Questions about a set of effects
 
-/// The number of directional, point and spot lights.
+/// Returns the number of directional, point and spot lights.
 inline std::uint32_t light_count(const Features& f) {
     return f.directional_lights + f.point_lights + f.spot_lights;
 }
@@ -114,12 +114,12 @@ inline constexpr std::array frame_effects = {
 /// All rows, in the order of the plan's reasons.
 const std::vector<EffectRow>& effect_rows();
 
-/// The row of this name; null if there is none.
+/// Returns the row of this name; null if there is none.
 const EffectRow* find_effect(std::string_view name);
 
-/// The reason why canonical() dropped an effect.
+/// Returns the reason why canonical() dropped an effect.
 ///
-/// \param requested  the effects that were asked for  \param shown  what canonical() left of them
+/// \param requested  the requested effects  \param shown  the effects that canonical() left
 std::string hidden_reason(const EffectRow& row, const Features& requested, const Features& shown);
 
 }  // namespace relief

@@ -56,7 +56,7 @@ glm::vec3 highlights_of(const SpotLight& light) {
     return highlights_of(light.point);
 }
 
-/// The rows of the shining lights of one kind, and black rows up to the planned count.
+/// Adds the rows of the shining lights of one kind, and black rows up to the planned count.
 template <typename Light>
 void add_all(std::vector<glm::vec4>& rows, const std::vector<Light>& lights, std::size_t end,
              bool highlight_colors) {

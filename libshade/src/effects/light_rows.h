@@ -45,8 +45,8 @@ bool shines(const DirectionalLight& light);
 bool shines(const PointLight& light);
 bool shines(const SpotLight& light);
 
-/// The rows of all lights that shine, as many of each kind as `features` counts. A forced plan may
-/// count more lights than the scene has: their rows are black.
+/// Returns the rows of all lights that shine, as many of each kind as `features` counts. A forced
+/// plan may count more lights than the scene has: their rows are black.
 std::vector<glm::vec4> light_rows(const Scene& scene, const Features& features);
 
 }  // namespace relief

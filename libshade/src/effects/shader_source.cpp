@@ -49,8 +49,8 @@ struct LineMention {
     std::size_t end = 0;
 };
 
-/// The mention that starts here, if one does: "0:12" before "(" (Mesa), or "0(12)" (NVIDIA), at the
-/// start of a word.
+/// Returns the mention that starts here, if one does: "0:12" before "(" (Mesa), or "0(12)"
+/// (NVIDIA), at the start of a word.
 std::optional<LineMention> line_mention(std::string_view message, std::size_t begin) {
     const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
     if (begin > 0 && is_word(message[begin - 1])) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<LineMention> line_mention(std::string_view message, std::size_t be
     return mention;
 }
 
-/// Where a part is: "light.glsl" and "point".
+/// The address of a part: "light.glsl" and "point".
 struct PartAddress {
     std::string_view file;
     std::string_view part;  ///< Empty for a file without parts.
@@ -79,7 +79,7 @@ PartAddress split_address(std::string_view address) {
     return {address.substr(0, mark), address.substr(mark + 1)};
 }
 
-/// "light.glsl:12".
+/// Returns "light.glsl:12".
 std::string origin_name(const ShaderSource& source, SourceLine origin) {
     const std::string& address = source.parts[static_cast<std::size_t>(origin.part)];
     return fmt::format("{}:{}", split_address(address).file, origin.line);
@@ -112,7 +112,8 @@ void check_head(std::string_view file, const std::vector<std::string_view>& line
     }
 }
 
-/// The part of this text, without empty lines at its ends; none if the text does not have it.
+/// Returns the part of this text, without empty lines at its ends; none if the text does not have
+/// it.
 std::optional<PartText> find_part(PartAddress address, std::string_view text) {
     const std::vector<std::string_view> lines = lines_of(text);
     if (address.part.empty()) return PartText{lines, 1};

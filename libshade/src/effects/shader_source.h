@@ -52,13 +52,13 @@ using ShaderSteps = std::map<std::string_view, StepCode>;
 /// Integers known when the shader is compiled.
 using ShaderConstants = std::vector<std::pair<std::string_view, int>>;
 
-/// The part and everything that it includes, after "#version 330 core" and the constants.
+/// Returns the part and everything that it includes, after "#version 330 core" and the constants.
 /// \throws GpuError naming file and line if an included part or step does not exist or includes
 ///         itself, or if a file has code before its first part
 ShaderSource assemble(std::string_view part, const ShaderSteps& steps,
                       const ShaderConstants& constants);
 
-/// A driver's message about this source with lines named by file: "0:12(3): error" becomes
+/// Returns a driver's message about this source with lines named by file: "0:12(3): error" becomes
 /// "normal_map.glsl:7(3): error". Mesa's and NVIDIA's forms are known; others stay as they are.
 std::string with_file_names(const std::string& message, const ShaderSource& source);
 
@@ -85,8 +85,8 @@ struct ChosenSteps {
 };
 ChosenSteps chosen_steps(const Features& features);
 
-/// The steps that code a picture, with the scene's exposure and tone curve if this coding has them:
-/// for passes that draw no surface.
+/// Returns the steps that code a picture, with the scene's exposure and tone curve if this coding
+/// has them: for passes that draw no surface.
 ShaderSteps output_steps(OutputCoding coding, const Scene& scene);
 
 }  // namespace relief

@@ -14,8 +14,8 @@ namespace relief {
 
 namespace {
 
-/// What a part takes from outside the shader, by GLSL name: its own declarations and those of the
-/// parts that it includes by address.
+/// The inputs of a part from outside the shader, by GLSL name: those of its own declarations and
+/// those of the parts that it includes by address.
 struct Takes {
     std::vector<std::string_view> attributes = {};
     std::vector<std::string_view> uniforms = {};
@@ -125,7 +125,7 @@ constexpr std::string_view neutral_sharpness =
     "float dimmed(float exponent) { return 1.0; } "
     "float widened(float roughness) { return roughness; }";
 
-/// Vertex attributes that pass to the fragment stage.
+/// Returns the steps of the vertex attributes that pass to the fragment stage.
 Steps passing_steps(By f) {
     const bool framed = has_stored_frame(f);
     return {
@@ -150,7 +150,7 @@ Steps passing_steps(By f) {
     };
 }
 
-/// The values of the surface at a point.
+/// Returns the step of the values of the surface at a point.
 Step surface_step(By f, const Needs& needs) {
     const bool physical = f.metallic_roughness;
     return {"surface",
@@ -167,7 +167,7 @@ Step surface_step(By f, const Needs& needs) {
               {.uniforms = {"eye_world", "base_color", "metallic", "roughness"}}}}};
 }
 
-/// The normal at a fragment.
+/// Returns the steps of the normal at a fragment.
 Steps normal_steps(By f) {
     const bool normal = fragment_needs(f).normal;
     const bool object_map = normal && f.detail == NormalDetail::object_normal_map;
@@ -205,7 +205,7 @@ Steps normal_steps(By f) {
     };
 }
 
-/// Lights of every kind, in the stage that computes them.
+/// Returns the steps of lights of every kind, in the stage that computes them.
 Steps light_steps(By f, bool in_this_stage) {
     const bool any = in_this_stage && has_lights(f);
     const bool positional = in_this_stage && has_positional_lights(f);
@@ -237,7 +237,7 @@ Steps light_steps(By f, bool in_this_stage) {
     };
 }
 
-/// The surface's response to a light.
+/// Returns the steps of the surface's response to a light.
 Steps scattering_steps(By f, bool in_this_stage) {
     const bool lit = in_this_stage && has_lights(f);
     const bool phong = lit && !f.metallic_roughness;
@@ -257,7 +257,7 @@ Steps scattering_steps(By f, bool in_this_stage) {
     };
 }
 
-/// Ambient light and the environment's light.
+/// Returns the steps of ambient light and the environment's light.
 Steps ambient_steps(By f) {
     const bool physical = f.metallic_roughness;
     return {
@@ -283,7 +283,7 @@ Steps ambient_steps(By f) {
     };
 }
 
-/// Textures and colors that multiply.
+/// Returns the steps of textures and colors that multiply.
 Steps color_steps(By f) {
     const bool physical = f.metallic_roughness;
     // Lights of glTF's model scatter and mirror at once; a view of one of the two blackens the
@@ -337,7 +337,7 @@ Steps alpha_steps(By f) {
     };
 }
 
-/// The environment in the surface.
+/// Returns the steps of the mirrored and refracted environment.
 Steps reflection_steps(By f) {
     const bool none = f.reflection == ReflectionTerm::none;
     const bool phong = !none && !f.metallic_roughness;
@@ -385,7 +385,7 @@ Steps reflection_steps(By f) {
     };
 }
 
-/// The color of a view of data.
+/// Returns the step of the color of a view of data.
 Step view_step(By f) {
     const auto is = [&](DebugView view) { return f.view == view; };
     const bool object_map =
@@ -407,7 +407,7 @@ Step view_step(By f) {
          {"view.glsl#hatched", is(DebugView::nothing_to_show)}}};
 }
 
-/// The coding of the picture.
+/// Returns the steps of the coding of the picture.
 Steps coding_steps(By f) {
     return {
         {"output",
@@ -433,7 +433,7 @@ Steps joined(std::initializer_list<Steps> lists) {
     return all;
 }
 
-/// The vertex stage: attributes, and with Gouraud shading the lights.
+/// Returns the steps of the vertex stage: attributes, and with Gouraud shading the lights.
 Steps vertex_steps(By f) {
     const Needs needs = vertex_needs(f);
     const Steps always =
@@ -457,7 +457,7 @@ Steps vertex_steps(By f) {
                    scattering_steps(f, true)});
 }
 
-/// The fragment stage of a lit surface.
+/// Returns the steps of the fragment stage of a lit surface.
 Steps lit_steps(By f) {
     const bool lights_here = !is_gouraud(f) && has_lights(f);
     const bool both_sides = is_gouraud(f) && f.double_sided;
@@ -492,7 +492,7 @@ Steps fragment_steps(By f) {
                    coding_steps(f)});
 }
 
-/// The chosen code of each step; steps without any are left out.
+/// Returns the chosen code of each step; steps without any are left out.
 ShaderSteps chosen_of(const Steps& steps) {
     ShaderSteps chosen;
     for (const Step& step : steps) {

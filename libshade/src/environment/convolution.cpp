@@ -73,7 +73,7 @@ namespace {
 constexpr int radial_points = 32;
 constexpr int arc_points = 6;
 
-/// Smith's Lambda: the ratio of masked to visible facets.
+/// Returns Smith's Lambda, the ratio of masked to visible facets.
 double masked(double cosine, double alpha) {
     const double tan_squared = (1.0 - cosine * cosine) / (cosine * cosine);
     return 0.5 * (std::sqrt(1.0 + alpha * alpha * tan_squared) - 1.0);
@@ -160,7 +160,8 @@ glm::dvec2 environment_brdf(double n_v, double roughness) {
 }
 
 Image environment_brdf_table(int size) {
-    if (size < 2) throw InvalidInput(fmt::format("a table of {} values a side is asked for", size));
+    if (size < 2)
+        throw InvalidInput(fmt::format("a table of {} values per side was requested", size));
     // At n.v = 0 the albedo is undefined; this angle gives its limit.
     constexpr double grazing = 1e-6;
     const auto count = static_cast<std::size_t>(size);
@@ -211,7 +212,7 @@ struct Tile {
     float radius = 0.0F;  ///< The largest chord from the center to a direction.
 };
 
-/// The texels of a face from `corner` on. Beyond the border the last texel repeats.
+/// Returns the texels of a face from `corner` on. Beyond the border the last texel repeats.
 Tile tile_of(std::size_t face, const glm::ivec2& corner, int size) {
     Tile tile;
     const auto direction = [&](double x, double y) {
@@ -320,7 +321,7 @@ void check_tree_faces(std::span<const Image> faces) {
     }
 }
 
-/// All nodes of a level; set(node, face, x, y) sets their light.
+/// Returns all nodes of a level; set(node, face, x, y) sets their light.
 template <typename Set>
 std::vector<Node> level_of(std::size_t level, Set set) {
     const std::size_t parts = std::size_t{1} << level;
@@ -437,7 +438,7 @@ using std::numbers::pi;
 /// hardly change within a cell.
 constexpr int min_cells = 64;
 
-/// The polynomials of the harmonics, in the order of IrradianceSh.
+/// Returns the polynomials of the harmonics, in the order of IrradianceSh.
 std::array<double, 9> polynomials(const glm::dvec3& n) {
     return {1.0,
             n.y,

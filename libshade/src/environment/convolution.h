@@ -20,22 +20,24 @@ namespace RELIEF_API relief {
 
 // The distribution
 
-/// The distribution D of facet normals h; its integral times n.h over the hemisphere is 1.
+/// Returns the distribution D of facet normals h; its integral times n.h over the hemisphere is 1.
 double ggx_distribution(double n_h, double alpha);
 
-/// V = G / (4 n.l n.v), height-correlated: G is the share of facets without masking and shadowing.
+/// Returns V = G / (4 n.l n.v), height-correlated: G is the share of facets without masking and
+/// shadowing.
 double ggx_visibility(double n_l, double n_v, double alpha);
 
-/// Point i of n evenly spread points in the unit square: (i + 1/2) / n, and the reversed binary
-/// digits of i as a fraction, plus half of the last digit [Hammersley 1960].
+/// Returns point i of n evenly spread points in the unit square: (i + 1/2) / n, and the reversed
+/// binary digits of i as a fraction, plus half of the last digit [Hammersley 1960].
 glm::dvec2 hammersley(unsigned i, unsigned n);
 
-/// The facet normal for a point of the unit square; evenly spread points sample the density D n.h.
+/// Returns the facet normal for a point of the unit square; evenly spread points sample the density
+/// D n.h.
 glm::dvec3 ggx_facet(const glm::dvec2& point, double alpha);
 
 // Directional albedo
 
-/// The share of even light from all directions that a GGX surface reflects to the eye: its
+/// Returns the share of even light from all directions that a GGX surface reflects to the eye: its
 /// directional albedo f0 A + B, for Schlick's Fresnel factor f0 + (1 - f0) (1 - v.h)^5 and
 /// height-correlated masking and shadowing. Together with the blurred environment (convolution.h)
 /// it is the split sum of [Karis, SIGGRAPH 2013]. A + B is at most 1 and falls with roughness:
@@ -46,8 +48,8 @@ glm::dvec3 ggx_facet(const glm::dvec2& point, double alpha);
 /// \return (A, B), within 1e-3 of the integral for n.v and roughness of at least 1/64
 glm::dvec2 environment_brdf(double n_v, double roughness);
 
-/// A and B as a table: column x for sqrt(n.v) = x / (size - 1), since they change fastest at
-/// grazing angles, and row y for roughness y / (size - 1); both ends are included.
+/// Returns A and B as a table: column x for sqrt(n.v) = x / (size - 1), since they change fastest
+/// at grazing angles, and row y for roughness y / (size - 1); both ends are included.
 ///
 /// \return two float channels, data; the same bits for any number of threads. Bilinear lookups in a
 ///         table of 64 have an error within 3e-3 for roughness of at least 0.045.
@@ -81,7 +83,7 @@ class RadianceTree {
     /// Level 0 holds the whole faces, the last level the texels.
     [[nodiscard]] std::size_t level_count() const { return levels_.size(); }
 
-    /// 2^level by 2^level nodes of a face.
+    /// Returns one of the 2^level by 2^level nodes of a face.
     [[nodiscard]] const Node& node(std::size_t level, std::size_t face, std::size_t x,
                                    std::size_t y) const {
         return levels_[level][(((face << level) + y) << level) + x];
@@ -91,7 +93,7 @@ class RadianceTree {
     std::vector<std::vector<Node>> levels_;
 };
 
-/// Six faces of blurred radiance.
+/// Returns six faces of blurred radiance.
 ///
 /// \param roughness  0.1 to 1, alpha = roughness^2; smoother lobes are narrower than a texel
 /// \return three float channels; the relative root mean square error against blurred_radiance() is
@@ -99,7 +101,7 @@ class RadianceTree {
 ///         threads
 std::vector<Image> blurred_faces(const RadianceTree& tree, int size, double roughness);
 
-/// The same for one direction of any length but zero, by a sum over all texels in double.
+/// Returns the same for one direction of any length but zero, by a sum over all texels in double.
 ///
 /// \param faces  as above, of any size
 glm::dvec3 blurred_radiance(std::span<const Image> faces, const glm::dvec3& direction,
@@ -122,7 +124,7 @@ using IrradianceSh = std::array<glm::vec3, 9>;
 /// \throws InvalidInput if the faces do not fit together or are not float, or a texel is not finite
 IrradianceSh irradiance_sh(std::span<const Image> faces);
 
-/// The polynomial at a unit normal. It is not clamped to 0.
+/// Returns the polynomial at a unit normal. It is not clamped to 0.
 glm::dvec3 irradiance_over_pi(const IrradianceSh& coefficients, const glm::dvec3& normal);
 
 }  // namespace relief

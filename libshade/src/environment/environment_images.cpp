@@ -19,7 +19,7 @@ namespace relief {
 
 namespace {
 
-/// An image of this size whose texel (x, y) is the texel source(x, y) of another image.
+/// Returns an image of this size whose texel (x, y) is the texel source(x, y) of another image.
 template <typename Source>
 Image rearranged(const Image& from, int width, int height, Source source) {
     Image to = make_image(width, height, from.channels, from.bits(), from.color_space);
@@ -48,7 +48,7 @@ using Cells = std::array<glm::ivec2, 6>;
 constexpr Cells horizontal_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}};
 constexpr Cells vertical_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}}};
 
-/// The integral of 1 / (1 + s^2 + t^2)^(3/2) from (0, 0).
+/// Returns the integral of 1 / (1 + s^2 + t^2)^(3/2) from (0, 0).
 double corner_solid_angle(double s, double t) {
     return portable::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
 }
@@ -170,7 +170,7 @@ void check_angular_map(const Image& image, std::string_view name) {
 
 namespace {
 
-/// The nearest value that a half float can hold; changes are counted.
+/// Returns the nearest value that a half float can hold; changes are counted.
 float storable(float value, std::size_t texel, Report& report) {
     if (std::isfinite(value) && std::abs(value) <= max_half) return value;
     if (!std::isfinite(value)) {

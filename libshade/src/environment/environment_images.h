@@ -34,7 +34,7 @@ inline constexpr std::array<const char*, 6> cube_face_names{"+x", "-x", "+y", "-
 /// For each face a matrix whose columns are the world directions along s, along t and outwards.
 const std::array<glm::mat3, 6>& world_from_face();
 
-/// The world direction of a face point; not unit.
+/// Returns the world direction of a face point; not unit.
 glm::dvec3 face_direction(std::size_t face, double s, double t);
 
 /// A point of a face.
@@ -44,18 +44,19 @@ struct FacePoint {
     double t = 0;
 };
 
-/// The face point in a direction of any length; on an edge, that of the face whose axis comes
-/// first.
+/// Returns the face point in a direction of any length; on an edge, that of the face whose axis
+/// comes first.
 FacePoint face_point(const glm::dvec3& direction);
 
-/// The solid angle of the part of a face between two points, in steradians; a face has 4 pi / 6.
+/// Returns the solid angle of the part of a face between two points, in steradians; a face has 4 pi
+/// / 6.
 double solid_angle(const glm::dvec2& from, const glm::dvec2& to);
 
 /// \throws InvalidInput naming the face if there are not six, one is empty or not square, or they
 ///         differ in size, channels, bits or color space
 void check_faces(std::span<const Image> faces, std::string_view name);
 
-/// The six faces of a cross, copied as they are:
+/// Returns the six faces of a cross, copied as they are:
 ///
 ///     horizontal (4:3)         vertical (3:4)
 ///          +y                       +y
@@ -78,11 +79,11 @@ std::vector<Image> other_handed(std::span<const Image> faces);
 /// diagonal neighbor.
 inline constexpr double angular_map_rim = 1.5 * 1.41421356237309505;
 
-/// The largest r, at least 0, that is looked up in a map of this width. Directions farther out get
-/// its value.
+/// Returns the largest r, at least 0, that is looked up in a map of this width. Directions farther
+/// out get its value.
 double angular_map_reach(int width);
 
-/// The texture coordinates of a direction of any length; (0, 0) is the upper left corner.
+/// Returns the texture coordinates of a direction of any length; (0, 0) is the upper left corner.
 glm::dvec2 angular_map_place(const glm::dvec3& direction, int width);
 
 /// \throws InvalidInput if the image is empty or not square
@@ -92,8 +93,8 @@ void check_angular_map(const Image& image, std::string_view name);
 
 inline constexpr float max_half = 65504.0F;
 
-/// The image as linear float, with every sample representable as a half float. An alpha channel is
-/// treated alike, since nothing looks it up.
+/// Returns the image as linear float, with every sample representable as a half float. An alpha
+/// channel is treated alike, since nothing looks it up.
 ///
 /// \param report  counts texels that are clamped to 65504, the largest half float, and those that
 ///                are not finite: infinity counts as 65504, minus infinity and NaN as 0

@@ -62,22 +62,22 @@ class Api {
 
     [[nodiscard]] bool has_debug_messages() const { return table_.KHR_debug != 0; }
     [[nodiscard]] const Limits& limits() const { return limits_; }
-    /// GL_RENDERER and GL_VERSION.
+    /// Returns GL_RENDERER and GL_VERSION.
     [[nodiscard]] std::string renderer() const { return text(GL_RENDERER); }
     [[nodiscard]] std::string version() const { return text(GL_VERSION); }
     /// Tells whether the processor rasterizes (Mesa's llvmpipe, softpipe and swr); then timer
     /// queries are wrong.
     [[nodiscard]] bool is_software() const;
 
-    /// Errors and warnings since the last call, at most 64, without performance hints. Without
-    /// KHR_debug, the errors of glGetError.
+    /// Returns errors and warnings since the last call, at most 64, without performance hints.
+    /// Without KHR_debug, the errors of glGetError.
     [[nodiscard]] std::vector<DebugMessage> take_messages() const;
 
     /// \param doing  "uploading texture 'bricks.png'"
     /// \throws GpuError if OpenGL reported an error since the last check: "DOING: MESSAGE"
     void check(std::string_view doing) const;
 
-    /// The number of live OpenGL names, for finding leaks; the owners below count them.
+    /// Returns the number of live OpenGL names, for finding leaks; the owners below count them.
     [[nodiscard]] std::size_t live_names() const { return live_names_; }
     void count_name(int change) const { live_names_ += static_cast<std::size_t>(change); }
 
@@ -92,7 +92,7 @@ class Api {
     mutable std::size_t live_names_ = 0;
 };
 
-/// "GL_INVALID_OPERATION" and so on; hexadecimal if unknown.
+/// Returns "GL_INVALID_OPERATION" and so on, or the number in hexadecimal if it is unknown.
 std::string error_name(GLenum error);
 
 // Owners of names
@@ -128,7 +128,7 @@ class Handle {
         return *this;
     }
 
-    /// The OpenGL name; 0 if empty.
+    /// Returns the OpenGL name; 0 if empty.
     [[nodiscard]] GLuint name() const { return name_; }
     explicit operator bool() const { return name_ != 0; }
 
@@ -209,7 +209,7 @@ struct EglDisplay {
     std::string name;  ///< For messages: "device 1 (/dev/dri/card0)", "surfaceless".
 };
 
-/// All displays: the devices in EGL's order, then Mesa's surfaceless platform.
+/// Returns all displays: the devices in EGL's order, then Mesa's surfaceless platform.
 /// \throws GpuError if EGL is missing or offers none
 std::vector<EglDisplay> egl_displays();
 

@@ -48,7 +48,7 @@ class DynamicLibrary {
     /// \throws GpuError with the loader's message for every name tried
     DynamicLibrary(const char* variable, std::span<const char* const> names);
 
-    /// A function of the library. \throws GpuError if it has none of this name
+    /// Returns a function of the library. \throws GpuError if it has none of this name
     template <typename Function>
     Function function(const char* name) const {
         return reinterpret_cast<Function>(symbol(name));
@@ -216,7 +216,7 @@ struct Egl {
     }
 };
 
-/// The reason for the last failure on this thread, for messages.
+/// Returns the reason for the last failure on this thread, for messages.
 std::string reason(const Egl& egl) {
     const EGLint error = egl.get_error();
     switch (error) {
@@ -379,7 +379,7 @@ struct Opened {
 /// The failed attempts: "OSMesa: libOSMesa.so.8: cannot open shared object file; ...".
 using Failures = std::vector<std::string>;
 
-/// The table of a context that has just been made current.
+/// Returns the table of a context that has just been made current.
 Opened with_api(std::unique_ptr<gl::PlatformContext> platform, std::string name) {
     auto api = std::make_unique<gl::Api>(platform->loader());
     return {std::move(platform), std::move(api), std::move(name)};

@@ -113,7 +113,7 @@ class SavedState {
     std::array<GLboolean, 4> enabled_{};
 };
 
-/// RGBA16F faces without content, bound to no unit.
+/// Returns RGBA16F faces without content, bound to no unit.
 ///
 /// \param levels  the number of levels from the largest
 /// \throws GpuError if they are larger than the context's limit, or memory runs out
@@ -288,8 +288,9 @@ uniform float reach;  // Of an angular map.
 const float pi = 3.14159265358979;
 )";
 
-/// The number of lookups along a side of a texel that use every texel of the image in the center of
-/// a face, where a texel spans 2 / size radians and those of the image 2 pi / width radians.
+/// Returns the number of lookups along a side of a texel that use every texel of the image in the
+/// center of a face, where a texel spans 2 / size radians and those of the image 2 pi / width
+/// radians.
 int grid_of(int image_width, int size) {
     const double spanned = image_width / (std::numbers::pi * size);
     return std::max(2, static_cast<int>(std::ceil(spanned)));
@@ -322,7 +323,7 @@ CubeMap projected(const Api& api, const Image& image, const Projection& projecti
 }
 
 void check_requested_size(int size) {
-    if (size < 0) throw InvalidInput(fmt::format("faces of {} texels are asked for", size));
+    if (size < 0) throw InvalidInput(fmt::format("faces of {} texels were requested", size));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct CubeMap {
     int levels = 0;   ///< All levels, down to 1x1.
 };
 
-/// A cube map of six images of one size, +x -x +y -y +z -z.
+/// Returns a cube map of six images of one size, +x -x +y -y +z -z.
 ///
 /// \return 8-bit color faces as SRGB8 where the images are sRGB; everything else as RGBA16F
 /// \param report  counts texels that are clamped to 65504, the largest half float, and those that
@@ -38,7 +38,7 @@ struct CubeMap {
 CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_view name,
                       Report& report);
 
-/// A cube map of a panorama by longitude and latitude.
+/// Returns a cube map of a panorama by longitude and latitude.
 ///
 /// \param size  of a face; 0 means a quarter of the panorama's width, rounded up, which keeps its
 ///              resolution at the horizon
@@ -53,8 +53,8 @@ CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_
 CubeMap make_cube_map_from_panorama(const Api& api, const Image& panorama, std::string_view name,
                                     Report& report, int size = 0);
 
-/// A cube map of a light probe, in the same way. There is no seam at the rim: the outermost two
-/// texels, which the rim may cut, are replaced by their inner neighbors.
+/// Returns a cube map of a light probe, in the same way. There is no seam at the rim: the outermost
+/// two texels, which the rim may cut, are replaced by their inner neighbors.
 ///
 /// \param size  of a face; 0 means half the map's width, rounded up, which keeps its resolution
 ///              everywhere up to a right angle from its center
@@ -62,20 +62,20 @@ CubeMap make_cube_map_from_panorama(const Api& api, const Image& panorama, std::
 CubeMap make_cube_map_from_angular_map(const Api& api, const Image& map, std::string_view name,
                                        Report& report, int size = 0);
 
-/// One level of the six faces in linear light: three float channels.
+/// Returns one level of the six faces in linear light: three float channels.
 std::vector<Image> read_faces(const Api& api, const CubeMap& cube, int level);
 
-/// GL_TEXTURE_CUBE_MAP_POSITIVE_X and the five after it.
+/// Returns GL_TEXTURE_CUBE_MAP_POSITIVE_X or one of the five after it.
 GLenum cube_face_target(std::size_t face);
 
-/// The number of levels from this size down to 1x1.
+/// Returns the number of levels from this size down to 1x1.
 int level_count(int size);
 
 /// \throws GpuError if faces of this size are larger than the context's limit
 void check_cube_size(const Api& api, int size, std::string_view name);
 
-/// A cube map for rough reflections: level i of n is blurred by GGX of roughness i / (n - 1), alpha
-/// = roughness^2, as seen at normal incidence (environment/convolution.h).
+/// Returns a cube map for rough reflections: level i of n is blurred by GGX of roughness i / (n -
+/// 1), alpha = roughness^2, as seen at normal incidence (environment/convolution.h).
 ///
 /// \param environment  with all of its levels
 /// \return RGBA16F, 256 texels along a face and 6 levels, or 128 and 5 if the environment is

@@ -132,7 +132,7 @@ std::vector<ActiveVariable> active_attributes(const Api& api, const Program& pro
     return attributes;
 }
 
-/// Uniforms outside blocks, samplers among them.
+/// Returns the uniforms outside blocks, samplers among them.
 std::vector<ActiveVariable> active_uniforms(const Api& api, const Program& program) {
     std::string buffer = name_buffer(api, program, GL_ACTIVE_UNIFORM_MAX_LENGTH);
     GLint count = 0;

@@ -70,7 +70,7 @@ GLenum memory_type(int bits) {
     }
 }
 
-/// Gray and gray with alpha as RGB and RGB with alpha.
+/// Returns gray and gray with alpha as RGB and RGB with alpha.
 Image spread_gray(const Image& gray) {
     const int channels = gray.channels + 2;
     Image rgb = make_image(gray.width, gray.height, channels, 8, gray.color_space);
@@ -94,12 +94,12 @@ void set_swizzle(const Api& api, int channels) {
     api->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
 }
 
-/// The texture that is bound to a target, on the active unit.
+/// Returns the texture that is bound to a target, on the active unit.
 GLenum binding_target(GLenum target) {
     return target == GL_TEXTURE_2D ? GL_TEXTURE_2D : GL_TEXTURE_CUBE_MAP;
 }
 
-/// The requested anisotropy within the limit of the context; 1 for nearest filtering.
+/// Returns the requested anisotropy within the limit of the context; 1 for nearest filtering.
 float usable_anisotropy(const Api& api, const Sampling& sampling) {
     const bool is_linear =
         sampling.magnify == GL_LINEAR && sampling.minify == GL_LINEAR_MIPMAP_LINEAR;
@@ -266,7 +266,8 @@ void check_size(const Api& api, int width, int height, int samples) {
             fmt::format("a picture of {} x {} pixels cannot be drawn", width, height));
     }
     if (samples != 1 && samples != 4) {
-        throw InvalidInput(fmt::format("{} samples a pixel are asked for; 1 or 4 can be", samples));
+        throw InvalidInput(
+            fmt::format("{} samples per pixel were requested, but must be 1 or 4", samples));
     }
     const Limits& limits = api.limits();
     const int side = std::min(limits.texture_size, limits.renderbuffer_size);

@@ -18,7 +18,7 @@ namespace relief::gl {
 
 // Buffers
 
-/// A buffer holding a copy of these bytes; it can be bound to any target.
+/// Returns a buffer holding a copy of these bytes; it can be bound to any target.
 ///
 /// \param usage  GL_STATIC_DRAW, or GL_DYNAMIC_DRAW for data that changes every frame
 /// \throws GpuError if memory runs out
@@ -43,7 +43,7 @@ Buffer make_buffer(const Api& api, const std::vector<T>& elements, std::string_v
 void replace_content(const Api& api, const Buffer& buffer, std::span<const std::byte> bytes,
                      std::string_view name, GLenum usage = GL_DYNAMIC_DRAW);
 
-/// The content of the buffer.
+/// Returns the content of the buffer.
 std::vector<std::byte> read_buffer(const Api& api, const Buffer& buffer);
 
 // Textures
@@ -61,7 +61,7 @@ struct Sampling {
 /// The storage of float samples.
 enum class FloatStorage { full, half };
 
-/// An image as a complete 2D texture.
+/// Returns an image as a complete 2D texture.
 ///
 /// \param name  for messages: the file, or "material 'body': normal map"
 /// \param mipmaps  creates all levels, by mip_levels()
@@ -77,13 +77,13 @@ enum class FloatStorage { full, half };
 Texture make_texture(const Api& api, const Image& image, std::string_view name, bool mipmaps = true,
                      FloatStorage storage = FloatStorage::full);
 
-/// A sampler object: one image may be used with several.
+/// Returns a sampler object: one image may be used with several.
 Sampler make_sampler(const Api& api, const Sampling& sampling);
 
 /// Sets the sampling of the texture bound to `target`.
 void set_sampling(const Api& api, GLenum target, const Sampling& sampling);
 
-/// A texture that accesses a buffer as an array of texels (samplerBuffer).
+/// Returns a texture that accesses a buffer as an array of texels (samplerBuffer).
 ///
 /// \param format  GL_RGBA32F and the like
 /// \param texels  the buffer's size in texels of this format
@@ -98,11 +98,12 @@ struct TexelFormat {
     GLenum type = 0;      ///< GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT or GL_FLOAT.
 };
 
-/// The format that stores this image without loss (except for FloatStorage::half), if one exists.
+/// Returns the format that stores this image without loss (except for FloatStorage::half), if one
+/// exists.
 TexelFormat texel_format(const Image& image, FloatStorage storage);
 
-/// The image in a form that has a texel format: sRGB gray as RGB, sRGB of 16 and 32 bits as linear
-/// float. Empty if the image has a texel format already.
+/// Returns the image in a form that has a texel format: sRGB gray as RGB, sRGB of 16 and 32 bits as
+/// linear float. Empty if the image has a texel format already.
 std::optional<Image> converted_for_upload(const Image& image);
 
 /// Uploads the samples of an image as a level of the texture bound to `target`, which may be the
@@ -142,8 +143,8 @@ class RenderTarget {
     /// Makes this the target of draw calls, with a viewport of its whole size.
     void bind() const;
 
-    /// The color as drawn, row 0 at the bottom of the picture: with 1 sample a GL_TEXTURE_2D of one
-    /// level, linear, clamped; with 4 a GL_TEXTURE_2D_MULTISAMPLE.
+    /// Returns the color as drawn, row 0 at the bottom of the picture: with 1 sample a
+    /// GL_TEXTURE_2D of one level, linear, clamped; with 4 a GL_TEXTURE_2D_MULTISAMPLE.
     [[nodiscard]] const Texture& color() const { return color_; }
 
     /// Waits for the drawing to finish and reads the color back, samples averaged: four channels,

@@ -129,14 +129,14 @@ using std::numbers::pi;
 /// error of about a thousandth.
 constexpr unsigned blur_samples = 1024;
 
-/// A right-handed basis with this unit vector as its z axis.
+/// Returns a right-handed basis with this unit vector as its z axis.
 glm::dmat3 basis_about(const glm::dvec3& z) {
     const glm::dvec3 axis = std::abs(z.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 x = glm::normalize(glm::cross(axis, z));
     return {x, glm::cross(z, x), z};
 }
 
-/// The images of an environment: six faces for a right-handed world, or one image.
+/// Returns the images of an environment: six faces for a right-handed world, or one image.
 std::vector<Image> images_of(const Environment& environment) {
     const auto decoded = [](const ImageSource& source) { return decode(source, ImageUse::color); };
     std::vector<Image> images;
@@ -171,8 +171,8 @@ EnvironmentLookup::EnvironmentLookup(const Environment& environment, Report& rep
     if (environment.lights) irradiance_ = irradiance_sh(faces());
 }
 
-/// A texel of a face, or beyond its border the texel of the adjacent face. Beyond a corner, where
-/// three faces meet, it is the mean of their texels.
+/// Returns a texel of a face, or beyond its border the texel of the adjacent face. Beyond a corner,
+/// where three faces meet, it is the mean of their texels.
 glm::dvec3 EnvironmentLookup::face_texel(std::size_t face, int x, int y) const {
     const int size = images_[face].width();
     if (x >= 0 && x < size && y >= 0 && y < size) return images_[face].at(x, y);
@@ -249,8 +249,8 @@ glm::dvec3 EnvironmentLookup::blurred(const glm::dvec3& direction_world, double 
     return sum / weights;
 }
 
-/// Six faces of the environment. A panorama or probe becomes faces of a quarter of its width, each
-/// texel the mean of four lookups.
+/// Returns six faces of the environment. A panorama or probe becomes faces of a quarter of its
+/// width, each texel the mean of four lookups.
 std::vector<Image> EnvironmentLookup::faces() const {
     const int wide = images_.front().width();
     const int size = layout_ == Layout::faces ? wide : std::max((wide + 3) / 4, 2);

@@ -68,7 +68,7 @@ class Texels {
     Image image_;  ///< Linear float.
 };
 
-/// The index within the image of a texel index beyond its border.
+/// Returns the index within the image of a texel index beyond its border.
 int wrapped(double index, int size, TextureWrap wrap);
 
 /// The images that the materials of a scene look up, decoded once for each use.
@@ -78,7 +78,7 @@ class SceneTexels {
     /// \throws FileError if an image that is required cannot be read
     void request(const Scene& scene, const Material& material);
 
-    /// By index of the image, what is wrong with it.
+    /// Returns the error of each unreadable image, by its index.
     [[nodiscard]] const std::map<std::size_t, std::string>& unreadable() const {
         return unreadable_;
     }
@@ -103,18 +103,18 @@ class EnvironmentLookup {
     /// \param direction_world  of any length but 0
     [[nodiscard]] glm::dvec3 radiance(const glm::dvec3& direction_world) const;
 
-    /// The same, recorded in a trace.
+    /// Returns the same radiance, and records the lookup in a trace.
     [[nodiscard]] glm::dvec3 looked_up(const glm::dvec3& direction_world, Trace& trace) const;
 
-    /// The reflection in a surface whose microfacets have GGX's distribution, with normal and eye
-    /// along the direction: the mean over directions l, mirrored at normals h that are sampled from
-    /// the distribution, weighted by n.l.
+    /// Returns the reflection in a surface whose microfacets have GGX's distribution, with normal
+    /// and eye along the direction: the mean over directions l, mirrored at normals h that are
+    /// sampled from the distribution, weighted by n.l.
     /// \param roughness  0 is a mirror
     [[nodiscard]] glm::dvec3 blurred(const glm::dvec3& direction_world, double roughness,
                                      Trace& trace) const;
 
-    /// Irradiance over pi on a surface of this normal, by spherical harmonics of order 2
-    /// [Ramamoorthi and Hanrahan 2001]; 0 if their sum is negative.
+    /// Returns the irradiance over pi on a surface of this normal, by spherical harmonics of order
+    /// 2 [Ramamoorthi and Hanrahan 2001]; 0 if their sum is negative.
     [[nodiscard]] glm::dvec3 diffuse(const glm::dvec3& normal_world) const;
 
   private:
@@ -131,7 +131,7 @@ class EnvironmentLookup {
     IrradianceSh irradiance_{};   ///< Multiplied by the intensity.
 };
 
-/// GGX's directional albedo: x multiplies f0, y is added (environment/convolution.h).
+/// Returns GGX's directional albedo: x multiplies f0, y is added (environment/convolution.h).
 glm::dvec2 directional_albedo(double n_dot_v, double roughness);
 
 }  // namespace reference

@@ -53,7 +53,7 @@ struct Sample {
     bool ambiguous = false;  ///< Two surfaces at depths that OpenGL may not tell apart.
 };
 
-/// The coverage of a surface by its alpha mode; 0 for NaN.
+/// Returns the coverage of a surface by its alpha mode; 0 for NaN.
 double coverage(const Material& material, double alpha) {
     switch (material.alpha_mode) {
         case AlphaMode::mask:
@@ -104,7 +104,7 @@ class Tracer {
     [[nodiscard]] bool is_too_close(const Hit& front, const Hit& behind) const;
     /// Adds the color of a hit, alpha multiplied in. \return whether it hides all hits behind it
     bool add(const Hit& hit, Sample& sample) const;
-    /// The skybox, or transparency.
+    /// Returns the skybox, or transparency.
     [[nodiscard]] glm::dvec4 skybox(const glm::dvec2& view_plane, Trace& trace) const;
 
     const PreparedScene& prepared_;
@@ -320,7 +320,7 @@ double tone_mapped(double x, ToneMapping mapping) {
     return x;
 }
 
-/// Radiance as a picture shows it, before coding.
+/// Returns radiance as a picture shows it, before coding.
 glm::dvec3 shown(const glm::dvec3& radiance, const Scene& scene, OutputCoding output) {
     if (output == OutputCoding::linear) return limited(radiance, max_radiance);
     if (output == OutputCoding::clamped) return limited(radiance, 1.0);

@@ -111,7 +111,7 @@ double cone_share(const SpotLight& spot, const glm::dvec3& light_world) {
     return share * share;
 }
 
-/// The light of all sources but those that touch the point.
+/// Returns the light of all sources but those that touch the point.
 std::vector<Incoming> incoming_light(const Scene& scene, const glm::dvec3& position_world) {
     std::vector<Incoming> incoming;
     for (const DirectionalLight& light : scene.directional_lights) {
@@ -150,12 +150,12 @@ struct Context {
     }
 };
 
-/// The power of a cosine; 1 for the exponent 0, for every cosine.
+/// Returns the power of a cosine; 1 for the exponent 0, for every cosine.
 double power(double cosine, double exponent) {
     return exponent == 0.0 ? 1.0 : portable::pow(std::max(cosine, 0.0), exponent);
 }
 
-/// The term s of the formula.
+/// Returns the term s of the formula.
 double highlight(const Material& material, const Surface& at, const glm::dvec3& light) {
     const double shininess = static_cast<double>(material.shininess);
     const glm::dvec3& n = at.normal_world;
@@ -191,7 +191,7 @@ LightSums light_sums(const Context& context, const Surface& at) {
     return sums;
 }
 
-/// The sums at the pixel, or interpolated from the corners of the triangle.
+/// Returns the sums at the pixel, or interpolated from the corners of the triangle.
 LightSums interpolated_light_sums(const Context& context, const Hit& hit) {
     if (context.material.interpolation != Interpolation::gouraud) {
         return light_sums(context, context.surface);
@@ -212,14 +212,14 @@ double occlusion(const Context& context) {
     return 1.0 + strength * (share - 1.0);
 }
 
-/// The term E(n) of the formula.
+/// Returns the term E(n) of the formula.
 glm::dvec3 environment_irradiance(const Context& context) {
     const auto& described = context.prepared.scene.environment;
     if (!described || !described->lights) return glm::dvec3(0.0);
     return context.prepared.environment->diffuse(context.surface.normal_world);
 }
 
-/// The reflected environment.
+/// Returns the reflected environment.
 glm::dvec3 reflected(const Context& context, double roughness) {
     if (!context.prepared.environment) return glm::dvec3(0.0);
     const Surface& at = context.surface;
@@ -228,7 +228,7 @@ glm::dvec3 reflected(const Context& context, double roughness) {
     return context.prepared.environment->blurred(mirrored, roughness, context.trace);
 }
 
-/// The refracted environment, by Snell's law at the first surface.
+/// Returns the refracted environment, by Snell's law at the first surface.
 glm::dvec3 refracted(const Context& context) {
     if (!context.prepared.environment) return glm::dvec3(0.0);
     const double ratio = 1.0 / static_cast<double>(context.material.refractive_index);
@@ -296,7 +296,7 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
             std::max(roughness, min_roughness)};
 }
 
-/// pi D V f + (1 - f) c, the factor of one light. \param n_dot_l  positive
+/// Returns pi D V f + (1 - f) c, the factor of one light. \param n_dot_l  positive
 glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm::dvec3& light,
                         double n_dot_l) {
     const glm::dvec3 sum = light + at.view_world;
@@ -319,7 +319,8 @@ glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm:
            fresnel * (std::numbers::pi * distribution * visibility);
 }
 
-/// The light from all directions: ambient light, and the scattered and reflected environment.
+/// Returns the light from all directions: ambient light, and the scattered and reflected
+/// environment.
 glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     const Surface& at = context.surface;
     glm::dvec3 light = glm::dvec3(context.prepared.scene.ambient) * (facets.scattering + facets.f0);

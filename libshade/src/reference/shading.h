@@ -13,15 +13,15 @@
 namespace relief {
 namespace RELIEF_API reference {
 
-/// The reflectance of a smooth boundary by Fresnel's formulas for unpolarized light: the mean of
-/// both polarizations.
+/// Returns the reflectance of a smooth boundary by Fresnel's formulas for unpolarized light: the
+/// mean of both polarizations.
 ///
 /// \param index   of the inside relative to the outside; n + ik for metals
 /// \param cosine  of the angle of incidence, within [0,1]
 /// \return within [0,1]; 0 for an index of 1, which is no boundary, and 1 for an index of 0
 double fresnel(std::complex<double> index, double cosine);
 
-/// Material's factor F at n.v, clamped to [0,1] by channel; 0 if the reflectivity is zero.
+/// Returns Material's factor F at n.v, clamped to [0,1] by channel; 0 if the reflectivity is zero.
 glm::dvec3 fresnel_factor(const Material& material, double n_dot_v);
 
 /// The light from a surface to the eye.

@@ -242,7 +242,7 @@ FlatCode PreparedScene::flat_code(const NormalMap& map) const {
 
 namespace {
 
-/// The unit vector, or the fallback if a float cannot hold the squared length.
+/// Returns the unit vector, or the fallback if a float cannot hold the squared length.
 glm::dvec3 unit_or(const glm::dvec3& vector, const glm::dvec3& fallback) {
     const double squared = glm::dot(vector, vector);
     return squared > 1e-30 && squared < 1e30 ? vector / std::sqrt(squared) : fallback;
@@ -274,7 +274,7 @@ Triangle triangle_of(const PreparedScene& prepared, const Hit& hit) {
     return {instance, instance.mesh->triangles[hit.triangle], hit.barycentric};
 }
 
-/// The normal of the triangle's plane on its front side, from which its corners are
+/// Returns the normal of the triangle's plane on its front side, from which its corners are
 /// counter-clockwise, or clockwise if the instance is mirrored.
 glm::dvec3 front_of_plane(const Triangle& triangle) {
     const auto& positions = triangle.instance.positions_world;
@@ -298,8 +298,8 @@ Basis stored_basis(const Triangle& triangle, const glm::dvec3& normal) {
     return {along, tangent.w * glm::cross(normal, along), normal};
 }
 
-/// The basis from the derivatives of positions by texture coordinates over the triangle. If the
-/// texture coordinates have no area, tangent and bitangent are zero.
+/// Returns the basis from the derivatives of positions by texture coordinates over the triangle. If
+/// the texture coordinates have no area, tangent and bitangent are zero.
 Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     const auto& positions = triangle.instance.positions_world;
     const auto& texcoords = triangle.instance.mesh->texcoords;
@@ -318,7 +318,7 @@ Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     return {tangent, (upright ? 1.0 : -1.0) * glm::cross(unit_normal, tangent), unit_normal};
 }
 
-/// The vector of a normal map's filtered codes; y up, without the scale of x and y.
+/// Returns the vector of a normal map's filtered codes; y up, without the scale of x and y.
 glm::dvec3 decoded(const glm::dvec3& sample, int bits, FlatCode flat, Green green) {
     glm::dvec3 vector = 2.0 * sample - 1.0;
     if (bits < 32 && flat == FlatCode::middle) {
@@ -337,7 +337,7 @@ glm::dvec3 mapped_vector(const PreparedScene& prepared, const NormalMap& map,
                    map.green);
 }
 
-/// The normal of a height map, by central differences over one texel on either side.
+/// Returns the normal of a height map, by central differences over one texel on either side.
 glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
                          const glm::dvec2& texcoord, Trace& trace) {
     const Texels& texels = prepared.texels.get(map.texture.image, ImageUse::data);
@@ -351,7 +351,7 @@ glm::dvec3 bumped_vector(const PreparedScene& prepared, const BumpMap& map,
     return {-along_u, along_v, 1.0};
 }
 
-/// The tangent-space normal of a material's normal or bump map at a point.
+/// Returns the tangent-space normal of a material's normal or bump map at a point.
 glm::dvec3 vector_tangent(const PreparedScene& prepared, const Material& material,
                           const glm::dvec2& texcoord, Trace& trace) {
     if (material.bump_map) return bumped_vector(prepared, *material.bump_map, texcoord, trace);
@@ -365,7 +365,7 @@ bool is_undefined(const glm::dvec3& vector) {
     return !(glm::dot(vector, vector) > 1e-12);
 }
 
-/// The normal of an object-space map, in world space; zero if the map defines none.
+/// Returns the normal of an object-space map, in world space; zero if the map defines none.
 glm::dvec3 stored_normal(const PreparedScene& prepared, const Hit& hit, const NormalMap& map,
                          const glm::dvec2& texcoord, Trace& trace) {
     const glm::dvec3 normal_object = mapped_vector(prepared, map, texcoord, trace);
@@ -374,7 +374,7 @@ glm::dvec3 stored_normal(const PreparedScene& prepared, const Hit& hit, const No
                              normal_object);
 }
 
-/// The normal on the front side.
+/// Returns the normal on the front side.
 glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Material& material,
                         const glm::dvec2& texcoord, Trace& trace) {
     const Triangle triangle = triangle_of(prepared, hit);
@@ -399,7 +399,7 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
                    fallback);
 }
 
-/// The attributes that need no material.
+/// Returns the attributes that need no material.
 Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
     const Triangle triangle = triangle_of(prepared, hit);
     const Mesh& mesh = *triangle.instance.mesh;

@@ -55,8 +55,9 @@ class Visibility {
     Visibility(const Visibility&) = delete;
     Visibility& operator=(const Visibility&) = delete;
 
-    /// All hits of the ray through (x, y, -1), nearest first. If the ray hits an edge or a vertex
-    /// that triangles of an instance share, only the nearest of them is a hit; ties: the first one.
+    /// Returns all hits of the ray through (x, y, -1), nearest first. If the ray hits an edge or a
+    /// vertex that triangles of an instance share, only the nearest of them is a hit; ties: the
+    /// first one.
     [[nodiscard]] std::vector<Hit> hits(double x, double y) const;
 
   private:
@@ -87,7 +88,7 @@ struct PreparedScene {
     PreparedScene(const Scene& scene, Report& report);
 
     [[nodiscard]] const Material& material_of(std::uint32_t instance, std::uint32_t triangle) const;
-    /// The index of the range in its mesh.
+    /// Returns the index of the range in its mesh.
     [[nodiscard]] std::size_t range_of(std::uint32_t instance, std::uint32_t triangle) const;
     [[nodiscard]] FlatCode flat_code(const NormalMap& map) const;
 
@@ -120,8 +121,8 @@ bool is_back(const PreparedScene& prepared, const Hit& hit);
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
                    Trace& trace);
 
-/// The surface at a corner of the triangle that was hit, for light computed at vertices. No map
-/// bends its normal.
+/// Returns the surface at a corner of the triangle that was hit, for light computed at vertices. No
+/// map bends its normal.
 Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int corner);
 
 }  // namespace reference

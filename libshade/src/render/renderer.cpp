@@ -643,7 +643,7 @@ void Renderer::move(const Scene& scene) {
     validate_transforms(scene);
     if (object_counts(scene) != implementation_->counts) {
         throw InvalidInput(
-            "a moved scene has the instances and lamps that it had, no fewer or more");
+            "a moved scene must have the same numbers of instances and lights as before");
     }
     implementation_->move(scene);
 }
@@ -698,7 +698,7 @@ RenderCache::Contents RenderCache::contents() const {
 
 namespace {
 
-/// Texels of four channels, with row 0 at the bottom.
+/// Returns texels of four channels, with row 0 at the bottom.
 std::vector<std::uint8_t> as_texels(const Image& picture) {
     const std::span<const std::uint8_t> from = picture.as<std::uint8_t>();
     const auto width = static_cast<std::size_t>(picture.width);

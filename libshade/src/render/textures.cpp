@@ -106,7 +106,7 @@ const TextureRow& row_of(TextureUnit unit) {
     return texture_rows().at(static_cast<std::size_t>(unit));
 }
 
-/// The effect by which these features sample a texture, or null.
+/// Returns the effect by which these features sample a texture, or null.
 const Effect* sampling_effect(const TextureRow& row, const Features& features) {
     for (const std::string_view name : row.effects) {
         const Effect& effect = find_effect(name)->effect;

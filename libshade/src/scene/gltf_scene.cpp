@@ -37,7 +37,7 @@ double decoded(double sample, ColorSpace space) {
                : sample;
 }
 
-/// The mean of one channel of integer codes: codes are counted first and decoded once each.
+/// Returns the mean of one channel of integer codes: codes are counted first and decoded once each.
 template <typename Code>
 double mean_of_codes(const std::vector<Code>& samples, std::size_t channel, std::size_t channels,
                      ColorSpace space) {
@@ -147,7 +147,7 @@ TexcoordSource texcoord_source(const GltfMaterial& material) {
     return {};
 }
 
-/// The texture of the scene, or none if its mesh has no coordinates for it.
+/// Returns the texture of the scene, or none if its mesh has no coordinates for it.
 std::optional<Texture> texture_from(const std::optional<GltfTexture>& texture,
                                     const TexcoordSource& source, std::size_t material,
                                     Report& report) {
@@ -205,7 +205,7 @@ class MeansOfImages {
             means_[requested[i]] = results[i];
     }
 
-    /// The mean; 1 if the image could not be read, which is reported.
+    /// Returns the mean; 1 if the image could not be read, which is reported.
     glm::vec3 mean(std::size_t image, const char* texture, const std::string& material,
                    Report& report) const {
         const MeanOrError& result = means_.at(image);
@@ -224,7 +224,7 @@ class MeansOfImages {
     std::map<std::size_t, MeanOrError> means_;
 };
 
-/// The images that are used as color textures only.
+/// Returns the images that are used as color textures only.
 std::vector<bool> color_only(const GltfView& view) {
     std::vector<bool> result(view.images.size(), true);
     for (const GltfMaterial& material : view.materials) {
@@ -306,8 +306,8 @@ void add_textures(Material& result, const GltfMaterial& material, std::size_t in
     result.alpha_cutoff = usable(material.alpha_cutoff, max_reflectance);
 }
 
-/// The materials of the document, in order. For MaterialModel::phong some images are decoded for
-/// their means, and kept decoded if nothing else needs their bytes.
+/// Returns the materials of the document, in order. For MaterialModel::phong some images are
+/// decoded for their means, and kept decoded if nothing else needs their bytes.
 std::vector<Material> materials_from(const GltfView& view, const SceneOptions& options,
                                      std::vector<ImageSource>& images, Report& report) {
     const bool phong = options.model == SceneOptions::MaterialModel::phong;
@@ -330,8 +330,8 @@ std::vector<Material> materials_from(const GltfView& view, const SceneOptions& o
 
 // Nodes, meshes, lights, cameras and animations
 
-/// A primitive with the texture coordinates at which its material looks up its images. Its tangents
-/// belong to the stored coordinates, so they are transformed together with them.
+/// Returns a primitive with the texture coordinates at which its material looks up its images. Its
+/// tangents belong to the stored coordinates, so they are transformed together with them.
 Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
                const std::vector<GltfMaterial>& materials) {
     Mesh mesh = document.mesh(id);

@@ -15,7 +15,7 @@ namespace relief {
 
 namespace {
 
-/// The value of two hexadecimal digits, divided by 255.
+/// Returns the value of two hexadecimal digits, divided by 255.
 std::optional<float> hex_code(std::string_view digits) {
     int code = 0;
     for (const char c : digits) {

@@ -27,12 +27,12 @@ class JsonImages {
     JsonImages(const std::filesystem::path& scene_file, std::vector<ImageSource>& images)
         : scene_file_(scene_file), folder_(scene_file.parent_path()), images_(images) {}
 
-    /// The file that a string names. \throws InvalidInput if it does not exist
+    /// Returns the file that a string names. \throws InvalidInput if it does not exist
     [[nodiscard]] std::filesystem::path file(const JsonCursor& cursor) const;
-    /// The folder that a string names; it need not exist.
+    /// Returns the folder that a string names; it need not exist.
     [[nodiscard]] std::filesystem::path folder(const JsonCursor& cursor) const;
     [[nodiscard]] ImageSource source(const JsonCursor& cursor) const;
-    /// The texture of an image. A missing file is no error here: the renderer reports it.
+    /// Returns the texture of an image. A missing file is no error here: the renderer reports it.
     Texture texture(const JsonCursor& cursor);
 
   private:
@@ -44,16 +44,17 @@ class JsonImages {
     std::map<std::filesystem::path, std::size_t> index_of_;
 };
 
-/// A linear color: three numbers, one number for gray, or "#rrggbb", which is sRGB-coded.
+/// Returns a linear color: three numbers, one number for gray, or "#rrggbb", which is sRGB-coded.
 glm::vec3 color_in(const JsonCursor& cursor);
-/// Degrees as radians. The conversion is in double, so that a written angle gives the same bits.
+/// Returns degrees as radians. The conversion is in double, so that a written angle gives the same
+/// bits.
 float radians_from(const JsonCursor& cursor);
-/// A vector of any length but 0.
+/// Returns a vector of any length but 0.
 glm::vec3 direction_from(const JsonCursor& cursor);
-/// A matrix by columns.
+/// Returns a matrix by columns.
 glm::mat4 matrix_from(const JsonCursor& cursor);
 
-/// The value of that name. Another name is refused with all names.
+/// Returns the value of that name. Another name is refused with all names.
 template <typename Names>
 auto one_of(const JsonCursor& cursor, const Names& names) {
     std::vector<std::string> known;
@@ -64,7 +65,8 @@ auto one_of(const JsonCursor& cursor, const Names& names) {
     cursor.fail_unknown(cursor.text(), known);
 }
 
-/// The keys of the fields of T, including those of a member whose fields are in the same object.
+/// Returns the keys of the fields of T, including those of a member whose fields are in the same
+/// object.
 template <typename T>
 std::vector<std::string> field_names() {
     std::vector<std::string> names;
@@ -99,7 +101,7 @@ void read_material(const JsonCursor& object, JsonImages& images, Material& mater
 
 Environment environment_from(const JsonCursor& object, JsonImages& images);
 
-/// A normal or bump map: a texture, or an object with one.
+/// Returns a normal or bump map: a texture, or an object with one.
 template <typename Map>
 Map map_from(const JsonCursor& cursor, JsonImages& images) {
     Map map;
@@ -180,12 +182,12 @@ using ImageName = std::function<Json(std::size_t image)>;
 /// The path of an image that is no texture.
 using SourceName = std::function<Json(const ImageSource& source)>;
 
-/// The number with the fewest digits that read back as this float.
+/// Returns the number with the fewest digits that read back as this float.
 Json number_json(float value);
 Json vector_json(const glm::vec3& value);
-/// Radians as degrees.
+/// Returns radians as degrees.
 Json degrees_json(float radians);
-/// A matrix by columns.
+/// Returns a matrix by columns.
 Json matrix_json(const glm::mat4& matrix);
 Json environment_json(const Environment& environment, const SourceName& name);
 

@@ -96,7 +96,7 @@ void add_light_markers(SceneGraph& graph, float radius) {
 
 namespace {
 
-/// The position of an element of a condition in object space; none if it is not finite.
+/// Returns the position of an element of a condition in object space; none if it is not finite.
 std::optional<glm::vec3> element_position(const Mesh& mesh, std::string_view element,
                                           std::size_t index) {
     glm::vec3 position;
@@ -114,7 +114,7 @@ std::optional<glm::vec3> element_position(const Mesh& mesh, std::string_view ele
     return is_finite(position) ? std::optional(position) : std::nullopt;
 }
 
-/// The saturated color of a hue from 0 to 1.
+/// Returns the saturated color of a hue from 0 to 1.
 glm::vec3 hue_color(double hue) {
     const auto channel = [&](double shift) {
         const double at = 6.0 * (hue + shift - std::floor(hue + shift));

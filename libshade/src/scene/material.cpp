@@ -125,7 +125,7 @@ constexpr MaterialRow table[] = {
     {"yellow rubber", {0.05F, 0.05F, 0.0F}, {0.5F, 0.5F, 0.4F}, {0.7F, 0.7F, 0.04F}, 0.078125F},
 };
 
-/// The form of names in the table: lower case, with blanks between words.
+/// Returns the form of names in the table: lower case, with blanks between words.
 std::string table_name(std::string_view name) {
     std::string result(name);
     for (char& c : result) {

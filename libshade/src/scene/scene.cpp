@@ -23,13 +23,13 @@ namespace relief {
 
 namespace {
 
-/// The name in quotes, or the number if the name is empty.
+/// Returns the name in quotes, or the number if the name is empty.
 std::string label(const char* kind, std::size_t index, const std::string& name) {
     if (!name.empty()) return fmt::format("{} '{}'", kind, name);
     return fmt::format("{} {}", kind, index);
 }
 
-/// The name of a part; empty if there is no such part.
+/// Returns the name of a part; empty if there is no such part.
 template <typename Named>
 std::string name_of(const std::vector<Named>& parts, std::size_t index) {
     return index < parts.size() ? parts[index].name : std::string();
@@ -110,7 +110,7 @@ namespace {
 /// The picture shows the box enlarged by this factor, so that nothing touches its edge.
 constexpr float box_margin = 1.05F;
 
-/// The eight corners of a box relative to its center, in the axes of a camera.
+/// Returns the eight corners of a box relative to its center, in the axes of a camera.
 std::array<glm::vec3, 8> corners_in(const glm::mat3& world_from_view, const glm::vec3& half_size) {
     std::array<glm::vec3, 8> corners;
     for (std::size_t i = 0; i < 8; ++i) {
@@ -141,15 +141,16 @@ void check_view(float azimuth, float elevation, float vertical_fov, float aspect
 /// The factor between the picture's size and the size of the model in it.
 constexpr float vertex_margin = 1.04F;
 
-/// The distance of the eye from the target, along the line of sight, at which it sees this point.
+/// Returns the distance of the eye from the target, along the line of sight, at which it sees this
+/// point.
 ///
 /// \param point  relative to the target, in the axes of the camera: z points to the eye
 float distance_to_see(const glm::vec3& point, float tan_x, float tan_y) {
     return point.z + vertex_margin * std::max(std::abs(point.x) / tan_x, std::abs(point.y) / tan_y);
 }
 
-/// The factor by which the distance from the camera to `target` must change for the camera to see
-/// every finite vertex. 1 if there is none.
+/// Returns the factor by which the distance from the camera to `target` must change for the camera
+/// to see every finite vertex. 1 if there is none.
 float fitting_factor(const Scene& scene, const Camera& camera, const glm::vec3& target,
                      float aspect) {
     const float tan_y = tan_of_half(camera.vertical_fov);

@@ -27,7 +27,7 @@ std::size_t values_per_key(const KeyChannel& channel) {
     return channel.interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
 }
 
-/// The value of a key itself, without its tangents.
+/// Returns the value of a key itself, without its tangents.
 const glm::vec4& key_value(const KeyChannel& channel, std::size_t key) {
     const std::size_t per_key = values_per_key(channel);
     return channel.values[key * per_key + per_key / 2];
@@ -45,7 +45,7 @@ glm::vec4 slerp(const glm::vec4& a, const glm::vec4& b, float t) {
         (portable::sin((1.0 - share) * angle) * from + portable::sin(share * angle) * to) / sine);
 }
 
-/// Hermite interpolation between a key and the next one; tangents are per second.
+/// Returns the Hermite interpolation between a key and the next one; tangents are per second.
 glm::vec4 hermite(const KeyChannel& channel, std::size_t key, float t) {
     const float span = channel.times[key + 1] - channel.times[key];
     const glm::vec4& from = channel.values[3 * key + 1];
@@ -58,7 +58,7 @@ glm::vec4 hermite(const KeyChannel& channel, std::size_t key, float t) {
            (3.0F * t2 - 2.0F * t3) * to + span * (t3 - t2) * in_tangent;
 }
 
-/// The unit quaternion, or the fallback if the length is 0 or not finite.
+/// Returns the unit quaternion, or the fallback if the length is 0 or not finite.
 glm::vec4 unit_or(const glm::vec4& quaternion, const glm::vec4& fallback) {
     const float length = glm::length(quaternion);
     return length > 0.0F && std::isfinite(length) ? quaternion / length : fallback;
@@ -173,7 +173,7 @@ glm::mat4 matrix_of(const LocalTransform& transform) {
     return transform.turntable ? matrix * *transform.turntable : matrix;
 }
 
-/// The time within one run of an animation of this length.
+/// Returns the time within one run of an animation of this length.
 double wrapped(double seconds, double length) {
     if (!(length > 0.0)) return 0.0;
     const double rest = std::fmod(seconds, length);
@@ -256,7 +256,7 @@ std::vector<LocalTransform> transforms_at(const SceneGraph& graph, double second
     return transforms;
 }
 
-/// The transform from each node to the world. Every chain of parents is walked once.
+/// Returns the transform from each node to the world. Every chain of parents is walked once.
 std::vector<glm::mat4> world_matrices(const SceneGraph& graph,
                                       const std::vector<LocalTransform>& transforms) {
     const std::size_t count = graph.nodes.size();
@@ -293,7 +293,7 @@ class NodeMatrices {
     explicit NodeMatrices(std::vector<glm::mat4> world_from_node)
         : world_from_node_(std::move(world_from_node)) {}
 
-    /// Empty if no node carries the object.
+    /// Returns nothing if no node carries the object.
     [[nodiscard]] std::optional<glm::mat4> world_from_object(const Carried& carried) const {
         if (!carried.node) return std::nullopt;
         if (*carried.node >= world_from_node_.size()) {
@@ -324,7 +324,7 @@ glm::vec3 direction_of(const glm::mat4& world_from_light) {
     return -unit_or(glm::vec3(world_from_light[2]), default_back);
 }
 
-/// The camera's matrix: rotation and translation without scale.
+/// Returns the camera's matrix: rotation and translation without scale.
 glm::mat4 camera_matrix(const glm::mat4& world_from_object) {
     const glm::vec3 back = unit_or(glm::vec3(world_from_object[2]), default_back);
     const glm::vec3 right =
@@ -334,7 +334,7 @@ glm::mat4 camera_matrix(const glm::mat4& world_from_object) {
             world_from_object[3]};
 }
 
-/// A far distance behind the farthest corner of the boxes of all meshes.
+/// Returns a far distance behind the farthest corner of the boxes of all meshes.
 float far_behind_all(SceneGraph& graph, const Camera& camera) {
     for (std::size_t i = graph.mesh_bounds.size(); i < graph.scene.meshes.size(); ++i)
         graph.mesh_bounds.push_back(bounds_of(graph.scene.meshes[i]));

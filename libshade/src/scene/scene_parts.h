@@ -38,15 +38,15 @@ inline bool is_finite(const glm::mat4& matrix) {
 
 // Scene graphs
 
-/// The axes of a viewer who looks at a point from a direction on the sphere. Defined at the poles
-/// too.
+/// Returns the axes of a viewer who looks at a point from a direction on the sphere. Defined at the
+/// poles too.
 ///
 /// \param azimuth    from +z towards +x
 /// \param elevation  above the xz plane
 /// \return right, up, and back: the unit vector towards the eye
 glm::mat3 orbit_axes(double azimuth, double elevation);
 
-/// The value of a channel at a time.
+/// Returns the value of a channel at a time.
 /// \return rotations as unit quaternions x, y, z, w
 /// \throws InvalidInput as pose() does for keys
 glm::vec4 value_at(const KeyChannel& channel, double seconds);
@@ -61,21 +61,23 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node);
 
 // Scenes from files
 
-/// The default scene of a glTF document, not posed yet.
+/// Returns the default scene of a glTF document, not posed yet.
 ///
 /// \param model  the document's file, for messages
 /// \throws InvalidInput if a primitive cannot be read
 SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path& model,
                       const SceneOptions& options, Report& report);
 
-/// The scene of a scene file (docs/scene-files.md), neither validated nor posed for rendering.
+/// Returns the scene of a scene file (docs/scene-files.md), neither validated nor posed for
+/// rendering.
 ///
 /// \throws FileError if the file, or a file that it names, is missing or invalid; problems of the
 ///         scene file itself are named by their JSON pointer
 SceneGraph read_scene_json(const std::filesystem::path& file, const SceneOptions& options,
                            Report& report);
 
-/// The number of a foreign material as a scene allows it: within [0, limit]; NaN counts as 0.
+/// Returns the number of a foreign material as a scene allows it: within [0, limit]; NaN counts as
+/// 0.
 inline float usable(float value, float limit) {
     return value > 0.0F ? std::min(value, limit) : 0.0F;
 }
@@ -84,9 +86,9 @@ inline glm::vec3 usable(const glm::vec3& color, float limit) {
     return {usable(color.r, limit), usable(color.g, limit), usable(color.b, limit)};
 }
 
-/// The mean color of an image, for a material model that has no place for its texture. Colors are
-/// averaged in linear light, data as they are. Every texel has the same weight, and alpha is
-/// ignored. The mean is taken in double in row order, so it is the same bits every time.
+/// Returns the mean color of an image, for a material model that has no place for its texture.
+/// Colors are averaged in linear light, data as they are. Every texel has the same weight, and
+/// alpha is ignored. The mean is taken in double in row order, so it is the same bits every time.
 ///
 /// \return red, green, blue (gray three times); non-finite samples are left out, and the mean of an
 ///         image without finite samples is 1

@@ -119,7 +119,7 @@ Camera node_camera_from(const JsonCursor& object, JsonImages& images, bool& sees
     return camera;
 }
 
-/// A camera that save_scene() wrote: its matrix and depth range, without loss.
+/// Returns a camera that save_scene() wrote: its matrix and depth range, without loss.
 Camera camera_by_matrix(const JsonCursor& object, JsonImages& images, bool& sees_all) {
     for (const char* key : {"eye", "target", "azimuth", "elevation", "distance_factor"}) {
         if (const auto extra = object.find(key))
@@ -135,7 +135,8 @@ Camera camera_by_matrix(const JsonCursor& object, JsonImages& images, bool& sees
     return camera;
 }
 
-/// The camera of the scene: from "eye" to "target", or framing the scene in its pose at time 0.
+/// Returns the camera of the scene: from "eye" to "target", or framing the scene in its pose at
+/// time 0.
 /// \param aspect  of the picture
 Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, JsonImages& images,
                    bool& sees_all) {
@@ -173,7 +174,7 @@ Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, J
 
 // Nodes
 
-/// "sphere", or {"sphere": {"slices": 12}}.
+/// Reads "sphere", or {"sphere": {"slices": 12}}.
 Mesh shape_from(const JsonCursor& cursor) {
     static const std::vector<std::string> known = {"quad", "sphere", "cube", "torus", "cylinder"};
     const std::vector<std::string> keys =
@@ -219,7 +220,7 @@ Mesh shape_from(const JsonCursor& cursor) {
     cursor.fail_unknown(name, known);
 }
 
-/// [x, y, z, w], or {"axis": [0, 1, 0], "angle": 90}.
+/// Reads [x, y, z, w], or {"axis": [0, 1, 0], "angle": 90}.
 glm::quat rotation_from(const JsonCursor& cursor) {
     if (cursor.is_array()) {
         const std::vector<float> q = cursor.numbers(4);
@@ -234,7 +235,7 @@ glm::quat rotation_from(const JsonCursor& cursor) {
             static_cast<float>(portable::sin(half)) * glm::normalize(axis)};
 }
 
-/// The name and the transform of a node.
+/// Returns the name and the transform of a node.
 SceneNode node_from(const JsonCursor& object) {
     SceneNode node;
     if (const auto name = object.find("name")) node.name = name->text();
@@ -299,7 +300,7 @@ class SceneReader {
         return static_cast<std::uint32_t>(graph_.scene.materials.size() - 1);
     }
 
-    /// A material of the file, of the classic table, or written at this place.
+    /// Returns a material of the file, of the classic table, or written at this place.
     std::uint32_t material_from(const JsonCursor& cursor) {
         if (cursor.is_object()) return add_material(cursor, "");
         const std::string& name = cursor.text();

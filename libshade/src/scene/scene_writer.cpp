@@ -22,7 +22,7 @@ bool is_scene_file(const std::filesystem::path& file) {
     return file.extension() == ".json";
 }
 
-/// The path of a file relative to a folder.
+/// Returns the path of a file relative to a folder.
 std::string relative_path(const std::filesystem::path& folder, const std::filesystem::path& file) {
     namespace fs = std::filesystem;
     const fs::path absolute = fs::absolute(file).lexically_normal();
@@ -33,7 +33,7 @@ std::string relative_path(const std::filesystem::path& folder, const std::filesy
     return relative.empty() ? absolute.string() : relative.string();
 }
 
-/// All lights, in the world.
+/// Returns all lights, in the world.
 Json lights_json(const Scene& scene) {
     Json lights = Json::array();
     const auto add = [&](const char* type, const auto& all) {
