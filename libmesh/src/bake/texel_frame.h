@@ -8,7 +8,6 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of meshes, bounds, parts, and transformed meshes.
+// Checks of meshes, bounds, parts, and transformed meshes and texture coordinates.
 //
 // The check of indices first finds the largest one, which is as fast as reading memory, and
 // searches only if it is too large. Normals are transformed by the matrix of cofactors, which is
@@ -16,6 +16,7 @@
 
 #include "geometry/check_triangles.h"
 #include "geometry/direction.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -206,6 +207,31 @@ Mesh placed(Mesh mesh, const glm::mat4& world_from_object) {
             std::swap(triangle.y, triangle.z);
     }
     return mesh;
+}
+
+glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord) {
+    const glm::vec2 scaled = transform.scale * texcoord;
+    const auto cosine = static_cast<float>(portable::cos(double{transform.rotation}));
+    const auto sine = static_cast<float>(portable::sin(double{transform.rotation}));
+    return {cosine * scaled.x + sine * scaled.y + transform.offset.x,
+            cosine * scaled.y - sine * scaled.x + transform.offset.y};
+}
+
+glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& tangent,
+                      const glm::vec3& normal) {
+    const glm::dvec2 scale(transform.scale);
+    if (scale.x == 0.0 || scale.y == 0.0) return tangent;
+    const glm::dvec3 t(tangent);
+    const glm::dvec3 b = glm::cross(glm::dvec3(normal), t) * static_cast<double>(tangent.w);
+    const auto rotation = static_cast<double>(transform.rotation);
+    // The inverse of the transform (with v upwards), applied to the derivatives of position by u
+    // and v.
+    const glm::dvec3 turned =
+        t * (portable::cos(rotation) / scale.x) - b * (portable::sin(rotation) / scale.y);
+    const double length = glm::length(turned);
+    if (!(length > 0.0) || !std::isfinite(length)) return tangent;
+    return {glm::vec3(turned / length),
+            (scale.x < 0.0) == (scale.y < 0.0) ? tangent.w : -tangent.w};
 }
 
 }  // namespace relief

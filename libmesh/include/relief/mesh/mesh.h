@@ -90,6 +90,32 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles);
 ///         up in the image. A direction that would become zero does not change
 Mesh placed(Mesh mesh, const glm::mat4& world_from_object);
 
+// Transforms texture coordinates.
+
+/// KHR_texture_transform: texture coordinates are scaled, then rotated, then shifted.
+struct GltfTextureTransform {
+    glm::vec2 offset{0.0F};
+    float rotation = 0.0F;  ///< Radians; the image rotates clockwise.
+    glm::vec2 scale{1.0F};
+
+    friend bool operator==(const GltfTextureTransform&, const GltfTextureTransform&) = default;
+};
+
+/// Returns the coordinates at which the image is sampled. Both have v downwards.
+glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord);
+
+/// Returns the tangent for transformed texture coordinates, computed from that for the original
+/// ones. Both belong to the frames in which a renderer reads a normal map with transformed
+/// coordinates.
+///
+/// \param tangent  unit, w = +1 or -1, with its unit normal, as in Mesh
+/// \return the tangent rotated in the plane of the normal, with w negated if the transform mirrors.
+///         It is exact if the image lies on the surface without distortion, or if axes are only
+///         scaled and mirrored. A transform that reduces the image to a line or a point does not
+///         change the tangent
+glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& tangent,
+                      const glm::vec3& normal);
+
 // Generates simple shapes around the origin with normals and texture coordinates. Object space,
 // right-handed, y up.
 

@@ -19,7 +19,6 @@
 #include "geometry/direction.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_uri.h"
-#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -321,31 +320,6 @@ class SceneWalk {
 };
 
 }  // namespace
-
-glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& texcoord) {
-    const glm::vec2 scaled = transform.scale * texcoord;
-    const auto cosine = static_cast<float>(portable::cos(double{transform.rotation}));
-    const auto sine = static_cast<float>(portable::sin(double{transform.rotation}));
-    return {cosine * scaled.x + sine * scaled.y + transform.offset.x,
-            cosine * scaled.y - sine * scaled.x + transform.offset.y};
-}
-
-glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& tangent,
-                      const glm::vec3& normal) {
-    const glm::dvec2 scale(transform.scale);
-    if (scale.x == 0.0 || scale.y == 0.0) return tangent;
-    const glm::dvec3 t(tangent);
-    const glm::dvec3 b = glm::cross(glm::dvec3(normal), t) * static_cast<double>(tangent.w);
-    const auto rotation = static_cast<double>(transform.rotation);
-    // The inverse of the transform (with v upwards), applied to the derivatives of position by u
-    // and v.
-    const glm::dvec3 turned =
-        t * (portable::cos(rotation) / scale.x) - b * (portable::sin(rotation) / scale.y);
-    const double length = glm::length(turned);
-    if (!(length > 0.0) || !std::isfinite(length)) return tangent;
-    return {glm::vec3(turned / length),
-            (scale.x < 0.0) == (scale.y < 0.0) ? tangent.w : -tangent.w};
-}
 
 std::vector<GltfPrimitiveId> GltfDocument::triangle_primitives() const {
     const GltfContents& contents = contents_->data;
