@@ -209,20 +209,40 @@ Measurement measurement_of(const std::string& command) {
             command.substr(begin, output - begin) + command.substr(end)};
 }
 
+/// The command with as few rounds as possible if it measures times and does not state how many
+/// rounds: more of them only make times more precise, which no test checks, and take ten seconds.
+std::string with_few_rounds(const std::string& command) {
+    const auto has = [&](const char* text) { return command.find(text) != std::string::npos; };
+    const bool is_run = has("relief-accuracy run ");
+    if (!(is_run || has("relief-accuracy own ")) || has("--no-times") || has("--repeats"))
+        return command;
+    return command + (is_run ? " --repeats 3 --passes 1" : " --repeats 3");
+}
+
+TEST(ShownCommands, MeasureInFewRoundsUnlessTheyStateTheNumber) {
+    EXPECT_EQ(with_few_rounds("bin/relief-accuracy run all"),
+              "bin/relief-accuracy run all --repeats 3 --passes 1");
+    EXPECT_EQ(with_few_rounds("relief-accuracy own a.obj"),
+              "relief-accuracy own a.obj --repeats 3");
+    for (const char* line : {"relief-accuracy own a.obj --repeats 5", "relief-mesh info a.obj",
+                             "relief-accuracy run all --no-times", "relief-accuracy compare a b"})
+        EXPECT_EQ(with_few_rounds(line), line);
+}
+
 /// Runs a command. If it repeats a measurement of this process with another output folder, the
-/// results are copied instead, because measuring takes ten seconds.
+/// results are copied instead.
 ProgramResult run_or_copy(const std::string& command, const Workplace& workplace) {
     static const TemporaryDirectory results;
     static std::map<std::string, fs::path> folder_of;
     const Measurement measurement = measurement_of(command);
-    if (measurement.folder.empty()) return workplace.run(command);
+    if (measurement.folder.empty()) return workplace.run(with_few_rounds(command));
     const auto stored = folder_of.find(measurement.rest);
     if (stored != folder_of.end()) {
         fs::create_directories((workplace / measurement.folder).parent_path());
         fs::copy(stored->second, workplace / measurement.folder, fs::copy_options::recursive);
         return {0, "copied", ""};
     }
-    ProgramResult result = workplace.run(command);
+    ProgramResult result = workplace.run(with_few_rounds(command));
     if (result.exit_code == 0) {
         const fs::path folder = results / std::to_string(folder_of.size());
         fs::copy(workplace / measurement.folder, folder, fs::copy_options::recursive);

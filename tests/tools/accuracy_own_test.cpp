@@ -60,14 +60,14 @@ TEST(AccuracyOwn, JsonHoldsTheCommandThatRepeatsIt) {
 
 TEST(AccuracyOwn, TellsHeightsFromNormalsAndSaysSo) {
     const Workplace workplace;
+    workplace.write_bricks("bricks.png");
     const ProgramResult heights =
-        workplace.run("relief-accuracy own data/bricks-height.png --quick --no-times --strength 4");
+        workplace.run("relief-accuracy own bricks.png --quick --no-times --strength 4");
     ASSERT_EQ(heights.exit_code, 0) << heights.error;
-    EXPECT_THAT(heights.out, HasSubstr("data/bricks-height.png: a height map of "));
+    EXPECT_THAT(heights.out, HasSubstr("bricks.png: a height map of "));
     EXPECT_THAT(heights.out, HasSubstr("(if not: --image normals)"));
-    EXPECT_THAT(heights.out, HasSubstr("To do it: relief-bake bump data/bricks-height.png OUT."));
-    ASSERT_EQ(workplace.run("relief-bake bump data/bricks-height.png out/normals.png --strength 4")
-                  .exit_code,
+    EXPECT_THAT(heights.out, HasSubstr("To do it: relief-bake bump bricks.png OUT."));
+    ASSERT_EQ(workplace.run("relief-bake bump bricks.png out/normals.png --strength 4").exit_code,
               0);
     const ProgramResult normals =
         workplace.run("relief-accuracy own out/normals.png --quick --no-times");
@@ -99,8 +99,8 @@ TEST(AccuracyOwn, TakesAPairOnlyWhereItIsCalledOne) {
 
 TEST(AccuracyOwn, ABoundThatNothingKeepsIsExitOne) {
     const Workplace workplace;
-    const std::string line =
-        "relief-accuracy own data/bricks-height.png --quick --no-times --max-error ";
+    workplace.write_bricks("bricks.png");
+    const std::string line = "relief-accuracy own bricks.png --quick --no-times --max-error ";
     EXPECT_EQ(workplace.run(line + "90").exit_code, 0);
     const ProgramResult strict = workplace.run(line + "0");
     EXPECT_EQ(strict.exit_code, 1);
@@ -109,8 +109,9 @@ TEST(AccuracyOwn, ABoundThatNothingKeepsIsExitOne) {
 
 TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
     const Workplace workplace;
+    workplace.write_bricks("bricks.png");
     const std::string line =
-        "relief-accuracy own data/bricks-height.png --quick --no-times --json --max-error ";
+        "relief-accuracy own bricks.png --quick --no-times --json --max-error ";
     const json experiment = json::parse(workplace.run(line + "90").out)["experiments"][0];
     const auto map_error = experiment["reference_error"].get<double>();
     ASSERT_GT(map_error, 0.5);
@@ -216,8 +217,8 @@ TEST(AccuracyOwn, SaysWhichHeightsAreNotFinite) {
 
 TEST(AccuracyOwn, KeepsANormalMapAsItIs) {
     const Workplace workplace;
-    ASSERT_EQ(workplace.run("relief-bake bump data/bricks-height.png map.png --bits 8").exit_code,
-              0);
+    workplace.write_bricks("bricks.png");
+    ASSERT_EQ(workplace.run("relief-bake bump bricks.png map.png --bits 8").exit_code, 0);
     const json experiment =
         json::parse(workplace.run("relief-accuracy own map.png --quick --no-times --json")
                         .out)["experiments"][0];

@@ -23,14 +23,15 @@ using testing::Not;
 
 TEST(AccuracyRun, PrintsATableAndWritesTheReport) {
     const Workplace workplace;
-    const ProgramResult result =
-        workplace.run("relief-accuracy run storage --quick --repeats 3 --output out/report");
+    const ProgramResult result = workplace.run(
+        "relief-accuracy run storage --quick --repeats 3 --passes 2 --output out/report");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.error, "");
     EXPECT_THAT(result.out, HasSubstr("storage/frames: Tangent frames in few bits\n"));
     EXPECT_THAT(result.out, HasSubstr("out/report/accuracy.json: "));
     const json report = json::parse(workplace.read("out/report/accuracy.json"));
-    EXPECT_EQ(report["command"], "relief-accuracy run storage --quick --repeats 3");
+    EXPECT_EQ(report["command"], "relief-accuracy run storage --quick --repeats 3 --passes 2");
+    EXPECT_EQ(report["settings"]["passes"], 2);
     EXPECT_EQ(report["settings"]["repeats"], 3);
     const json& first = report["experiments"][0]["measurements"][0];
     EXPECT_EQ(first["cost"]["one_thread"]["rounds"].size(), 3U);

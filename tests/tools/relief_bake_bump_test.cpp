@@ -272,7 +272,8 @@ TEST(BumpCommand, DitheredMapsHaveTheCorrectMean) {
 
 TEST(BumpCommand, HalfFloatsAreSmallerAndHaveElevenBits) {
     const Workplace workplace;
-    const std::string line = "relief-bake bump data/bricks-height.png out/";
+    workplace.write_bricks("bricks.png");
+    const std::string line = "relief-bake bump bricks.png out/";
     ASSERT_EQ(workplace.run(line + "float.exr").exit_code, 0);
     ASSERT_EQ(workplace.run(line + "half.exr --half").exit_code, 0);
     EXPECT_LT(std::filesystem::file_size(workplace / "out/half.exr"),
@@ -287,7 +288,8 @@ TEST(BumpCommand, HalfFloatsAreSmallerAndHaveElevenBits) {
 
 TEST(BumpCommand, EveryCompressionEffortWritesTheSameImage) {
     const Workplace workplace;
-    const std::string line = "relief-bake bump data/bricks-height.png out/";
+    workplace.write_bricks("bricks.png");
+    const std::string line = "relief-bake bump bricks.png out/";
     for (const std::string effort : {"normal.png", "fast.png --fast", "small.png --small"})
         ASSERT_EQ(workplace.run(line + effort).exit_code, 0);
     const Image normal = read_image(workplace / "out/normal.png", ImageUse::data);
@@ -557,8 +559,8 @@ TEST(BumpAccuracyCommand, ALimitIncludesTheErrorOfTheMap) {
 
 TEST(BumpAccuracyCommand, ALimitWithinTheRangeOfTheExpectedErrorIsAFinding) {
     const Workplace workplace;
-    const std::string line =
-        "relief-bake bump data/bricks-height.png --strength 12 --report out/r.json";
+    workplace.write_bricks("bricks.png");
+    const std::string line = "relief-bake bump bricks.png --strength 12 --report out/r.json";
     const ProgramResult within = workplace.run(line + " out/a.png --max-error 2 --strict");
     EXPECT_EQ(within.exit_code, 3);
     EXPECT_THAT(within.out, HasSubstr("error limit that may be exceeded"));

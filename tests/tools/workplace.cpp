@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/workplace.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <set>
+
+#include "relief/mesh/image_file.h"
 
 namespace relief::test {
 
@@ -37,6 +41,18 @@ void Workplace::write_square(const fs::path& name, bool plain) const {
                       : positions +
                             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                             "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+}
+
+void Workplace::write_bricks(const fs::path& name) const {
+    constexpr int side = 256;
+    const Image whole = read_image(source_directory() / "data/bricks-height.png", ImageUse::data);
+    Image part = make_image(side, side, 1, 16, ColorSpace::data);
+    for (int y = 0; y < side; ++y) {
+        const auto row = whole.as<std::uint16_t>().subspan(
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(whole.width), side);
+        std::copy(row.begin(), row.end(), part.as<std::uint16_t>().begin() + y * side);
+    }
+    write_image(folder_ / name, part);
 }
 
 std::string Workplace::outputs() const {

@@ -35,6 +35,10 @@ class Workplace {
     /// coordinates unless `plain`.
     void write_square(const std::filesystem::path& name, bool plain = false) const;
 
+    /// The upper left 256 x 256 texels of data/bricks-height.png: measuring kernels on all of it
+    /// takes eight times as long.
+    void write_bricks(const std::filesystem::path& name) const;
+
     /// All that stands in out/, sorted, by name: no half or temporary file escapes.
     [[nodiscard]] std::string outputs() const;
 

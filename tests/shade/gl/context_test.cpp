@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -297,8 +298,7 @@ TEST_F(EglDevices, TheReasonForRefusingAnAdapterNamesItsRasteriser) {
     EXPECT_THAT(outcome("alone adapter"), HasSubstr("device 0: it is drawn by llvmpipe"));
 }
 
-/// Returns the output of gl_fingerprint under this environment: "A=1 B=2".
-std::string fingerprint(const std::string& environment, const std::string& backend) {
+std::string run_fingerprint(const std::string& environment, const std::string& backend) {
     const std::string command = fmt::format("env MESA_SHADER_CACHE_DISABLE=true {} '{}' {}",
                                             environment, RELIEF_GL_FINGERPRINT, backend);
     const auto close = [](std::FILE* stream) { pclose(stream); };
@@ -308,6 +308,15 @@ std::string fingerprint(const std::string& environment, const std::string& backe
     while (std::fgets(piece.data(), piece.size(), stream.get()) != nullptr)
         output += piece.data();
     return output;
+}
+
+/// Returns the output of gl_fingerprint under this environment: "A=1 B=2". It runs once for all
+/// tests, because the driver compiles its shaders in each process.
+const std::string& fingerprint(const std::string& environment, const std::string& backend) {
+    static std::map<std::pair<std::string, std::string>, std::string> outputs;
+    const auto [output, is_new] = outputs.try_emplace({environment, backend});
+    if (is_new) output->second = run_fingerprint(environment, backend);
+    return output->second;
 }
 
 /// Removes the line about loaded libraries.
