@@ -399,10 +399,10 @@ ConventionFit convention_of(const Baker& baker, const Image& map, const BakeChec
     search.low = &baker.low();
     search.given = options.given;
     search.green = options.format.green;
-    search.told.flat = options.format.flat;
+    search.stated.flat = options.format.flat;
     search.object_from_mesh = options.object_from_mesh;
     if (baker.options().space == BakeSpace::object)
-        search.told.space = options.is_object ? MapAxes::object : MapAxes::world;
+        search.stated.space = options.is_object ? MapAxes::object : MapAxes::world;
     return find_convention(map, known, search);
 }
 

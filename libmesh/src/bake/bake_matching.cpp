@@ -26,7 +26,7 @@ constexpr std::array unit_pairs = {
     UnitPair{39.370079, "inches", "meters"},      UnitPair{100.0, "centimeters", "meters"},
     UnitPair{304.8, "millimeters", "feet"},       UnitPair{1000.0, "millimeters", "meters"}};
 
-/// The units that would explain a ratio of sizes; empty if there are none.
+/// Returns the units that would explain a ratio of sizes; empty if there are none.
 std::string unit_cause(double size_ratio) {
     const double ratio = std::max(size_ratio, 1.0 / size_ratio);
     for (const UnitPair& pair : unit_pairs) {

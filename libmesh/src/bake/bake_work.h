@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bake/high_surface.h"
+#include "bake/ray_scene.h"
 #include "relief/mesh/bake.h"
 
 namespace relief {

@@ -37,7 +37,7 @@ constexpr std::array frames = {FrameInterpolation::interpolated, FrameInterpolat
                                FrameInterpolation::orthonormal,
                                FrameInterpolation::vertex_bitangent};
 
-/// All signed permutations, or those that keep z; positive signs come first.
+/// Returns all signed permutations, or those that keep z; positive signs come first.
 std::vector<AxisMapping> mappings(bool keeps_z) {
     std::vector<AxisMapping> all;
     std::array<int, 3> order = {0, 1, 2};
@@ -213,7 +213,7 @@ class Readings {
     std::map<MapBasis, CornerTangents> corners_;
 };
 
-/// All conventions one step away from another, the simplest first.
+/// Returns all conventions one step away from another, the simplest first.
 std::vector<MapConvention> neighbors_of(const MapConvention& from) {
     static const std::vector<AxisMapping> in_plane_mappings = mappings(true);
     static const std::vector<AxisMapping> all_mappings = mappings(false);
@@ -287,11 +287,11 @@ std::vector<ConventionPart> changes_between(const MapConvention& a, const MapCon
 ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texels,
                               const ConventionSearch& search) {
     ConventionFit fit;
-    fit.convention = search.told;
+    fit.convention = search.stated;
     if (texels.empty()) return fit;
     Readings readings(map, texels, search);
     fit.expected_degrees = readings.expected();
-    fit.given_degrees = readings.error(search.told);
+    fit.given_degrees = readings.error(search.stated);
     fit.found_degrees = fit.given_degrees;
     const double fine = std::max(2.0 * fit.expected_degrees, fit.expected_degrees + sure_degrees);
     fit.was_searched = fit.given_degrees > fine;
@@ -309,7 +309,7 @@ ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texe
         fit.found_degrees = min_degrees;
     }
     fit.tried = readings.tried;
-    fit.changes = changes_between(search.told, fit.convention);
+    fit.changes = changes_between(search.stated, fit.convention);
     fit.is_explained = fit.was_searched && fit.found_degrees < fit.given_degrees / 2.0 &&
                        fit.given_degrees - fit.found_degrees > sure_degrees;
     return fit;

@@ -407,7 +407,7 @@ class Band {
     void draw(std::uint32_t index) {
         TexelTriangle triangle;
         triangles_.make(index, triangle);
-        compared_with_ = CoveredTexel::nobody;
+        compared_with_ = CoveredTexel::no_triangle;
         const TexelRange rows = triangle.rows();
         for_parts(rows.begin, rows.end, options_.height, options_.repeat,
                   [&](std::int64_t first, std::int64_t last, std::int64_t moved) {
@@ -537,7 +537,8 @@ class Band {
     std::vector<CoveredTexel> texels_;
     std::vector<double> distances_;  ///< Squared, of texels that are only touched.
     std::vector<std::uint8_t> holders_;
-    std::uint32_t compared_with_ = CoveredTexel::nobody;  ///< The owner that `is_before_` is for.
+    std::uint32_t compared_with_ =
+        CoveredTexel::no_triangle;  ///< The owner that `is_before_` is for.
     bool is_before_ = false;
 };
 

@@ -15,7 +15,7 @@
 
 namespace RELIEF_API relief {
 
-/// The bytes of a file, as text. \throws FileError if it is missing, a folder or unreadable
+/// Returns the bytes of a file, as text. \throws FileError if it is missing, a folder or unreadable
 std::string read_file(const std::filesystem::path& file);
 
 /// The bytes of a large file, read on all threads into memory that is not cleared first.
@@ -54,7 +54,7 @@ class RandomAccessFile {
     std::uint64_t size_ = 0;
 };
 
-/// The extension in lower case with its dot (".obj"); empty if there is none.
+/// Returns the extension in lower case with its dot (".obj"); empty if there is none.
 std::string lower_extension(const std::filesystem::path& file);
 
 }  // namespace relief

@@ -30,7 +30,7 @@ struct OctahedralCode {
     int y = 0;
 };
 
-/// The direction of a code; not of unit length, but never 0.
+/// Returns the direction of a code; not of unit length, but never 0.
 inline glm::dvec3 octahedral_direction(OctahedralCode code, int largest) {
     const int z = largest - std::abs(code.x) - std::abs(code.y);
     if (z >= 0) return {code.x, code.y, z};
@@ -39,7 +39,7 @@ inline glm::dvec3 octahedral_direction(OctahedralCode code, int largest) {
     return {x, y, z};
 }
 
-/// The coordinates of a unit vector in the square, in codes, before rounding.
+/// Returns the coordinates of a unit vector in the square, in codes, before rounding.
 inline glm::dvec2 octahedral_place(const glm::dvec3& unit, int largest) {
     const glm::dvec3 size = glm::abs(unit);
     const double scale = largest / (size.x + size.y + size.z);
@@ -48,8 +48,8 @@ inline glm::dvec2 octahedral_place(const glm::dvec3& unit, int largest) {
             (largest - size.x * scale) * (unit.y < 0.0 ? -1.0 : 1.0)};
 }
 
-/// The code with the least error(code) among those around a place: the two nearest values of each
-/// coordinate. If `parity` is 0 or 1, the lowest bit of y must equal it.
+/// Returns the code with the least error(code) among those around a place: the two nearest values
+/// of each coordinate. If `parity` is 0 or 1, the lowest bit of y must equal it.
 template <typename Error>
 OctahedralCode best_code(const glm::dvec2& place, int largest, int parity, Error error) {
     const int left = floor_to_int(place.x);
@@ -72,7 +72,7 @@ OctahedralCode best_code(const glm::dvec2& place, int largest, int parity, Error
     return best;
 }
 
-/// The nearest code to a place. If `parity` is 0 or 1, the lowest bit of y must equal it.
+/// Returns the nearest code to a place. If `parity` is 0 or 1, the lowest bit of y must equal it.
 inline OctahedralCode nearest_code(const glm::dvec2& place, int largest, int parity) {
     OctahedralCode code{rounded_to_int(place.x), rounded_to_int(place.y)};
     if (parity < 0 || (code.y & 1) == parity) return code;

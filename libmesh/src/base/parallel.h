@@ -37,7 +37,8 @@ void parallel_for_reporting(
     std::size_t count, std::size_t grain, Report& report,
     const std::function<void(std::size_t begin, std::size_t end, Report& found)>& body);
 
-/// The maximum number of threads of parallel_for(), for callers that create one object per thread.
+/// Returns the maximum number of threads of parallel_for(), for callers that create one object per
+/// thread.
 std::size_t thread_count();
 
 /// Runs independent tasks in parallel; one after another if `are_small`, because starting threads

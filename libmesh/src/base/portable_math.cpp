@@ -9,8 +9,6 @@
 #include <cstddef>
 #include <numbers>
 
-#include "corner_angle.h"
-
 namespace relief::portable {
 namespace {
 

@@ -25,7 +25,7 @@ namespace RELIEF_API relief {
 /// Bits of a vector register.
 enum class VectorTarget { any = 128, wide = 256, widest = 512 };
 
-/// The best target of this processor and operating system. The environment variable
+/// Returns the best target of this processor and operating system. The environment variable
 /// RELIEF_VECTOR_BITS (128, 256) limits it, so that tests can compare targets.
 VectorTarget best_vector_target();
 

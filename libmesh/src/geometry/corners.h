@@ -29,12 +29,12 @@ inline std::uint32_t triangle_of(Corner corner) {
     return corner / 3;
 }
 
-/// The following corner of the same triangle, counter-clockwise.
+/// Returns the following corner of the same triangle, counter-clockwise.
 inline Corner next_in_triangle(Corner corner) {
     return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
 
-/// The preceding corner of the same triangle.
+/// Returns the preceding corner of the same triangle.
 inline Corner previous_in_triangle(Corner corner) {
     return corner % 3 == 0 ? corner + 2 : corner - 1;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weighted least squares for heights over the tangent plane, turned to the normal found and fitted
-// again. Object space, lengths in units of the neighborhood. Source: [Cazals and Pouget 2005];
-// unlike there, the polynomial goes through the vertex itself, and near vertices count more.
-// Tests: tests/accuracy/ground_truth_test.cpp.
+// Fits heights over the tangent plane by weighted least squares, rotates the plane to the fitted
+// normal, and fits again. Object space, lengths in units of the neighborhood. Source: [Cazals and
+// Pouget 2005]; unlike there, the polynomial passes through the vertex itself, and near vertices
+// have larger weights. Tests: tests/accuracy/ground_truth_test.cpp.
 #include "relief/mesh/normals.h"
 
 #include <algorithm>
@@ -22,12 +22,12 @@ namespace {
 
 constexpr int fine_degree = 4;
 constexpr int crude_degree = 3;
-/// Terms x^i y^j of a polynomial through the origin.
+/// Returns the number of terms x^i y^j of a polynomial through the origin.
 constexpr std::size_t terms_of(int degree) {
     return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2 - 1);
 }
 constexpr std::size_t max_terms = terms_of(fine_degree);
-/// Hubs of huge fans: what is around them is no neighborhood.
+/// The hubs of huge fans are not fitted: the triangles around them are not a neighborhood.
 constexpr std::size_t max_triangles_around = 1024;
 
 /// A symmetric system of equations, solved by Cholesky's decomposition.
@@ -43,7 +43,7 @@ class NormalEquations {
         }
     }
 
-    /// \return nothing where the places do not determine the polynomial
+    /// \return none if the points do not determine the polynomial
     std::optional<std::array<double, max_terms>> solution() {
         for (std::size_t row = 0; row < size_; ++row) {
             const double diagonal = matrix_[row][row];
@@ -80,7 +80,7 @@ class NormalEquations {
     std::array<double, max_terms> right_{};
 };
 
-/// x and y first, so that they are the slopes.
+/// Returns the terms of a polynomial, x and y first, so that their coefficients are the slopes.
 std::array<double, max_terms> terms_at(double x, double y, int degree) {
     std::array<double, max_terms> terms{x, y};
     std::size_t next = 2;
@@ -93,7 +93,7 @@ std::array<double, max_terms> terms_at(double x, double y, int degree) {
     return terms;
 }
 
-/// Axes with z along a unit vector.
+/// Returns axes with z along a unit vector.
 glm::dmat3 axes_around(const glm::dvec3& z) {
     const glm::dvec3 away =
         std::abs(z.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
@@ -101,7 +101,7 @@ glm::dmat3 axes_around(const glm::dvec3& z) {
     return {x, glm::cross(z, x), z};
 }
 
-/// The normal at the origin of the polynomial through points around it.
+/// Returns the normal at the origin of the polynomial through points around it.
 std::optional<glm::dvec3> fitted_normal(const std::vector<glm::dvec3>& points, glm::dvec3 normal,
                                         int degree) {
     const std::size_t terms = terms_of(degree);
@@ -110,7 +110,7 @@ std::optional<glm::dvec3> fitted_normal(const std::vector<glm::dvec3>& points, g
     for (const glm::dvec3& point : points)
         reach = std::max(reach, glm::length(point));
     if (!(reach > 0.0) || !std::isfinite(reach)) return std::nullopt;
-    constexpr int rounds = 3;  // The last turns by less than the fit is off.
+    constexpr int rounds = 3;  // The last rotation is smaller than the error of the fit.
     for (int round = 0; round < rounds; ++round) {
         const glm::dmat3 axes = axes_around(normal);
         NormalEquations equations(terms);
@@ -126,10 +126,10 @@ std::optional<glm::dvec3> fitted_normal(const std::vector<glm::dvec3>& points, g
     return normal;
 }
 
-/// A mesh as fans: what is joined by smooth edges.
-class MeshAsFans {
+/// A mesh in which corners that are joined by smooth edges form fans.
+class FanMesh {
   public:
-    MeshAsFans(const Mesh& mesh, const HardEdges& hard_edges)
+    FanMesh(const Mesh& mesh, const HardEdges& hard_edges)
         : mesh_(mesh), welded_(welded_triangles(mesh.triangles, weld_positions(mesh.positions))) {
         normals_ = normals_or_zero(mesh.positions, mesh.triangles);
         const SmoothFans fans = smooth_fans(mesh.positions.size(), welded_, normals_, hard_edges);
@@ -144,7 +144,7 @@ class MeshAsFans {
         return corners_->at(fan);
     }
 
-    /// The sum of the unit normals of a fan's triangles, made unit; nothing where they cancel.
+    /// Returns the normalized sum of the unit normals of a fan's triangles; none if they cancel.
     [[nodiscard]] std::optional<glm::dvec3> mean_normal(std::size_t fan) const {
         glm::dvec3 sum(0.0);
         for (const Corner corner : corners_of(fan))
@@ -154,18 +154,18 @@ class MeshAsFans {
         return sum / length;
     }
 
-    /// How far the triangle is turned from it that is furthest, in degrees.
+    /// Returns the largest angle of a triangle of the fan to a normal, in degrees.
     [[nodiscard]] double bend_from(const glm::dvec3& normal, std::size_t fan) const {
         double most = 0.0;
         for (const Corner corner : corners_of(fan)) {
-            // One without an area has no say.
+            // Triangles without an area give NaN, which does not count.
             const double bend = degrees_between(glm::dvec3(normals_[triangle_of(corner)]), normal);
             if (bend > most) most = bend;
         }
         return most;
     }
 
-    /// Adds the triangles of all fans that these triangles are in. Ascending.
+    /// Adds the triangles of all fans of these triangles. The result is ascending.
     void grow(std::vector<std::uint32_t>& triangles) const {
         const std::vector<std::uint32_t> inner = triangles;
         for (const std::uint32_t triangle : inner) {
@@ -178,7 +178,8 @@ class MeshAsFans {
         make_unique(triangles);
     }
 
-    /// The vertices of triangles but that of a corner, relative to it; each once.
+    /// Returns the vertices of triangles relative to the vertex of a corner, each once and without
+    /// that vertex.
     [[nodiscard]] std::vector<glm::dvec3> points_of(const std::vector<std::uint32_t>& triangles,
                                                     Corner middle) const {
         std::vector<std::uint32_t> vertices;
@@ -204,19 +205,19 @@ class MeshAsFans {
 
   private:
     const Mesh& mesh_;
-    std::vector<glm::uvec3> welded_;  ///< Triangles over vertices that are one.
-    std::vector<glm::vec3> normals_;  ///< Of triangles.
-    std::vector<glm::uvec3> fans_;    ///< Triangles over fans.
+    std::vector<glm::uvec3> welded_;  ///< The triangles with the indices of welded vertices.
+    std::vector<glm::vec3> normals_;  ///< By triangle.
+    std::vector<glm::uvec3> fans_;    ///< The triangles with the indices of fans.
     std::optional<CornersByVertex> corners_;
 };
 
 struct Fit {
     glm::dvec3 normal{};
     double doubt = 0.0;  ///< Degrees between the two fits.
-    double bend = 0.0;   ///< To the triangle furthest from it, degrees.
+    double bend = 0.0;   ///< The largest angle to a triangle, in degrees.
 };
 
-std::optional<Fit> fit_at(const MeshAsFans& mesh, std::size_t fan) {
+std::optional<Fit> fit_at(const FanMesh& mesh, std::size_t fan) {
     const std::span<const Corner> corners = mesh.corners_of(fan);
     if (corners.empty() || corners.size() > max_triangles_around) return std::nullopt;
     const std::optional<glm::dvec3> start = mesh.mean_normal(fan);
@@ -224,7 +225,7 @@ std::optional<Fit> fit_at(const MeshAsFans& mesh, std::size_t fan) {
     std::vector<std::uint32_t> triangles;
     for (const Corner corner : corners)
         triangles.push_back(triangle_of(corner));
-    MeshAsFans::make_unique(triangles);
+    FanMesh::make_unique(triangles);
     mesh.grow(triangles);
     const auto crude =
         fitted_normal(mesh.points_of(triangles, corners.front()), *start, crude_degree);
@@ -241,7 +242,7 @@ std::optional<Fit> fit_at(const MeshAsFans& mesh, std::size_t fan) {
 
 FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options) {
     validate(mesh);
-    const MeshAsFans fans(mesh, options.hard_edges);
+    const FanMesh fans(mesh, options.hard_edges);
     FittedNormals result;
     result.fans = fans.fan_count();
     result.places = std::min(result.fans, options.max_places);

@@ -18,7 +18,7 @@
 #include <array>
 #include <cmath>
 
-#include "corner_angle.h"
+#include "portable_math.h"
 #include "relief/mesh/normals.h"
 #include "vector_targets.h"
 

@@ -27,12 +27,12 @@
 #include "geometry/check_triangles.h"
 #include "geometry/corners.h"
 #include "geometry/direction.h"
-#include "geometry/double_double.h"
 #include "geometry/normal_contributions.h"
 #include "geometry/normal_sums.h"
 #include "geometry/smooth_fans.h"
 #include "geometry/weld.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

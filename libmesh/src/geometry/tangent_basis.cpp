@@ -37,7 +37,7 @@ struct Method {
     std::vector<glm::vec4> (*tangents)(const Mesh& mesh);
 };
 
-/// The u direction of each triangle, not averaged.
+/// Returns the u direction of each triangle, not averaged.
 std::vector<glm::vec4> triangle_tangents(const Mesh& mesh) {
     std::vector<glm::vec4> result(3 * mesh.triangles.size());
     parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {

@@ -12,10 +12,10 @@
 #include <mutex>
 #include <numbers>
 
-#include "corner_angle.h"
 #include "geometry/direction.h"
 #include "geometry/tangent_contributions.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "vector_targets.h"
 
 namespace relief {

@@ -19,11 +19,11 @@
 #include <numeric>
 #include <tuple>
 
-#include "corner_angle.h"
 #include "geometry/direction.h"
 #include "geometry/tangent_groups.h"
 #include "geometry/tangent_signs.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "vector_targets.h"
 
 namespace relief {
@@ -33,10 +33,10 @@ constexpr std::size_t max_pairwise = 64;
 
 // In float, a cosine is not above -1 within 2.4e-4 radians of a half turn, which gives the size of
 // the steps.
-constexpr std::int32_t steps_around = 1 << 15;
+constexpr std::int32_t steps = 1 << 15;
 
 // Offset that keeps the borders between steps away from the axes, where directions are frequent.
-constexpr double step_offset = 0.12345;
+constexpr double offset = 0.12345;
 
 /// Directions in a plane, quantized to steps of a turn.
 class TurnSteps {
@@ -52,13 +52,13 @@ class TurnSteps {
         const double y = glm::dot(direction, y_axis_);
         if (x == 0.0 && y == 0.0) return -1;
         const double angle = y < 0.0 ? -upper_angle(-y, x) : upper_angle(y, x);
-        const double turn = (angle + step_offset) / (2.0 * std::numbers::pi);
-        return static_cast<std::int32_t>((turn - std::floor(turn)) * steps_around) % steps_around;
+        const double turn = (angle + offset) / (2.0 * std::numbers::pi);
+        return static_cast<std::int32_t>((turn - std::floor(turn)) * steps) % steps;
     }
 
-    /// The opposite step; -2, which no direction has, for -1.
+    /// Returns the opposite step; -2, which no direction has, for -1.
     static std::int32_t opposite(std::int32_t step) {
-        return step < 0 ? -2 : (step + steps_around / 2) % steps_around;
+        return step < 0 ? -2 : (step + steps / 2) % steps;
     }
 
   private:

@@ -237,7 +237,7 @@ class SignFinder {
         bool any = false;
     };
 
-    /// The corner at the same vertex across the edge on which the triangle arrives.
+    /// Returns the corner at the same vertex across the edge on which the triangle arrives.
     [[nodiscard]] Corner across_previous(std::size_t place, Corner corner) const {
         const Corner beyond = open_.across(place, previous_in_triangle(corner));
         return beyond == no_corner ? no_corner : previous_in_triangle(beyond);

@@ -46,7 +46,7 @@ class CornerLinker {
     /// For a corner whose triangle continues from the vertex to W: the neighbor's corner at the
     /// vertex, across that edge.
     [[nodiscard]] Place across(Place corner) const { return across_[corner]; }
-    /// The corner across the edge on which the triangle arrives. Inverse of `across`.
+    /// Returns the corner across the edge on which the triangle arrives. Inverse of `across`.
     [[nodiscard]] Place across_previous(Place corner) const { return across_previous_[corner]; }
     /// For a duplicate triangle (same corners, same winding), the corner of the one that counts;
     /// otherwise the corner itself. Duplicates have no neighbors.

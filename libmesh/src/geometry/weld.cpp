@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
-/// The multiply-and-shift mixer of [Steele et al. 2014]: every bit of the input affects every bit
+/// Mixes bits as in [Steele et al. 2014]: every bit of the input affects every bit
 /// of the result, so that regular grids of floats do not collide.
 std::uint64_t mixed(std::uint64_t bits) {
     bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;

@@ -81,7 +81,7 @@ void find_copies(std::span<const Corner> around, std::uint32_t vertex,
 }
 
 /// An edge of a triangle at the current vertex.
-struct SideAtVertex {
+struct Spoke {
     std::uint32_t other;   ///< Class at its other end.
     Corner corner;         ///< Corner at which the triangle's edge begins.
     bool is_outgoing;      ///< True if it begins here.
@@ -119,7 +119,7 @@ class Fans {
 };
 
 /// Classifies one edge by its spokes.
-Edge judge_edge(std::span<const SideAtVertex> spokes, std::span<const glm::vec3> normals) {
+Edge judge_edge(std::span<const Spoke> spokes, std::span<const glm::vec3> normals) {
     if (spokes.size() == 1) return Edge::boundary;
     if (spokes.size() > 2) return Edge::non_manifold;
     if (spokes[0].is_outgoing == spokes[1].is_outgoing) return Edge::flipped;
@@ -131,7 +131,7 @@ Edge judge_edge(std::span<const SideAtVertex> spokes, std::span<const glm::vec3>
 /// Buffers of one piece of the loop over vertices.
 struct Workspace {
     std::vector<TriangleKey> keys;
-    std::vector<SideAtVertex> spokes;
+    std::vector<Spoke> spokes;
     Fans fans;
 };
 
@@ -147,17 +147,16 @@ void gather_spokes(std::span<const Corner> around, std::span<const glm::uvec3> t
         work.spokes.push_back({vertex_of(previous, triangles), previous, false, member});
         ++member;
     }
-    std::sort(work.spokes.begin(), work.spokes.end(),
-              [](const SideAtVertex& a, const SideAtVertex& b) {
-                  return a.other != b.other ? a.other < b.other : a.corner < b.corner;
-              });
+    std::sort(work.spokes.begin(), work.spokes.end(), [](const Spoke& a, const Spoke& b) {
+        return a.other != b.other ? a.other < b.other : a.corner < b.corner;
+    });
     work.fans.reset(member);
 }
 
 /// Classifies edges and fans at one vertex.
 void judge_vertex(const DiagnosedMesh& diagnosed, std::uint32_t vertex, Workspace& work,
                   FoundEdges& found) {
-    const std::span<const SideAtVertex> spokes(work.spokes);
+    const std::span<const Spoke> spokes(work.spokes);
     for (std::size_t begin = 0; begin < spokes.size();) {
         std::size_t end = begin + 1;
         for (; end < spokes.size() && spokes[end].other == spokes[begin].other; ++end)

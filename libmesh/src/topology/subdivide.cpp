@@ -112,7 +112,7 @@ EdgeNumbers number_edges(std::size_t vertex_count, std::span<const glm::uvec3> t
 }
 
 /// A mesh between two levels.
-struct MeshLevel {
+struct Level {
     Mesh mesh;
     std::vector<std::uint32_t> classes;  ///< For each vertex, the first at its position.
     /// Position of each vertex relative to the center of the mesh.
@@ -127,7 +127,7 @@ struct Cut {
     EdgeNumbers class_edges;
 };
 
-Cut cut_of(const MeshLevel& level, Report& report) {
+Cut cut_of(const Level& level, Report& report) {
     Cut cut{topology_of(level.mesh, level.classes, report), {}, {}, {}};
     cut.is_cut.assign(level.mesh.triangles.size(), false);
     for (const std::uint32_t t : cut.topology.source_triangle)
@@ -158,7 +158,7 @@ class Means {
 
 /// New positions of all vertices, followed by the edge midpoints. Surfaces that meet at a position
 /// all move to the mean.
-std::vector<glm::dvec3> moved_points(const MeshLevel& level, const Cut& cut) {
+std::vector<glm::dvec3> moved_points(const Level& level, const Cut& cut) {
     const Topology& topology = cut.topology;
     std::vector<glm::dvec3> points;
     for (const std::uint32_t vertex : topology.position_vertex)
@@ -188,7 +188,7 @@ std::vector<glm::dvec3> moved_points(const MeshLevel& level, const Cut& cut) {
 }
 
 /// For each vertex of the next level, the first vertex at its position.
-std::vector<std::uint32_t> next_classes(const MeshLevel& level, const Cut& cut) {
+std::vector<std::uint32_t> next_classes(const Level& level, const Cut& cut) {
     std::vector<std::uint32_t> class_edge(cut.edges.ends.size());
     for (std::size_t corner = 0; corner < cut.edges.of_corner.size(); ++corner) {
         const std::uint32_t edge = cut.edges.of_corner[corner];
@@ -250,7 +250,7 @@ void cut_triangles(Mesh& mesh, const Cut& cut, std::size_t vertex_count) {
     mesh.triangles = std::move(triangles);
 }
 
-void subdivide_once(MeshLevel& level, Report& report) {
+void subdivide_once(Level& level, Report& report) {
     const Cut cut = cut_of(level, report);
     const std::size_t vertex_count = level.points.size();
     std::vector<glm::dvec3> points = moved_points(level, cut);
@@ -283,7 +283,7 @@ Mesh subdivided(const Mesh& mesh, int levels, const FrameOptions& frames, Report
     const Bounds bounds = bounds_of(mesh);
     const glm::dvec3 center =
         bounds.empty() ? glm::dvec3(0.0) : (glm::dvec3(bounds.min) + glm::dvec3(bounds.max)) / 2.0;
-    MeshLevel level{mesh, weld_positions(mesh.positions), {}};
+    Level level{mesh, weld_positions(mesh.positions), {}};
     level.mesh.normals.clear();
     level.mesh.tangents.clear();
     for (const glm::vec3& position : mesh.positions)

@@ -9,8 +9,6 @@
 #include <limits>
 #include <numbers>
 
-#include "corner_angle.h"
-#include "geometry/double_double.h"
 #include "portable_math.h"
 
 namespace relief {

@@ -143,7 +143,7 @@ struct ConventionFit {
 struct ConventionSearch {
     const Mesh* low = nullptr;    ///< With the tangent frames of the renderer.
     const Mesh* given = nullptr;  ///< The low mesh as it was read, with its own tangents, if any.
-    MapConvention told;
+    MapConvention stated;
     Green green = Green::up;  ///< Of the map, as given.
     /// The transform from the meshes' space to the low mesh's object space.
     glm::dmat3 object_from_mesh{1.0};
@@ -153,7 +153,7 @@ struct ConventionSearch {
 ///
 /// \param map  three or four channels, the whole image
 /// \param texels  some hundreds to thousands, spread over the map
-/// \return the given convention (`told`) if the error of the map is at most twice the expected one,
+/// \return the stated convention if the error of the map is at most twice the expected one,
 ///         or exceeds it by at most 0.02 degrees. Otherwise the convention with the smallest error
 ///         from a greedy search: all conventions are tried that differ in one part, or in two parts
 ///         that can hide each other (orientation and axes, space and axes); the best one becomes

@@ -64,9 +64,9 @@ MapTiles tiles_of(std::span<const glm::vec2> texcoords, std::span<const glm::uve
 
 /// The position of a texel on a mesh.
 struct CoveredTexel {
-    static constexpr std::uint32_t nobody = 0xffffffff;
+    static constexpr std::uint32_t no_triangle = 0xffffffff;
 
-    std::uint32_t triangle = nobody;
+    std::uint32_t triangle = no_triangle;
     /// Barycentric weights of the triangle's second and third corner; that of the first is 1 minus
     /// their sum. None is negative. If the texel's center is outside of the triangle, they are
     /// those of the nearest point.
@@ -74,7 +74,7 @@ struct CoveredTexel {
     float third = 0.0F;
     bool is_inside = false;  ///< The center of the texel is inside of the triangle.
 
-    [[nodiscard]] bool is_covered() const { return triangle != nobody; }
+    [[nodiscard]] bool is_covered() const { return triangle != no_triangle; }
     [[nodiscard]] glm::vec3 weights() const { return {1.0F - second - third, second, third}; }
 };
 

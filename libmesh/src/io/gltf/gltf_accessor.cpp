@@ -25,7 +25,7 @@
 namespace relief {
 namespace {
 
-/// The bytes of a view, starting at the holder's offset.
+/// Returns the bytes of a view, starting at the holder's offset.
 std::string_view view_bytes(const GltfContents& contents, const Json& holder) {
     const Json& view = contents.root["bufferViews"][size_in(holder, "bufferView")];
     const std::string_view buffer = contents.buffers[size_in(view, "buffer")].bytes();
@@ -305,7 +305,7 @@ std::vector<glm::uvec3> indexed_triangles(const GltfContents& contents, std::siz
     return triangles;
 }
 
-/// The triangles of a primitive without indices.
+/// Returns the triangles of a primitive without indices.
 std::vector<glm::uvec3> plain_triangles(std::size_t vertex_count, std::size_t mode) {
     if (vertex_count > std::numeric_limits<std::uint32_t>::max()) {
         throw InvalidInput(fmt::format("{} vertices are too many", vertex_count));
@@ -366,7 +366,7 @@ std::optional<std::vector<std::uint32_t>> used_vertices(const std::vector<glm::u
     return used;
 }
 
-/// An attribute as floats; empty if it is absent.
+/// Returns an attribute as floats; empty if it is absent.
 template <typename Vector>
 std::vector<Vector> attribute(const GltfContents& contents, const Json& primitive,
                               const std::string& name) {
@@ -405,7 +405,7 @@ bool is_small(const GltfContents& contents, const Json& primitive) {
     return !position || size_in(contents.root["accessors"][*position], "count") < few_vertices;
 }
 
-/// The same triangles, over the used vertices only.
+/// Returns the same triangles, over the used vertices only.
 std::vector<glm::uvec3> compacted(GltfTriangles all) {
     if (!all.used) return std::move(all.triangles);
     std::vector<std::uint32_t> place(all.vertex_count, 0);

@@ -48,8 +48,8 @@ struct ElementLayout {
 };
 ElementLayout element_layout(const Json& accessor);
 
-/// The layout of an accessor of indices. \throws InvalidInput if it is not of scalar unsigned
-/// integers
+/// Returns the layout of an accessor of indices. \throws InvalidInput if it is not of scalar
+/// unsigned integers
 ElementLayout index_layout(const GltfContents& contents, std::size_t accessor);
 
 /// All elements, tightly packed: a view of the buffer if they are packed there, otherwise a copy.
@@ -66,15 +66,15 @@ PackedElements packed_elements(const GltfContents& contents, std::size_t accesso
 /// Like packed_elements(), but always a copy.
 std::string raw_elements(const GltfContents& contents, std::size_t accessor);
 
-/// All elements as vectors of floats. \throws InvalidInput if the number of components differs, or
-/// as packed_elements()
+/// Returns all elements as vectors of floats. \throws InvalidInput if the number of components
+/// differs, or as packed_elements()
 template <typename Vector>
 std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor);
 
-/// All elements as indices. \throws InvalidInput if they are not scalar unsigned integers
+/// Returns all elements as indices. \throws InvalidInput if they are not scalar unsigned integers
 std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::size_t accessor);
 
-/// All elements as triangles. \throws InvalidInput also if the count is not a multiple of 3
+/// Returns all elements as triangles. \throws InvalidInput also if the count is not a multiple of 3
 std::vector<glm::uvec3> index_triples(const GltfContents& contents, std::size_t accessor);
 
 const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id);

@@ -43,14 +43,14 @@ inline const Json* find(const Json& object, const char* key) {
     return it == object.end() ? nullptr : &*it;
 }
 
-/// The value at a path of keys, or null.
+/// Returns the value at a path of keys, or null.
 template <typename... Keys>
 const Json* find(const Json& object, const char* key, const char* next, Keys... rest) {
     const Json* inner = find(object, key);
     return inner == nullptr || !inner->is_object() ? nullptr : find(*inner, next, rest...);
 }
 
-/// An array of the document; empty if it is absent.
+/// Returns an array of the document; empty if it is absent.
 inline const Json& array_in(const Json& object, const char* key) {
     static const Json empty = Json::array();
     const Json* array = find(object, key);

@@ -258,7 +258,8 @@ struct TangentTexture {
     const Json* info = nullptr;
 };
 
-/// The first such texture of a material, in the order in which glTF derives tangents from them.
+/// Returns the first such texture of a material, in the order in which glTF derives tangents from
+/// them.
 TangentTexture tangent_texture(const Json& material) {
     const TangentTexture candidates[] = {
         {"normalTexture", find(material, "normalTexture")},

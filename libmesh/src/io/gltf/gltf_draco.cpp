@@ -40,9 +40,9 @@ class DracoMesh {
     /// Three indices for each triangle. \throws InvalidInput if one is out of range
     [[nodiscard]] std::vector<std::uint32_t> indices() const;
 
-    /// The attribute with a unique id: `components` packed numbers of a type for each vertex.
-    /// Numbers that Draco stores in another type are converted by value.
-    /// \throws InvalidInput if there is no such attribute, if it has another number of components,
+    /// Returns the attribute with a unique id: `components` packed numbers of a type for each
+    /// vertex. Numbers that Draco stores in another type are converted by value. \throws
+    /// InvalidInput if there is no such attribute, if it has another number of components,
     ///         or if a number does not fit
     [[nodiscard]] std::string attribute(std::uint32_t unique_id, std::size_t components,
                                         DracoComponent component) const;
@@ -69,7 +69,7 @@ draco::DataType draco_type(DracoComponent component) {
     return draco::DT_INVALID;
 }
 
-/// The value index of a vertex. \throws InvalidInput if it is out of range
+/// Returns the value index of a vertex. \throws InvalidInput if it is out of range
 draco::AttributeValueIndex value_of(const draco::PointAttribute& attribute, std::uint32_t vertex) {
     const draco::AttributeValueIndex value = attribute.mapped_index(draco::PointIndex(vertex));
     if (value.value() >= attribute.size())
@@ -196,7 +196,7 @@ std::string DracoMesh::attribute(std::uint32_t unique_id, std::size_t components
 using Source = std::pair<std::size_t, std::size_t>;
 constexpr std::size_t indices_source = static_cast<std::size_t>(-1);
 
-/// The Draco extension of a primitive, or null.
+/// Returns the Draco extension of a primitive, or null.
 const Json* draco_of(const Json& primitive) {
     return find(primitive, "extensions", draco_extension);
 }

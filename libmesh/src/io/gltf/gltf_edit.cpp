@@ -22,7 +22,7 @@
 namespace relief {
 namespace {
 
-/// The buffer of added data.
+/// Returns the buffer of added data.
 GltfBuffer& added_buffer(GltfContents& contents) {
     if (contents.added_buffer == static_cast<std::size_t>(-1)) {
         contents.added_buffer = contents.buffers.size();

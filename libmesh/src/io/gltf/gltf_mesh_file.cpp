@@ -288,7 +288,7 @@ GltfDocument GltfDocument::from_mesh(const MeshFile& contents, Report& report) {
 
 namespace {
 
-/// The inverse of DocumentBuilder::add_material().
+/// Translates a material: the inverse of DocumentBuilder::add_material().
 MtlMaterial translated(const GltfMaterial& material, const GltfView& view) {
     MtlMaterial result;
     result.name = material.name;

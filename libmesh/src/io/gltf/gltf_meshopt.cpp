@@ -343,7 +343,7 @@ std::string unpacked_bytes(const PackedView& view, std::size_t length) {
     return elements;
 }
 
-/// The name of the extension that compresses a view, or null.
+/// Returns the name of the extension that compresses a view, or null.
 const char* extension_of(const Json& view) {
     for (const char* extension : meshopt_extensions) {
         if (find(view, "extensions", extension) != nullptr) return extension;

@@ -25,7 +25,8 @@ DataUri decode_data_uri(std::string_view uri);
 /// Returns true if a URI has a scheme ("https:", "file:"), so that it does not depend on a folder.
 bool has_scheme(std::string_view uri);
 
-/// The path of a relative URI below a folder; nullopt if it leads out of the folder (absolute path,
+/// Returns the path of a relative URI below a folder; nullopt if it leads out of the folder
+/// (absolute path,
 /// "..", scheme) or has a zero byte.
 std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder,
                                                  std::string_view uri);
@@ -33,8 +34,8 @@ std::optional<std::filesystem::path> path_inside(const std::filesystem::path& fo
 /// Encodes a file name as a URI: all bytes except letters, digits and -._~ are percent-encoded.
 std::string uri_of(const std::string& file_name);
 
-/// The media type of an encoded image, from its first bytes: PNG, JPEG, WebP, AVIF, KTX2 or DDS;
-/// empty for any other format.
+/// Returns the media type of an encoded image, from its first bytes: PNG, JPEG, WebP, AVIF, KTX2 or
+/// DDS; empty for any other format.
 std::string image_media_type(std::string_view bytes);
 
 }  // namespace relief

@@ -74,7 +74,7 @@ glm::mat4 parent_from_node(const GltfNode& node) {
     return node.matrix ? *node.matrix : transform(node.translation, node.rotation, node.scale);
 }
 
-/// The transforms of EXT_mesh_gpu_instancing, or one identity matrix.
+/// Returns the transforms of EXT_mesh_gpu_instancing, or one identity matrix.
 std::vector<glm::mat4> instances(const GltfContents& contents, const Json& node) {
     const Json* attributes = find(node, "extensions", "EXT_mesh_gpu_instancing", "attributes");
     if (attributes == nullptr || attributes->empty()) return {glm::mat4(1.0F)};
@@ -110,7 +110,7 @@ TextureWrap wrap_in(const Json& sampler, const char* key) {
     }
 }
 
-/// The image of a texture: the core glTF one, otherwise that of an extension.
+/// Returns the image of a texture: the core glTF one, otherwise that of an extension.
 std::optional<std::size_t> image_of(const Json& texture) {
     if (const auto image = index_in(texture, "source")) return image;
     for (const char* extension :

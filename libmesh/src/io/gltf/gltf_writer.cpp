@@ -49,7 +49,7 @@ struct Extent {
 
 constexpr std::size_t dropped = std::numeric_limits<std::size_t>::max();
 
-/// The compressed copy of a view, or null.
+/// Returns the compressed copy of a view, or null.
 const Json* packed_copy(const Json& view) {
     for (const char* extension : meshopt_extensions) {
         if (const Json* packed = find(view, "extensions", extension)) return packed;
@@ -89,7 +89,7 @@ Extent extent_of_view(const Json& view) {
     return {begin, begin + size_in(view, "byteLength")};
 }
 
-/// The bytes from the first to the last element of an accessor, gaps included.
+/// Returns the bytes from the first to the last element of an accessor, gaps included.
 Extent extent_of_elements(const Json& root, const Json& accessor) {
     const Json& view = root["bufferViews"][size_in(accessor, "bufferView")];
     const std::size_t size = element_layout(accessor).size;
@@ -276,7 +276,8 @@ class Relocation {
         }
     }
 
-    /// The new offset of a byte. A byte that is cut out maps to the first byte behind the cut.
+    /// Returns the new offset of a byte. A byte that is cut out maps to the first byte behind the
+    /// cut.
     [[nodiscard]] std::size_t moved_offset(std::size_t buffer, std::size_t offset) const {
         const std::vector<Move>& moves = moves_[buffer];
         auto next = std::upper_bound(moves.begin(), moves.end(), offset,

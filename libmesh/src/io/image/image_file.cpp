@@ -210,7 +210,7 @@ std::uint32_t big32(const char* bytes) {
     return value;
 }
 
-/// The color tag in a chunk; empty for most chunks.
+/// Returns the color tag in a chunk; empty for most chunks.
 std::string tag_of(std::string_view type, std::istream& file) {
     if (type == "sRGB") return "sRGB";
     if (type == "iCCP") return "ICC profile";

@@ -159,7 +159,8 @@ bool is_dropped(std::uint32_t marker) {
     return (marker >= 0xE1 && marker <= 0xEF && marker != 0xEE) || marker == 0xFE;
 }
 
-/// The offset of the next marker's code. Coded data, stuffed zeros and fill bytes are skipped.
+/// Returns the offset of the next marker's code. Coded data, stuffed zeros and fill bytes are
+/// skipped.
 std::size_t next_marker(Bytes bytes, std::size_t at, const std::filesystem::path& name) {
     while (at + 1 < bytes.size()) {
         const void* found = std::memchr(bytes.data() + at, 0xFF, bytes.size() - at - 1);
@@ -258,7 +259,7 @@ std::optional<std::size_t> exr_header_end(Bytes bytes) {
     }
 }
 
-/// The value of an attribute in a complete header; empty if it is absent.
+/// Returns the value of an attribute in a complete header; empty if it is absent.
 Bytes exr_attribute(Bytes bytes, std::string_view wanted) {
     const std::string_view text = text_of(bytes);
     for (std::size_t at = 8; text[at] != '\0';) {

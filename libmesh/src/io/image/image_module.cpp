@@ -113,8 +113,8 @@ Result guarded(const ImageModuleFailure& failure, Result otherwise, Body body) {
     return otherwise;
 }
 
-/// The pending message of a reader or writer, or the library's own one. A message of libpng is
-/// preferred, because it has more details.
+/// Returns the pending message of a reader or writer, or the library's own one. A message of libpng
+/// is preferred, because it has more details.
 template <typename File>
 std::string pending_error(File& file) {
     const std::string text = file.has_error() ? file.geterror() : OIIO::geterror();
@@ -227,7 +227,7 @@ void close(ImageModuleReader* reader) {
     }
 }
 
-/// The settings for all formats that relief writes.
+/// Returns the settings for all formats that relief writes.
 OIIO::ImageSpec spec_to_write(const std::string& format, const ImageModulePicture& picture) {
     const ImageModuleHeader& header = picture.header;
     OIIO::ImageSpec spec(

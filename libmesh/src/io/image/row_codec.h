@@ -66,7 +66,7 @@ class RowSink {
     virtual void report(Report&) const {}
 };
 
-/// A whole PNG file in memory.
+/// Returns a whole PNG file in memory.
 std::string encode_png(const Image& image, const std::map<std::string, std::string>& text);
 
 std::unique_ptr<RowSink> make_png_sink(const RowSinkPlan& plan);

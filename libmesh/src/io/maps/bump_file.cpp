@@ -30,7 +30,7 @@
 namespace relief {
 namespace {
 
-/// A sample of any type; 1.0 is white.
+/// Returns a sample of any type; 1.0 is white.
 double value_at(const void* row, int bits, std::size_t x) {
     if (bits == 8) return static_cast<const std::uint8_t*>(row)[x] / largest_sample<std::uint8_t>;
     if (bits == 16)

@@ -61,9 +61,9 @@ class HeightWindow {
     /// Reads in advance what move_to(..., last) will need. Rows that row() returns stay valid.
     void read_ahead(int last);
 
-    /// A row within the radius of the band; the wrap rule applies at borders.
+    /// Returns a row within the radius of the band; the wrap rule applies at borders.
     [[nodiscard]] const void* row(int place) const;
-    /// The alpha of a row of the band.
+    /// Returns the alpha of a row of the band.
     [[nodiscard]] const void* alpha_row(int place) const { return alpha_.at(place - begin_); }
     [[nodiscard]] bool has_alpha() const { return !alpha_.empty(); }
     [[nodiscard]] int bits() const { return heights_.bits(); }
@@ -92,7 +92,7 @@ struct BumpBandSource {
     std::function<const std::uint8_t*(int row)> transparent;
 };
 
-/// The shape of the image for a format.
+/// Returns the shape of the image for a format.
 ImageShape shape_of(const BumpFileFormat& format, int width, int height);
 
 /// Computes rows [first, last) of the file on all threads.

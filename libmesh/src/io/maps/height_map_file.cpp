@@ -25,7 +25,7 @@ int whole_height(const HeightMapFile& file) {
     return file.info().height;
 }
 
-/// The last rows of a map.
+/// Returns the last rows of a map.
 HeightMap last_rows(const HeightMapFile& file, int count) {
     HeightBandReader reader(file);
     reader.skip(whole_height(file) - count);
@@ -181,7 +181,7 @@ void add_rows(SeamSurvey& survey, const Image& band) {
         band.samples);
 }
 
-/// The map in float, with NaN for transparent texels.
+/// Returns the map in float, with NaN for transparent texels.
 Image without_hidden(const HeightMap& map) {
     Image floats = to_float(map.heights);
     const std::span<float> heights = floats.as<float>();

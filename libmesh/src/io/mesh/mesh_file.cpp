@@ -103,7 +103,7 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// The offset to the middle of the mesh; zero if the mesh is near 0 compared with its size.
+/// Returns the offset to the middle of the mesh; zero if the mesh is near 0 compared with its size.
 glm::dvec3 offset_if_distant(const Mesh& mesh) {
     constexpr double max_ratio =
         16.0;  // At this ratio floats still resolve 20 bits of the mesh's size.

@@ -56,16 +56,16 @@ class TextScanner {
     TextScanner(std::string_view text, const std::filesystem::path& file, char comment = '\0')
         : rest_(text), file_(file), comment_(comment) {}
 
-    /// The next word on any line; empty at the end of the text.
+    /// Returns the next word on any line; empty at the end of the text.
     std::string_view word();
 
-    /// The next word on this line; empty at its end.
+    /// Returns the next word on this line; empty at its end.
     std::string_view word_on_line();
 
     /// Skips the rest of this line.
     void skip_line();
 
-    /// The next word as a number. \throws FileError if there is none or it is no number
+    /// Returns the next word as a number. \throws FileError if there is none or it is no number
     template <typename Number>
     Number number() {
         const std::string_view text = word();
@@ -96,7 +96,8 @@ inline bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
-/// The next three numbers minus the origin, rounded once. \throws FileError as number() does
+/// Returns the next three numbers minus the origin, rounded once. \throws FileError as number()
+/// does
 glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin);
 
 /// Quotes a word of a file for a message: at most 40 characters, unprintable ones as '?'.

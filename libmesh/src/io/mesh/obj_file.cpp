@@ -79,7 +79,8 @@ std::filesystem::path resolved(const std::filesystem::path& folder, std::string 
     return (folder / name).lexically_normal();
 }
 
-/// The files of one mtllib statement: the whole text if such a file exists, otherwise each word.
+/// Returns the files of one mtllib statement: the whole text if such a file exists, otherwise each
+/// word.
 std::vector<std::filesystem::path> library_files(const std::filesystem::path& folder,
                                                  const std::string& statement) {
     const std::filesystem::path whole = resolved(folder, statement);
@@ -160,7 +161,7 @@ std::string with_default_illumination(std::string mtl) {
     return text;
 }
 
-/// The materials that an OBJ file names, in the same order, as its MTL files define them.
+/// Returns the materials that an OBJ file names, in the same order, as its MTL files define them.
 ///
 /// \param names      as after usemtl
 /// \param libraries  as after mtllib: a file name, which may contain blanks, or several names;

@@ -71,7 +71,8 @@ std::vector<LineNumber> numbers_on_line(TextScanner& text) {
     return result;
 }
 
-/// A color of three or four numbers: fractions if any has a decimal point, otherwise out of 255.
+/// Returns a color of three or four numbers: fractions if any has a decimal point, otherwise out of
+/// 255.
 glm::vec4 color_of(const std::vector<LineNumber>& numbers) {
     const bool are_fractions = std::any_of(numbers.begin(), numbers.end(),
                                            [](const LineNumber& n) { return n.has_point; });

@@ -354,7 +354,7 @@ class VertexNumbers {
         return newest;
     }
 
-    /// All combinations, indexed by their number.
+    /// Returns all combinations, indexed by their number.
     [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
 
   private:

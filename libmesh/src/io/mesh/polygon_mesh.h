@@ -78,7 +78,7 @@ class KeyNumbers {
         keys_.reserve(expected);
     }
 
-    /// The number of a key; a new key gets the next number.
+    /// Returns the number of a key; a new key gets the next number.
     std::uint32_t number_of(const Key& key) {
         if (2 * keys_.size() >= slots_.size()) grow();
         std::uint32_t& slot = slots_[slot_of(key)];
@@ -89,7 +89,7 @@ class KeyNumbers {
         return slot;
     }
 
-    /// All keys, indexed by their number.
+    /// Returns all keys, indexed by their number.
     [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
 
   private:

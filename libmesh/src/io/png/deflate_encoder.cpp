@@ -192,7 +192,7 @@ std::uint64_t eight_bytes(const std::uint8_t* at) {
     return value;
 }
 
-/// The length of the common prefix, up to `max_length`.
+/// Returns the length of the common prefix, up to `max_length`.
 std::size_t common_length(const std::uint8_t* a, const std::uint8_t* b, std::size_t max_length) {
     std::size_t length = 0;
     for (; length + 8 <= max_length; length += 8) {

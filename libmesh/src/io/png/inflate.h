@@ -19,7 +19,7 @@ namespace relief {
 /// damaged, truncated or of another size
 bool inflate(std::span<const std::byte> stream, std::span<std::byte> to);
 
-/// The CRC-32 of PNG ([ISO/IEC 15948], annex D).
+/// Returns the CRC-32 of PNG ([ISO/IEC 15948], annex D).
 std::uint32_t crc32(std::span<const std::byte> bytes);
 
 /// Continues a CRC-32 with the following bytes.
@@ -31,8 +31,8 @@ inline constexpr std::string_view zlib_header{"\x78\x9C"};
 /// The checksum at the end of a zlib stream: Adler-32 [RFC 1950].
 std::uint32_t adler32(std::span<const std::byte> bytes);
 
-/// The Adler-32 of two consecutive ranges, from those of each; `second_size` is the size of the
-/// second range.
+/// Returns the Adler-32 of two consecutive ranges, from those of each; `second_size` is the size of
+/// the second range.
 std::uint32_t adler32_of_both(std::uint32_t first, std::uint32_t second, std::size_t second_size);
 
 /// Inflates a zlib stream in parts, so that neither the stream nor its contents are in memory as a

@@ -54,7 +54,7 @@ struct Chunks : PngChunks {
     std::vector<std::byte> packed;
 };
 
-/// The chunks of a PNG; nullopt if a checksum is wrong or their order is unusual.
+/// Returns the chunks of a PNG; nullopt if a checksum is wrong or their order is unusual.
 std::optional<Chunks> chunks_of(Bytes stripped) {
     constexpr std::size_t signature = 8;
     constexpr std::size_t frame = 12;  // Length, type and checksum around a chunk's data.
@@ -142,7 +142,7 @@ bool unpack_row(const PlainPng& png, std::span<const std::uint8_t> stored, std::
     return true;
 }
 
-/// The properties of a plain PNG; nullopt if it is not plain. `packed` stays empty.
+/// Returns the properties of a plain PNG; nullopt if it is not plain. `packed` stays empty.
 std::optional<PlainPng> plain_png(const PngChunks& chunks) {
     const Bytes header = chunks.header;
     if (header.size() != 13) return std::nullopt;
@@ -249,7 +249,7 @@ struct Layout {
     bool is_usual = true;          ///< True if all chunks are in order and have correct checksums.
 };
 
-/// The data of a chunk; `is_right` tells whether its checksum is correct.
+/// Returns the data of a chunk; `is_right` tells whether its checksum is correct.
 std::vector<std::byte> data_of(const RandomAccessFile& file, const PngChunkPlace& chunk,
                                bool& is_right) {
     std::vector<std::byte> whole(std::size_t{chunk.length} + 8);

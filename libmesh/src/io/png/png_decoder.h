@@ -38,11 +38,11 @@ struct PlainPng {
     [[nodiscard]] std::size_t step() const;
 };
 
-/// The properties of a PNG; nullopt if it is not plain, or has more than max_image_samples.
+/// Returns the properties of a PNG; nullopt if it is not plain, or has more than max_image_samples.
 /// \param stripped  IHDR, PLTE, tRNS, IDAT and IEND chunks only (image_file_container.h)
 std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped);
 
-/// The samples; nullopt if the data is damaged.
+/// Returns the samples; nullopt if the data is damaged.
 std::optional<Image::Samples> decode(const PlainPng& png);
 
 /// Opens a plain PNG file, whose rows are decoded on demand; null if it is not plain. If damage is

@@ -48,7 +48,7 @@ std::string header_of(const ImageShape& shape) {
     return header + std::string(3, '\0');  // Deflate, the five filters, not interlaced.
 }
 
-/// The file up to the samples.
+/// Returns the file up to the samples.
 std::string start_of_file(const ImageShape& shape, const std::map<std::string, std::string>& text) {
     using namespace std::string_literals;
     std::string file = "\x89PNG\r\n\x1A\n";
@@ -332,7 +332,7 @@ struct AnimatedPng::Implementation {
         if (!out) throw FileError(file, "cannot be written");
     }
 
-    /// The position and duration of the next frame.
+    /// Returns the position and duration of the next frame.
     std::string frame_control(const Image& frame) {
         std::string content;
         append_big32(content, sequence++);

@@ -37,7 +37,8 @@ int magnitude(int value) {
     return value < 0 ? -value : value;
 }
 
-/// The nearest to left + above - upper left of left, above and upper left; ties: in this order.
+/// Returns the nearest to left + above - upper left of left, above and upper left; ties: in this
+/// order.
 int paeth_prediction(int left, int above, int upper_left) {
     const int from_left = magnitude(above - upper_left);
     const int from_above = magnitude(left - upper_left);
