@@ -68,7 +68,7 @@ struct alignas(64) RayPacket {
     std::array<bool, size> blocked;
 
     [[nodiscard]] bool hits(std::size_t lane) const { return mesh[lane] != nothing; }
-    /// After find_any().
+    /// Returns whether a ray hits anything, after find_any().
     [[nodiscard]] bool is_blocked(std::size_t lane) const { return blocked[lane]; }
 };
 

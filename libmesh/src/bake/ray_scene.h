@@ -82,7 +82,7 @@ class RayScene {
 
     [[nodiscard]] const std::vector<RayMesh>& meshes() const { return meshes_; }
     [[nodiscard]] bool is_empty() const { return is_empty_; }
-    /// Half of the longest side of the box around all finite positions; 1 without any.
+    /// Returns half of the longest side of the box around all finite positions; 1 without any.
     [[nodiscard]] double half_size() const { return space_.half_size; }
 
     /// Returns the corners of a hit triangle.
@@ -133,14 +133,14 @@ class Projection {
     double step_;  ///< Distance by which a ray continues behind a hit.
 };
 
-/// automatic_distances() with an existing scene of the high meshes.
+/// Like automatic_distances(), with an existing scene of the high meshes.
 BakeDistances distances_between(std::span<const Mesh> high, const RayScene& high_scene,
                                 const Mesh& low);
 
 /// Returns the length of the diagonal of a box.
 double diagonal(const Bounds& box);
 
-/// compare_boxes() for existing boxes.
+/// Like the public compare_boxes(), for existing boxes.
 BakeFit compare_boxes(const Bounds& high, const Bounds& low);
 
 }  // namespace relief

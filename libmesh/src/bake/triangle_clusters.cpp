@@ -48,7 +48,7 @@ struct Box {
         low = glm::min(low, box.low);
         high = glm::max(high, box.high);
     }
-    /// Half of the surface of the enlarged box.
+    /// Returns half of the surface of the enlarged box.
     [[nodiscard]] double area() const {
         const glm::dvec3 side = high - low + 2.0 * embree_margin;
         return side.x * side.y + side.y * side.z + side.z * side.x;

@@ -56,7 +56,7 @@ struct ExactHit {
     bool faces_origin = false;  ///< The ray hits the front.
 };
 
-/// a.x * b.y - a.y * b.x with the correct sign; 0 only if the exact value is 0.
+/// Returns a.x * b.y - a.y * b.x with the correct sign; 0 only if the exact value is 0.
 inline double exact_cross(const glm::dvec2& a, const glm::dvec2& b) {
     const double first = a.x * b.y;
     const double second = a.y * b.x;

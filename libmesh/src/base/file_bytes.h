@@ -41,7 +41,7 @@ class RandomAccessFile {
     RandomAccessFile& operator=(const RandomAccessFile&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// Size in bytes when it was opened.
+    /// Returns the size in bytes when it was opened.
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
     /// Fills `to` with the bytes from an offset on. \throws FileError if this fails, or if the file

@@ -80,7 +80,7 @@ RELIEF_INLINE Real arctangent_polynomial(Real square) {
         return coefficient + square * arctangent_polynomial<Real, i + 1>(square);
 }
 
-/// atan2(y, x) for y >= 0, 0 to pi, within 3 units of the last place. (0, 0) gives NaN.
+/// Returns atan2(y, x) for y >= 0, 0 to pi, within 3 units of the last place. (0, 0) gives NaN.
 template <typename Real>
 RELIEF_INLINE Real upper_angle(Real y, Real x) {
     constexpr Real tan_of_eighth = Real(0.41421356237309503);
@@ -158,7 +158,7 @@ struct DoubleDouble {
     }
 };
 
-/// atan2(y, x) for y >= 0, 0 to pi, with an error of 1e-17. (0, 0) gives NaN.
+/// Returns atan2(y, x) for y >= 0, 0 to pi, with an error of 1e-17. (0, 0) gives NaN.
 inline DoubleDouble upper_angle(const DoubleDouble& y, const DoubleDouble& x) {
     constexpr DoubleDouble quarter(0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55);
     constexpr double tan_of_eighth = 0.41421356237309503;

@@ -100,7 +100,7 @@ class RowFinder {
         return std::vector<Real>(samples, samples + heights_.width);
     }
 
-    /// reflected() for a whole row.
+    /// Applies reflected() to a whole row.
     [[nodiscard]] std::vector<Real> reflected_row(int row) const {
         if (row >= 0 && row < heights_.height) return read(row);
         if (heights_.height == 1) return read(0);

@@ -34,8 +34,8 @@ inline glm::dvec3 in_plane(const glm::dvec3& vector, const glm::dvec3& normal) {
     return vector - normal * glm::dot(normal, vector);
 }
 
-/// Angle between two vectors of any length, 0 to pi. Uses atan2, which is accurate where acos is
-/// not.
+/// Returns the angle between two vectors of any length, 0 to pi. Uses atan2, which is accurate
+/// where acos is not.
 inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }

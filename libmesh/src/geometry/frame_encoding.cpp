@@ -42,7 +42,7 @@ constexpr int largest_code(int bits) {
     return (1 << (bits - 1)) - 1;
 }
 
-/// Signed component of a word. The lowest code equals the second lowest.
+/// Returns the signed component of a word. The lowest code equals the second lowest.
 int component(std::uint32_t word, int first_bit, int bits) {
     const auto code = static_cast<std::int32_t>(word << (32 - first_bit - bits)) >> (32 - bits);
     return std::max(code, -largest_code(bits));
@@ -53,7 +53,7 @@ std::uint32_t placed(int code, int first_bit, int bits) {
     return (static_cast<std::uint32_t>(code) & mask) << first_bit;
 }
 
-/// Fallback tangent of a unit normal.
+/// Returns the fallback tangent of a unit normal.
 glm::dvec3 fallback_tangent(const glm::dvec3& normal) {
     return glm::normalize(in_plane(glm::dvec3(perpendicular_to(glm::vec3(normal))), normal));
 }
@@ -173,7 +173,7 @@ QuaternionCode quaternion_code(const Quaternion& rotation, double scale) {
     return code;
 }
 
-/// Squared cosine of half the angle between two rotations.
+/// Returns the squared cosine of half the angle between two rotations.
 double closeness(const QuaternionCode& code, const Quaternion& rotation) {
     double along = 0.0;
     double length = 0.0;
@@ -321,7 +321,7 @@ void report_length(const glm::dvec3& vector, const char* kind, std::size_t index
         found.add(kind, "vertex", index, "its direction is taken");
 }
 
-/// Tangent in the plane of a unit normal.
+/// Returns the tangent in the plane of a unit normal.
 glm::dvec3 sound_tangent(const glm::dvec3& tangent, const glm::dvec3& normal, std::size_t index,
                          Report& found) {
     const glm::dvec3 unit = direction_or_zero(tangent);

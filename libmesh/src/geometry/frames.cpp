@@ -27,7 +27,7 @@
 namespace relief {
 namespace {
 
-/// Total order of floats: -0 equals +0, NaNs are ordered by their bits.
+/// Returns the rank in the total order of floats: -0 equals +0, NaNs are ordered by their bits.
 std::uint32_t ordinal(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
     return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
@@ -156,7 +156,7 @@ void make_flat(FramedMesh& framed, Report& report) {
     store_corner_normals(framed, at_corners, report);
 }
 
-/// Weighting of an averaging mode; absent for automatic weighting.
+/// Returns the weighting of an averaging mode; absent for automatic weighting.
 std::optional<NormalWeight> weight_of(NormalMode mode) {
     switch (mode) {
         case NormalMode::uniform:

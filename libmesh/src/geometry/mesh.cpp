@@ -97,7 +97,7 @@ namespace {
 
 constexpr std::uint32_t not_in_part = 0xffffffff;
 
-/// New index of each vertex, in the original order.
+/// Returns the new index of each vertex, in the original order.
 std::vector<std::uint32_t> numbered(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
     std::vector<std::uint32_t> numbers(mesh.positions.size(), not_in_part);
     for (const std::uint32_t triangle : triangles) {
@@ -123,7 +123,7 @@ std::vector<Value> used(const std::vector<Value>& values,
     return result;
 }
 
-/// Material ranges of the triangles, with adjacent equal ranges joined.
+/// Returns the material ranges of the triangles, with adjacent equal ranges joined.
 std::vector<MaterialRange> ranges_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
     std::vector<MaterialRange> result;
     if (mesh.material_ranges.empty()) return result;
@@ -165,7 +165,8 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
 
 namespace {
 
-/// Linear part in double precision, scaled so that tiny and huge transforms keep their digits.
+/// Returns the linear part in double precision, scaled so that tiny and huge transforms keep their
+/// digits.
 glm::dmat3 directions_from(const glm::mat4& matrix) {
     glm::dmat3 linear(matrix);
     double largest = 0.0;

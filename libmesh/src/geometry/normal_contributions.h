@@ -34,9 +34,9 @@ struct TriangleContributions {
     bool sound;  ///< Finite and clearly not degenerate. If false, the other members are undefined.
 };
 
-/// Minimal ratio of area vector to squared edge length of a clearly valid triangle: far enough
-/// above the limit of degenerate triangles (min_triangle_width) for rounding not to matter. In
-/// float it also keeps two correct digits of the area vector.
+/// Returns the minimal ratio of area vector to squared edge length of a clearly valid triangle: far
+/// enough above the limit of degenerate triangles (min_triangle_width) for rounding not to matter.
+/// In float it also keeps two correct digits of the area vector.
 template <typename Real>
 constexpr Real plainly_sound_width() {
     return std::is_same_v<Real, float> ? Real(1e-5) : Real(4e-12);

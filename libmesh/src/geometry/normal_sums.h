@@ -41,14 +41,15 @@ enum class TriangleKind : std::uint8_t { sound, degenerate, non_finite };
 /// Classifies a triangle. The result does not depend on the first corner.
 TriangleKind kind_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
-/// Unit normal of a valid triangle, otherwise zero. The result does not depend on the first corner.
+/// Returns the unit normal of a valid triangle, otherwise zero. The result does not depend on the
+/// first corner.
 glm::vec3 triangle_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 /// Unit normals of all triangles, zero for triangles that are not valid.
 std::vector<glm::vec3> normals_or_zero(StridedSpan<const glm::vec3> positions,
                                        TriangleSpan triangles);
 
-/// Power of two that scales the edges of a mesh to about 1, for float arithmetic.
+/// Returns the power of two that scales the edges of a mesh to about 1, for float arithmetic.
 float scale_for(StridedSpan<const glm::vec3> positions);
 
 /// Number of triangles per block: small enough for all data of a block to stay in the first-level

@@ -140,8 +140,8 @@ Term exact_term(const std::array<glm::vec3, 3>& at) {
     return term_of(contributions, (3 - shift) % 3);
 }
 
-/// Contribution at one corner of a triangle, computed like in normal_sums.cpp with float
-/// arithmetic.
+/// Returns the contribution at one corner of a triangle, computed like in normal_sums.cpp with
+/// float arithmetic.
 template <NormalWeight weight>
 Term float_term(const std::array<glm::vec3, 3>& at, std::size_t corner, float scale) {
     const auto contributions = triangle_contributions<weight, float>(at[0], at[1], at[2], scale);

@@ -36,7 +36,7 @@ void add_cells(Mesh& mesh, std::uint32_t first_vertex, std::uint32_t columns, st
     }
 }
 
-/// Angle of a step of a full turn. The last step equals the first.
+/// Returns the angle of a step of a full turn. The last step equals the first.
 double turn(int step, int steps) {
     return step == steps ? 0.0 : 2.0 * std::numbers::pi * step / steps;
 }

@@ -125,7 +125,8 @@ bool has_certain_gradient(const Mesh& mesh, const glm::uvec3& triangle) {
     return Slenderness<3>(p, in_space).is_certain() && Slenderness<2>(t, in_image).is_certain();
 }
 
-/// Certainty of each corner: 1 certain, 0 uncertain, 2 if the stored tangent is invalid.
+/// Returns the certainty of each corner: 1 certain, 0 uncertain, 2 if the stored tangent is
+/// invalid.
 std::vector<unsigned char> judge_corners(const Mesh& mesh) {
     std::vector<unsigned char> kinds(3 * mesh.triangles.size(), 0);
     parallel_for(mesh.triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -146,8 +147,8 @@ std::vector<unsigned char> judge_corners(const Mesh& mesh) {
     return kinds;
 }
 
-/// Rotation of a stored tangent relative to a method's, counter-clockwise towards its bitangent, in
-/// degrees, -180 to 180; NaN if the method has none.
+/// Returns the rotation of a stored tangent relative to a method's, counter-clockwise towards its
+/// bitangent, in degrees, -180 to 180; NaN if the method has none.
 float turn_of(const glm::vec4& stored, const glm::vec4& computed, const glm::vec3& normal) {
     const glm::dvec3 n = direction_or_zero(glm::dvec3(normal));
     const glm::dvec3 t = in_plane(glm::dvec3(computed), n);
@@ -160,7 +161,7 @@ float turn_of(const glm::vec4& stored, const glm::vec4& computed, const glm::vec
     return static_cast<float>(portable::atan2(y, x)) * degrees;
 }
 
-/// Angle in degrees, 0 to 180, to the direction after `turns` quarter turns.
+/// Returns the angle in degrees, 0 to 180, to the direction after `turns` quarter turns.
 float degrees_off(float turn, int quarter_turns) {
     const float apart = std::abs(turn - 90.0F * static_cast<float>(quarter_turns));
     return apart > 180.0F ? std::abs(360.0F - apart) : apart;

@@ -25,8 +25,9 @@ namespace {
 // weight is less than any weight of finite floats.
 constexpr double min_weight = 1e-200;
 
-/// Angle of the corner in the plane of the normal. An edge parallel to the normal has no direction
-/// in the plane; like the reference implementation, such a corner counts as a right angle.
+/// Returns the angle of the corner in the plane of the normal. An edge parallel to the normal has
+/// no direction in the plane; like the reference implementation, such a corner counts as a right
+/// angle.
 double seen_angle(const glm::dvec3& here, const glm::dvec3& next, const glm::dvec3& previous,
                   const glm::dvec3& normal) {
     const glm::dvec3 a = direction_in_plane(next - here, normal);
@@ -156,7 +157,7 @@ void gather(const TangentInput& input, std::size_t first, std::size_t count, Blo
 constexpr std::uint32_t float_exponent = 0x7f800000U;
 constexpr std::uint32_t float_turned = 254U << 23;
 
-/// Largest absolute value of three numbers.
+/// Returns the largest absolute value of three numbers.
 RELIEF_INLINE float largest_of(float a, float b, float c) {
     return std::max(std::max(std::abs(a), std::abs(b)), std::abs(c));
 }

@@ -55,8 +55,8 @@ struct CornerContribution {
 // Contributions are stored in the memory of the tangents.
 static_assert(sizeof(CornerContribution) == sizeof(glm::vec4));
 
-/// Direction of a vector in the plane of the normal (unit, or zero for no projection); zero if
-/// undefined.
+/// Returns the direction of a vector in the plane of the normal (unit, or zero for no projection);
+/// zero if undefined.
 glm::dvec3 direction_in_plane(const glm::dvec3& vector, const glm::dvec3& normal);
 
 /// \return no contribution if `vector` is zero or not finite

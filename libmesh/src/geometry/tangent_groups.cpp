@@ -184,10 +184,10 @@ class TangentPlane {
             normal_ = glm::dvec3(0.0);
     }
 
-    /// Unit length or zero.
+    /// Returns the normal: unit length or zero.
     [[nodiscard]] glm::dvec3 normal() const { return std::sqrt(per_square_) * normal_; }
 
-    /// Direction of a sum of tangents in the plane.
+    /// Returns the direction of a sum of tangents in the plane.
     [[nodiscard]] glm::vec3 tangent_along(const glm::dvec3& sum) const {
         const glm::dvec3 projected = sum - (glm::dot(normal_, sum) * per_square_) * normal_;
         const double square = glm::dot(projected, projected);

@@ -26,7 +26,8 @@ struct SidedTerm {
     glm::vec3 along_v;
 };
 
-/// Direction of a unit vector in the plane of a unit normal, in float; zero if undefined.
+/// Returns the direction of a unit vector in the plane of a unit normal, in float; zero if
+/// undefined.
 glm::vec3 float_direction_in_plane(const glm::vec3& vector, const glm::vec3& normal);
 
 /// Computes for every member the sum over all members that are not opposite in u or v. The result

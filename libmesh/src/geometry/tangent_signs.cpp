@@ -41,7 +41,7 @@ namespace {
 
 using Uses = std::span<EdgeUse>;
 
-/// Index of the corner of a triangle at its smallest vertex.
+/// Returns the index of the corner of a triangle at its smallest vertex.
 std::uint32_t rotation_of(const glm::uvec3& triangle) {
     if (triangle.x < triangle.y && triangle.x < triangle.z) return 0;
     return triangle.y < triangle.z ? 1 : 2;
@@ -165,7 +165,7 @@ class OpenTriangles {
     [[nodiscard]] std::size_t count() const { return triangles_.size(); }
     [[nodiscard]] std::uint32_t triangle(std::size_t place) const { return triangles_[place]; }
 
-    /// Index among the open triangles, or not_open.
+    /// Returns the index among the open triangles, or not_open.
     [[nodiscard]] std::size_t place_of(std::uint32_t triangle) const {
         const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
         if (found == triangles_.end() || *found != triangle) return not_open;

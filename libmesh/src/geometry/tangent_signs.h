@@ -110,7 +110,7 @@ inline bool is_single_fan(std::span<const std::uint32_t> next,
     return reached == count;
 }
 
-/// Sign w from the texture of a triangle; 0 if undefined.
+/// Returns the sign w from the texture of a triangle; 0 if undefined.
 inline std::int8_t sign_of(Gradient kind) {
     return static_cast<std::int8_t>(int(kind == Gradient::upright) -
                                     int(kind == Gradient::mirrored));

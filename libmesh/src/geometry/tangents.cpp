@@ -55,7 +55,7 @@ bool comes_before(const glm::vec3& a, const glm::vec3& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// Most frequent value; ties: the first.
+/// Returns the most frequent value; ties: the first.
 Offer most_frequent(std::vector<glm::vec3>& values) {
     std::sort(values.begin(), values.end(), comes_before);
     Offer best;

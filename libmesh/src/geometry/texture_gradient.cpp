@@ -12,12 +12,12 @@
 namespace relief {
 namespace {
 
-/// Texture coordinate with v upwards. Only differences matter.
+/// Returns the texture coordinate with v upwards. Only differences matter.
 glm::vec2 upright(const glm::vec2& texcoord) {
     return {texcoord.x, -texcoord.y};
 }
 
-/// b - a in float, like the reference implementation, or in double if float overflows.
+/// Returns b - a in float, like the reference implementation, or in double if float overflows.
 double float_difference(float a, float b) {
     const float difference = b - a;
     return std::isfinite(difference) ? difference : static_cast<double>(b) - a;

@@ -93,7 +93,7 @@ class CentroidGrid {
         }
     }
 
-    /// True if a search skips triangles of a crowded cell.
+    /// Returns whether a search skips triangles of a crowded cell.
     [[nodiscard]] bool is_crowded() const { return is_crowded_; }
 
     /// Calls visit(i) for the triangles in the cells that a box touches, and possibly for others.
@@ -133,7 +133,7 @@ class CentroidGrid {
     bool is_crowded_ = false;
 };
 
-/// Distance of two triangles in tolerances; infinite if they do not match.
+/// Returns the distance of two triangles in tolerances; infinite if they do not match.
 double nominal_cost(const Mesh& a, const glm::uvec3& ta, const Mesh& b, const glm::uvec3& tb,
                     int turn, const MatchOptions& options) {
     constexpr double never = std::numeric_limits<double>::infinity();
@@ -338,7 +338,7 @@ Turned turned(const glm::uvec3& t) {
     return {{key[0], key[1], key[2]}, best};
 }
 
-/// Material range of each triangle.
+/// Returns the material range of each triangle.
 std::vector<std::uint32_t> ranges_of(const Mesh& mesh) {
     std::vector<std::uint32_t> ranges(mesh.triangles.size(), 0);
     for (std::uint32_t i = 0; i < mesh.material_ranges.size(); ++i) {

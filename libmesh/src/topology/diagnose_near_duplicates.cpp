@@ -27,8 +27,8 @@ constexpr std::size_t looked_at_most = 64;
 
 constexpr int smallest_exponent = -126;
 
-/// 2 to the power of an exponent, for the range of floats and slightly beyond. The functions of the
-/// C library would take most of the time.
+/// Returns 2 to the power of an exponent, for the range of floats and slightly beyond. The
+/// functions of the C library would take most of the time.
 double power_of_two(int exponent) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
@@ -37,7 +37,7 @@ float largest_coordinate(const glm::vec3& position) {
     return std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
 }
 
-/// Binary exponent of the largest coordinate. Subnormal numbers have the smallest.
+/// Returns the binary exponent of the largest coordinate. Subnormal numbers have the smallest.
 int exponent_of(const glm::vec3& position) {
     const std::uint32_t biased = std::bit_cast<std::uint32_t>(largest_coordinate(position)) >> 23;
     return std::max(static_cast<int>(biased) - 127, smallest_exponent);
@@ -71,7 +71,7 @@ PositionCell cell_of(const glm::vec3& position, int exponent) {
         {place_of(position.x, cells), place_of(position.y, cells), place_of(position.z, cells)}};
 }
 
-/// Multiplicative hash of a cell; its upper bits are well mixed.
+/// Returns a multiplicative hash of a cell; its upper bits are well mixed.
 std::uint64_t hash_of(const PositionCell& cell) {
     constexpr std::uint64_t odd = 0x9e3779b97f4a7c15ULL;
     auto hash = static_cast<std::uint64_t>(cell.exponent - smallest_exponent);

@@ -156,8 +156,8 @@ class Means {
     std::vector<unsigned> counts_;
 };
 
-/// New positions of all vertices, followed by the edge midpoints. Surfaces that meet at a position
-/// all move to the mean.
+/// Returns the new positions of all vertices, followed by the edge midpoints. Surfaces that meet at
+/// a position all move to the mean.
 std::vector<glm::dvec3> moved_points(const Level& level, const Cut& cut) {
     const Topology& topology = cut.topology;
     std::vector<glm::dvec3> points;

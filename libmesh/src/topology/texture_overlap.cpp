@@ -73,8 +73,9 @@ Box box_of(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> tri
     return box;
 }
 
-/// Side of the raster: two by two texels per triangle, fewer if the rows would be too many. Rows
-/// are counted in whole rows of the largest raster, so the order of triangles does not matter.
+/// Returns the side of the raster: two by two texels per triangle, fewer if the rows would be too
+/// many. Rows are counted in whole rows of the largest raster, so the order of triangles does not
+/// matter.
 int side_for(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
              const Box& box) {
     const double per_row = largest_side / (box.max.y - box.min.y);

@@ -374,7 +374,7 @@ std::vector<Vector> attribute(const GltfContents& contents, const Json& primitiv
     return accessor ? float_elements<Vector>(contents, *accessor) : std::vector<Vector>();
 }
 
-/// Vertex colors; RGB gets alpha 1.
+/// Returns the vertex colors; RGB gets alpha 1.
 std::vector<glm::vec4> colors(const GltfContents& contents, const Json& primitive) {
     const auto accessor = index_in(primitive["attributes"], "COLOR_0");
     if (!accessor) return {};

@@ -354,7 +354,7 @@ PrimitiveCounts count_primitives(const Json& root) {
     return counts;
 }
 
-/// Number of buffer views with a compressed copy by an extension.
+/// Returns the number of buffer views with a compressed copy by an extension.
 std::size_t packed_views(const Json& root, const char* extension) {
     const Json& views = array_in(root, "bufferViews");
     return static_cast<std::size_t>(std::count_if(
@@ -362,7 +362,7 @@ std::size_t packed_views(const Json& root, const char* extension) {
         [&](const Json& view) { return find(view, "extensions", extension) != nullptr; }));
 }
 
-/// Number of primitives with a compressed copy.
+/// Returns the number of primitives with a compressed copy.
 std::size_t packed_primitives(const Json& root) {
     std::size_t count = 0;
     for (const Json& mesh : array_in(root, "meshes")) {

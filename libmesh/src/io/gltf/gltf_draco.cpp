@@ -37,7 +37,7 @@ class DracoMesh {
 
     [[nodiscard]] std::size_t vertex_count() const;
 
-    /// Three indices for each triangle. \throws InvalidInput if one is out of range
+    /// Returns three indices for each triangle. \throws InvalidInput if one is out of range
     [[nodiscard]] std::vector<std::uint32_t> indices() const;
 
     /// Returns the attribute with a unique id: `components` packed numbers of a type for each

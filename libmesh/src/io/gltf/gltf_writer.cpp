@@ -57,7 +57,7 @@ const Json* packed_copy(const Json& view) {
     return nullptr;
 }
 
-/// Number of references to each entry of an array.
+/// Returns the number of references to each entry of an array.
 std::vector<std::size_t> reference_counts(Json& root, std::string_view target, const char* key) {
     std::vector<std::size_t> counts(array_in(root, key).size(), 0);
     visit_references(root, [&](std::string_view refers_to, Json& index) {

@@ -57,7 +57,8 @@ void check_shape(const ImageShape& shape) {
     }
 }
 
-/// OpenImageIO's name for the format of an extension. \throws FileError if relief does not write it
+/// Returns OpenImageIO's name for the format of an extension. \throws FileError if relief does not
+/// write it
 const char* format_by_extension(const std::filesystem::path& file) {
     const std::string extension = lower_extension(file);
     if (extension == ".png") return "png";

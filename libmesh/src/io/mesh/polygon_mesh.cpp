@@ -25,8 +25,8 @@
 namespace relief {
 namespace {
 
-/// Twice the vector area of a polygon: its normal by Newell's method. It is computed relative to
-/// the first corner, so that large coordinates lose no digits.
+/// Returns twice the vector area of a polygon: its normal by Newell's method. It is computed
+/// relative to the first corner, so that large coordinates lose no digits.
 glm::dvec3 newell_normal(std::span<const glm::vec3> positions) {
     glm::dvec3 sum(0.0);
     const glm::dvec3 origin(positions[0]);

@@ -42,7 +42,7 @@ void build_tree(std::span<Node> nodes, std::size_t leaves) {
     }
 }
 
-/// Number of codes of each length, none longer than `max_length`.
+/// Returns the number of codes of each length, none longer than `max_length`.
 std::array<int, 64> length_counts(std::span<const Node> nodes, std::size_t leaves, int max_length) {
     std::array<int, 64> used{};
     std::array<std::uint8_t, 2 * max_symbols> depth{};
@@ -207,8 +207,8 @@ std::size_t common_length(const std::uint8_t* a, const std::uint8_t* b, std::siz
     return length;
 }
 
-/// Estimated cost of a match in 1/16 bits: typical code lengths plus the extra bits of its length
-/// and distance.
+/// Returns the estimated cost of a match in 1/16 bits: typical code lengths plus the extra bits of
+/// its length and distance.
 int match_cost(std::size_t length, std::size_t distance) {
     constexpr int codes = 11;
     const int length_bits = length < 11 ? 0 : static_cast<int>(std::bit_width(length - 3)) - 3;
@@ -375,7 +375,8 @@ Counts byte_counts(ByteValues bytes) {
     return tables[0];
 }
 
-/// 256 times the binary logarithm, rounded down. Each bit tells whether the square is at least 2.
+/// Returns 256 times the binary logarithm, rounded down. Each bit tells whether the square is at
+/// least 2.
 std::uint32_t log2_in_256ths(std::uint32_t value) {
     const auto whole = static_cast<std::uint32_t>(std::bit_width(value)) - 1;
     std::uint64_t mantissa = std::uint64_t{value} << (31 - whole);  // In [2^31, 2^32).

@@ -92,9 +92,9 @@ bool undo(std::uint8_t filter, std::uint8_t* row, const std::uint8_t* above, std
 
 using Byte = std::uint8_t;
 
-/// Paeth's prediction in byte arithmetic. If left and above lie on the same side of the corner,
-/// their distances from it add up, saturated at 255, which no other distance exceeds; otherwise
-/// they are subtracted.
+/// Returns Paeth's prediction in byte arithmetic. If left and above lie on the same side of the
+/// corner, their distances from it add up, saturated at 255, which no other distance exceeds;
+/// otherwise they are subtracted.
 RELIEF_INLINE Byte paeth_of(Byte left, Byte up, Byte corner) {
     const auto from_left = static_cast<Byte>(up > corner ? up - corner : corner - up);
     const auto from_up = static_cast<Byte>(left > corner ? left - corner : corner - left);
