@@ -54,39 +54,16 @@ const Measurement* most_accurate(const Experiment& experiment) {
     return least;
 }
 
-const Measurement& method_in(const Experiment& experiment, const std::string& name) {
-    for (const Measurement& one : experiment.measurements) {
-        if (one.method == name) return one;
-    }
-    throw std::out_of_range(experiment.id + " has no method " + name);
-}
-
-std::string value_of(const Measurement& measurement, const std::string& choice) {
-    for (const auto& [name, value] : measurement.choices) {
-        if (name == choice) return value;
-    }
-    return {};
-}
-
-std::string arithmetic_finding(const Experiment& experiment,
-                               std::initializer_list<const char*> other_choices,
-                               const char* plural) {
-    const auto is_pair = [&](const Measurement& in_double, const Measurement& in_float) {
-        return value_of(in_float, "arithmetic") == "float32" &&
-               std::all_of(other_choices.begin(), other_choices.end(), [&](const char* choice) {
-                   return value_of(in_float, choice) == value_of(in_double, choice);
-               });
-    };
+std::string arithmetic_finding(const Experiment& experiment, const char* plural) {
+    const auto& all = experiment.measurements;
     double difference = 0.0;
     std::vector<double> ratios;
-    for (const Measurement& in_double : experiment.measurements) {
-        if (value_of(in_double, "arithmetic") != "float64") continue;
-        for (const Measurement& in_float : experiment.measurements) {
-            if (!is_pair(in_double, in_float)) continue;
-            difference = std::max(difference, std::abs(in_float.error.rms - in_double.error.rms));
-            if (in_float.cost.one_thread)
-                ratios.push_back(median_seconds(in_float) / median_seconds(in_double));
-        }
+    for (std::size_t i = 0; i + 1 < all.size(); i += 2) {
+        const Measurement& in_double = all[i];
+        const Measurement& in_float = all[i + 1];
+        difference = std::max(difference, std::abs(in_float.error.rms - in_double.error.rms));
+        if (in_float.cost.one_thread)
+            ratios.push_back(median_seconds(in_float) / median_seconds(in_double));
     }
     std::string text =
         fmt::format("float32 changes no RMS error by more than {:.2g} degrees", difference);

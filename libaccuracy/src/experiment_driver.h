@@ -5,7 +5,6 @@
 #pragma once
 
 #include <functional>
-#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,20 +34,12 @@ void measure_methods(std::span<const MeasuredMethod> methods, const RunOptions& 
 /// The measurement with the least RMS error among those without undefined results, or nullptr.
 const Measurement* most_accurate(const Experiment& experiment);
 
-/// The measurement of a method. \throws std::out_of_range if there is none
-const Measurement& method_in(const Experiment& experiment, const std::string& name);
-
-/// The value of a choice such as "arithmetic", or an empty text.
-std::string value_of(const Measurement& measurement, const std::string& choice);
-
 /// "float32 changes no RMS error by more than 0.01 degrees and takes 0.70 times as long (median of
-/// the kernels)." Compares the measurements in both arithmetics whose other choices are equal.
+/// the kernels)."
 ///
-/// \param other_choices  names of the choices that must be equal
-/// \param plural         what these choices select: "kernels"
-std::string arithmetic_finding(const Experiment& experiment,
-                               std::initializer_list<const char*> other_choices,
-                               const char* plural);
+/// \param experiment  its measurements are pairs of the same method in float64 and in float32
+/// \param plural  the kind of the methods: "kernels"
+std::string arithmetic_finding(const Experiment& experiment, const char* plural);
 
 /// A curve with the order fitted to its points.
 Curve fitted_curve(std::string method, std::vector<CurvePoint> points,

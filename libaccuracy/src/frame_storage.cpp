@@ -137,14 +137,14 @@ std::string frame_code_finding(const Experiment& experiment) {
 }
 
 /// "Searching for the best codes changes ...: octahedral8 0.44 to 0.35 in 3 times the time"
-std::string price_of_best(const Experiment& experiment) {
+std::string price_of_best(const Experiment& experiment, std::span<const FrameCode> codes) {
     std::vector<std::string> parts;
     const auto& all = experiment.measurements;
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-        const bool is_pair =
-            value_of(all[i], "rounding") == "nearest" && value_of(all[i + 1], "rounding") == "best";
+        const bool is_pair = codes[i].rounding == FrameRounding::nearest &&
+                             codes[i + 1].rounding == FrameRounding::best;
         if (!is_pair || all[i].cost.stored_bytes != 4.0) continue;
-        std::string part = fmt::format("{} {:.2g} to {:.2g}", value_of(all[i], "encoding"),
+        std::string part = fmt::format("{} {:.2g} to {:.2g}", name_of(codes[i].encoding),
                                        all[i].error.rms, all[i + 1].error.rms);
         const double times = median_seconds(all[i + 1]) / median_seconds(all[i]);
         if (times > 0.0) part += fmt::format(" in {:.1f} times the time", times);
@@ -204,7 +204,8 @@ Experiment frame_writing_experiment(const RunOptions& options) {
         "How long does encoding tangent frames take, and does the search for the best codes pay "
         "off?";
     std::vector<MeasuredMethod> measured;
-    for (const FrameCode& code : all_frame_codes()) {
+    const std::vector<FrameCode> codes = all_frame_codes();
+    for (const FrameCode& code : codes) {
         MeasuredMethod method = code.measured(frames);
         method.work = [&frames, code] {
             Report ignored;
@@ -214,7 +215,7 @@ Experiment frame_writing_experiment(const RunOptions& options) {
         measured.push_back(std::move(method));
     }
     measure_methods(measured, options, {}, experiment);
-    experiment.finding = price_of_best(experiment);
+    experiment.finding = price_of_best(experiment, codes);
     return experiment;
 }
 

@@ -6,10 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
-#include <limits>
-#include <string_view>
 
 #include "error_metrics.h"
 #include "experiment_driver.h"
@@ -234,14 +233,20 @@ std::vector<NormalCode> normal_codes() {
         code.file_and_options = file_and_options;
         return code;
     };
+    const auto with_id = [](NormalCode code, NormalCodeId id) {
+        code.id = id;
+        return code;
+    };
     std::vector<NormalCode> codes = {
-        offered(as_map(rounded(8, Dither::none)), "OUT.png --bits 8 --zero-code 127.5"),
+        offered(with_id(as_map(rounded(8, Dither::none)), NormalCodeId::xyz_8),
+                "OUT.png --bits 8 --zero-code 127.5"),
         as_map(rounded(8, Dither::none), FlatCode::middle),
-        offered(as_map(zero_is_a_code(8), FlatCode::middle), "OUT.png --bits 8 --zero-code 128"),
-        as_map(zero_is_a_code(8)),
+        offered(with_id(as_map(zero_is_a_code(8), FlatCode::middle), NormalCodeId::xyz_8_zero_128),
+                "OUT.png --bits 8 --zero-code 128"),
+        with_id(as_map(zero_is_a_code(8)), NormalCodeId::xyz_8_zero_128_read_as_gltf),
         offered(as_map(rounded(8, Dither::ordered)),
                 "OUT.png --bits 8 --zero-code 127.5 --dither ordered"),
-        offered(as_map(rounded(8, Dither::blue_noise)),
+        offered(with_id(as_map(rounded(8, Dither::blue_noise)), NormalCodeId::xyz_8_blue_noise),
                 "OUT.png --bits 8 --zero-code 127.5 --dither blue-noise"),
         as_ten_bits(),
         offered(as_map(rounded(16, Dither::none)), "OUT.png --bits 16 --zero-code 127.5"),
@@ -335,13 +340,16 @@ std::string best_by_size(const Experiment& experiment) {
     return fmt::format("The smallest errors: {}.", fmt::join(parts, "; "));
 }
 
+std::size_t index_of(std::span<const NormalCode> codes, NormalCodeId id) {
+    const auto found = std::find_if(codes.begin(), codes.end(),
+                                    [&](const NormalCode& code) { return code.id == id; });
+    return static_cast<std::size_t>(found - codes.begin());
+}
+
 /// "8 bits with zero at 128 have an error of 0.18 degrees RMS if they are read so, but of 0.37 ..."
-std::string error_by_decoder(const Experiment& experiment) {
-    const auto rms_of = [&](std::string_view method) {
-        for (const Measurement& one : experiment.measurements) {
-            if (one.method == method) return one.error.rms;
-        }
-        return std::numeric_limits<double>::quiet_NaN();
+std::string error_by_decoder(const Experiment& experiment, std::span<const NormalCode> codes) {
+    const auto rms_of = [&](NormalCodeId id) {
+        return experiment.measurements.at(index_of(codes, id)).error.rms;
     };
     return fmt::format(
         " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are decoded that "
@@ -349,9 +357,11 @@ std::string error_by_decoder(const Experiment& experiment) {
         "but of {:.2g} by the decoder of glTF and engines, whose zero is 127.5; codes with that "
         "zero "
         "have an error of {:.2g} there.",
-        rms_of("xyz 8 bit, zero at 128"), rms_of("xyz 8 bit, zero at 128, read as glTF does"),
-        rms_of("xyz 8 bit"));
+        rms_of(NormalCodeId::xyz_8_zero_128), rms_of(NormalCodeId::xyz_8_zero_128_read_as_gltf),
+        rms_of(NormalCodeId::xyz_8));
 }
+
+constexpr std::array patch_sides = {1, 2, 4, 8, 16, 32};
 
 Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& codes) {
     Chart chart;
@@ -362,22 +372,12 @@ Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& co
     for (const NormalCode& code : codes) {
         const Image actual = code.stored(ground_truth);
         std::vector<CurvePoint> points;
-        for (const int block : {1, 2, 4, 8, 16, 32})
+        for (const int block : patch_sides)
             points.push_back({static_cast<double>(block),
                               curve_error(patch_errors(actual, ground_truth, block))});
         chart.curves.push_back(fitted_curve(code.name, std::move(points), std::nullopt));
     }
     return chart;
-}
-
-double error_at(const Chart& chart, const std::string& method, double x) {
-    for (const Curve& curve : chart.curves) {
-        if (curve.method != method) continue;
-        for (const CurvePoint& point : curve.points) {
-            if (point.x == x) return point.error;
-        }
-    }
-    return 0.0;
 }
 
 }  // namespace
@@ -405,7 +405,7 @@ Experiment normal_reading_experiment(const RunOptions& options) {
     }
     measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
                     experiment);
-    experiment.finding = best_by_size(experiment) + error_by_decoder(experiment);
+    experiment.finding = best_by_size(experiment) + error_by_decoder(experiment, codes);
     return experiment;
 }
 
@@ -432,13 +432,18 @@ Experiment normal_writing_experiment(const RunOptions& options) {
     measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
                     experiment);
     Chart chart = patches_chart(ground_truth, codes);
+    const auto points_of = [&](NormalCodeId id) -> const std::vector<CurvePoint>& {
+        return chart.curves.at(index_of(codes, id)).points;
+    };
+    constexpr std::size_t of_16 = 4;
+    static_assert(patch_sides[of_16] == 16);
+    const std::vector<CurvePoint>& rounded = points_of(NormalCodeId::xyz_8);
+    const std::vector<CurvePoint>& dithered = points_of(NormalCodeId::xyz_8_blue_noise);
     experiment.finding = fmt::format(
         "In 8 bits a texel has an error of {:.2g} degrees RMS, and the mean of 16 x 16 texels "
         "still "
         "{:.2g}; with blue noise the errors are {:.2g} and {:.2g}.",
-        error_at(chart, "xyz 8 bit", 1.0), error_at(chart, "xyz 8 bit", 16.0),
-        error_at(chart, "xyz 8 bit, blue-noise", 1.0),
-        error_at(chart, "xyz 8 bit, blue-noise", 16.0));
+        rounded.front().error, rounded[of_16].error, dithered.front().error, dithered[of_16].error);
     experiment.charts.push_back(std::move(chart));
     return experiment;
 }

@@ -165,18 +165,22 @@ Chart cells_chart(const Case& one, bool is_quick) {
     return chart;
 }
 
-/// "max has the smallest error, 0.453 degrees RMS; area has the largest, 1.28."
-std::string normals_finding(const Experiment& experiment) {
-    const Measurement& best = *most_accurate(experiment);
+/// "max has the smallest error, 0.453 degrees RMS; area has the largest, 1.28. ..."
+/// \param methods  those of the measurements, in both arithmetics
+std::string normals_finding(const Experiment& experiment, std::span<const NormalMethod> methods) {
     const auto& all = experiment.measurements;
+    const auto weighting_of = [&](const Measurement& one) {
+        return methods[static_cast<std::size_t>(&one - all.data())].weighting;
+    };
+    const Measurement& best = *most_accurate(experiment);
     const auto by_rms = [](const Measurement& a, const Measurement& b) {
         return a.error.rms < b.error.rms;
     };
     const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
-    std::string text = fmt::format(
-        "{} has the smallest error, {:.3g} degrees RMS; {} has the largest, {:.3g}.",
-        value_of(best, "weighting"), best.error.rms, value_of(worst, "weighting"), worst.error.rms);
-    return text + " " + arithmetic_finding(experiment, {"weighting"}, "weightings");
+    std::string text =
+        fmt::format("{} has the smallest error, {:.3g} degrees RMS; {} has the largest, {:.3g}.",
+                    weighting_of(best), best.error.rms, weighting_of(worst), worst.error.rms);
+    return text + " " + arithmetic_finding(experiment, "weightings");
 }
 
 Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
@@ -191,8 +195,9 @@ Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
     experiment.error_unit = "degrees";
     experiment.item = "triangle";
     experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
+    const std::vector<NormalMethod> methods = normal_methods(both_arithmetics);
     std::vector<MeasuredMethod> measured;
-    for (const NormalMethod& method : normal_methods(both_arithmetics)) {
+    for (const NormalMethod& method : methods) {
         measured.push_back(
             {.name = method.name(),
              .choices = method.choices(),
@@ -200,7 +205,7 @@ Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
              .work = [normals = method.normals, &ground_truth] { normals(ground_truth.mesh); }});
     }
     measure_methods(measured, options, costs, experiment);
-    experiment.finding = normals_finding(experiment);
+    experiment.finding = normals_finding(experiment, methods);
     return experiment;
 }
 
@@ -254,8 +259,9 @@ Experiment on_fans(const RunOptions& options) {
     chart.x_label = "neighbors of the vertex";
     chart.is_x_log = false;
     chart.y_label = "RMS error, degrees";
+    const std::vector<NormalMethod> methods = normal_methods(float64_alone);
     std::vector<MeasuredMethod> measured;
-    for (const NormalMethod& method : normal_methods(float64_alone)) {
+    for (const NormalMethod& method : methods) {
         std::vector<CurvePoint> points;
         for (int valence = 3; valence <= 9; ++valence) {
             const ErrorStats errors = fan_errors(method, valence, fans);
@@ -270,9 +276,10 @@ Experiment on_fans(const RunOptions& options) {
     measure_methods(measured, options, {}, experiment);
     experiment.charts.push_back(std::move(chart));
     const Measurement& best = *most_accurate(experiment);
+    const auto index = static_cast<std::size_t>(&best - experiment.measurements.data());
     experiment.finding =
         fmt::format("With {} neighbors {} has the smallest error, {:.3g} degrees RMS.",
-                    usual_valence, value_of(best, "weighting"), best.error.rms);
+                    usual_valence, methods[index].weighting, best.error.rms);
     return experiment;
 }
 

@@ -144,20 +144,17 @@ Experiment reflection_experiment(const GlDevice& device, const RunOptions& optio
     const int size = options.is_quick ? 160 : 320;
     const int rays = 4;
     const int largest = options.is_quick ? 256 : 1024;
-    Experiment experiment{
-        .id = "shading/cube-map-size",
-        .question = "How large must a cube map be for a mirror?",
-        .ground_truth =
-            fmt::format("The formula of the environment in the directions that an exact ball "
-                        "reflects, mean of {} rays per pixel. A test verifies it by the reference "
-                        "shader.",
-                        rays * rays),
-        .input = fmt::format("mirror ball, environment with details of 3 degrees, {0} x {0} "
-                             "pixels, about 0.7 degrees of the environment in each",
-                             size),
-        .error_unit = "FLIP",
-        .item = "pixel",
-        .items = static_cast<double>(size) * size};
+    Experiment experiment = image_experiment("shading/cube-map-size", size);
+    experiment.question = "How large must a cube map be for a mirror?";
+    experiment.ground_truth = fmt::format(
+        "The formula of the environment in the directions that an exact ball "
+        "reflects, mean of {} rays per pixel. A test verifies it by the reference "
+        "shader.",
+        rays * rays);
+    experiment.input = fmt::format(
+        "mirror ball, environment with details of 3 degrees, {0} x {0} "
+        "pixels, about 0.7 degrees of the environment in each",
+        size);
     if (!device.is_available_for(experiment)) return experiment;
     std::vector<RenderedMethod> methods;
     for (int side = 16; side <= largest; side *= 2) {
@@ -247,17 +244,13 @@ Chart roughness_chart(const GlDevice& device, const Balls& balls, bool is_quick)
 Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) {
     const int size = options.is_quick ? quick_ball_size : full_ball_size;
     constexpr double shown = 0.3;
-    Experiment experiment{
-        .id = "shading/glossy-levels",
-        .question = "How accurate are rough mirrors with a few blurred mip levels?",
-        .ground_truth =
-            "The reference shader in double, mean of 1024 facets of GGX for each pixel. Tests "
-            "verify it by constant environments, and by linear ones, whose blur has a closed "
-            "form.",
-        .input = fmt::format("ball of roughness {0}, {1} x {1} pixels", shown, size),
-        .error_unit = "FLIP",
-        .item = "pixel",
-        .items = static_cast<double>(size) * size};
+    Experiment experiment = image_experiment("shading/glossy-levels", size);
+    experiment.question = "How accurate are rough mirrors with a few blurred mip levels?";
+    experiment.ground_truth =
+        "The reference shader in double, mean of 1024 facets of GGX for each pixel. Tests "
+        "verify it by constant environments, and by linear ones, whose blur has a closed "
+        "form.";
+    experiment.input = fmt::format("ball of roughness {0}, {1} x {1} pixels", shown, size);
     if (!device.is_available_for(experiment)) return experiment;
     const Balls balls;
     const std::vector<RenderedMethod> methods = balls.methods(shown);

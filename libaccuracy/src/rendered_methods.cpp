@@ -185,6 +185,15 @@ std::string frame_times(std::initializer_list<NamedMeasurement> methods) {
     return fmt::format(" Median frame times: {}.", fmt::join(times, ", "));
 }
 
+Experiment image_experiment(const std::string& id, int size) {
+    Experiment experiment;
+    experiment.id = id;
+    experiment.error_unit = "FLIP";
+    experiment.item = "pixel";
+    experiment.items = static_cast<double>(size) * size;
+    return experiment;
+}
+
 Scene lit_scene(Mesh mesh, Material material) {
     Scene scene;
     mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0U}};
@@ -241,12 +250,12 @@ Chart torus_chart(const Experiment& experiment, std::span<const std::string> met
                 .title = "Error by triangles",
                 .x_label = "triangles",
                 .y_label = experiment.error_unit};
-    for (const std::string& method : methods) {
-        Curve curve{.method = method};
-        for (const int around : slices) {
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+        Curve curve{.method = methods[m]};
+        for (std::size_t s = 0; s < slices.size(); ++s) {
+            const Measurement& one = experiment.measurements.at(m * slices.size() + s);
             curve.points.push_back(
-                {static_cast<double>(torus_triangles(around)),
-                 method_in(experiment, name_on_torus(method, around)).error.rms});
+                {static_cast<double>(torus_triangles(slices[s])), one.error.rms});
         }
         curve.order = fitted_order(curve.points);
         chart.curves.push_back(std::move(curve));

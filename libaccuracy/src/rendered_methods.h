@@ -93,6 +93,9 @@ struct NamedMeasurement {
 /// time on one thread if it was measured, like mark_pareto_optimal().
 std::string frame_times(std::initializer_list<NamedMeasurement> methods);
 
+/// An experiment on square images of `size` pixels along each side, with errors in FLIP.
+Experiment image_experiment(const std::string& id, int size);
+
 /// Direction in which the light of lit_scene() travels; not unit length.
 inline constexpr glm::vec3 light_direction_world{-0.5F, -0.8F, -0.6F};
 inline constexpr float light_irradiance = 0.9F;
@@ -151,6 +154,9 @@ std::string name_on_torus(const std::string& method, int slices);
 Camera torus_camera();
 
 /// A chart of the error by triangle count, with one curve per method.
+///
+/// \param experiment  its first measurements are those of the methods in order, each on all meshes
+///         in the order of `slices`
 /// \throws std::out_of_range if a measurement is missing
 Chart torus_chart(const Experiment& experiment, std::span<const std::string> methods,
                   std::span<const int> slices);

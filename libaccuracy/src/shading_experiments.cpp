@@ -52,34 +52,35 @@ std::vector<RenderedMethod> interpolation_methods() {
 }
 
 std::string interpolation_finding(const Experiment& experiment) {
-    const auto at = [&](std::size_t choice, int around) -> const Measurement& {
-        return method_in(experiment, name_on_torus(lighting_choices.at(choice).name, around));
+    constexpr std::size_t coarse = 1;
+    constexpr std::size_t fine = 3;
+    const auto at = [&](std::size_t choice, std::size_t slices) -> const Measurement& {
+        return experiment.measurements.at(choice * lighting_slices.size() + slices);
     };
     return fmt::format(
                "With {} triangles, flat shading has a FLIP error of {:.3f} (RMS), Gouraud shading "
                "{:.3f} and Phong shading {:.3f}; Gouraud shading needs {} triangles for {:.3f}.",
-               torus_triangles(24), at(0, 24).error.rms, at(1, 24).error.rms, at(2, 24).error.rms,
-               torus_triangles(96), at(1, 96).error.rms) +
-           frame_times({{"flat", at(0, 24)}, {"Gouraud", at(1, 24)}, {"Phong", at(2, 24)}});
+               torus_triangles(lighting_slices[coarse]), at(0, coarse).error.rms,
+               at(1, coarse).error.rms, at(2, coarse).error.rms,
+               torus_triangles(lighting_slices[fine]), at(1, fine).error.rms) +
+           frame_times(
+               {{"flat", at(0, coarse)}, {"Gouraud", at(1, coarse)}, {"Phong", at(2, coarse)}});
 }
 
 }  // namespace
 
 Experiment interpolation_experiment(const GlDevice& device, const RunOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    Experiment experiment{
-        .id = "shading/interpolation",
-        .question =
-            "How many triangles make the error of per-face and per-vertex lighting invisible?",
-        .ground_truth = fmt::format(
-            "The reference shader in double on a torus of {} triangles with the exact normals, one "
-            "ray through the center of each pixel. A test verifies that shader by the closed form "
-            "of a lit sphere.",
-            torus_triangles(smooth_torus_slices)),
-        .input = fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size),
-        .error_unit = "FLIP",
-        .item = "pixel",
-        .items = static_cast<double>(size) * size};
+    Experiment experiment = image_experiment("shading/interpolation", size);
+    experiment.question =
+        "How many triangles make the error of per-face and per-vertex lighting invisible?";
+    experiment.ground_truth = fmt::format(
+        "The reference shader in double on a torus of {} triangles with the exact normals, one "
+        "ray through the center of each pixel. A test verifies that shader by the closed form "
+        "of a lit sphere.",
+        torus_triangles(smooth_torus_slices));
+    experiment.input =
+        fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size);
     if (!device.is_available_for(experiment)) return experiment;
     const Image ground_truth =
         supersampled_reference(lit_torus(smooth_torus_slices, Interpolation::per_pixel), size, 1);
@@ -184,22 +185,18 @@ Chart chart_of(const GlDevice& device, int size) {
 Experiment highlight_experiment(const GlDevice& device, const RunOptions& options) {
     const int size = options.is_quick ? 160 : 320;
     constexpr double roughness = 0.4;
-    Experiment experiment{
-        .id = "shading/highlights",
-        .question =
-            "How accurately do Phong and Blinn-Phong highlights approximate those of a rough "
-            "metal?",
-        .ground_truth =
-            "A metal of GGX facets, by the reference shader in double, one ray through the "
-            "center of each pixel. Tests verify its GGX by the closed form in another notation, "
-            "and "
-            "its facets by their number within 45 degrees.",
-        .input = fmt::format("torus of roughness {0} under two lights, one behind it, {1} x {1} "
-                             "pixels; exponent {2:.0f}",
-                             roughness, size, exponent_of(roughness)),
-        .error_unit = "FLIP",
-        .item = "pixel",
-        .items = static_cast<double>(size) * size};
+    Experiment experiment = image_experiment("shading/highlights", size);
+    experiment.question =
+        "How accurately do Phong and Blinn-Phong highlights approximate those of a rough "
+        "metal?";
+    experiment.ground_truth =
+        "A metal of GGX facets, by the reference shader in double, one ray through the "
+        "center of each pixel. Tests verify its GGX by the closed form in another notation, "
+        "and its facets by their number within 45 degrees.";
+    experiment.input = fmt::format(
+        "torus of roughness {0} under two lights, one behind it, {1} x {1} "
+        "pixels; exponent {2:.0f}",
+        roughness, size, exponent_of(roughness));
     if (!device.is_available_for(experiment)) return experiment;
     const Image ground_truth = supersampled_reference(metal(roughness), size, 1);
     const std::vector<RenderedMethod> methods = highlight_methods(roughness);
@@ -323,21 +320,18 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
     const int size = options.is_quick ? 96 : 160;
     const int rays = options.is_quick ? 12 : 16;
     constexpr double shown = 8.0;
-    Experiment experiment{
-        .id = "shading/specular-antialiasing",
-        .question =
-            "Which method keeps highlights accurate where many texels of a normal map share a "
-            "pixel?",
-        .ground_truth =
-            fmt::format("The reference shader in double with the normal map at full size, "
-                        "mean of {} rays per pixel in linear light.",
-                        rays * rays),
-        .input = fmt::format("shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
-                             "pixels",
-                             size, shown),
-        .error_unit = "FLIP",
-        .item = "pixel",
-        .items = static_cast<double>(size) * size};
+    Experiment experiment = image_experiment("shading/specular-antialiasing", size);
+    experiment.question =
+        "Which method keeps highlights accurate where many texels of a normal map share a "
+        "pixel?";
+    experiment.ground_truth = fmt::format(
+        "The reference shader in double with the normal map at full size, "
+        "mean of {} rays per pixel in linear light.",
+        rays * rays);
+    experiment.input = fmt::format(
+        "shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
+        "pixels",
+        size, shown);
     if (!device.is_available_for(experiment)) return experiment;
     const Image map = bumpy_normals();
     std::vector<RenderedMethod> methods;
@@ -397,17 +391,14 @@ std::vector<RenderedMethod> edge_methods() {
 Experiment edge_experiment(const GlDevice& device, const RunOptions& options) {
     const int size = options.is_quick ? 128 : 256;
     const int rays = options.is_quick ? 8 : 16;
-    Experiment experiment{
-        .id = "shading/edges",
-        .question = "How much does antialiasing of edges cost?",
-        .ground_truth =
-            fmt::format("The reference shader in double, mean of {} rays per pixel in linear "
-                        "light. A test verifies its coverage by the closed form of a disc.",
-                        rays * rays),
-        .input = fmt::format("ring and cube before a dark background, {0} x {0} pixels", size),
-        .error_unit = "FLIP",
-        .item = "pixel",
-        .items = static_cast<double>(size) * size};
+    Experiment experiment = image_experiment("shading/edges", size);
+    experiment.question = "How much does antialiasing of edges cost?";
+    experiment.ground_truth = fmt::format(
+        "The reference shader in double, mean of {} rays per pixel in linear "
+        "light. A test verifies its coverage by the closed form of a disc.",
+        rays * rays);
+    experiment.input =
+        fmt::format("ring and cube before a dark background, {0} x {0} pixels", size);
     if (!device.is_available_for(experiment)) return experiment;
     const std::vector<RenderedMethod> methods = edge_methods();
     const Image ground_truth = supersampled_reference(methods.front().scene, size, rays);

@@ -51,6 +51,9 @@ ErrorStats formula_error(const FormulaMethod& method, std::span<const double> gr
 void measure_formulas(std::span<const FormulaMethod> methods, std::span<const double> ground_truth,
                       const RunOptions& options, Experiment& experiment);
 
+/// The methods of fresnel_methods(), in their order.
+enum class FresnelMethod { constant, schlick, schlick_exp2, schlick_82_degrees, table, fresnel };
+
 /// Returns ways to compute the reflectance of a smooth boundary:
 /// - the value at normal incidence for all angles;
 /// - Schlick's approximation with products [Schlick 1994];

@@ -176,7 +176,8 @@ const std::array boundaries = {Boundary{"water, 1.33", 1.33},
 /// Statistics of the error of Schlick's approximation.
 ErrorStats schlick_error(std::complex<double> index, std::span<const float> cosines) {
     const std::vector<FormulaMethod> methods = fresnel_methods(index, cosines);
-    return formula_error(methods.at(1), exact_reflectances(index, cosines));
+    return formula_error(methods.at(static_cast<std::size_t>(FresnelMethod::schlick)),
+                         exact_reflectances(index, cosines));
 }
 
 /// The error of Schlick's approximation by angle, with one curve per boundary.
@@ -189,7 +190,9 @@ Chart chart_by_incidence() {
     const std::vector<float> cosines = cosines_of_angles(91);
     for (const Boundary& boundary : boundaries) {
         std::vector<float> actual(cosines.size());
-        fresnel_methods(boundary.index, cosines).at(1).compute(actual);
+        fresnel_methods(boundary.index, cosines)
+            .at(static_cast<std::size_t>(FresnelMethod::schlick))
+            .compute(actual);
         const std::vector<double> ground_truth = exact_reflectances(boundary.index, cosines);
         Curve curve{.method = boundary.name};
         for (std::size_t i = 0; i < actual.size(); ++i) {
@@ -232,8 +235,8 @@ Experiment described(const Boundary& boundary, std::size_t angles) {
             .items = static_cast<double>(angles)};
 }
 
-std::string figures(const Experiment& experiment, const char* method) {
-    const ErrorStats& error = method_in(experiment, method).error;
+std::string figures(const Experiment& experiment, FresnelMethod method) {
+    const ErrorStats& error = experiment.measurements.at(static_cast<std::size_t>(method)).error;
     return fmt::format("{:.2g} (RMS; at most {:.2g})", error.rms, error.max);
 }
 
@@ -257,7 +260,7 @@ Experiment glass_experiment(const RunOptions& options) {
         "incidence "
         "{}. The approximation is meant for indices around 1.5: at 2.42 its maximum error is "
         "{:.2g}, at 3.5 it is {:.2g}.",
-        figures(experiment, "Schlick"), figures(experiment, "constant"),
+        figures(experiment, FresnelMethod::schlick), figures(experiment, FresnelMethod::constant),
         schlick_error(2.42, cosines).max, schlick_error(3.5, cosines).max);
     return experiment;
 }
@@ -270,7 +273,8 @@ Experiment metal_experiment(const RunOptions& options) {
         "angles "
         "before they brighten, which it cannot represent. With a third parameter, which makes it "
         "exact at 82 degrees, the error is {}.",
-        figures(experiment, "Schlick"), figures(experiment, "Schlick, right at 82 degrees"));
+        figures(experiment, FresnelMethod::schlick),
+        figures(experiment, FresnelMethod::schlick_82_degrees));
     return experiment;
 }
 

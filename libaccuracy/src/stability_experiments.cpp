@@ -86,24 +86,43 @@ std::string Sweeps::breaks() const {
 
 namespace {
 
-template <typename Method>
-struct Swept {
-    Method method;
+/// A method for inputs of one kind.
+template <typename Input, typename Result>
+struct SweptMethod {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> choices;
+    std::function<Result(const Input&)> compute;
     bool is_textbook = false;  ///< Code without guards, measured for contrast.
 };
+using SweptNormals = SweptMethod<Mesh, std::vector<glm::vec3>>;
+using SweptTangents = SweptMethod<Mesh, CornerTangents>;
+using SweptSlopes = SweptMethod<WaveMap, Image>;
+
+template <typename Method>
+std::vector<std::string> names_of(const std::vector<Method>& methods) {
+    std::vector<std::string> names;
+    for (const Method& one : methods)
+        names.push_back(one.name);
+    return names;
+}
 
 /// Adds a measurement of each method with its errors in all sweeps and its time on one thread, the
 /// charts, and the values at which methods fail.
 ///
 /// \param methods  in the order of the sweeps
-void measure_swept(std::vector<Swept<MeasuredMethod>> methods, const Sweeps& sweeps,
-                   const RunOptions& options, Experiment& experiment) {
+/// \param input  the input on which methods are timed
+template <typename Input, typename Result>
+void measure_swept(const std::vector<SweptMethod<Input, Result>>& methods, const Sweeps& sweeps,
+                   const Input& input, const RunOptions& options, Experiment& experiment) {
     std::vector<MeasuredMethod> measured;
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        MeasuredMethod& method = measured.emplace_back(std::move(methods[i].method));
         const bool is_textbook = methods[i].is_textbook;
-        method.error = sweeps.figures(i);
+        MeasuredMethod& method = measured.emplace_back();
+        method.name = methods[i].name;
+        method.choices = methods[i].choices;
         method.choices.emplace_back("guarded", is_textbook ? "no" : "yes");
+        method.error = sweeps.figures(i);
+        method.work = [&input, compute = methods[i].compute] { compute(input); };
         if (is_textbook)
             method.note =
                 "Textbook code without guards, which is not part of relief, for contrast.";
@@ -113,6 +132,15 @@ void measure_swept(std::vector<Swept<MeasuredMethod>> methods, const Sweeps& swe
     experiment.charts = sweeps.charts();
     experiment.finding = fmt::format("A method fails where its RMS error exceeds {} degree. {}",
                                      broken_degrees, sweeps.breaks());
+}
+
+/// The same for methods on meshes.
+template <typename Result>
+void measure_on_mesh(const std::vector<SweptMethod<Mesh, Result>>& methods, const Sweeps& sweeps,
+                     const Mesh& mesh, const RunOptions& options, Experiment& experiment) {
+    experiment.item = "triangle";
+    experiment.items = static_cast<double>(mesh.triangles.size());
+    measure_swept(methods, sweeps, mesh, options, experiment);
 }
 
 constexpr const char* torus_ground_truth =
@@ -130,31 +158,26 @@ AnalyticMesh swept_torus(const RunOptions& options) {
                          torus_seed);
 }
 
-using SweptNormals = Swept<NormalMethod>;
+SweptNormals swept(const NormalMethod& method, bool is_textbook = false) {
+    return {method.name(), method.choices(), method.normals, is_textbook};
+}
 
 SweptNormals textbook_normals(const char* name, std::vector<glm::vec3> (*normals)(const Mesh&)) {
     NormalMethod method;
     method.weighting = name;
     method.arithmetic = Arithmetic::float32;
     method.normals = normals;
-    return {std::move(method), true};
+    return swept(method, true);
 }
 
 /// The methods of the library in both arithmetics, and textbook code.
 std::vector<SweptNormals> swept_normal_methods() {
     std::vector<SweptNormals> methods;
-    for (NormalMethod& method : normal_methods(both_arithmetics))
-        methods.push_back({std::move(method)});
+    for (const NormalMethod& method : normal_methods(both_arithmetics))
+        methods.push_back(swept(method));
     methods.push_back(textbook_normals("plain area", textbook_area_normals));
     methods.push_back(textbook_normals("plain angle", textbook_angle_normals));
     return methods;
-}
-
-std::vector<std::string> names_of(const std::vector<SweptNormals>& methods) {
-    std::vector<std::string> names;
-    for (const SweptNormals& one : methods)
-        names.push_back(one.method.name());
-    return names;
 }
 
 /// The errors of the first normals; `normals` may have more elements than `ground_truth`.
@@ -165,22 +188,6 @@ std::vector<float> normal_degrees(const std::vector<glm::vec3>& normals,
         degrees.push_back(
             static_cast<float>(degrees_between(glm::dvec3(normals[v]), ground_truth[v])));
     return degrees;
-}
-
-/// Measures all methods; times are those on `mesh`.
-void measure_normals(const std::vector<SweptNormals>& methods, const Sweeps& sweeps,
-                     const Mesh& mesh, const RunOptions& options, Experiment& experiment) {
-    std::vector<Swept<MeasuredMethod>> swept;
-    for (const auto& [method, is_textbook] : methods) {
-        swept.push_back({{.name = method.name(),
-                          .choices = method.choices(),
-                          .error = {},
-                          .work = [&mesh, normals = method.normals] { normals(mesh); }},
-                         is_textbook});
-    }
-    experiment.item = "triangle";
-    experiment.items = static_cast<double>(mesh.triangles.size());
-    measure_swept(std::move(swept), sweeps, options, experiment);
 }
 
 /// Scales and moves positions or texture coordinates in double, then rounds them to float, as a
@@ -213,7 +220,7 @@ Experiment normals_by_scale(const RunOptions& options) {
         return [&, is_larger](std::size_t method, double value) {
             const Mesh mesh =
                 with_positions(ground_truth.mesh, {.scale = is_larger ? value : 1.0 / value});
-            return normal_degrees(methods[method].method.normals(mesh), ground_truth.normals);
+            return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
         };
     };
     sweeps.add("smaller", "Smaller", "times smaller than radius 1", 30, 2, scaled(false));
@@ -226,7 +233,7 @@ Experiment normals_by_scale(const RunOptions& options) {
             fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; the errors are "
                         "those of all together, the times those at scale 1",
                         ground_truth.mesh.triangles.size())};
-    measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
+    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
     return experiment;
 }
 
@@ -237,8 +244,7 @@ Experiment normals_by_offset(const RunOptions& options) {
     sweeps.add("offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
                [&](std::size_t method, double value) {
                    const Mesh mesh = with_positions(ground_truth.mesh, {.offset = value});
-                   return normal_degrees(methods[method].method.normals(mesh),
-                                         ground_truth.normals);
+                   return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
                });
     Experiment experiment{
         .id = "stability/normals-offset",
@@ -247,7 +253,7 @@ Experiment normals_by_offset(const RunOptions& options) {
         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; the errors are "
                              "those of all together, the times those at the origin",
                              ground_truth.mesh.triangles.size())};
-    measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
+    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
     experiment.finding +=
         " float64 is exact for the given positions: its error is that of rounding the positions to "
         "float, which no method can undo. Move meshes to the origin before storing them.";
@@ -258,11 +264,11 @@ Experiment normals_of_needles(const RunOptions& options) {
     const std::size_t count = options.is_quick ? 1000 : 4000;
     const std::vector<SweptNormals> methods = swept_normal_methods();
     Sweeps sweeps(names_of(methods), broken_degrees);
-    sweeps.add(
-        "width", "Narrower", "length over width", 12, 1, [&](std::size_t method, double value) {
-            const Needles needles = make_needles(count, 1.0 / value, needles_seed);
-            return normal_degrees(methods[method].method.normals(needles.mesh), needles.normals);
-        });
+    sweeps.add("width", "Narrower", "length over width", 12, 1,
+               [&](std::size_t method, double value) {
+                   const Needles needles = make_needles(count, 1.0 / value, needles_seed);
+                   return normal_degrees(methods[method].compute(needles.mesh), needles.normals);
+               });
     const Needles wide = make_needles(count, 1.0, needles_seed);
     Experiment experiment{
         .id = "stability/normals-needles",
@@ -274,7 +280,7 @@ Experiment normals_of_needles(const RunOptions& options) {
             fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; the "
                         "errors are those of all together, the times those at width 1",
                         count)};
-    measure_normals(methods, sweeps, wide.mesh, options, experiment);
+    measure_on_mesh(methods, sweeps, wide.mesh, options, experiment);
     return experiment;
 }
 
@@ -287,8 +293,7 @@ Experiment normals_beside_hard_triangles(const RunOptions& options) {
                    [&](std::size_t method, double count) {
                        const Mesh mesh = with_hard_triangles(ground_truth.mesh, one.kind,
                                                              static_cast<std::size_t>(count));
-                       return normal_degrees(methods[method].method.normals(mesh),
-                                             ground_truth.normals);
+                       return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
                    });
     }
     Experiment experiment{
@@ -304,30 +309,26 @@ Experiment normals_beside_hard_triangles(const RunOptions& options) {
                              "kinds; the errors are those of all together, the times those without "
                              "them",
                              ground_truth.mesh.triangles.size())};
-    measure_normals(methods, sweeps, ground_truth.mesh, options, experiment);
+    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
     return experiment;
 }
 
 namespace {
 
-using SweptTangents = Swept<TangentMethod>;
-
 /// The methods with stored tangents, and textbook code.
 std::vector<SweptTangents> swept_tangent_methods() {
     std::vector<SweptTangents> methods;
-    for (TangentMethod& method : tangent_methods()) {
-        if (method.tangents) methods.push_back({std::move(method)});
+    for (const TangentMethod& method : tangent_methods()) {
+        if (method.tangents)
+            methods.push_back({method.name, {{"frames", method.name}}, method.tangents});
     }
-    methods.push_back({{"plain", textbook_tangents}, true});
+    methods.push_back({"plain", {{"frames", "plain"}}, textbook_tangents, true});
     return methods;
 }
 
-std::vector<std::string> names_of(const std::vector<SweptTangents>& methods) {
-    std::vector<std::string> names;
-    for (const SweptTangents& one : methods)
-        names.push_back(one.method.name);
-    return names;
-}
+constexpr const char* textured_torus_ground_truth =
+    "The exact tangents of the textured torus in closed form, which do not depend on scale and "
+    "position. Tests verify them by numerical differentiation of the surface.";
 
 TexturedMesh textured_torus(const RunOptions& options) {
     return textured_mesh(AnalyticSurface::torus, Triangulation::regular, TextureLayout::upright,
@@ -335,12 +336,12 @@ TexturedMesh textured_torus(const RunOptions& options) {
 }
 
 /// The errors of a method on a mesh with changed positions and texture coordinates.
-std::vector<float> tangent_degrees(const TangentMethod& method, const TexturedMesh& ground_truth,
+std::vector<float> tangent_degrees(const SweptTangents& method, const TexturedMesh& ground_truth,
                                    const Change& positions, const Change& texcoords) {
     Mesh mesh = ground_truth.mesh;
     positions.apply(mesh.positions);
     texcoords.apply(mesh.texcoords);
-    const CornerTangents actual = method.tangents_of(mesh);
+    const CornerTangents actual = method.compute(mesh);
     const CornerTangents expected = exact_tangents(ground_truth);
     std::vector<float> degrees;
     for (std::size_t corner = 0; corner < actual.size(); ++corner) {
@@ -353,26 +354,6 @@ std::vector<float> tangent_degrees(const TangentMethod& method, const TexturedMe
     return degrees;
 }
 
-void measure_tangents(const std::vector<SweptTangents>& methods, const Sweeps& sweeps,
-                      const TexturedMesh& ground_truth, const RunOptions& options,
-                      Experiment& experiment) {
-    experiment.ground_truth =
-        "The exact tangents of the textured torus in closed form, which do not depend on scale and "
-        "position. Tests verify them by numerical differentiation of the surface.";
-    std::vector<Swept<MeasuredMethod>> swept;
-    for (const auto& [method, is_textbook] : methods) {
-        swept.push_back(
-            {{.name = method.name,
-              .choices = {{"frames", method.name}},
-              .error = {},
-              .work = [&ground_truth, tangents = method.tangents] { tangents(ground_truth.mesh); }},
-             is_textbook});
-    }
-    experiment.item = "triangle";
-    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
-    measure_swept(std::move(swept), sweeps, options, experiment);
-}
-
 }  // namespace
 
 Experiment tangents_by_scale(const RunOptions& options) {
@@ -383,8 +364,8 @@ Experiment tangents_by_scale(const RunOptions& options) {
                          bool is_larger) {
         sweeps.add(id, title, label, 30, 2, [&, is_image, is_larger](std::size_t i, double value) {
             const Change change{.scale = is_larger ? value : 1.0 / value};
-            return is_image ? tangent_degrees(methods[i].method, ground_truth, {}, change)
-                            : tangent_degrees(methods[i].method, ground_truth, change, {});
+            return is_image ? tangent_degrees(methods[i], ground_truth, {}, change)
+                            : tangent_degrees(methods[i], ground_truth, change, {});
         });
     };
     add("smaller", "Smaller meshes", "times smaller than radius 1", false, false);
@@ -395,11 +376,12 @@ Experiment tangents_by_scale(const RunOptions& options) {
     Experiment experiment{
         .id = "stability/tangents-scale",
         .question = "At which scales of a mesh and its texture coordinates are tangents accurate?",
+        .ground_truth = textured_torus_ground_truth,
         .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
                              "31 scales each from 1e-30 to 1e30; the errors are those of all "
                              "together, the times those at scale 1",
                              ground_truth.mesh.triangles.size())};
-    measure_tangents(methods, sweeps, ground_truth, options, experiment);
+    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
     return experiment;
 }
 
@@ -409,23 +391,24 @@ Experiment tangents_by_offset(const RunOptions& options) {
     Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
                [&](std::size_t i, double value) {
-                   return tangent_degrees(methods[i].method, ground_truth, {.offset = value}, {});
+                   return tangent_degrees(methods[i], ground_truth, {.offset = value}, {});
                });
     sweeps.add("offset-image", "Texture coordinates farther away",
                "distance along each axis, in images", 8, 1, [&](std::size_t i, double value) {
-                   return tangent_degrees(methods[i].method, ground_truth, {}, {.offset = value});
+                   return tangent_degrees(methods[i], ground_truth, {}, {.offset = value});
                });
     Experiment experiment{
         .id = "stability/tangents-offset",
         .question =
             "At which distances of a mesh and its texture coordinates from the origin are "
             "tangents accurate?",
+        .ground_truth = textured_torus_ground_truth,
         .input =
             fmt::format("torus of {} triangles, its positions and its texture coordinates at "
                         "9 distances each from 1 to 1e8; the errors are those of all together, "
                         "the times those at the origin",
                         ground_truth.mesh.triangles.size())};
-    measure_tangents(methods, sweeps, ground_truth, options, experiment);
+    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
     return experiment;
 }
 
@@ -433,15 +416,7 @@ namespace {
 
 constexpr double swept_wavelength = 32.0;
 
-/// One way to compute unit normals from heights.
-struct SlopeMethod {
-    std::string name;
-    std::vector<std::pair<std::string, std::string>> choices;
-    std::function<Image(const WaveMap& wave)> normals;
-    bool is_textbook = false;
-};
-
-SlopeMethod by_kernel(Kernel kernel, Arithmetic arithmetic) {
+SweptSlopes by_kernel(Kernel kernel, Arithmetic arithmetic) {
     const std::string name = name_of(kernel, 0);
     return {fmt::format("{}, {}", name, name_of(arithmetic)),
             {{"kernel", name}, {"arithmetic", name_of(arithmetic)}},
@@ -454,8 +429,8 @@ SlopeMethod by_kernel(Kernel kernel, Arithmetic arithmetic) {
             }};
 }
 
-std::vector<SlopeMethod> swept_slope_methods() {
-    std::vector<SlopeMethod> methods;
+std::vector<SweptSlopes> swept_slope_methods() {
+    std::vector<SweptSlopes> methods;
     for (const Kernel kernel : {Kernel::sobel3, Kernel::central7}) {
         for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32})
             methods.push_back(by_kernel(kernel, arithmetic));
@@ -470,19 +445,12 @@ std::vector<SlopeMethod> swept_slope_methods() {
     return methods;
 }
 
-std::vector<std::string> names_of(const std::vector<SlopeMethod>& methods) {
-    std::vector<std::string> names;
-    for (const SlopeMethod& method : methods)
-        names.push_back(method.name);
-    return names;
-}
-
 int map_side(const RunOptions& options) {
     return (options.is_quick ? 64 : 192) + 2 * wave_margin;
 }
 
-std::vector<float> slope_degrees(const SlopeMethod& method, const WaveMap& wave) {
-    return inner_angles(method.normals(wave), wave.normals, wave_margin);
+std::vector<float> slope_degrees(const SweptSlopes& method, const WaveMap& wave) {
+    return inner_angles(method.compute(wave), wave.normals, wave_margin);
 }
 
 /// The wave with its heights multiplied by `times`.
@@ -500,27 +468,19 @@ WaveMap higher(WaveMap wave, double by) {
     return wave;
 }
 
-/// Measures all methods; times are those on `wave`.
-void measure_slopes(const std::vector<SlopeMethod>& methods, const Sweeps& sweeps,
-                    const WaveMap& wave, const RunOptions& options, Experiment& experiment) {
-    std::vector<Swept<MeasuredMethod>> swept;
-    for (const SlopeMethod& method : methods) {
-        swept.push_back({{.name = method.name,
-                          .choices = method.choices,
-                          .error = {},
-                          .work = [&wave, normals = method.normals] { normals(wave); }},
-                         method.is_textbook});
-    }
+/// The same as measure_swept() on a wave.
+void measure_on_wave(const std::vector<SweptSlopes>& methods, const Sweeps& sweeps,
+                     const WaveMap& wave, const RunOptions& options, Experiment& experiment) {
     experiment.item = "texel";
     experiment.items = static_cast<double>(wave.normals.size());
-    measure_swept(std::move(swept), sweeps, options, experiment);
+    measure_swept(methods, sweeps, wave, options, experiment);
 }
 
 }  // namespace
 
 Experiment bump_by_steepness(const RunOptions& options) {
     const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
-    const std::vector<SlopeMethod> methods = swept_slope_methods();
+    const std::vector<SweptSlopes> methods = swept_slope_methods();
     Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("steeper", "Steeper", "slope", 30, 2, [&](std::size_t method, double value) {
         return slope_degrees(methods[method], steeper(wave, value));
@@ -538,13 +498,13 @@ Experiment bump_by_steepness(const RunOptions& options) {
                              "to 1e30; the errors are those of all together, the times those at "
                              "slope 1",
                              map_side(options), swept_wavelength)};
-    measure_slopes(methods, sweeps, wave, options, experiment);
+    measure_on_wave(methods, sweeps, wave, options, experiment);
     return experiment;
 }
 
 Experiment bump_by_offset(const RunOptions& options) {
     const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
-    const std::vector<SlopeMethod> methods = swept_slope_methods();
+    const std::vector<SweptSlopes> methods = swept_slope_methods();
     Sweeps sweeps(names_of(methods), broken_degrees);
     sweeps.add("offset", "Higher", "height above zero, texels", 8, 1,
                [&](std::size_t method, double value) {
@@ -561,7 +521,7 @@ Experiment bump_by_offset(const RunOptions& options) {
                         "heights from 1 to 1e8; the errors are those of all together, the times "
                         "those at 0",
                         map_side(options), swept_wavelength)};
-    measure_slopes(methods, sweeps, wave, options, experiment);
+    measure_on_wave(methods, sweeps, wave, options, experiment);
     experiment.finding +=
         " The error of float64 is that of rounding these heights to float, which no method can "
         "undo: store heights relative to a zero within their range.";

@@ -19,6 +19,15 @@
 
 namespace relief {
 
+/// The codes to which findings refer.
+enum class NormalCodeId {
+    other,
+    xyz_8,
+    xyz_8_zero_128,
+    xyz_8_zero_128_read_as_gltf,
+    xyz_8_blue_noise,
+};
+
 /// One way to encode and decode the normals of a map.
 struct NormalCode {
     std::string name;  ///< "xyz 8 bit, blue-noise"
@@ -29,6 +38,7 @@ struct NormalCode {
     std::function<Image(const Image& codes)> decode;
     /// Arguments of relief-bake convert that write this code; empty if it cannot.
     std::string file_and_options{};
+    NormalCodeId id = NormalCodeId::other;
 
     [[nodiscard]] Image stored(const Image& normals) const { return decode(encode(normals)); }
 };

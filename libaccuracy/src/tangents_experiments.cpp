@@ -88,41 +88,43 @@ std::vector<RenderedMethod> frame_methods() {
 }
 
 std::string frames_finding(const Experiment& experiment) {
-    const auto at = [&](const char* frames, int around) -> const Measurement& {
-        return method_in(experiment, name_on_torus(frames, around));
+    constexpr std::size_t coarse = 0;
+    constexpr std::size_t middle = 1;
+    constexpr std::size_t fine = 2;
+    const auto stored = [&](std::size_t slices) -> const Measurement& {
+        return experiment.measurements.at(slices);
+    };
+    const auto derived = [&](std::size_t slices) -> const Measurement& {
+        return experiment.measurements.at(rendered_slices.size() + slices);
     };
     return fmt::format(
                "With {} triangles the images have a FLIP error of {:.3f} (RMS) with stored frames "
                "and {:.3f} with derived ones, with {} triangles {:.3f} and {:.3f}.",
-               torus_triangles(rendered_slices[0]), at("stored", rendered_slices[0]).error.rms,
-               at("derived", rendered_slices[0]).error.rms, torus_triangles(rendered_slices[2]),
-               at("stored", rendered_slices[2]).error.rms,
-               at("derived", rendered_slices[2]).error.rms) +
-           frame_times({{fmt::format("stored, {} triangles", torus_triangles(middle_slices)),
-                         at("stored", middle_slices)},
-                        {fmt::format("derived, {} triangles", torus_triangles(middle_slices)),
-                         at("derived", middle_slices)},
-                        {"no normal map", at("no normal map", middle_slices)}});
+               torus_triangles(rendered_slices[coarse]), stored(coarse).error.rms,
+               derived(coarse).error.rms, torus_triangles(rendered_slices[fine]),
+               stored(fine).error.rms, derived(fine).error.rms) +
+           frame_times(
+               {{fmt::format("stored, {} triangles", torus_triangles(rendered_slices[middle])),
+                 stored(middle)},
+                {fmt::format("derived, {} triangles", torus_triangles(rendered_slices[middle])),
+                 derived(middle)},
+                {"no normal map", experiment.measurements.back()}});
 }
 
 }  // namespace
 
 Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    Experiment experiment{
-        .id = "tangents/drawn",
-        .subject = Subject::tangents,
-        .question =
-            "Which tangent frames cost less in rendering: stored ones, or ones that shaders "
-            "derive?",
-        .ground_truth = fmt::format(
-            "The reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
-            "one ray through the center of each pixel. Tests verify that shader by closed forms.",
-            torus_triangles(smooth_torus_slices)),
-        .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size),
-        .error_unit = "FLIP",
-        .item = "pixel",
-        .items = static_cast<double>(size) * size};
+    Experiment experiment = image_experiment("tangents/drawn", size);
+    experiment.subject = Subject::tangents;
+    experiment.question =
+        "Which tangent frames cost less in rendering: stored ones, or ones that shaders "
+        "derive?";
+    experiment.ground_truth = fmt::format(
+        "The reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
+        "one ray through the center of each pixel. Tests verify that shader by closed forms.",
+        torus_triangles(smooth_torus_slices));
+    experiment.input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size);
     if (!device.is_available_for(experiment)) return experiment;
     const Image ground_truth =
         supersampled_reference(bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1);

@@ -48,8 +48,7 @@ TEST(MeasureMethods, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
     EXPECT_TRUE(std::isnan(median_seconds(experiment.measurements[1])));
     EXPECT_FALSE(experiment.measurements[1].is_pareto_optimal);  // It has no time.
     EXPECT_TRUE(experiment.measurements[0].is_pareto_optimal);
-    EXPECT_EQ(value_of(experiment.measurements[2], "kind"), "last");
-    EXPECT_EQ(value_of(experiment.measurements[2], "colour"), "");
+    EXPECT_EQ(experiment.measurements[2].choices, methods[2].choices);
 }
 
 TEST(MeasureMethods, RunsNothingWhereNothingIsTimed) {
@@ -73,6 +72,21 @@ TEST(Truest, HasTheLeastErrorOfThoseThatAreDefined) {
     EXPECT_EQ(most_accurate(experiment), &experiment.measurements[1]);
     experiment.measurements[1].error.undefined = 1;
     EXPECT_EQ(most_accurate(experiment), &experiment.measurements[2]);
+}
+
+TEST(ArithmeticFinding, ComparesPairsOfTheSameMethod) {
+    Experiment experiment;
+    for (const double rms : {1.0, 1.25, 2.0, 1.5}) {
+        experiment.measurements.emplace_back();
+        experiment.measurements.back().error.rms = rms;
+    }
+    EXPECT_EQ(arithmetic_finding(experiment, "kernels"),
+              "float32 changes no RMS error by more than 0.5 degrees.");
+    for (std::size_t i = 0; i < 4; ++i)
+        experiment.measurements[i].cost.one_thread = Timing{{i % 2 == 0 ? 2.0 : 1.0}};
+    EXPECT_EQ(arithmetic_finding(experiment, "kernels"),
+              "float32 changes no RMS error by more than 0.5 degrees and takes 0.50 times as long "
+              "(median of the kernels).");
 }
 
 TEST(FittedCurve, HasTheSlopeOfItsPoints) {

@@ -24,7 +24,7 @@ class RenderedExperiment : public ::testing::Test {
     [[nodiscard]] static const GlDevice& device() { return *device_; }
 
     static double rms(const Experiment& experiment, const std::string& method) {
-        return method_in(experiment, method).error.rms;
+        return test::measurement_of(experiment, method).error.rms;
     }
 
   private:

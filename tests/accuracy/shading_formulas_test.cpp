@@ -81,12 +81,13 @@ TEST(FormulaError, SeesAWrongFormula) {
 TEST(FresnelExperiments, RankTheFormulas) {
     const RunOptions options = test::quick_untimed();
     const Experiment glass = glass_experiment(options);
-    EXPECT_LT(method_in(glass, "Schlick").error.rms, 0.1 * method_in(glass, "constant").error.rms);
-    EXPECT_LT(method_in(glass, "Fresnel, float32").error.rms, 1e-6);
+    EXPECT_LT(test::measurement_of(glass, "Schlick").error.rms,
+              0.1 * test::measurement_of(glass, "constant").error.rms);
+    EXPECT_LT(test::measurement_of(glass, "Fresnel, float32").error.rms, 1e-6);
     EXPECT_NE(glass.finding.find("0.013 (RMS; at most 0.036)"), std::string::npos) << glass.finding;
     const Experiment metal = metal_experiment(options);
-    EXPECT_GT(method_in(metal, "Schlick").error.max,
-              3.0 * method_in(metal, "Schlick, right at 82 degrees").error.max);
+    EXPECT_GT(test::measurement_of(metal, "Schlick").error.max,
+              3.0 * test::measurement_of(metal, "Schlick, right at 82 degrees").error.max);
     EXPECT_FALSE(glass.measurements.front().cost.one_thread);
 }
 
