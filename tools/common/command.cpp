@@ -347,6 +347,14 @@ bool is_given(const CLI::App& app, const std::string& name) {
     return app.count(name) > 0;
 }
 
+void refuse_given(const CLI::App& app, std::initializer_list<const char*> options,
+                  const std::string& required, const std::string& remedy) {
+    for (const char* option : options) {
+        if (is_given(app, option))
+            throw UsageError(fmt::format("{}: has no effect without {}", option, required), remedy);
+    }
+}
+
 void warn(const CLI::App& app, const std::string& text) {
     print_message(app, "warning", text);
 }

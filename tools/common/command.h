@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -165,6 +166,10 @@ std::string command_name(const CLI::App& app);
 
 /// Returns whether an option, "--cage", is on the command line.
 bool is_given(const CLI::App& app, const std::string& name);
+
+/// \throws UsageError if one of the options is on the command line, because all need another one
+void refuse_given(const CLI::App& app, std::initializer_list<const char*> options,
+                  const std::string& required, const std::string& remedy = "");
 
 /// Prints a warning in the form of the errors: "relief-mesh: warning: TEXT".
 void warn(const CLI::App& app, const std::string& text);

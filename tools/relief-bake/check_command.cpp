@@ -4,7 +4,6 @@
 // files, even if one fails. Tests: tests/tools/relief_bake_check_test.cpp.
 #include <fmt/format.h>
 
-#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -323,32 +322,14 @@ void add_surface_options(CLI::App& app, SurfaceCheckRequest& request) {
 /// \throws UsageError if options have no effect, models are missing, or there are several maps
 void check(const CLI::App& app, const SurfaceCheckRequest& request,
            const std::vector<std::filesystem::path>& maps) {
-    constexpr std::array surface_options = {"--low",
-                                            "--cage",
-                                            "--match",
-                                            "--rays",
-                                            "--hardness",
-                                            "--offset",
-                                            "--space",
-                                            "--back-faces",
-                                            "--max-distance",
-                                            "--samples",
-                                            "--outside",
-                                            "--sample-angle",
-                                            "--udim",
-                                            "--max-error",
-                                            "--max-error-kind",
-                                            "--error-map",
-                                            "--high-normal-map",
-                                            "--max-missed",
-                                            "--allow-size-mismatch"};
     if (!request.is_wanted()) {
-        for (const char* name : surface_options) {
-            if (is_given(app, name))
-                throw UsageError(fmt::format("{}: has no effect without --high", name),
-                                 "give --high FILE and --low FILE");
-        }
-        return;
+        return refuse_given(
+            app,
+            {"--low", "--cage", "--match", "--rays", "--hardness", "--offset", "--space",
+             "--back-faces", "--max-distance", "--samples", "--outside", "--sample-angle", "--udim",
+             "--max-error", "--max-error-kind", "--error-map", "--high-normal-map", "--max-missed",
+             "--allow-size-mismatch"},
+            "--high", "give --high FILE and --low FILE");
     }
     if (request.bake.low.empty())
         throw UsageError("--high: needs the model of the map", "give --low FILE");

@@ -146,6 +146,14 @@ std::vector<int> depths_of(const std::filesystem::path& output) {
     return {};
 }
 
+void check_depth(const char* option, int bits, const std::filesystem::path& output,
+                 const std::vector<int>& depths, const std::string& remedy) {
+    if (std::ranges::count(depths, bits) > 0) return;
+    throw UsageError(fmt::format("{} {}: {} holds {} bits", option, bits, extension_of(output),
+                                 fmt::join(depths, " or ")),
+                     remedy);
+}
+
 void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input) {
     const std::string group = "Output";
     const auto default_text = [&](const std::string& otherwise) {
@@ -184,18 +192,10 @@ NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem
                           const MapOutputDefaults& defaults) {
     const std::vector<int> depths = depths_of(output);
     if (depths.empty()) refuse_format(output);
-    const auto is_supported = [&](int bits) {
-        return std::find(depths.begin(), depths.end(), bits) != depths.end();
-    };
-    const int default_bits =
-        defaults.bits && is_supported(*defaults.bits) ? *defaults.bits : depths.front();
-    const int bits = options.bits.value_or(default_bits);
-    if (!is_supported(bits)) {
-        const bool suggests_half = bits == 16 && extension_of(output) == ".exr";
-        throw UsageError(fmt::format("--bits {}: {} holds {} bits", bits, extension_of(output),
-                                     fmt::join(depths, " or ")),
-                         suggests_half ? "--half stores half floats" : "");
-    }
+    const bool has_default = defaults.bits && std::ranges::count(depths, *defaults.bits) > 0;
+    const int bits = options.bits.value_or(has_default ? *defaults.bits : depths.front());
+    const bool suggests_half = bits == 16 && extension_of(output) == ".exr";
+    check_depth("--bits", bits, output, depths, suggests_half ? "--half stores half floats" : "");
     if (bits == 32 && options.flat)
         throw UsageError("--zero-code: has no effect on 32-bit output, where zero is exact");
     if (bits == 32 && options.dither)

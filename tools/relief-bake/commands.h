@@ -104,6 +104,11 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
 /// store them.
 std::vector<int> depths_of(const std::filesystem::path& output);
 
+/// \param option  for the message: "--bits"
+/// \throws UsageError if the depth is none of those of the file format
+void check_depth(const char* option, int bits, const std::filesystem::path& output,
+                 const std::vector<int>& depths, const std::string& remedy = "");
+
 /// \throws UsageError if the file format cannot store normals, or not with this depth, or if an
 ///         option has no effect
 NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem::path& output,

@@ -315,15 +315,6 @@ void add_mip_options(CLI::App& app, MipOptions& mips) {
         .group(group);
 }
 
-/// \throws UsageError if one of the options is given, because all need another one
-void refuse_given(const CLI::App& app, std::initializer_list<const char*> options,
-                  const std::string& required) {
-    for (const char* option : options) {
-        if (is_given(app, option))
-            throw UsageError(fmt::format("{}: has no effect without {}", option, required));
-    }
-}
-
 void check(const SpaceOptions& space) {
     if (space.to_object && space.to_tangent)
         throw UsageError("--to-object, --to-tangent: contradict each other");

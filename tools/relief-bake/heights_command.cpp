@@ -60,10 +60,7 @@ std::vector<int> height_depths_of(const std::filesystem::path& output) {
 int bits_of(const HeightsRequest& request, const std::filesystem::path& output) {
     const std::vector<int> depths = height_depths_of(output);
     const int bits = request.bits.value_or(depths.front());
-    if (std::find(depths.begin(), depths.end(), bits) == depths.end()) {
-        throw UsageError(fmt::format("--bits {}: {} holds {} bits", bits, extension_of(output),
-                                     fmt::join(depths, " or ")));
-    }
+    check_depth("--bits", bits, output, depths);
     return bits;
 }
 

@@ -444,15 +444,9 @@ int bits_of(const LayerOptions& options, LayerKind kind) {
                                      layer_info(kind).option, file.string()),
                          "use .png, .tif or .exr");
     }
-    const auto is_supported = [&](int bits) {
-        return std::find(depths.begin(), depths.end(), bits) != depths.end();
-    };
-    const int default_bits = kind == LayerKind::color && is_supported(8) ? 8 : depths.front();
-    const int bits = options.bits.value_or(default_bits);
-    if (!is_supported(bits)) {
-        throw UsageError(fmt::format("--layer-bits {}: {} holds {} bits", bits, extension_of(file),
-                                     fmt::join(depths, " or ")));
-    }
+    const bool is_8_bit = kind == LayerKind::color && std::ranges::count(depths, 8) > 0;
+    const int bits = options.bits.value_or(is_8_bit ? 8 : depths.front());
+    check_depth("--layer-bits", bits, file, depths);
     return bits;
 }
 
