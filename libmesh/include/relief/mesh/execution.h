@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How functions run: precision, number of threads, progress and cancellation.
+/// The execution of functions: precision, number of threads, progress and cancellation.
 /// Tests: tests/mesh/base/progress_test.cpp, tests/mesh/io/mesh/mesh_file_test.cpp.
 #pragma once
 

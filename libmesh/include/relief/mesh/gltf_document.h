@@ -194,7 +194,7 @@ struct GltfTangentTexcoords {
     friend bool operator==(const GltfTangentTexcoords&, const GltfTangentTexcoords&) = default;
 };
 
-/// How parts of a file were compressed when it was read.
+/// The compression of parts of a file when it was read.
 struct GltfCompression {
     std::string extension;    ///< "KHR_draco_mesh_compression", ...
     std::string element;      ///< The compressed elements: "primitive" or "buffer view".

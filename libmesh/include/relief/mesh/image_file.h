@@ -85,7 +85,7 @@ enum class WriteEffort {
     small,   ///< 3 to 60 MPixel/s per thread; files of 0.55 to 1 of OpenImageIO's size.
 };
 
-/// How an image file is written. Only `half` changes the samples.
+/// Options of image files. Only `half` changes the samples.
 struct ImageWriteOptions {
     WriteEffort effort = WriteEffort::normal;
     /// EXR: rounds samples to half floats (11 significant bits). Values beyond the range of half
