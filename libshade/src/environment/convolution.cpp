@@ -400,31 +400,47 @@ std::vector<Image> blurred_faces(const RadianceTree& tree, int size, double roug
     return faces;
 }
 
-glm::dvec3 blurred_radiance(std::span<const Image> faces, const glm::dvec3& direction,
-                            double roughness) {
-    const glm::dvec3 normal = glm::normalize(direction);
-    const int size = faces[0].width;
+namespace {
+
+/// Calls visit(face, x, y, direction, solid angle) for every cell of a cube with size x size cells
+/// per face. Directions are unit, towards the centers of the cells.
+template <typename Visit>
+void for_each_cell(int size, const Visit& visit) {
     const double side = 2.0 / size;
-    glm::dvec3 sum(0.0);
-    double weights = 0.0;
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const glm::dvec2 from(x * side - 1.0, y * side - 1.0);
             const double area = solid_angle(from, from + side);
             const glm::dvec2 center = from + 0.5 * side;
-            for (std::size_t face = 0; face < 6; ++face) {
-                const glm::dvec3 light = glm::normalize(face_direction(face, center.x, center.y));
-                const double n_l = glm::dot(normal, light);
-                if (n_l <= 0.0) continue;
-                const double n_h = std::min(std::sqrt(0.5 * (1.0 + n_l)), 1.0);
-                const double weight = area * n_l * ggx_distribution(n_h, roughness * roughness);
-                const float* sample =
-                    faces[face].as<float>().data() + static_cast<std::size_t>(3 * (y * size + x));
-                sum += weight * glm::dvec3(sample[0], sample[1], sample[2]);
-                weights += weight;
-            }
+            for (std::size_t face = 0; face < 6; ++face)
+                visit(face, x, y, glm::normalize(face_direction(face, center.x, center.y)), area);
         }
     }
+}
+
+glm::dvec3 radiance(const Image& face, int x, int y) {
+    const auto texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(face.width) +
+                       static_cast<std::size_t>(x);
+    const float* sample = face.as<float>().data() + texel * static_cast<std::size_t>(face.channels);
+    return {sample[0], sample[1], sample[2]};
+}
+
+}  // namespace
+
+glm::dvec3 blurred_radiance(std::span<const Image> faces, const glm::dvec3& direction,
+                            double roughness) {
+    const glm::dvec3 normal = glm::normalize(direction);
+    glm::dvec3 sum(0.0);
+    double weights = 0.0;
+    for_each_cell(
+        faces[0].width, [&](std::size_t face, int x, int y, const glm::dvec3& light, double area) {
+            const double n_l = glm::dot(normal, light);
+            if (n_l <= 0.0) return;
+            const double n_h = std::min(std::sqrt(0.5 * (1.0 + n_l)), 1.0);
+            const double weight = area * n_l * ggx_distribution(n_h, roughness * roughness);
+            sum += weight * radiance(faces[face], x, y);
+            weights += weight;
+        });
     return sum / weights;
 }
 
@@ -478,36 +494,20 @@ void check(std::span<const Image> faces) {
     }
 }
 
-glm::dvec3 radiance(const Image& face, int x, int y) {
-    const auto texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(face.width) +
-                       static_cast<std::size_t>(x);
-    const float* sample = face.as<float>().data() + texel * static_cast<std::size_t>(face.channels);
-    return {sample[0], sample[1], sample[2]};
-}
-
 }  // namespace
 
 IrradianceSh irradiance_sh(std::span<const Image> faces) {
     check(faces);
     const int size = faces[0].width;
     const int parts = (min_cells + size - 1) / size;
-    const int cells = size * parts;
-    const double side = 2.0 / cells;
     std::array<glm::dvec3, 9> sums{};
-    for (int y = 0; y < cells; ++y) {
-        for (int x = 0; x < cells; ++x) {
-            const glm::dvec2 from(x * side - 1.0, y * side - 1.0);
-            const double weight = solid_angle(from, from + side);
-            const glm::dvec2 center = from + 0.5 * side;
-            for (std::size_t face = 0; face < 6; ++face) {
-                const glm::dvec3 normal = glm::normalize(face_direction(face, center.x, center.y));
-                const glm::dvec3 light = weight * radiance(faces[face], x / parts, y / parts);
-                const std::array<double, 9> values = polynomials(normal);
-                for (std::size_t i = 0; i < values.size(); ++i)
-                    sums.at(i) += light * values.at(i);
-            }
-        }
-    }
+    for_each_cell(size * parts,
+                  [&](std::size_t face, int x, int y, const glm::dvec3& normal, double weight) {
+                      const glm::dvec3 light = weight * radiance(faces[face], x / parts, y / parts);
+                      const std::array<double, 9> values = polynomials(normal);
+                      for (std::size_t i = 0; i < values.size(); ++i)
+                          sums.at(i) += light * values.at(i);
+                  });
     IrradianceSh coefficients{};
     for (std::size_t i = 0; i < sums.size(); ++i)
         coefficients.at(i) = glm::vec3(sums.at(i) * factors.at(i));
