@@ -236,7 +236,7 @@ HardCase scale_case() {
 
 HardCase broken_case() {
     return {"broken high meshes",
-            "Nothing; triangles without area; vertices that are not finite, beside a sound square.",
+            "Nothing; triangles without area; vertices that are not finite, beside a valid square.",
             "crashes of ray casters",
             {{"bake", "of nothing refused; else the square", [] {
                   if (refusal_of(Mesh{}) != "no surface") return std::string("nothing is taken");
@@ -273,9 +273,9 @@ HardCase bare_case() {
 
 HardCase apart_case() {
     return {"high mesh in another place",
-            "A square, moved by 5 times its size away from the low one, or beside it.",
-            "bakers that write an empty map without a word",
-            {{"bake", "refused: apart, unless rays are told to reach it", [] {
+            "A square at 5 times its size from the low mesh, in front of it or beside it.",
+            "bakers that silently write an empty map",
+            {{"bake", "refused: apart, unless the ray length reaches it", [] {
                   for (const glm::vec3& by : {glm::vec3(0, 0, 10), glm::vec3(10, 0, 0)}) {
                       const std::string refusal = refusal_of(moved(make_quad(), by));
                       if (refusal != "apart") return refusal;
@@ -499,7 +499,7 @@ HardCase outside_case() {
     return {
         "texture coordinates outside of the unit square",
         "A square whose texture lies one to the right, and one down.",
-        "bakers that wrap or drop it without a word",
+        "bakers that silently wrap or drop it",
         {{"bake", "left out; repeating: all of it; its tile: all of it",
           [] {
               const Mesh low = with_texcoords(make_quad(), 1.0F, {1, 1});

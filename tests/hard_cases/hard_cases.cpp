@@ -24,12 +24,13 @@ namespace {
 
 constexpr const char* introduction = R"(# Hard cases
 
-What breaks naive code has one defined outcome here, and nothing is repaired, dropped or clamped without a word: a fallback is a finding in
-the report. Directions are always unit vectors; the same input gives the same bits, whatever the order of triangles and the number of threads.
-Every line of both tables is run by a test (`tests/hard_cases/`); this page is written from the same table by `relief-hard-cases-page`.
-*Orthonormal* tangents are unit and perpendicular to their normals within 1e-6, w is 1 or -1 and one all over a triangle; a row without texture has one laid on from above for them.
+Each hard input has one defined outcome. relief repairs, drops and clamps nothing silently: the report counts every fallback. Directions are
+always unit vectors. The same input gives the same bits for any order of triangles and any number of threads.
+A test runs every line of both tables (`tests/hard_cases/`); `relief-hard-cases-page` writes this page from the same table.
+*Orthonormal* tangents are unit vectors, perpendicular to their normals within 1e-6, and their w is 1 or -1 and equal at all corners of a
+triangle. For tangents, rows without texture coordinates get those of a projection from above.
 
-`relief-mesh check` uses the words of the first table.
+`relief-mesh check` uses the terms of the first table.
 ```sh
 relief-mesh check data/vase.obj
 relief-mesh check data/vase.obj data/scenes/knot.glb --strict --json
@@ -39,19 +40,16 @@ relief-mesh check data/vase.obj data/scenes/knot.glb --strict --json
 std::string words() {
     std::string text =
         "## Words\n"
-        "*Trouble* makes a step fall back, or its result depend on more than the surface: "
-        "`--strict` exits with 3. A *remark* is what sound "
-        "models have too.\nVertices at equal positions count as one in all that is about "
-        "triangles, edges and fans. Edges are named by the "
-        "first triangle on them.\nA triangle without texture gradient is but a remark in a model "
-        "of which nothing asks for tangents: no "
-        "normal or bump map, none stored. With `--for-baking` it is trouble all the same, and so "
-        "is "
-        "overlapping texture.\n\n"
-        "| word | | what it comes to |\n|---|---|---|\n";
+        "A *problem* makes a step use a fallback, or makes its result depend on more than the "
+        "surface: `--strict` exits with 3. A *note* also occurs in models without "
+        "problems.\nVertices at equal positions count as one for triangles, edges and fans. An "
+        "edge is identified by its first triangle.\nA triangle without texture gradient is only a "
+        "note in a model that needs no tangents: it has no normal or bump map and no stored "
+        "tangents. With `--for-baking` it is a problem, and so is overlapping texture.\n\n"
+        "| term | | consequence |\n|---|---|---|\n";
     for (const MeshConditionInfo& condition : mesh_conditions()) {
         text += fmt::format("| {} | {} | {} |\n", condition.word,
-                            condition.severity == Severity::problem ? "trouble" : "remark",
+                            condition.severity == Severity::problem ? "problem" : "note",
                             condition.meaning);
     }
     return text;

@@ -144,8 +144,8 @@ std::string worse_at_the_seam() {
 
 HardCase tiling_case() {
     return {"height map that tiles",
-            "Waves that go a whole number of times into the map.",
-            "maketx is 11 to 20 degrees wrong at the edges",
+            "Waves whose periods divide the size of the map.",
+            "maketx has errors of 11 to 20 degrees at the edges",
             {{"bump, repeat", "no worse at the seam than inside", worse_at_the_seam}}};
 }
 
@@ -153,9 +153,9 @@ HardCase staircase_case() {
     return {
         "8-bit staircase",
         "A gentle slope in 25 codes of 8 bits: treads of many texels, and risers.",
-        "Sobel's kernel is 20 degrees wrong there, measured",
+        "Sobel's kernel has an error of 20 degrees there, measured",
         {{"choice of kernel",
-          "a Gaussian over 21 texels or more, 10 times truer than Sobel's kernel",
+          "a Gaussian over 21 texels or more, with a tenth of the error of Sobel's kernel",
           []() -> std::string {
               const BumpField field = make_bump_field(
                   {"", FieldShape::waves, 120.0, 0.3, FieldCoding::bits8_dim, 0.0, 10}, 256, 256);

@@ -221,12 +221,12 @@ HardCase color_case() {
             "The sRGB curve was applied when it was saved, or undone when it was read: flat is 188 "
             "or 55 of 255.",
             "paintsystem#132",
-            {{"check map", "trouble: stored through the sRGB curve",
+            {{"check map", "problem: stored through the sRGB curve",
               [] {
                   return not_found(with_channel(hills(), every_channel, srgb_from_linear),
                                    {MapCondition::stored_through_srgb});
               }},
-             {"check map", "trouble: darkened by the sRGB curve", [] {
+             {"check map", "problem: darkened by the sRGB curve", [] {
                   return not_found(with_channel(hills(), every_channel, linear_from_srgb),
                                    {MapCondition::decoded_from_srgb});
               }}}};
@@ -235,12 +235,12 @@ HardCase color_case() {
 HardCase green_case() {
     const auto flipped = [](float sample) { return std::min(1.0F, 256.0F / 255.0F - sample); };
     return {"green of unknown direction",
-            "A normal map of hills, with green up or down and nothing that says which; and one of "
-            "ripples along an axis, which both directions suit.",
+            "A normal map of hills, with green up or down and no metadata; and one of ripples "
+            "along an axis, which fits both directions.",
             "OpenGL's and DirectX's conventions",
             {{"check map",
-              "up is told, and down; of a file that says the opposite, trouble: green "
-              "is not as said",
+              "up and down are recognized; a file whose metadata says the opposite: problem, green "
+              "is not as stated",
               [flipped] {
                   const std::string up = not_found(hills(), {});
                   if (!up.empty()) return up;
@@ -251,7 +251,8 @@ HardCase green_case() {
                                    {MapCondition::green_contradicted, MapCondition::green_down},
                                    {{"relief:green", "up"}});
               }},
-             {"check map", "ripples: no guess; remarked: green cannot be told", [] {
+             {"check map",
+              "ripples: not determined; note: the direction of green cannot be determined", [] {
                   const HeightWave wave{1.0, {2.0 * 3.14159265358979 / 16.0, 0.0}, 0.0};
                   Report report;
                   return not_found(normal_map_from_height(
@@ -265,7 +266,7 @@ HardCase whirl_case() {
     return {"normals that no heights have",
             "Slopes that run in circles, 0.1 each way.",
             "painted and blended normal maps",
-            {{"heights", "flat; the whole slope is left over, and said: 0.1 (RMS)", [] {
+            {{"heights", "flat; the report has the remaining slope: 0.1 (RMS)", [] {
                   Image normals = make_image(32, 32, 3, 32, ColorSpace::data);
                   for (int row = 0; row < 32; ++row) {
                       for (int column = 0; column < 32; ++column) {
@@ -345,7 +346,7 @@ HardCase small_chart_case() {
 HardCase overlap_case() {
     return {"charts on top of each other",
             "Two squares with the same texels, the first of them mirrored.",
-            "bakers whose winner is whoever comes last",
+            "bakers in which the last chart wins",
             {{"cover texels",
               "the one that is not mirrored owns all; reported: 4 x texel of "
               "mirrored triangles",

@@ -80,8 +80,8 @@ Mesh grid_with(float value) {
 HardCase non_finite_case(const std::string& name, float value) {
     using enum MeshCondition;
     return MeshCase(name,
-                    "A flat grid whose middle vertex is nowhere; its six triangles are lost, all "
-                    "others unharmed.",
+                    "A flat grid whose middle vertex has no finite position; its six triangles are "
+                    "skipped, all others are unaffected.",
                     "meshoptimizer: one NaN spoils 36 corners, measured",
                     [value] { return grid_with(value); })
         .checked({{triangle_not_finite, 6}, {edge_boundary, 22}, {vertex_not_finite, 1}})
@@ -128,8 +128,7 @@ std::vector<HardCase> number_cases() {
             .tangents(),
         non_finite_case("NaN in a position", std::numeric_limits<float>::quiet_NaN()),
         non_finite_case("infinity in a position", std::numeric_limits<float>::infinity()),
-        MeshCase("index out of range", "A triangle that names a vertex that is not there.",
-                 "bevy#8429",
+        MeshCase("index out of range", "A triangle that refers to a missing vertex.", "bevy#8429",
                  [] {
                      Mesh mesh = square();
                      mesh.triangles.push_back({0, 1, 4});
@@ -175,7 +174,7 @@ std::vector<HardCase> stored_cases() {
     return {
         MeshCase(
             "normals that are none",
-            "A square whose normals are NaN, zero, of length 2, and sound.",
+            "A square whose normals are NaN, zero, of length 2, and valid.",
             "MikkTSpace: 3000 bad corners from normals that are not unit, measured",
             [] {
                 return square_with_normals({{0, 0, not_a_number}, {0, 0, 0}, {0, 0, 2}, {0, 0, 1}});
@@ -231,8 +230,7 @@ std::vector<HardCase> stored_cases() {
             .checked({{edge_boundary, 4}, {texture_not_finite, 1}})
             .tangents(
                 {{"corner without texture direction", 1}, {"triangle with non-finite values", 1}}),
-        MeshCase("mirrored texture", "A square that shows the image the wrong way round.",
-                 "Godot#114508",
+        MeshCase("mirrored texture", "A square with a mirrored image.", "Godot#114508",
                  [] {
                      return changed(textured_square(), [](Mesh& mesh, std::size_t v) {
                          mesh.texcoords[v].x = 1.0F - mesh.texcoords[v].x;
@@ -312,8 +310,8 @@ std::string lost_in_codes(const Mesh& mesh) {
 
 std::vector<HardCase> encoding_cases() {
     return {MeshCase("frames in few bits, turned by 180 degrees",
-                     "Frames of both hands, turned by half a turn about 342 axes, where the real "
-                     "part of a quaternion is 0.",
+                     "Right- and left-handed frames, rotated by 180 degrees about 342 axes, where "
+                     "the real part of a quaternion is 0.",
                      "QTangents whose sign is lost when the real part is rounded to 0", half_turns)
                 .expect("encodings", "orthonormal, w as it was, in each of the eight encodings",
                         lost_in_codes)};

@@ -49,7 +49,7 @@ std::vector<HardCase> triangle_cases() {
     using enum MeshCondition;
     return {
         MeshCase("triangle with a repeated index",
-                 "A square and a triangle that names one vertex twice.", "trimesh#522",
+                 "A square and a triangle that refers to one vertex twice.", "trimesh#522",
                  [] {
                      return with_triangle(square(), {0, 1, 1});
                  })
@@ -66,7 +66,7 @@ std::vector<HardCase> triangle_cases() {
                  })
             .checked({{triangle_collinear, 1}, {edge_boundary, 4}, {vertex_degenerate_fan, 1}})
             .normals({{"degenerate triangle", 1}, {"vertex with only degenerate triangles", 1}})
-            .accurate(all_weights(), 0, "the sound triangle's", up_at_first(3))
+            .accurate(all_weights(), 0, "the valid triangle's", up_at_first(3))
             .tangents({{"corner without texture direction", 1},
                        {"triangle without texture gradient", 1}}),
         MeshCase(
@@ -91,11 +91,11 @@ std::vector<HardCase> triangle_cases() {
             .normals({{"isolated vertex", 1}})
             .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5))
             .tangents(),
-        MeshCase("needle", "A triangle of length 1 and width 1e-6, turned about its length.",
-                 "6.6 degrees off in float, measured", needle)
+        MeshCase("needle", "A triangle of length 1 and width 1e-6, rotated about its long axis.",
+                 "an error of 6.6 degrees in float, measured", needle)
             .checked({{triangle_needle, 1}, {edge_boundary, 3}})
             .normals()
-            .accurate(all_weights(), 1e-4, "the true normal",
+            .accurate(all_weights(), 1e-4, "the exact normal",
                       [](const Mesh&, std::size_t) -> std::optional<glm::dvec3> {
                           return glm::dvec3(0, -std::sin(0.5), std::cos(0.5));
                       })
@@ -106,7 +106,7 @@ std::vector<HardCase> triangle_cases() {
                  "rgl#372", parallel_edges)
             .checked({{triangle_needle, 1}, {edge_boundary, 3}})
             .normals()
-            .accurate(all_weights(), 1e-4, "the true normal",
+            .accurate(all_weights(), 1e-4, "the exact normal",
                       [](const Mesh&, std::size_t) -> std::optional<glm::dvec3> {
                           return glm::dvec3(2, -1, 0);
                       })
@@ -248,10 +248,9 @@ std::vector<HardCase> surface_cases() {
                           if (vertex > 1) return std::nullopt;
                           return facing_up(mesh, vertex);
                       })
-            .expect("normals, auto", "nowhere further off than by area", worse_than_area)
+            .expect("normals, auto", "nowhere a larger error than by area", worse_than_area)
             .tangents(),
-        MeshCase("flipped triangle",
-                 "A flat grid with one triangle in its middle the wrong way round.",
+        MeshCase("flipped triangle", "A flat grid with one inverted triangle in its middle.",
                  "scans and hand-made meshes", flipped_triangle)
             .checked({{edge_flipped, 3}, {edge_boundary, 16}})
             .normals()

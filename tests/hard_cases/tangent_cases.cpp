@@ -192,7 +192,7 @@ HardCase texture_value_case(const std::string& name, float value) {
 
 HardCase normal_value_case(const std::string& name, const glm::vec3& normal,
                            MeshCondition condition) {
-    return MeshCase(name, "A flat grid whose middle vertex has a normal that is no direction.",
+    return MeshCase(name, "A flat grid whose middle vertex has a normal without direction.",
                     "glTF-Transform#1859",
                     [normal] {
                         Mesh mesh = textured_grid();
