@@ -167,9 +167,13 @@ std::vector<std::uint32_t> weld_bits(std::span<const Value> values) {
     using Bits = std::array<std::uint32_t, sizeof(Value) / sizeof(std::uint32_t)>;
     return weld(values.size(), [&](std::size_t i) { return std::bit_cast<Bits>(values[i]); });
 }
-template std::vector<std::uint32_t> weld_bits(std::span<const glm::vec2>);
-template std::vector<std::uint32_t> weld_bits(std::span<const glm::vec3>);
-template std::vector<std::uint32_t> weld_bits(std::span<const std::array<float, 7>>);
+// Instances for types of hidden namespaces are hidden unless they say otherwise.
+template __attribute__((visibility("default"))) std::vector<std::uint32_t> weld_bits(
+    std::span<const glm::vec2>);
+template __attribute__((visibility("default"))) std::vector<std::uint32_t> weld_bits(
+    std::span<const glm::vec3>);
+template __attribute__((visibility("default"))) std::vector<std::uint32_t> weld_bits(
+    std::span<const std::array<float, 7>>);
 
 Groups groups_of(std::span<const std::uint32_t> representatives) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;  // Representative, member.

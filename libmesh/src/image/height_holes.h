@@ -6,10 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// Texels that are not part of the surface.
 struct Transparency {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "gl/resources.h"
+#include "relief/export.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -30,7 +31,7 @@
 #include "relief/shade/scene.h"
 #include "render/program_cache.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 /// A sampler of the program of a draw.
 struct UsedTexture {
