@@ -16,6 +16,7 @@
 #include "common/text.h"
 #include "effect_options.h"
 #include "picture_comparison.h"
+#include "portable_math.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image.h"
@@ -152,8 +153,13 @@ double time_of(const ComposedScene& composed, const ViewOptions& options, int in
 void turn(ComposedScene& composed, double angle) {
     const glm::vec3 middle = composed.middle;
     glm::mat4 turned = glm::translate(glm::mat4(1.0F), middle);
-    turned = glm::rotate(turned, static_cast<float>(angle), glm::vec3(0, 1, 0));
-    turned = glm::translate(turned, -middle);
+    const auto rounded = static_cast<double>(static_cast<float>(angle));
+    const auto sine = static_cast<float>(portable::sin(rounded));
+    const auto cosine = static_cast<float>(portable::cos(rounded));
+    glm::mat4 rotation(1.0F);
+    rotation[0] = {cosine, 0.0F, -sine, 0.0F};
+    rotation[2] = {sine, 0.0F, cosine, 0.0F};
+    turned = glm::translate(turned * rotation, -middle);
     for (std::size_t i = 0; i < composed.at_rest.size(); ++i)
         composed.scene().instances[i].world_from_object = turned * composed.at_rest[i];
 }

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <numbers>
 #include <string_view>
 #include <vector>
 
@@ -158,8 +158,8 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
               "the scene file, else 0.",
               [&](const std::string& subject, const std::string& text) {
                   const Range range{-30, 30, "stops"};
-                  options.exposure =
-                      static_cast<float>(std::exp2(parse_number(subject, text, range)));
+                  options.exposure = static_cast<float>(
+                      portable::exp(std::numbers::ln2 * parse_number(subject, text, range)));
               })
         .group(group);
     add_choice(app, "--tone-mapping", options.tone_mapping, enum_choices<ToneMapping>(),
