@@ -116,13 +116,6 @@ std::string name_of(Kernel kernel) {
     return std::string(words.at(static_cast<std::size_t>(kernel)));
 }
 
-std::string name_of(const Wraps& wraps) {
-    constexpr std::array<std::string_view, 3> words = {"repeat", "clamp", "mirror"};
-    const std::string x(words.at(static_cast<std::size_t>(wraps.x)));
-    if (wraps.x == wraps.y) return x;
-    return fmt::format("{},{}", x, words.at(static_cast<std::size_t>(wraps.y)));
-}
-
 MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error) {
     const std::string kernel = method.kernel == Kernel::gaussian
                                    ? fmt::format("gaussian {}", method.gaussian_radius)

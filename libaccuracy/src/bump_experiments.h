@@ -59,9 +59,6 @@ WaveMap surface_at(int side);
 /// The name of a kernel in relief-bake: "scharr3", ...
 std::string name_of(Kernel kernel);
 
-/// "repeat", or "repeat,clamp" if the axes differ.
-std::string name_of(const Wraps& wraps);
-
 /// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel.
 MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error);
 

@@ -170,15 +170,15 @@ void add_general_options(CLI::App& app, GeneralOptions& options) {
     add_switch(app, "--quiet", options.quiet, "Print only warnings and errors.");
 }
 
-namespace {
-
 Choices<std::optional<Wrap>> wrap_or_auto_choices() {
     Choices<std::optional<Wrap>> choices;
-    for (const auto& [name, wrap] : wrap_choices())
-        choices.emplace_back(name, wrap);
+    for (const EnumName<Wrap>& entry : enum_names<Wrap>)
+        choices.emplace_back(entry.name, entry.value);
     choices.emplace_back("auto", std::nullopt);
     return choices;
 }
+
+namespace {
 
 /// Returns the choices along x and y. A single word applies to both axes.
 template <typename Choice>
@@ -203,14 +203,9 @@ AddedOption add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& desc
 AddedOption add_wrap(CLI::App& app, Wraps& target, const std::string& description) {
     return add_value(app, "--wrap", "WORD[,WORD]", description,
                      [&target](const std::string& subject, const std::string& text) {
-                         const auto [x, y] = parse_axes(subject, text, wrap_choices());
+                         const auto [x, y] = parse_axes(subject, text, enum_choices<Wrap>());
                          target = {x, y};
                      });
-}
-
-std::string wrap_text(const Wraps& wraps) {
-    const std::string x = name_of(wraps.x, wrap_choices());
-    return wraps.x == wraps.y ? x : x + "," + name_of(wraps.y, wrap_choices());
 }
 
 }  // namespace relief::tools

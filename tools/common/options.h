@@ -22,6 +22,7 @@
 #include "common/command.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/bump_file.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normal_map.h"
 
@@ -37,6 +38,15 @@ struct Range {
 /// The words of an option with their values.
 template <typename Enum>
 using Choices = std::vector<std::pair<std::string_view, Enum>>;
+
+/// The words of an enumeration that has names.
+template <typename Enum>
+Choices<Enum> enum_choices() {
+    Choices<Enum> choices;
+    for (const EnumName<Enum>& entry : enum_names<Enum>)
+        choices.emplace_back(entry.name, entry.value);
+    return choices;
+}
 
 /// Parses a finite number within a range. Errors begin with `subject`: "--light point:1,x: x".
 double parse_number(const std::string& subject, std::string_view text, const Range& range = {});
@@ -220,10 +230,6 @@ inline Choices<MapAlpha> map_alpha_choices() {
     return {{"none", MapAlpha::none}, {"height", MapAlpha::height}, {"keep", MapAlpha::keep}};
 }
 
-inline Choices<Wrap> wrap_choices() {
-    return {{"repeat", Wrap::repeat}, {"clamp", Wrap::clamp}, {"mirror", Wrap::mirror}};
-}
-
 inline Choices<Green> green_choices() {
     return {{"up", Green::up}, {"down", Green::down}};
 }
@@ -237,6 +243,9 @@ inline Choices<Dither> dither_choices() {
     return {
         {"none", Dither::none}, {"ordered", Dither::ordered}, {"blue-noise", Dither::blue_noise}};
 }
+
+/// "auto" is an absent value, which is detected from the map.
+Choices<std::optional<Wrap>> wrap_or_auto_choices();
 
 /// The continuation beyond the border along each axis. An absent value is detected from the map.
 struct WrapsOrAuto {
@@ -253,8 +262,5 @@ AddedOption add_wrap(CLI::App& app, WrapsOrAuto& target, const std::string& desc
 
 /// Adds --wrap WORD[,WORD] without "auto".
 AddedOption add_wrap(CLI::App& app, Wraps& target, const std::string& description);
-
-/// Returns "repeat", or "repeat,clamp" for different axes.
-std::string wrap_text(const Wraps& wraps);
 
 }  // namespace relief::tools

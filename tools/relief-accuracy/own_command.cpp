@@ -178,7 +178,7 @@ std::vector<AssetExperiment> measure_heights(const AssetInput& input, const Asse
     bump.strength = request.strength.value_or(bump.strength);
     bump.wrap = request.wrap.value_or(WrapsOrAuto{}).value_or(survey.tiling.wraps());
     description += fmt::format("a height map of {} bits, {:g} texels high, {} at the border",
-                               map.info().bits, bump.strength, wrap_text(*bump.wrap));
+                               map.info().bits, bump.strength, name_of(*bump.wrap));
     if (request.channel) {
         const std::string name = name_of(*request.channel, height_channel_choices());
         description += fmt::format(", channel {}", name);
@@ -295,7 +295,7 @@ std::string options_text(const AssetRequest& request) {
     if (request.channel)
         words += " --channel " + name_of(*request.channel, height_channel_choices());
     if (request.wrap && request.wrap->is_settled())
-        words += " --wrap " + wrap_text(request.wrap->value_or({}));
+        words += " --wrap " + name_of(request.wrap->value_or({}));
     if (request.size) words += fmt::format(" --size {}", *request.size);
     return words;
 }
@@ -476,11 +476,8 @@ void add_input_options(CLI::App& app, AssetRequest& request) {
               "Height maps: the continuation beyond the border: repeat, clamp, mirror, or auto "
               "(repeat if the map tiles). Default: auto.",
               [&](const std::string& subject, const std::string& text) {
-                  Choices<std::optional<Wrap>> words = {{"repeat", Wrap::repeat},
-                                                        {"clamp", Wrap::clamp},
-                                                        {"mirror", Wrap::mirror},
-                                                        {"auto", std::nullopt}};
-                  const std::optional<Wrap> wrap = parse_choice(subject, text, words);
+                  const std::optional<Wrap> wrap =
+                      parse_choice(subject, text, wrap_or_auto_choices());
                   request.wrap = WrapsOrAuto{wrap, wrap};
               })
         .group(image);

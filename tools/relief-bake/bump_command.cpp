@@ -383,7 +383,7 @@ double megapixels_per_second(const BumpConversion& conversion, const Stages& sta
 
 /// "clamp at the border", with the evidence if the mode was chosen from the map.
 std::string border_text(const BumpConversion& conversion) {
-    const std::string text = wrap_text(*conversion.bump.wrap) + " at the border";
+    const std::string text = name_of(*conversion.bump.wrap) + " at the border";
     if (!conversion.tiling) return text;
     return fmt::format("{} (differences across the seams are {:.2g} and {:.2g} times those inside)",
                        text, conversion.tiling->seam_x, conversion.tiling->seam_y);
@@ -607,7 +607,7 @@ nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stag
         {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
         {"strength", bump.strength},
         {"texel_size", {bump.texel.x, bump.texel.y}},
-        {"wrap", wrap_text(*bump.wrap)},
+        {"wrap", name_of(*bump.wrap)},
         {"seams", seams},
         {"content", has_moments ? "slope moments" : "normals"},
         {"xy_only", conversion.format.xy_only},

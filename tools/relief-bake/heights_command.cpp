@@ -162,7 +162,7 @@ std::map<std::string, std::string> metadata_of(const HeightsConversion& conversi
     return {{"relief:content", "height map"},
             {"relief:strength", fmt::format("{:.9g}", conversion.strength)},
             {"relief:kernel", name_of(conversion.integration.kernel, kernel_choices())},
-            {"relief:wrap", wrap_text(conversion.integration.wrap)}};
+            {"relief:wrap", name_of(conversion.integration.wrap)}};
 }
 
 /// Reads, integrates and writes. The stages are "read", "integrate" and "write".
@@ -217,7 +217,7 @@ std::string inverse_command(const Job& job, const HeightsConversion& conversion)
     return fmt::format("relief-bake bump {} normals.png --strength {:.9g} --kernel {} --wrap {}{}",
                        job.output.string(), conversion.strength,
                        name_of(conversion.integration.kernel, kernel_choices()),
-                       wrap_text(conversion.integration.wrap),
+                       name_of(conversion.integration.wrap),
                        conversion.green == Green::down ? " --green down" : "");
 }
 
@@ -235,7 +235,7 @@ void print_summary(const Job& job, const HeightsConversion& conversion, const St
                                       result.rms_slope, result.mean_slope.x, result.mean_slope.y,
                                       conversion.integration.level ? " (removed)" : "",
                                       name_of(conversion.integration.kernel, kernel_choices()),
-                                      wrap_text(conversion.integration.wrap)));
+                                      name_of(conversion.integration.wrap)));
     print_entry("residual",
                 fmt::format("slopes of {:.3g} (RMS) that no height field has: {:.3g} degrees, "
                             "{:.3g} at most{}",
@@ -266,7 +266,7 @@ nlohmann::ordered_json results_json(const HeightsConversion& conversion, const S
             {"green", name_of(conversion.green, green_choices())},
             {"green_by_slopes", conversion.green_by_slopes},
             {"kernel", name_of(conversion.integration.kernel, kernel_choices())},
-            {"wrap", wrap_text(conversion.integration.wrap)},
+            {"wrap", name_of(conversion.integration.wrap)},
             {"steepest", conversion.integration.max_slope},
             {"bits", conversion.bits},
             {"strength", conversion.strength},

@@ -176,7 +176,7 @@ void add_normal_maps(Scene& scene, const std::vector<PreviewMap>& maps,
     const int all = std::max(min_map_size, texels_per_pixel * std::max(size.x, size.y));
     const int max_side = std::max(min_map_size / 4, static_cast<int>(share * all));
     for (std::size_t i = 0; i < maps.size(); ++i) {
-        const TextureWrap wrap = maps[i].repeats ? TextureWrap::repeat : TextureWrap::clamp;
+        const Wrap wrap = maps[i].repeats ? Wrap::repeat : Wrap::clamp;
         scene.images.push_back(preview_image(maps[i].file, reading.format, max_side));
         const bool is_file =
             std::holds_alternative<std::filesystem::path>(scene.images.back().source);

@@ -23,15 +23,6 @@ namespace relief::tools {
 // Names and limits of options for scene fields, derived from the description of the fields
 // (relief/shade/scene_fields.h).
 
-/// Options use the same enumeration names as scene files.
-template <typename Enum>
-Choices<Enum> enum_choices() {
-    Choices<Enum> choices;
-    for (const EnumName<Enum>& entry : enum_names<Enum>)
-        choices.emplace_back(entry.name, entry.value);
-    return choices;
-}
-
 template <typename Owner, typename Value>
 Range field_limits(Value Owner::*member) {
     const FieldRange range = field_of(member).range;

@@ -25,11 +25,10 @@ namespace relief {
 namespace {
 
 /// Returns the texel that a wrapped index refers to.
-std::size_t wrapped(double index, int size, TextureWrap wrap) {
+std::size_t wrapped(double index, int size, Wrap wrap) {
     const double count = size;
-    if (wrap == TextureWrap::clamp)
-        return static_cast<std::size_t>(std::clamp(index, 0.0, count - 1.0));
-    const double period = wrap == TextureWrap::mirror ? 2.0 * count : count;
+    if (wrap == Wrap::clamp) return static_cast<std::size_t>(std::clamp(index, 0.0, count - 1.0));
+    const double period = wrap == Wrap::mirror ? 2.0 * count : count;
     // Large doubles are coarser than texels, so that the remainder may be a whole period.
     const double within = std::min(index - std::floor(index / period) * period, period - 1.0);
     return static_cast<std::size_t>(within < count ? within : period - 1.0 - within);

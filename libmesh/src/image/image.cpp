@@ -324,4 +324,9 @@ Image false_color_image(const Image& values, double brightest) {
     return picture;
 }
 
+std::string name_of(const Wraps& wraps) {
+    const std::string x = enum_name(wraps.x);
+    return wraps.x == wraps.y ? x : x + "," + enum_name(wraps.y);
+}
+
 }  // namespace relief

@@ -38,10 +38,10 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-int wrapped(double index, int size, TextureWrap wrap) {
+int wrapped(double index, int size, Wrap wrap) {
     const double n = size;
-    if (wrap == TextureWrap::clamp) return static_cast<int>(std::clamp(index, 0.0, n - 1.0));
-    const double period = wrap == TextureWrap::mirror ? 2.0 * n : n;
+    if (wrap == Wrap::clamp) return static_cast<int>(std::clamp(index, 0.0, n - 1.0));
+    const double period = wrap == Wrap::mirror ? 2.0 * n : n;
     const double within = index - std::floor(index / period) * period;
     // Far away, where doubles are coarser than texels, the remainder may round up to the period.
     const double first = std::min(within, period - 1.0);
@@ -71,7 +71,7 @@ glm::dvec4 Texels::at(int x, int y) const {
     }
 }
 
-glm::dvec4 Texels::bilinear(const glm::dvec2& uv, TextureWrap u, TextureWrap v) const {
+glm::dvec4 Texels::bilinear(const glm::dvec2& uv, Wrap u, Wrap v) const {
     if (!is_finite(uv)) return glm::dvec4(not_a_number);
     const glm::dvec2 position = uv * glm::dvec2(image_.width, image_.height) - 0.5;
     const glm::dvec2 corner = glm::floor(position);
@@ -85,7 +85,7 @@ glm::dvec4 Texels::bilinear(const glm::dvec2& uv, TextureWrap u, TextureWrap v) 
     return upper * (1.0 - share.y) + lower * share.y;
 }
 
-glm::dvec4 Texels::nearest(const glm::dvec2& uv, TextureWrap u, TextureWrap v, Trace& trace) const {
+glm::dvec4 Texels::nearest(const glm::dvec2& uv, Wrap u, Wrap v, Trace& trace) const {
     if (!is_finite(uv)) return glm::dvec4(not_a_number);
     const int x = wrapped(std::floor(uv.x * image_.width), image_.width, u);
     const int y = wrapped(std::floor(uv.y * image_.height), image_.height, v);
@@ -216,10 +216,10 @@ glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const 
         const double across = std::hypot(d.x, d.z);
         const glm::dvec2 uv(0.5 + portable::atan2(d.x, -d.z) / (2.0 * pi),
                             0.5 - portable::atan2(d.y, across) / pi);
-        result = images_.front().bilinear(uv, TextureWrap::repeat, TextureWrap::clamp);
+        result = images_.front().bilinear(uv, Wrap::repeat, Wrap::clamp);
     } else {
         const glm::dvec2 uv = angular_map_place(d, images_.front().width());
-        result = images_.front().bilinear(uv, TextureWrap::clamp, TextureWrap::clamp);
+        result = images_.front().bilinear(uv, Wrap::clamp, Wrap::clamp);
     }
     return result * intensity_;
 }

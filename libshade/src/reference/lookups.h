@@ -60,16 +60,15 @@ class Texels {
     [[nodiscard]] int height() const { return image_.height; }
 
     [[nodiscard]] glm::dvec4 at(int x, int y) const;
-    [[nodiscard]] glm::dvec4 bilinear(const glm::dvec2& uv, TextureWrap u, TextureWrap v) const;
-    [[nodiscard]] glm::dvec4 nearest(const glm::dvec2& uv, TextureWrap u, TextureWrap v,
-                                     Trace& trace) const;
+    [[nodiscard]] glm::dvec4 bilinear(const glm::dvec2& uv, Wrap u, Wrap v) const;
+    [[nodiscard]] glm::dvec4 nearest(const glm::dvec2& uv, Wrap u, Wrap v, Trace& trace) const;
 
   private:
     Image image_;  ///< Linear float.
 };
 
 /// Returns the index within the image of a texel index beyond its border.
-int wrapped(double index, int size, TextureWrap wrap);
+int wrapped(double index, int size, Wrap wrap);
 
 /// The images that the materials of a scene look up, decoded once for each use.
 class SceneTexels {

@@ -145,13 +145,13 @@ void correct_reasons(DrawPlan& draw, const Features& planned) {
     }
 }
 
-GLenum wrap_of(TextureWrap wrap) {
+GLenum wrap_of(Wrap wrap) {
     switch (wrap) {
-        case TextureWrap::clamp:
+        case Wrap::clamp:
             return GL_CLAMP_TO_EDGE;
-        case TextureWrap::mirror:
+        case Wrap::mirror:
             return GL_MIRRORED_REPEAT;
-        case TextureWrap::repeat:
+        case Wrap::repeat:
             break;
     }
     return GL_REPEAT;
@@ -286,11 +286,10 @@ BoundTexture TextureCache::constant(std::optional<gl::Texture>& texture, float r
         image.samples = std::vector<float>{rg, rg, b};
         texture = gl::make_texture(*api_, image, name);
     }
-    return {texture->name(),
-            sampler(TextureWrap::repeat, TextureWrap::repeat, TextureFilter::nearest)};
+    return {texture->name(), sampler(Wrap::repeat, Wrap::repeat, TextureFilter::nearest)};
 }
 
-GLuint TextureCache::sampler(TextureWrap u, TextureWrap v, TextureFilter filter) {
+GLuint TextureCache::sampler(Wrap u, Wrap v, TextureFilter filter) {
     gl::Sampler& entry = samplers_[{u, v, filter}];
     if (!entry) {
         gl::Sampling sampling;

@@ -124,7 +124,7 @@ class TextureCache {
     /// \param identity  taken before decoding, so that a file that changes meanwhile is read again
     void add_fault(ImageIdentity identity, const ImagePurpose& purpose, std::string fault);
 
-    GLuint sampler(TextureWrap u, TextureWrap v, TextureFilter filter);
+    GLuint sampler(Wrap u, Wrap v, TextureFilter filter);
     BoundTexture white();
     BoundTexture flat();  ///< Every lookup gives (0, 0, 1).
 
@@ -149,7 +149,7 @@ class TextureCache {
     const gl::Api* api_;
     std::vector<Entry> images_;
     std::vector<Fault> faults_;
-    std::map<std::tuple<TextureWrap, TextureWrap, TextureFilter>, gl::Sampler> samplers_;
+    std::map<std::tuple<Wrap, Wrap, TextureFilter>, gl::Sampler> samplers_;
     std::optional<gl::Texture> white_;
     std::optional<gl::Texture> flat_;
 };

@@ -37,14 +37,14 @@ TEST(SurfaceTexture, LiesBetweenTexelCentresAndGoesOnBeyondItsBorder) {
     EXPECT_DOUBLE_EQ(red(1.0), 0.5);
     EXPECT_DOUBLE_EQ(red(-3.0), 0.5);
     EXPECT_DOUBLE_EQ(red(1.375), 0.25);
-    texture.wrap_u = TextureWrap::clamp;
+    texture.wrap_u = Wrap::clamp;
     EXPECT_DOUBLE_EQ(red(1.0), 1.0);
     EXPECT_DOUBLE_EQ(red(7.0), 1.0);
     EXPECT_DOUBLE_EQ(red(-1e30), 0.0);
-    texture.wrap_u = TextureWrap::mirror;
+    texture.wrap_u = Wrap::mirror;
     EXPECT_DOUBLE_EQ(red(1.375), 0.5);
     EXPECT_DOUBLE_EQ(red(-0.375), 0.25);
-    texture.wrap_u = TextureWrap::repeat;
+    texture.wrap_u = Wrap::repeat;
     texture.filter = TextureFilter::nearest;
     EXPECT_DOUBLE_EQ(red(0.49), 0.25);
     EXPECT_DOUBLE_EQ(red(0.51), 0.5);

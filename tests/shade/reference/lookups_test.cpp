@@ -13,7 +13,7 @@
 namespace relief::reference {
 namespace {
 
-constexpr TextureWrap all_wraps[] = {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror};
+constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 
 /// A row of gray texels: 0, 1, 2, 3.
 Texels ramp() {
@@ -29,14 +29,14 @@ TEST(Texels, GoOnBeyondTheBorderAsAsked) {
     const int mirrored[] = {0, 3, 3, 0, 0, 3, 3, 0, 0, 3};
     for (std::size_t i = 0; i < std::size(indices); ++i) {
         SCOPED_TRACE(indices[i]);
-        EXPECT_EQ(wrapped(indices[i], 4, TextureWrap::repeat), repeated[i]);
-        EXPECT_EQ(wrapped(indices[i], 4, TextureWrap::clamp), clamped[i]);
-        EXPECT_EQ(wrapped(indices[i], 4, TextureWrap::mirror), mirrored[i]);
+        EXPECT_EQ(wrapped(indices[i], 4, Wrap::repeat), repeated[i]);
+        EXPECT_EQ(wrapped(indices[i], 4, Wrap::clamp), clamped[i]);
+        EXPECT_EQ(wrapped(indices[i], 4, Wrap::mirror), mirrored[i]);
     }
 }
 
 TEST(Texels, StayWithinTheTextureHoweverFarAway) {
-    for (const TextureWrap wrap : all_wraps) {
+    for (const Wrap wrap : all_wraps) {
         for (const double index : {1e15, -1e15, 1e300, -1e300}) {
             const int found = wrapped(index, 3, wrap);
             EXPECT_TRUE(found >= 0 && found < 3) << found;
@@ -46,26 +46,24 @@ TEST(Texels, StayWithinTheTextureHoweverFarAway) {
 
 TEST(Texels, AreExactAtTheirCentresAndLinearBetween) {
     const Texels texels = ramp();
-    const auto at = [&](double u, TextureWrap wrap) {
-        return texels.bilinear({u, 0.5}, wrap, wrap).r;
-    };
-    for (const TextureWrap wrap : all_wraps) {
+    const auto at = [&](double u, Wrap wrap) { return texels.bilinear({u, 0.5}, wrap, wrap).r; };
+    for (const Wrap wrap : all_wraps) {
         EXPECT_EQ(at(0.125, wrap), 0.0);
         EXPECT_EQ(at(0.875, wrap), 3.0);
         EXPECT_NEAR(at(0.4375, wrap), 1.25, 1e-15);
     }
     // This point is a quarter of a texel to the left of the first texel center.
-    EXPECT_NEAR(at(0.0625, TextureWrap::repeat), 0.75, 1e-15);
-    EXPECT_EQ(at(0.0625, TextureWrap::clamp), 0.0);
-    EXPECT_EQ(at(0.0625, TextureWrap::mirror), 0.0);
-    EXPECT_NEAR(at(1.25, TextureWrap::mirror), 2.5, 1e-15);
+    EXPECT_NEAR(at(0.0625, Wrap::repeat), 0.75, 1e-15);
+    EXPECT_EQ(at(0.0625, Wrap::clamp), 0.0);
+    EXPECT_EQ(at(0.0625, Wrap::mirror), 0.0);
+    EXPECT_NEAR(at(1.25, Wrap::mirror), 2.5, 1e-15);
 }
 
 TEST(Texels, TheNearestIsThatWhichHoldsThePlace) {
     const Texels texels = ramp();
     Trace trace;
     const auto at = [&](double u) {
-        return texels.nearest({u, 0.5}, TextureWrap::repeat, TextureWrap::repeat, trace).r;
+        return texels.nearest({u, 0.5}, Wrap::repeat, Wrap::repeat, trace).r;
     };
     EXPECT_EQ(at(0.24), 0.0);
     EXPECT_EQ(at(0.26), 1.0);
@@ -77,15 +75,14 @@ TEST(Texels, VGrowsDownwards) {
     Image image = make_image(1, 2, 1, 32, ColorSpace::data);
     image.samples = std::vector<float>{7, 9};
     const Texels texels(image);
-    EXPECT_EQ(texels.bilinear({0.5, 0.25}, TextureWrap::clamp, TextureWrap::clamp).r, 7.0);
-    EXPECT_EQ(texels.bilinear({0.5, 0.75}, TextureWrap::clamp, TextureWrap::clamp).r, 9.0);
+    EXPECT_EQ(texels.bilinear({0.5, 0.25}, Wrap::clamp, Wrap::clamp).r, 7.0);
+    EXPECT_EQ(texels.bilinear({0.5, 0.75}, Wrap::clamp, Wrap::clamp).r, 9.0);
 }
 
 TEST(Texels, AreDecodedBeforeTheyAreFilteredAndAlphaIsNot) {
     Image image = make_image(2, 1, 4, 8, ColorSpace::srgb);
     image.samples = std::vector<std::uint8_t>{255, 255, 255, 255, 0, 0, 0, 51};
-    const glm::dvec4 between =
-        Texels(image).bilinear({0.5, 0.5}, TextureWrap::clamp, TextureWrap::clamp);
+    const glm::dvec4 between = Texels(image).bilinear({0.5, 0.5}, Wrap::clamp, Wrap::clamp);
     EXPECT_NEAR(between.r, 0.5, 1e-7);
     EXPECT_NEAR(between.a, 0.6, 1e-7);
 }
@@ -105,7 +102,7 @@ TEST(Texels, AreRgbaWhateverTheImageHolds) {
 TEST(Texels, AtNoPlaceAreNotANumber) {
     Trace trace;
     const glm::dvec2 nowhere(std::numeric_limits<double>::quiet_NaN(), 0.5);
-    for (const TextureWrap wrap : all_wraps) {
+    for (const Wrap wrap : all_wraps) {
         EXPECT_TRUE(std::isnan(ramp().bilinear(nowhere, wrap, wrap).r));
         EXPECT_TRUE(std::isnan(ramp().nearest(nowhere, wrap, wrap, trace).r));
     }

@@ -444,7 +444,7 @@ TEST(ReferenceSurface, ReadsObjectSpaceMapsThroughTheMatrix) {
 /// A bump map of 64 texels per side whose heights increase by these steps per texel.
 Scene bumped(float right, float down, float strength) {
     Material material;
-    material.bump_map = BumpMap{Texture{0, TextureWrap::clamp, TextureWrap::clamp}, strength};
+    material.bump_map = BumpMap{Texture{0, Wrap::clamp, Wrap::clamp}, strength};
     Scene scene = measured(test::facing_square(), material);
     Image heights = make_image(64, 64, 1, 32, ColorSpace::data);
     auto samples = heights.as<float>();

@@ -218,7 +218,7 @@ TEST_F(HardCases, NotANumberInATextureShowsBlackAndSpoilsNothingElse) {
     scene.images = {{"texture", texture}};
     Texture use;
     use.filter = TextureFilter::nearest;
-    use.wrap_u = use.wrap_v = TextureWrap::clamp;
+    use.wrap_u = use.wrap_v = Wrap::clamp;
     scene.materials[0].diffuse_texture = use;
     const Image image = finite_radiance(scene);
     EXPECT_EQ(pixel(image, 4, 8).r, 0.0);   // NaN.
@@ -236,7 +236,7 @@ Scene bumped_square() {
         samples[i] = static_cast<float>(i % 64) / 64.0F;
     scene.images = {{"ramp", ramp}};
     BumpMap map;
-    map.texture.wrap_u = map.texture.wrap_v = TextureWrap::clamp;
+    map.texture.wrap_u = map.texture.wrap_v = Wrap::clamp;
     map.strength = 64.0F;  // One texel up per texel: 45 degrees.
     scene.materials[0].bump_map = map;
     scene.materials[0].tangent_frame = TangentFrame::derivatives;

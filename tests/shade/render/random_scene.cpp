@@ -22,7 +22,7 @@ T one_of(Dice& dice, const T (&choices)[count]) {
 }
 
 Texture random_texture(Dice& dice, std::size_t image) {
-    constexpr TextureWrap wraps[] = {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror};
+    constexpr Wrap wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
     Texture texture;
     texture.image = image;
     texture.wrap_u = one_of(dice, wraps);

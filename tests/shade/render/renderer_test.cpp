@@ -36,7 +36,7 @@ Material unlit_texture() {
     material.unlit = true;
     material.diffuse = glm::vec3(1.0F);
     Texture texture;
-    texture.wrap_u = texture.wrap_v = TextureWrap::clamp;
+    texture.wrap_u = texture.wrap_v = Wrap::clamp;
     texture.filter = TextureFilter::nearest;
     material.diffuse_texture = texture;
     return material;

@@ -379,7 +379,7 @@ TEST_F(FinishedPicture, HasHolesWhereAMaskIsBelowItsCutoff) {
     scene.images = {{"opacity", opacity}};
     Texture use;
     use.filter = TextureFilter::nearest;
-    use.wrap_u = use.wrap_v = TextureWrap::clamp;
+    use.wrap_u = use.wrap_v = Wrap::clamp;
     Material& material = scene.materials[0];
     material.opacity_texture = use;
     material.alpha_mode = AlphaMode::mask;

@@ -137,8 +137,8 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     EXPECT_EQ(m.conductor_absorption, glm::vec3(5.0F));
     EXPECT_EQ(m.reflection_roughness, 0.6F);
     EXPECT_EQ(graph.scene.images.size(), 2U);  // Each file occurs once.
-    EXPECT_EQ(m.emission_texture->wrap_u, TextureWrap::clamp);
-    EXPECT_EQ(m.emission_texture->wrap_v, TextureWrap::mirror);
+    EXPECT_EQ(m.emission_texture->wrap_u, Wrap::clamp);
+    EXPECT_EQ(m.emission_texture->wrap_v, Wrap::mirror);
     EXPECT_EQ(m.emission_texture->filter, TextureFilter::nearest);
     EXPECT_TRUE(m.specular_texture && m.occlusion_texture && m.opacity_texture);
     EXPECT_EQ(m.occlusion_strength, 0.5F);

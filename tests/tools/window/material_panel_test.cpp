@@ -141,10 +141,10 @@ TEST_F(MapSlots, NormalMapAndBumpMapReplaceEachOther) {
 TEST_F(MapSlots, KeepTheWrapMode) {
     const MapSlot& slot = slot_named("Diffuse map");
     set_map(scene(), 0, slot, colors());
-    scene().materials[0].diffuse_texture->wrap_u = TextureWrap::clamp;
+    scene().materials[0].diffuse_texture->wrap_u = Wrap::clamp;
     set_map(scene(), 0, slot, heights());
-    EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_u, TextureWrap::clamp);
-    EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_v, TextureWrap::repeat);
+    EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_u, Wrap::clamp);
+    EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_v, Wrap::repeat);
 }
 
 TEST_F(MapSlots, RejectInvalidImages) {

@@ -77,8 +77,8 @@ struct LayerBounds {
 /// map that is coarser than the image needs several samples per texel.
 struct SurfaceTexture {
     const Image* image = nullptr;  ///< One to four channels; it must outlive the bake.
-    TextureWrap wrap_u = TextureWrap::repeat;
-    TextureWrap wrap_v = TextureWrap::repeat;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
     TextureFilter filter = TextureFilter::linear;
     GltfTextureTransform transform{};
 };

@@ -21,6 +21,7 @@
 #include "relief/export.h"
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
@@ -35,14 +36,13 @@ struct GltfPrimitiveId {
     friend bool operator==(const GltfPrimitiveId&, const GltfPrimitiveId&) = default;
 };
 
-enum class TextureWrap { repeat, clamp, mirror };
 enum class TextureFilter { linear, nearest };
 
 /// A use of an image as a texture.
 struct GltfTexture {
     std::size_t image = 0;  ///< Index into GltfView::images.
-    TextureWrap wrap_u = TextureWrap::repeat;
-    TextureWrap wrap_v = TextureWrap::repeat;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
     TextureFilter filter = TextureFilter::linear;
     int texcoord_set = 0;
     GltfTextureTransform transform;

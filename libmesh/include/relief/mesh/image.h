@@ -8,10 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 
 namespace RELIEF_API relief {
 
@@ -80,14 +82,19 @@ Image to_srgb(const Image& linear, int bits);
 float srgb_from_linear(float linear);
 float linear_from_srgb(float coded);
 
-/// The continuation of an image beyond its border.
+/// The continuation of an image beyond its border, as a texture or in computations.
 enum class Wrap {
     repeat,  ///< The image repeats.
-    /// The surface continues as its point reflection at the border texel: a plane stays a plane,
-    /// and derivatives across the border are one-sided.
+    /// The border texel of a texture repeats. Heights continue as their point reflection at the
+    /// border texel: a plane stays a plane, and derivatives across the border are one-sided.
     clamp,
     mirror,  ///< The image is mirrored, and its outermost texels appear twice, as in OpenGL.
 };
+
+template <>
+inline constexpr auto enum_names<Wrap> = std::to_array<EnumName<Wrap>>({{"repeat", Wrap::repeat},
+                                                                        {"clamp", Wrap::clamp},
+                                                                        {"mirror", Wrap::mirror}});
 
 /// The wrap modes of both axes.
 struct Wraps {
@@ -99,6 +106,9 @@ struct Wraps {
     constexpr Wraps(Wrap along_x, Wrap along_y) : x(along_x), y(along_y) {}
     bool operator==(const Wraps&) const = default;
 };
+
+/// Returns "repeat", or "repeat,clamp" for different axes.
+std::string name_of(const Wraps& wraps);
 
 // Extracts single channels of images, and adds or removes alpha.
 

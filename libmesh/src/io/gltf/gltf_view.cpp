@@ -99,14 +99,14 @@ std::vector<glm::mat4> instances(const GltfContents& contents, const Json& node)
     return result;
 }
 
-TextureWrap wrap_in(const Json& sampler, const char* key) {
+Wrap wrap_in(const Json& sampler, const char* key) {
     switch (size_in(sampler, key, 10497)) {
         case 33071:
-            return TextureWrap::clamp;
+            return Wrap::clamp;
         case 33648:
-            return TextureWrap::mirror;
+            return Wrap::mirror;
         default:
-            return TextureWrap::repeat;
+            return Wrap::repeat;
     }
 }
 

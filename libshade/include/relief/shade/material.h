@@ -22,8 +22,8 @@ namespace RELIEF_API relief {
 /// An image as a texture.
 struct Texture {
     std::size_t image = 0;  ///< Index into Scene::images.
-    TextureWrap wrap_u = TextureWrap::repeat;
-    TextureWrap wrap_v = TextureWrap::repeat;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
     TextureFilter filter = TextureFilter::linear;
 };
 

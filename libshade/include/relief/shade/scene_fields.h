@@ -54,11 +54,6 @@ template <>
 inline constexpr auto enum_names<FlatCode> =
     std::to_array<EnumName<FlatCode>>({{"127.5", FlatCode::half}, {"128", FlatCode::middle}});
 template <>
-inline constexpr auto enum_names<TextureWrap> =
-    std::to_array<EnumName<TextureWrap>>({{"repeat", TextureWrap::repeat},
-                                          {"clamp", TextureWrap::clamp},
-                                          {"mirror", TextureWrap::mirror}});
-template <>
 inline constexpr auto enum_names<TextureFilter> = std::to_array<EnumName<TextureFilter>>(
     {{"linear", TextureFilter::linear}, {"nearest", TextureFilter::nearest}});
 template <>

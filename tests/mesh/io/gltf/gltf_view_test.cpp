@@ -70,15 +70,15 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_TRUE(full.unlit && full.double_sided);
     const GltfTexture& base = *full.base_color_texture;
     EXPECT_EQ(base.image, 1U);
-    EXPECT_EQ(base.wrap_u, TextureWrap::clamp);
-    EXPECT_EQ(base.wrap_v, TextureWrap::mirror);
+    EXPECT_EQ(base.wrap_u, Wrap::clamp);
+    EXPECT_EQ(base.wrap_v, Wrap::mirror);
     EXPECT_EQ(base.filter, TextureFilter::nearest);
     EXPECT_EQ(base.texcoord_set, 2);
     EXPECT_EQ(base.transform, (GltfTextureTransform{{0.5F, 0.25F}, 1.5F, {2.0F, 3.0F}}));
     EXPECT_EQ(full.normal_texture->transform, GltfTextureTransform{});
     EXPECT_EQ(full.occlusion_texture->image, 1U);
     EXPECT_EQ(full.occlusion_strength, 0.5F);
-    EXPECT_EQ(full.normal_texture->wrap_u, TextureWrap::repeat);
+    EXPECT_EQ(full.normal_texture->wrap_u, Wrap::repeat);
     EXPECT_EQ(full.metallic_roughness_texture->image, 1U);
     EXPECT_FALSE(full.emission_texture);
     EXPECT_EQ(std::get<std::filesystem::path>(view.images[0].source), folder_ / "a.png");
