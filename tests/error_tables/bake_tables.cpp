@@ -161,7 +161,7 @@ struct Kept {
 
 Kept kept(const Mesh& low, BakeOptions options) {
     options.width = options.height = direction_map_side;
-    options.space = BakeSpace::object;
+    options.space = VectorSpace::object;
     options.offset = 0.2;
     options.max_distance = 0.1;
     Kept result;
@@ -238,7 +238,7 @@ Image baked(int padding) {
     BakeOptions options;
     options.width = options.height = padded_map_side;
     options.padding = padding;
-    options.space = BakeSpace::object;
+    options.space = VectorSpace::object;
     Report report;
     bake_normals(
         std::span(&high, 1), low, options,

@@ -386,9 +386,9 @@ PartText describe(const MapConvention& found, ConventionPart part) {
         case ConventionPart::axes:
             return {"axes", describe(found.axes)};
         case ConventionPart::space:
-            return {"space", found.space == MapAxes::tangent  ? "it is in tangent space"
-                             : found.space == MapAxes::object ? "it is in object space"
-                                                              : "it is in world space"};
+            return {"space", found.space == VectorSpace::tangent  ? "it is in tangent space"
+                             : found.space == VectorSpace::object ? "it is in object space"
+                                                                  : "it is in world space"};
         case ConventionPart::basis:
             return {"basis",
                     found.basis == MapBasis::mikktspace ? "it was baked with MikkTSpace tangents"
@@ -438,9 +438,9 @@ std::vector<std::string> convention_remedies(const std::filesystem::path& map,
                                    ? " --input-zero-code 127.5"
                                    : " --input-zero-code 128 --zero-code 127.5")};
         case ConventionPart::space:
-            if (found.space == MapAxes::tangent)
+            if (found.space == VectorSpace::tangent)
                 return {fmt::format("{} --to-object {}", convert, quoted(low))};
-            if (found.space == MapAxes::object)
+            if (found.space == VectorSpace::object)
                 return {fmt::format("{} --to-tangent {}", convert, quoted(low))};
             return {};
         case ConventionPart::basis:
@@ -570,7 +570,6 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
     options.format.flat = input.flat;
     options.format.dither = bake.map.dither.value_or(Dither::none);
     options.given = &models.low;
-    options.is_object = bake.space == SpaceChoice::object;
     if (models.world_from_low) options.object_from_mesh = glm::transpose(*models.world_from_low);
     std::vector<float> errors;
     verified.check = about(request.map, [&] {

@@ -159,8 +159,8 @@ void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& p
 
 void draw_preview(MeshPreview& preview, const MeshBakeRequest& request, const MeshBake& bake,
                   BakeModels models) {
-    const bool is_tangent = request.space == SpaceChoice::tangent;
-    const bool has_object_axes = request.space == SpaceChoice::object && models.world_from_low;
+    const bool is_tangent = request.space == VectorSpace::tangent;
+    const bool has_object_axes = request.space == VectorSpace::object && models.world_from_low;
     std::vector<PreviewMap> maps;
     for (const BakedMap& map : bake.maps) {
         const bool is_tile = map.plan.tile != glm::ivec2(0);
@@ -297,16 +297,10 @@ std::string ray_text(const MeshBakeRequest& request, const BakeResult& result) {
 }
 
 std::string space_text(const MeshBakeRequest& request, const MeshBake& bake) {
-    if (request.space == SpaceChoice::object) return "object space";
-    if (request.space == SpaceChoice::world) return "world space";
+    if (request.space == VectorSpace::object) return "object space";
+    if (request.space == VectorSpace::world) return "world space";
     return bake.has_file_tangents ? "tangent space, with the model's tangents"
                                   : "tangent space, with MikkTSpace tangents";
-}
-
-const char* space_name(SpaceChoice space) {
-    return space == SpaceChoice::tangent  ? "tangent"
-           : space == SpaceChoice::object ? "object"
-                                          : "world";
 }
 
 /// "a, b, c"; long lists end with "...".
@@ -639,7 +633,7 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
                                       {"output", request.output.string()},
                                       {"width", request.size.x},
                                       {"height", request.size.y},
-                                      {"space", space_name(request.space)},
+                                      {"space", enum_name(request.space)},
                                       {"bits", bake.format.bits},
                                       {"green", name_of(bake.format.green, green_choices())},
                                       {"zero_code", name_of(bake.format.flat, zero_code_choices())},

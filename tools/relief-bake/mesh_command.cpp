@@ -370,10 +370,7 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
 
 void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
     const std::string group = "Map";
-    add_choice(app, "--space", request.space,
-               Choices<SpaceChoice>{{"tangent", SpaceChoice::tangent},
-                                    {"object", SpaceChoice::object},
-                                    {"world", SpaceChoice::world}},
+    add_choice(app, "--space", request.space, enum_choices<VectorSpace>(),
                "Space of the normals: the tangent space of the low mesh (with the tangents of its "
                "file, else those of MikkTSpace), its object space, or world space. Default: "
                "tangent.")
@@ -523,7 +520,7 @@ BakeOptions bake_options_of(const MeshBakeRequest& request) {
     options.layers = bake_layers_of(request.layers);
     options.width = request.size.x;
     options.height = request.size.y;
-    options.space = request.space == SpaceChoice::tangent ? BakeSpace::tangent : BakeSpace::object;
+    options.space = request.space;
     options.directions = request.directions.value_or(RayDirections::averaged);
     options.hardness = request.hardness.value_or(0.0);
     options.samples = request.samples.count;

@@ -229,18 +229,12 @@ const char* to_text(RayDirections directions) {
                                                   : "face";
 }
 
-const char* to_text(SpaceChoice space) {
-    return space == SpaceChoice::tangent  ? "tangent"
-           : space == SpaceChoice::object ? "object"
-                                          : "world";
-}
-
 BakeRecord record_of(const MeshBakeRequest& request) {
     BakeRecord record;
     const auto add_number = [&](const char* name, const std::optional<double>& number) {
         if (number) record[name] = fmt::format("{}", *number);
     };
-    record["--space"] = to_text(request.space);
+    record["--space"] = enum_name(request.space);
     record["--samples"] =
         request.samples.is_auto ? "auto" : fmt::format("{}", request.samples.count);
     add_number("--sample-angle", request.sample_angle);
@@ -369,9 +363,9 @@ std::map<std::string, std::string> map_metadata(const MeshBakeRequest& request, 
                                                 const NormalMapFormat& format) {
     std::map<std::string, std::string> metadata = normal_map_metadata(format);
     metadata.merge(bake_metadata(request, plan));
-    if (request.space == SpaceChoice::object)
+    if (request.space == VectorSpace::object)
         metadata["relief:content"] = "normal map, object space";
-    if (request.space == SpaceChoice::world) metadata["relief:content"] = "normal map, world space";
+    if (request.space == VectorSpace::world) metadata["relief:content"] = "normal map, world space";
     return metadata;
 }
 

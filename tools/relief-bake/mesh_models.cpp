@@ -348,7 +348,7 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
 
 glm::dmat3 output_axes(const MeshBakeRequest& request,
                        const std::optional<glm::dmat3>& world_from_low) {
-    if (request.space != SpaceChoice::object) return glm::dmat3(1.0);
+    if (request.space != VectorSpace::object) return glm::dmat3(1.0);
     if (!world_from_low) {
         throw failure(request.low, "has several primitives, and therefore no single object space",
                       "use --space world or tangent");

@@ -17,8 +17,6 @@
 
 namespace relief::tools {
 
-enum class SpaceChoice { tangent, object, world };
-
 enum class Background { flat, transparent };
 
 /// The high parts that each low part sees.
@@ -79,7 +77,7 @@ struct MeshBakeRequest {
     std::filesystem::path low, output;
     std::optional<std::filesystem::path> cage;
     glm::ivec2 size{1024, 1024};
-    SpaceChoice space = SpaceChoice::tangent;
+    VectorSpace space = VectorSpace::tangent;
     std::optional<RayDirections> directions;
     std::optional<double> hardness;
     /// The other options of the library: ray lengths, back faces, padding, size mismatch, repeating

@@ -76,7 +76,7 @@ LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& repo
     validate(low);
     if (low.texcoords.empty()) throw InvalidInput("the low mesh has no texture coordinates");
     const bool to_tangent =
-        options.space == BakeSpace::tangent && (options.layers.normals || options.sample_angle);
+        options.space == VectorSpace::tangent && (options.layers.normals || options.sample_angle);
     FrameOptions frames;
     frames.tangents = !to_tangent            ? TangentMode::none
                       : low.tangents.empty() ? TangentMode::mikktspace

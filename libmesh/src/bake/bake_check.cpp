@@ -134,7 +134,7 @@ class MapToMesh {
   public:
     MapToMesh(const Baker& baker, const CoveredTexel& owner)
         : mesh_(baker.low()), owner_(owner), options_(baker.options()) {
-        if (options_.space != BakeSpace::tangent) {
+        if (options_.space != VectorSpace::tangent) {
             mesh_from_output_ = glm::inverse(options_.output_from_mesh);
             is_usable_ = std::isfinite(mesh_from_output_[0].x);
             return;
@@ -401,8 +401,7 @@ ConventionFit convention_of(const Baker& baker, const Image& map, const BakeChec
     search.green = options.format.green;
     search.stated.flat = options.format.flat;
     search.object_from_mesh = options.object_from_mesh;
-    if (baker.options().space == BakeSpace::object)
-        search.stated.space = options.is_object ? MapAxes::object : MapAxes::world;
+    search.stated.space = baker.options().space;
     return find_convention(map, known, search);
 }
 

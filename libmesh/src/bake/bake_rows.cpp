@@ -208,7 +208,7 @@ class Piece {
 
     [[nodiscard]] glm::dvec3 in_output_space(const glm::dvec3& normal, const Sample& sample,
                                              TexelSum& sum) const {
-        if (work_.options.space == BakeSpace::object)
+        if (work_.options.space != VectorSpace::tangent)
             return direction_or_zero(work_.options.output_from_mesh * normal);
         const TexelFrame frame(work_.low.mesh(), sample.owner.triangle,
                                glm::dvec3(sample.owner.weights()));

@@ -30,7 +30,7 @@ constexpr std::array curves = {StoredCurve::none, StoredCurve::srgb_encoded,
 constexpr std::array flats = {FlatCode::middle, FlatCode::half};
 constexpr std::array turns = {ImageOrientation::upright, ImageOrientation::upside_down,
                               ImageOrientation::mirrored, ImageOrientation::half_turn};
-constexpr std::array spaces = {MapAxes::tangent, MapAxes::object, MapAxes::world};
+constexpr std::array spaces = {VectorSpace::tangent, VectorSpace::object, VectorSpace::world};
 constexpr std::array bases = {MapBasis::used, MapBasis::mikktspace, MapBasis::area_weighted,
                               MapBasis::lengyel};
 constexpr std::array frames = {FrameInterpolation::interpolated, FrameInterpolation::unit,
@@ -88,7 +88,7 @@ class Readings {
     double error(const MapConvention& convention) {
         ++tried;
         const CornerTangents* tangents =
-            convention.space == MapAxes::tangent ? &tangents_by(convention.basis) : nullptr;
+            convention.space == VectorSpace::tangent ? &tangents_by(convention.basis) : nullptr;
         std::vector<double> degrees(texels_.size());
         parallel_for(texels_.size(), 512, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -179,8 +179,8 @@ class Readings {
     [[nodiscard]] glm::dvec3 in_mesh(const KnownTexel& texel, const glm::dvec3& vector,
                                      const MapConvention& convention,
                                      const CornerTangents* tangents) const {
-        if (convention.space == MapAxes::world) return vector;
-        if (convention.space == MapAxes::object)
+        if (convention.space == VectorSpace::world) return vector;
+        if (convention.space == VectorSpace::object)
             return glm::inverse(search_.object_from_mesh) * vector;
         glm::dvec3 n(0.0), t(0.0), b(0.0);
         double w = 0.0;
@@ -217,8 +217,8 @@ class Readings {
 std::vector<MapConvention> neighbors_of(const MapConvention& from) {
     static const std::vector<AxisMapping> in_plane_mappings = mappings(true);
     static const std::vector<AxisMapping> all_mappings = mappings(false);
-    const auto mappings_of = [](MapAxes space) -> const std::vector<AxisMapping>& {
-        return space == MapAxes::tangent ? in_plane_mappings : all_mappings;
+    const auto mappings_of = [](VectorSpace space) -> const std::vector<AxisMapping>& {
+        return space == VectorSpace::tangent ? in_plane_mappings : all_mappings;
     };
     std::vector<MapConvention> all;
     const auto add = [&](const auto& change) {
@@ -232,7 +232,7 @@ std::vector<MapConvention> neighbors_of(const MapConvention& from) {
         add([&](MapConvention& c) { c.curve = curve; });
     for (const FlatCode flat : flats)
         add([&](MapConvention& c) { c.flat = flat; });
-    if (from.space == MapAxes::tangent) {
+    if (from.space == VectorSpace::tangent) {
         for (const bool ignores : {false, true}) {
             for (const MapBasis basis : bases) {
                 for (const FrameInterpolation frame : frames) {
@@ -245,7 +245,7 @@ std::vector<MapConvention> neighbors_of(const MapConvention& from) {
             }
         }
     }
-    for (const MapAxes space : spaces) {
+    for (const VectorSpace space : spaces) {
         for (const AxisMapping& axes : mappings_of(space)) {
             if (space == from.space) break;
             add([&](MapConvention& c) {

@@ -260,7 +260,7 @@ TEST(BakeCheck, IsTheSameForAnyNumberOfThreads) {
 TEST(BakeCheck, OfObjectSpaceNeedsNoFrames) {
     const Mesh high = make_torus(0.43F, 200, 100);
     BakeOptions options = sized(64, 64);
-    options.space = BakeSpace::object;
+    options.space = VectorSpace::object;
     // A quarter turn about z.
     options.output_from_mesh = glm::dmat3(0, 1, 0, -1, 0, 0, 0, 0, 1);
     const Image map = baked_map(high, make_torus(), options, 16);

@@ -176,7 +176,7 @@ TEST(Bake, RaysRunFromACageToTheLowMesh) {
     for (const glm::vec3& position : floor.positions)
         floor.normals.push_back(glm::vec3(position.x, position.y, 10));
     BakeOptions options = sized(8, 8);
-    options.space = BakeSpace::object;
+    options.space = VectorSpace::object;
     options.cage = &cage;
     const BakedImage image = bake({floor}, make_quad(), options);
     ASSERT_EQ(image.count(TexelState::baked), 64U);
@@ -199,7 +199,7 @@ TEST(Bake, HardDirectionsLeaveGapsAndAveragedOnesNone) {
     const Mesh low = make_cube();
     const Mesh high = moved(make_cube(), 1.2F, glm::vec3(0));
     BakeOptions options = sized(64, 64);
-    options.space = BakeSpace::object;
+    options.space = VectorSpace::object;
     options.max_distance = 0.01;
     options.offset = 0.5;
     const auto heights = [&](RayDirections directions, double hardness) {

@@ -85,7 +85,7 @@ const Pair& pair() {
     return made;
 }
 
-BakeOptions options_of(BakeSpace space = BakeSpace::tangent) {
+BakeOptions options_of(VectorSpace space = VectorSpace::tangent) {
     BakeOptions options = sized(map_width, map_height);
     options.space = space;
     return options;
@@ -103,7 +103,7 @@ Image encoded(const Image& normals, const NormalMapFormat& format = {.bits = 16}
     return encode_normal_map(normals, format, report);
 }
 
-ConventionFit fit(const Image& map, BakeSpace space = BakeSpace::tangent,
+ConventionFit fit(const Image& map, VectorSpace space = VectorSpace::tangent,
                   const Mesh& low = pair().low) {
     Report report;
     const Baker baker(std::span(&pair().high, 1), low, options_of(space), report);
@@ -145,8 +145,8 @@ TEST(MapConvention, WhatReliefBakesIsAsTold) {
         EXPECT_TRUE(found.changes.empty());
         EXPECT_NEAR(found.given_degrees, found.expected_degrees, 1e-4);
     }
-    const Image object = baked(pair().high, pair().low, options_of(BakeSpace::object));
-    EXPECT_FALSE(fit(encoded(object), BakeSpace::object).was_searched);
+    const Image object = baked(pair().high, pair().low, options_of(VectorSpace::object));
+    EXPECT_FALSE(fit(encoded(object), VectorSpace::object).was_searched);
 }
 
 TEST(MapConvention, TurnedAxesAreRecognised) {
@@ -169,16 +169,16 @@ TEST(MapConvention, TurnedAxesAreRecognised) {
 }
 
 TEST(MapConvention, SpacesAreRecognised) {
-    const Image object = baked(pair().high, pair().low, options_of(BakeSpace::object));
+    const Image object = baked(pair().high, pair().low, options_of(VectorSpace::object));
     const ConventionFit told_tangent = fit(encoded(object));
     expect_explained(told_tangent, {ConventionPart::space});
-    EXPECT_EQ(told_tangent.convention.space, MapAxes::object);
-    const ConventionFit told_object = fit(encoded(tangent_normals()), BakeSpace::object);
+    EXPECT_EQ(told_tangent.convention.space, VectorSpace::object);
+    const ConventionFit told_object = fit(encoded(tangent_normals()), VectorSpace::object);
     expect_explained(told_object, {ConventionPart::space});
-    EXPECT_EQ(told_object.convention.space, MapAxes::tangent);
+    EXPECT_EQ(told_object.convention.space, VectorSpace::tangent);
     // Another up axis: y becomes z, z becomes -y.
     const Image z_up = changed(object, [](glm::vec3 n) { return glm::vec3(n.x, -n.z, n.y); });
-    const ConventionFit turned = fit(encoded(z_up), BakeSpace::object);
+    const ConventionFit turned = fit(encoded(z_up), VectorSpace::object);
     expect_explained(turned, {ConventionPart::axes});
     EXPECT_EQ(turned.convention.axes, (AxisMapping{{{0, false}, {2, false}, {1, true}}}));
     expect_explained(fit(encoded(z_up)), {ConventionPart::axes, ConventionPart::space});
@@ -225,14 +225,14 @@ TEST(MapConvention, BasesOfTangentsAreRecognised) {
     EXPECT_EQ(basis_of(TangentMode::lengyel), MapBasis::lengyel);
     // The model has other tangents, and the map was baked with those of MikkTSpace.
     const ConventionFit found =
-        fit(encoded(tangent_normals()), BakeSpace::tangent, low_by(TangentMode::area_weighted));
+        fit(encoded(tangent_normals()), VectorSpace::tangent, low_by(TangentMode::area_weighted));
     expect_explained(found, {ConventionPart::basis});
     EXPECT_EQ(found.convention.basis, MapBasis::mikktspace);
 }
 
 /// Returns the components of the exact normals in a frame that another baker uses.
 Image baked_by(const std::function<glm::dmat3(glm::dvec3 n, glm::dvec4 t, glm::dvec3 b)>& frame) {
-    const Image object = baked(pair().high, pair().low, options_of(BakeSpace::object));
+    const Image object = baked(pair().high, pair().low, options_of(VectorSpace::object));
     Image result = object;
     const Mesh& low = pair().low;
     Report report;

@@ -111,12 +111,6 @@ struct HighMaterials {
     std::optional<HighMaterial> otherwise{};  ///< The material of triangles without a material.
 };
 
-/// The space of the normals of a map.
-enum class BakeSpace {
-    tangent,  ///< The low mesh's normals and tangents, as the shader interpolates them.
-    object,   ///< The common object space of the meshes.
-};
-
 /// The ray direction, before BakeOptions::hardness is applied.
 enum class RayDirections {
     averaged,  ///< Smoothed normals: hard edges are ignored, so they leave no gaps.
@@ -180,7 +174,7 @@ struct BakeMapOptions {
 
 /// The options that all maps of a Baker share, and the options of one map.
 struct BakeOptions : BakeMapOptions {
-    BakeSpace space = BakeSpace::tangent;
+    VectorSpace space = VectorSpace::tangent;
     RayDirections directions = RayDirections::averaged;
     /// For RayDirections::averaged: the interpolation weight from the smoothed normals (0) to the
     /// vertex normals (1). It matters only at hard edges.
@@ -200,7 +194,7 @@ struct BakeOptions : BakeMapOptions {
     /// The expected number of maps. For many maps, the baker spends more time on preparation. The
     /// results do not depend on it.
     std::size_t map_count = 1;
-    /// For BakeSpace::object: the transform from the space of the meshes to that of the map.
+    /// Except in tangent space: the transform from the space of the meshes to that of the map.
     /// Results are normalized.
     glm::dmat3 output_from_mesh{1.0};
     /// The materials of high meshes, for those that have them. The span must outlive the bake.

@@ -73,10 +73,8 @@ struct BakeCheckOptions {
     /// The low mesh as it was read, with its tangents, for maps in object space; null if there is
     /// none.
     const Mesh* given = nullptr;
-    /// The transform from the meshes' space to the low mesh's object space, and whether a baker for
-    /// object space uses the latter.
+    /// The transform from the meshes' space to the low mesh's object space.
     glm::dmat3 object_from_mesh{1.0};
-    bool is_object = false;
 };
 
 struct BakeCheck {

@@ -67,13 +67,6 @@ ConvertedNormals tangent_from_object(const Image& normals, const Mesh& mesh,
 // Finds the convention (axes, tangent basis, orientation, coding) with which a normal map matches
 // known normals of a mesh. Part of the library relief::bake.
 
-/// The space of the vectors of a map.
-enum class MapAxes {
-    tangent,
-    object,  ///< The object space of the low mesh.
-    world,   ///< The common space of the meshes.
-};
-
 /// The tangents of a map.
 enum class MapBasis {
     used,  ///< The tangents of the renderer: those of the low mesh, or MikkTSpace's without any.
@@ -102,7 +95,7 @@ struct MapConvention {
     ImageOrientation turn = ImageOrientation::upright;
     /// The source of x, y and z among the components of the stored vectors, with y up.
     AxisMapping axes = same_axes;
-    MapAxes space = MapAxes::tangent;
+    VectorSpace space = VectorSpace::tangent;
     MapBasis basis = MapBasis::used;
     FrameInterpolation frame = FrameInterpolation::interpolated;
     bool ignores_mirroring = false;  ///< The handedness w counts as +1 everywhere.

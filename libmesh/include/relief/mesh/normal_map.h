@@ -16,12 +16,26 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
 
 // Encodes unit normals as normal maps and decodes them.
+
+/// The space of the vectors of a map.
+enum class VectorSpace {
+    tangent,  ///< The normals and tangents of the mesh, as the shader interpolates them.
+    object,   ///< The object space of the mesh.
+    world,    ///< The space in which meshes are placed.
+};
+
+template <>
+inline constexpr auto enum_names<VectorSpace> =
+    std::to_array<EnumName<VectorSpace>>({{"tangent", VectorSpace::tangent},
+                                          {"object", VectorSpace::object},
+                                          {"world", VectorSpace::world}});
 
 /// The direction of the green channel.
 enum class Green {
