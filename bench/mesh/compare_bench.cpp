@@ -22,7 +22,7 @@ constexpr std::uint32_t triangles_compared = 1'000'000;
 
 Mesh sphere() {
     Report report;
-    return with_frames(bumpy_sphere(triangles_compared), {.tangents = TangentMode::mikktspace},
+    return with_frames(bumpy_sphere(triangles_compared), {.tangents = TangentMethod::mikktspace},
                        report)
         .mesh;
 }

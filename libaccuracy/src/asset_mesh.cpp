@@ -301,7 +301,7 @@ struct Basis {
 std::vector<Basis> bases_of(const Mesh& mesh, const std::vector<glm::vec4>& stored,
                             const AssetOptions& options) {
     std::vector<Basis> bases;
-    for (const TangentMethod& method : tangent_methods()) {
+    for (const TangentFrameMethod& method : tangent_methods()) {
         Basis basis{method.name, method.tangents_of(mesh), method.basis};
         if (method.tangents) {
             basis.work = [method, &mesh] { method.tangents(mesh); };
@@ -480,7 +480,7 @@ std::vector<AssetExperiment> measure_tangents(Mesh mesh, const std::string& whol
     const std::vector<glm::vec4> stored = mesh.tangents;
     FrameOptions frames;
     frames.repair = true;
-    frames.tangents = TangentMode::none;
+    frames.tangents = TangentMethod::none;
     Report report;
     mesh = with_frames(std::move(mesh), frames, report).mesh;
     const std::vector<Basis> bases = bases_of(mesh, stored, options);

@@ -144,7 +144,7 @@ namespace {
 
 Mesh low_sphere(Report& report) {
     return with_frames(make_sphere(BumpyBake::low_slices, BumpyBake::low_stacks),
-                       {.tangents = TangentMode::mikktspace}, report)
+                       {.tangents = TangentMethod::mikktspace}, report)
         .mesh;
 }
 

@@ -318,7 +318,7 @@ namespace {
 /// The methods with stored tangents, and textbook code.
 std::vector<SweptTangents> swept_tangent_methods() {
     std::vector<SweptTangents> methods;
-    for (const TangentMethod& method : tangent_methods()) {
+    for (const TangentFrameMethod& method : tangent_methods()) {
         if (method.tangents)
             methods.push_back({method.name, {{"frames", method.name}}, method.tangents});
     }

@@ -109,7 +109,7 @@ using TangentFunction = CornerTangents (*)(std::span<const glm::vec3>, std::span
                                            std::span<const glm::vec2>, std::span<const glm::uvec3>,
                                            Report&);
 
-TangentMethod stored(const char* name, TangentFunction function) {
+TangentFrameMethod stored(const char* name, TangentFunction function) {
     return {name, [function](const Mesh& mesh) {
                 Report report;
                 return function(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles,
@@ -131,18 +131,18 @@ class Angles {
 
 }  // namespace
 
-CornerTangents TangentMethod::tangents_of(const Mesh& mesh) const {
+CornerTangents TangentFrameMethod::tangents_of(const Mesh& mesh) const {
     return tangents ? tangents(mesh) : CornerTangents{};
 }
 
-std::vector<TangentMethod> tangent_methods() {
+std::vector<TangentFrameMethod> tangent_methods() {
     return {stored("mikktspace", mikktspace_tangents),
             stored("area-weighted", area_weighted_tangents),
             stored("lengyel", lengyel_tangents),
             {"screen-space", {}, ShaderBasis::derived}};
 }
 
-TangentMethod made_unit(TangentMethod method) {
+TangentFrameMethod made_unit(TangentFrameMethod method) {
     method.name += ", made unit";
     method.basis = ShaderBasis::made_unit;
     return method;
@@ -182,8 +182,8 @@ ErrorStats corner_tangent_errors(const TexturedMesh& ground_truth, const CornerT
     return std::move(angles).distribution();
 }
 
-ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentMethod& baker,
-                           const TangentMethod& reader) {
+ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentFrameMethod& baker,
+                           const TangentFrameMethod& reader) {
     const CornerTangents baked = baker.tangents_of(ground_truth.mesh);
     const CornerTangents read = reader.tangents_of(ground_truth.mesh);
     Angles angles;

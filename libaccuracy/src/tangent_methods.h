@@ -49,7 +49,7 @@ glm::dmat3 exact_basis_at(const TexturedMesh& ground_truth, const Sample& sample
 CornerTangents exact_tangents(const TexturedMesh& ground_truth);
 
 /// One way to compute tangent frames.
-struct TangentMethod {
+struct TangentFrameMethod {
     std::string name;
     std::function<CornerTangents(const Mesh&)> tangents;  ///< Empty if the shader derives frames.
     ShaderBasis basis = ShaderBasis::as_interpolated;
@@ -59,10 +59,10 @@ struct TangentMethod {
 };
 
 /// mikktspace, area-weighted, lengyel, and the derived frames of screen-space.
-std::vector<TangentMethod> tangent_methods();
+std::vector<TangentFrameMethod> tangent_methods();
 
 /// The same method with a shader that normalizes normal and tangent.
-TangentMethod made_unit(TangentMethod method);
+TangentFrameMethod made_unit(TangentFrameMethod method);
 
 /// Texels tilted by 30 degrees to the right, left, up and down.
 inline constexpr std::array<glm::dvec3, 4> tilted_texels = {
@@ -81,8 +81,8 @@ ErrorStats inner_tangent_errors(const TexturedMesh& ground_truth, const CornerTa
 ErrorStats corner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents);
 
 /// The errors of tilted normals that are baked without rounding in one basis and read in another.
-ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentMethod& baker,
-                           const TangentMethod& reader);
+ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentFrameMethod& baker,
+                           const TangentFrameMethod& reader);
 
 struct TexturedCase {
     std::string id;    ///< "torus-jittered-mirrored"

@@ -50,7 +50,7 @@ Mesh repeating_torus(int around, TangentFrame frame) {
         texcoord *= glm::vec2(5.0F, 2.0F);
     if (frame == TangentFrame::derivatives) return mesh;
     Report report;
-    return with_frames(std::move(mesh), {.tangents = TangentMode::mikktspace}, report).mesh;
+    return with_frames(std::move(mesh), {.tangents = TangentMethod::mikktspace}, report).mesh;
 }
 
 Scene bumpy_torus(int around, TangentFrame frame) {
@@ -152,13 +152,13 @@ constexpr const char* ground_truth_text =
     "differentiation of the surface.";
 
 /// All methods; the first one also with a shader that normalizes its vectors.
-std::vector<TangentMethod> compared_tangent_methods() {
-    std::vector<TangentMethod> methods = tangent_methods();
+std::vector<TangentFrameMethod> compared_tangent_methods() {
+    std::vector<TangentFrameMethod> methods = tangent_methods();
     methods.insert(methods.begin() + 1, made_unit(methods.front()));
     return methods;
 }
 
-std::vector<std::pair<std::string, std::string>> choices_of(const TangentMethod& method) {
+std::vector<std::pair<std::string, std::string>> choices_of(const TangentFrameMethod& method) {
     const std::string frames = method.name.substr(0, method.name.find(','));
     switch (method.basis) {
         case ShaderBasis::made_unit:
@@ -171,7 +171,7 @@ std::vector<std::pair<std::string, std::string>> choices_of(const TangentMethod&
 }
 
 /// Normal, tangent and w as floats; without a tangent only the normal.
-double stored_bytes_of(const TangentMethod& method) {
+double stored_bytes_of(const TangentFrameMethod& method) {
     return method.tangents ? 28.0 : 12.0;
 }
 
@@ -190,7 +190,7 @@ MeasuredMethod exact_frames(const TexturedMesh& ground_truth) {
 
 std::vector<MeasuredMethod> measured_on(const TexturedMesh& ground_truth) {
     std::vector<MeasuredMethod> measured = {exact_frames(ground_truth)};
-    for (const TangentMethod& method : compared_tangent_methods()) {
+    for (const TangentFrameMethod& method : compared_tangent_methods()) {
         MeasuredMethod one;
         one.name = method.name;
         one.choices = choices_of(method);
@@ -211,7 +211,7 @@ std::vector<MeasuredMethod> measured_on(const TexturedMesh& ground_truth) {
 /// of first order. If the errors of opposite triangles cancel, the RMS is of second order.
 /// Anisotropic cells have no expectation: the second-order error of the interpolation dominates at
 /// these sizes.
-std::optional<double> expected_order(const TexturedCase& one, const TangentMethod& method) {
+std::optional<double> expected_order(const TexturedCase& one, const TangentFrameMethod& method) {
     if (one.triangulation == Triangulation::anisotropic) return std::nullopt;
     return one.triangulation == Triangulation::regular && method.tangents ? -2.0 : -1.0;
 }
@@ -220,7 +220,7 @@ std::optional<double> expected_order(const TexturedCase& one, const TangentMetho
 Chart chart_over(const std::vector<std::pair<double, TexturedMesh>>& meshes) {
     Chart chart;
     chart.y_label = "RMS error, degrees";
-    for (const TangentMethod& method : compared_tangent_methods()) {
+    for (const TangentFrameMethod& method : compared_tangent_methods()) {
         Curve& curve = chart.curves.emplace_back();
         curve.method = method.name;
         for (const auto& [x, ground_truth] : meshes) {
@@ -240,7 +240,7 @@ Chart cells_chart(const TexturedCase& one, bool is_quick) {
     chart.id = "cells";
     chart.title = "Finer cells";
     chart.x_label = "cells along each parameter";
-    const std::vector<TangentMethod> methods = compared_tangent_methods();
+    const std::vector<TangentFrameMethod> methods = compared_tangent_methods();
     for (std::size_t m = 0; m < methods.size(); ++m) {
         Curve& curve = chart.curves[m];
         curve = fitted_curve(curve.method, curve.points, expected_order(one, methods[m]));
@@ -264,7 +264,7 @@ Chart bevels_chart() {
 std::string tangents_finding(const Experiment& experiment) {
     const Measurement* best = nullptr;
     const Measurement* derived = nullptr;
-    const std::vector<TangentMethod> methods = compared_tangent_methods();
+    const std::vector<TangentFrameMethod> methods = compared_tangent_methods();
     for (std::size_t i = 0; i < methods.size(); ++i) {
         const Measurement& one = experiment.measurements[i + 1];
         if (methods[i].basis == ShaderBasis::derived) derived = &one;
@@ -341,8 +341,8 @@ Experiment mismatches(const RunOptions& options) {
     experiment.item = "triangle";
     experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
     std::vector<MeasuredMethod> measured;
-    for (const TangentMethod& baker : compared_tangent_methods()) {
-        for (const TangentMethod& reader : compared_tangent_methods()) {
+    for (const TangentFrameMethod& baker : compared_tangent_methods()) {
+        for (const TangentFrameMethod& reader : compared_tangent_methods()) {
             measured.push_back(
                 {.name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
                  .choices = {{"baked in", baker.name}, {"read in", reader.name}},

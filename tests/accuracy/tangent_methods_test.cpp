@@ -158,8 +158,8 @@ TEST(TangentErrors, OfAWrongHandAreThoseOfAMirroredTexel) {
 
 TEST(MismatchErrors, AreNoneInOneBasisAndTheTurnBetweenTwo) {
     const TexturedMesh square = level_square();
-    const TangentMethod right{"right", [](const Mesh&) { return turned(0.0); }};
-    const TangentMethod off{"off", [](const Mesh&) { return turned(1.0); }};
+    const TangentFrameMethod right{"right", [](const Mesh&) { return turned(0.0); }};
+    const TangentFrameMethod off{"off", [](const Mesh&) { return turned(1.0); }};
     EXPECT_LE(mismatch_errors(square, off, off).max, rounding);
     EXPECT_NEAR(mismatch_errors(square, right, off).rms, texel_turn(1.0), rounding);
     EXPECT_NEAR(mismatch_errors(square, off, right).rms, texel_turn(1.0), rounding);
@@ -168,9 +168,9 @@ TEST(MismatchErrors, AreNoneInOneBasisAndTheTurnBetweenTwo) {
 TEST(TangentMethods, AreExactOnALevelSquare) {
     const TexturedMesh square = level_square();
     std::set<std::string> names;
-    for (const TangentMethod& method : tangent_methods()) {
+    for (const TangentFrameMethod& method : tangent_methods()) {
         names.insert(method.name);
-        for (const TangentMethod& read : {method, made_unit(method)}) {
+        for (const TangentFrameMethod& read : {method, made_unit(method)}) {
             if (!method.tangents && read.basis == ShaderBasis::made_unit) continue;
             EXPECT_LE(texel_errors(square, read.tangents_of(square.mesh), read.basis).max,
                       rounding);

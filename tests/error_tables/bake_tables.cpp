@@ -77,7 +77,7 @@ std::string sample_tables() {
     const BumpySphere high(200);
     Report report;
     const Mesh low = with_frames(make_sphere(low_sphere.slices, low_sphere.stacks),
-                                 {.tangents = TangentMode::mikktspace}, report)
+                                 {.tangents = TangentMethod::mikktspace}, report)
                          .mesh;
     Mesh rays = low;  // The default ray direction is the smoothed normal.
     rays.normals = vertex_normals(low.positions, low.triangles, NormalWeight::angle, report);

@@ -18,8 +18,8 @@
 namespace relief::test {
 namespace {
 
-const std::vector<TangentMethod>& methods() {
-    static const std::vector<TangentMethod> all = tangent_methods();
+const std::vector<TangentFrameMethod>& methods() {
+    static const std::vector<TangentFrameMethod> all = tangent_methods();
     return all;
 }
 
@@ -50,7 +50,7 @@ constexpr double not_compared = std::numeric_limits<double>::quiet_NaN();
 template <typename Measured>
 std::string method_table(const std::string& title, bool at_corners, Measured measured) {
     std::vector<std::string> names = {"*true*"};
-    for (const TangentMethod& method : methods())
+    for (const TangentFrameMethod& method : methods())
         names.push_back(method.name);
     std::string text = "\n" + title + "\n\n" + table_header(names);
     for (const NamedMesh& mesh : meshes()) {
@@ -58,7 +58,7 @@ std::string method_table(const std::string& title, bool at_corners, Measured mea
             measured(mesh.reference, exact_tangents(mesh.reference), ShaderBasis::as_interpolated);
         std::vector<double> ranks = {not_compared};
         std::vector<std::string> cells = {rms_and_max(least)};
-        for (const TangentMethod& method : methods()) {
+        for (const TangentFrameMethod& method : methods()) {
             const bool none = at_corners && !method.tangents;
             const ErrorStats errors =
                 none ? ErrorStats{}
@@ -107,7 +107,7 @@ std::string cost_table() {
     text += table_header({"error: torus, jittered", "cubic, anisotropic", "plate with thin bevels",
                           "computing", "bytes a vertex: floats; codes", "drawing"});
     for (std::size_t i = 0; i < methods().size(); ++i) {
-        const TangentMethod& method = methods()[i];
+        const TangentFrameMethod& method = methods()[i];
         std::vector<std::string> cells;
         for (const std::string& name : shown) {
             const auto mesh = std::find_if(meshes().begin(), meshes().end(),
@@ -124,16 +124,16 @@ std::string cost_table() {
 }
 
 std::string mismatch_table(const std::string& title, const TexturedMesh& reference) {
-    std::vector<TangentMethod> bases = methods();
+    std::vector<TangentFrameMethod> bases = methods();
     bases.push_back(made_unit(bases.front()));
     std::vector<std::string> names;
-    for (const TangentMethod& reader : bases)
+    for (const TangentFrameMethod& reader : bases)
         names.push_back("read in " + reader.name);
     std::string text = "\n" + title + "\n\n" + table_header(names);
-    for (const TangentMethod& baker : bases) {
+    for (const TangentFrameMethod& baker : bases) {
         std::vector<double> ranks;
         std::vector<std::string> cells;
-        for (const TangentMethod& reader : bases) {
+        for (const TangentFrameMethod& reader : bases) {
             const ErrorStats errors = mismatch_errors(reference, baker, reader);
             ranks.push_back(errors.rms);
             cells.push_back(rms_and_max(errors));

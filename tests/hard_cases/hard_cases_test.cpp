@@ -175,7 +175,7 @@ Mesh hostile_mesh(std::uint32_t seed) {
 
 constexpr std::uint32_t mesh_count = 10000;
 
-class HostileMeshes : public testing::TestWithParam<TangentMethod> {};
+class HostileMeshes : public testing::TestWithParam<NamedTangentMethod> {};
 
 TEST_P(HostileMeshes, HaveSoundTangentsWithTheSameBitsInAnyOrder) {
     for (std::uint32_t seed = 0; seed < mesh_count; ++seed) {

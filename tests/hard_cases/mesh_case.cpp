@@ -165,7 +165,8 @@ MeshCase& MeshCase::expect(const std::string& step, const std::string& outcome,
 
 namespace {
 
-std::vector<glm::vec4> tangents_of(const Mesh& mesh, const TangentMethod& method, Report& report) {
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, const NamedTangentMethod& method,
+                                   Report& report) {
     return method.call(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
 }
 
@@ -173,7 +174,7 @@ Mesh textured(const Mesh& mesh) {
     return mesh.texcoords.empty() ? textured_from_above(mesh) : mesh;
 }
 
-std::string wrong_tangents(const Mesh& mesh, const TangentMethod& method,
+std::string wrong_tangents(const Mesh& mesh, const NamedTangentMethod& method,
                            const std::map<std::string, std::size_t>& expected) {
     Report report;
     const std::vector<glm::vec4> tangents = tangents_of(mesh, method, report);
@@ -191,7 +192,7 @@ std::string wrong_tangents(const Mesh& mesh, const TangentMethod& method,
     return "";
 }
 
-std::string too_far(const Mesh& mesh, const TangentMethod& method, double degrees,
+std::string too_far(const Mesh& mesh, const NamedTangentMethod& method, double degrees,
                     const ReferenceTangent& reference) {
     Report report;
     const std::vector<glm::vec4> tangents = tangents_of(mesh, method, report);
@@ -209,11 +210,11 @@ std::string too_far(const Mesh& mesh, const TangentMethod& method, double degree
 
 /// Returns the first problem of any method.
 template <typename Problem>
-std::function<std::string(const Mesh&)> with_each(const std::vector<TangentMethod>& methods,
+std::function<std::string(const Mesh&)> with_each(const std::vector<NamedTangentMethod>& methods,
                                                   const Problem& problem) {
     return [methods, problem](const Mesh& bare) {
         const Mesh mesh = textured(bare);
-        for (const TangentMethod& method : methods) {
+        for (const NamedTangentMethod& method : methods) {
             if (const std::string found = problem(mesh, method); !found.empty())
                 return method.name + ": " + found;
         }
@@ -223,10 +224,11 @@ std::function<std::string(const Mesh&)> with_each(const std::vector<TangentMetho
 
 }  // namespace
 
-const std::vector<TangentMethod>& all_tangent_methods() {
-    static const std::vector<TangentMethod> methods = {{"mikktspace", mikktspace_tangents},
-                                                       {"area-weighted", area_weighted_tangents},
-                                                       {"lengyel", lengyel_tangents}};
+const std::vector<NamedTangentMethod>& all_tangent_methods() {
+    static const std::vector<NamedTangentMethod> methods = {
+        {"mikktspace", mikktspace_tangents},
+        {"area-weighted", area_weighted_tangents},
+        {"lengyel", lengyel_tangents}};
     return methods;
 }
 
@@ -234,13 +236,15 @@ MeshCase& MeshCase::tangents(const Findings& findings) {
     return tangents_by("tangents", all_tangent_methods(), findings);
 }
 
-MeshCase& MeshCase::tangents_by(const std::string& step, const std::vector<TangentMethod>& methods,
+MeshCase& MeshCase::tangents_by(const std::string& step,
+                                const std::vector<NamedTangentMethod>& methods,
                                 const Findings& findings) {
     const std::map<std::string, std::size_t> expected(findings.begin(), findings.end());
-    return expect(step, "orthonormal" + reported(findings),
-                  with_each(methods, [expected](const Mesh& mesh, const TangentMethod& method) {
-                      return wrong_tangents(mesh, method, expected);
-                  }));
+    return expect(
+        step, "orthonormal" + reported(findings),
+        with_each(methods, [expected](const Mesh& mesh, const NamedTangentMethod& method) {
+            return wrong_tangents(mesh, method, expected);
+        }));
 }
 
 MeshCase& MeshCase::tangents_near(double degrees, const std::string& reference_name,
@@ -250,12 +254,12 @@ MeshCase& MeshCase::tangents_near(double degrees, const std::string& reference_n
                        : fmt::format("within {} degrees of {}", degrees, reference_name);
     return expect(
         "tangents", outcome,
-        with_each(all_tangent_methods(), [=](const Mesh& mesh, const TangentMethod& method) {
+        with_each(all_tangent_methods(), [=](const Mesh& mesh, const NamedTangentMethod& method) {
             return too_far(mesh, method, degrees, reference);
         }));
 }
 
-std::vector<glm::vec4> tangents_of(const Mesh& mesh, const TangentMethod& method) {
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, const NamedTangentMethod& method) {
     Report ignored;
     return method.call(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, ignored);
 }

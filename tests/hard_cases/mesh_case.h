@@ -37,7 +37,7 @@ using ReferenceTangent =
     std::function<std::optional<glm::dvec4>(const Mesh& mesh, std::size_t corner)>;
 
 /// A function that computes a tangent for every corner.
-struct TangentMethod {
+struct NamedTangentMethod {
     std::string name;  ///< The name that options use.
     std::vector<glm::vec4> (*call)(std::span<const glm::vec3>, std::span<const glm::vec3>,
                                    std::span<const glm::vec2>, std::span<const glm::uvec3>,
@@ -70,7 +70,7 @@ class MeshCase {
     MeshCase& tangents(const Findings& findings = {});
 
     /// Like tangents(), for some methods; `step` names them.
-    MeshCase& tangents_by(const std::string& step, const std::vector<TangentMethod>& methods,
+    MeshCase& tangents_by(const std::string& step, const std::vector<NamedTangentMethod>& methods,
                           const Findings& findings);
 
     /// The tangents of every method have an error of at most `degrees` and the sign w of the
@@ -91,7 +91,7 @@ class MeshCase {
 };
 
 /// The methods that tangents() tests.
-const std::vector<TangentMethod>& all_tangent_methods();
+const std::vector<NamedTangentMethod>& all_tangent_methods();
 
 /// The weightings that normals() tests.
 const std::vector<NormalWeight>& all_weights();
@@ -106,7 +106,7 @@ Mesh textured_grid();
 Mesh coarsely_textured();
 
 /// Computes the tangents of a method and discards its findings.
-std::vector<glm::vec4> tangents_of(const Mesh& mesh, const TangentMethod& method);
+std::vector<glm::vec4> tangents_of(const Mesh& mesh, const NamedTangentMethod& method);
 
 /// Returns the mesh after a call of change(mesh, v) for every vertex v.
 template <typename Change>

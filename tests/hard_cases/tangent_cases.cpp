@@ -43,7 +43,7 @@ template <typename Make>
 std::function<std::string(const Mesh&)> differs_from(const Make& make, double degrees) {
     return [=](const Mesh& mesh) {
         const Mesh sound = make();
-        for (const TangentMethod& method : all_tangent_methods()) {
+        for (const NamedTangentMethod& method : all_tangent_methods()) {
             const auto expected = tangents_of(sound, method);
             const auto found = tangents_of(mesh, method);
             for (std::size_t corner = 0; corner < found.size(); ++corner) {
@@ -120,7 +120,7 @@ std::optional<glm::dvec4> mirrored_reference(const Mesh& mesh, std::size_t corne
 std::string wrongly_split(const Mesh& mesh) {
     Report report;
     FrameOptions options;
-    options.tangents = TangentMode::mikktspace;
+    options.tangents = TangentMethod::mikktspace;
     const FramedMesh framed = with_frames(mesh, options, report);
     for (std::size_t v = mesh.positions.size(); v < framed.source_vertex.size(); ++v) {
         if (framed.mesh.positions[v].x != 2.0F) return "a vertex beside the line is split";
@@ -301,7 +301,7 @@ namespace {
 /// Compares the tangents for several numbers of threads and many orders of triangles.
 std::string depends_on_order(const Mesh& mesh) {
     std::string problem;
-    for (const TangentMethod& method : all_tangent_methods()) {
+    for (const NamedTangentMethod& method : all_tangent_methods()) {
         const auto expected = tangents_of(mesh, method);
         for (std::uint32_t seed = 0; seed < 12; ++seed) {
             set_thread_limit(seed % 4);
@@ -335,7 +335,7 @@ std::string wrong_flat_frames(const Mesh& mesh) {
     Report report;
     FrameOptions options;
     options.if_missing = NormalMode::flat;
-    options.tangents = TangentMode::keep;
+    options.tangents = TangentMethod::keep;
     const Mesh framed = with_frames(mesh, options, report).mesh;
     for (std::size_t corner = 0; corner < 3 * framed.triangles.size(); ++corner) {
         const glm::dvec3 normal = triangle_normal_of(framed, framed.triangles[corner / 3]);
@@ -390,7 +390,7 @@ Mesh mirrored_torus() {
 }
 
 std::string not_mirrored(const Mesh& mesh) {
-    for (const TangentMethod& method : all_tangent_methods()) {
+    for (const NamedTangentMethod& method : all_tangent_methods()) {
         const auto before = tangents_of(textured_torus(), method);
         const auto after = tangents_of(mesh, method);
         for (std::size_t corner = 0; corner < after.size(); ++corner) {
@@ -429,7 +429,7 @@ Mesh bevelled_edge() {
 }
 
 /// Returns the angle in degrees by which the bevel rotates the tangents of the floor and the wall.
-double turned_by_bevel(const Mesh& mesh, const TangentMethod& method) {
+double turned_by_bevel(const Mesh& mesh, const NamedTangentMethod& method) {
     const auto tangents = tangents_of(mesh, method);
     double most = 0.0;
     for (std::size_t corner = 0; corner < 12; ++corner) {
@@ -503,7 +503,7 @@ Mesh folded_over() {
 }
 
 std::string averaged_over_the_fold(const Mesh& mesh) {
-    for (const TangentMethod& method : all_tangent_methods()) {
+    for (const NamedTangentMethod& method : all_tangent_methods()) {
         if (method.name == "lengyel") continue;
         const auto tangents = tangents_of(mesh, method);
         for (std::size_t corner = 0; corner < tangents.size(); ++corner) {

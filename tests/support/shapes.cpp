@@ -39,7 +39,7 @@ Mesh soup(const Mesh& mesh) {
     return result;
 }
 
-Mesh with_tangents(Mesh mesh, TangentMode mode) {
+Mesh with_tangents(Mesh mesh, TangentMethod mode) {
     Report report;
     return with_frames(std::move(mesh), {.tangents = mode}, report).mesh;
 }

@@ -38,7 +38,7 @@ inline Mesh mesh_from(std::vector<glm::vec3> positions, std::vector<glm::uvec3> 
 }
 
 /// Returns the mesh with tangents at its vertices. Vertices are split if necessary.
-Mesh with_tangents(Mesh mesh, TangentMode mode = TangentMode::mikktspace);
+Mesh with_tangents(Mesh mesh, TangentMethod mode = TangentMethod::mikktspace);
 
 /// Returns the vertex at a corner of a triangle; triangle t has the corners 3t to 3t + 2.
 inline std::uint32_t vertex_at(const Mesh& mesh, std::size_t corner) {

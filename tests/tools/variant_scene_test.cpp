@@ -147,7 +147,7 @@ TEST_F(VariantScene, FramesAreThoseOfTheMode) {
               TangentFrame::derivatives);
     const Scene lengyel = changed(before, "tangents=lengyel");
     FrameOptions frames;
-    frames.tangents = TangentMode::lengyel;
+    frames.tangents = TangentMethod::lengyel;
     Report report;
     EXPECT_EQ(lengyel.meshes[0]->tangents,
               with_frames(*before.meshes[0], frames, report).mesh.tangents);

@@ -196,12 +196,11 @@ inline Choices<NormalMode> normal_choices() {
             {"area-angle", NormalMode::area_angle}};
 }
 
-inline Choices<TangentMode> tangent_choices() {
-    return {{"keep", TangentMode::keep},
-            {"none", TangentMode::none},
-            {"mikktspace", TangentMode::mikktspace},
-            {"area-weighted", TangentMode::area_weighted},
-            {"lengyel", TangentMode::lengyel}};
+/// All methods except those that with_frames() does not compute.
+inline Choices<TangentMethod> tangent_choices() {
+    Choices<TangentMethod> choices = enum_choices<TangentMethod>();
+    std::erase_if(choices, [](const auto& one) { return one.second == TangentMethod::triangle; });
+    return choices;
 }
 
 inline Choices<Kernel> kernel_choices() {

@@ -49,7 +49,7 @@ enum class UvOutside { ignore, repeat };
 struct SpaceOptions {
     std::optional<std::filesystem::path> to_object;
     std::optional<std::filesystem::path> to_tangent;
-    std::optional<TangentMode> tangents;
+    std::optional<TangentMethod> tangents;
     std::optional<UvOutside> outside;
     std::optional<int> udim;  ///< From 1001.
 };

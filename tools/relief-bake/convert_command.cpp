@@ -277,7 +277,7 @@ void add_space_options(CLI::App& app, SpaceOptions& space) {
              "Convert from the object space of the mesh in FILE to its tangent space, as the first "
              "operation.")
         .group(group);
-    Choices<TangentMode> methods;
+    Choices<TangentMethod> methods;
     for (const auto& [name, mode] : tangent_choices()) {
         if (computes_tangents(mode)) methods.emplace_back(name, mode);
     }

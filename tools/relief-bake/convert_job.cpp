@@ -119,7 +119,7 @@ struct TargetMesh {
 };
 
 /// Reads the mesh of the map in object space, with normals and tangents.
-TargetMesh read_target(const std::filesystem::path& file, std::optional<TangentMode> tangents,
+TargetMesh read_target(const std::filesystem::path& file, std::optional<TangentMethod> tangents,
                        Report& report) {
     TargetMesh target;
     MapModel model = read_map_model(file, ModelSpace::object, report);
@@ -131,7 +131,7 @@ TargetMesh read_target(const std::filesystem::path& file, std::optional<TangentM
             target.has_file_tangents = target.has_file_tangents && keeps;
             FrameOptions options;
             options.tangents =
-                keeps ? TangentMode::keep : tangents.value_or(TangentMode::mikktspace);
+                keeps ? TangentMethod::keep : tangents.value_or(TangentMethod::mikktspace);
             part.mesh = with_frames(std::move(part.mesh), options, report).mesh;
         }
         target.mesh = joined(std::move(model.parts));

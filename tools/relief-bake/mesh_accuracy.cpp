@@ -390,12 +390,13 @@ PartText describe(const MapConvention& found, ConventionPart part) {
                              : found.space == VectorSpace::object ? "it is in object space"
                                                                   : "it is in world space"};
         case ConventionPart::basis:
-            return {"basis",
-                    found.basis == MapBasis::mikktspace ? "it was baked with MikkTSpace tangents"
-                    : found.basis == MapBasis::area_weighted
-                        ? "it was baked with area-weighted tangents"
-                    : found.basis == MapBasis::lengyel ? "it was baked with Lengyel's tangents"
-                                                       : "it was baked with the model's tangents"};
+            return {"basis", found.basis == TangentMethod::mikktspace
+                                 ? "it was baked with MikkTSpace tangents"
+                             : found.basis == TangentMethod::area_weighted
+                                 ? "it was baked with area-weighted tangents"
+                             : found.basis == TangentMethod::lengyel
+                                 ? "it was baked with Lengyel's tangents"
+                                 : "it was baked with the model's tangents"};
         case ConventionPart::frame:
             return {"frame", found.frame == FrameInterpolation::unit
                                  ? "it was baked with normal and tangent normalized per pixel"
@@ -444,11 +445,9 @@ std::vector<std::string> convention_remedies(const std::filesystem::path& map,
                 return {fmt::format("{} --to-tangent {}", convert, quoted(low))};
             return {};
         case ConventionPart::basis:
-            if (found.basis == MapBasis::used) return {};
+            if (!found.basis) return {};
             return {fmt::format("relief-mesh process {} out.glb --tangents {}", quoted(low),
-                                found.basis == MapBasis::mikktspace      ? "mikktspace"
-                                : found.basis == MapBasis::area_weighted ? "area-weighted"
-                                                                         : "lengyel")};
+                                enum_name(*found.basis))};
         default:
             return {};
     }

@@ -80,10 +80,10 @@ std::optional<CheckedTangents> check_tangents(const GltfDocument& document, Gltf
     if (!result.has_normals || sets.empty()) return result;
     result.identified = identify_tangents(document.mesh(id, result.usual_set));
     for (const int set : sets) {
-        if (result.identified.basis) break;
+        if (result.identified.method) break;
         if (set == result.usual_set) continue;
         IdentifiedTangents other = identify_tangents(document.mesh(id, set));
-        if (!other.basis) continue;
+        if (!other.method) continue;
         result.identified = std::move(other);
         result.texcoord_set = set;
     }
@@ -214,7 +214,7 @@ std::string angles_text(ErrorStats angles) {
 std::string identified_text(const CheckedTangents& tangents) {
     const IdentifiedTangents& identified = tangents.identified;
     const TangentAgreement& best = *identified.best();
-    std::string text(name_of(*identified.basis));
+    std::string text(enum_name(*identified.method));
     const std::string variant = variant_of(best);
     if (!variant.empty()) text += ", " + variant;
     if (sign_of(best) == Sign::mixed) {
@@ -227,8 +227,8 @@ std::string identified_text(const CheckedTangents& tangents) {
                         angles_text(best.angles));
     if (!identified.equivalent_methods.empty()) {
         std::vector<std::string_view> words;
-        for (const TangentBasis basis : identified.equivalent_methods)
-            words.push_back(name_of(basis));
+        for (const TangentMethod method : identified.equivalent_methods)
+            words.push_back(enum_name(method));
         text += fmt::format("; {} {} the same tangents here", fmt::join(words, ", "),
                             words.size() == 1 ? "gives" : "give");
     }
@@ -239,7 +239,7 @@ std::string as_text(const CheckedTangents& tangents) {
     if (!tangents.has_normals) return "no normals: glTF ignores these tangents";
     if (!tangents.has_texcoords) return "of unknown basis: there are no texture coordinates";
     const IdentifiedTangents& identified = tangents.identified;
-    if (identified.basis) return identified_text(tangents);
+    if (identified.method) return identified_text(tangents);
     const TangentAgreement* best = identified.best();
     if (best == nullptr) {
         return fmt::format(
@@ -249,7 +249,7 @@ std::string as_text(const CheckedTangents& tangents) {
     }
     const std::string variant = variant_of(*best);
     return fmt::format("of unknown basis; nearest{} is {}{}: {} of {} within {:.2g} degrees ({})",
-                       identified.is_clearly_best() ? " by far" : "", name_of(best->basis),
+                       identified.is_clearly_best() ? " by far" : "", enum_name(best->method),
                        variant.empty() ? "" : ", " + variant, best->agreeing(),
                        counted(identified.corners, "corner"), identified.tolerance,
                        angles_text(best->angles));
@@ -264,7 +264,7 @@ nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
         for (std::size_t i = 0; i < angles.histogram.size(); ++i)
             histogram.push_back(
                 {{"up_to", ErrorStats::bounds[i]}, {"corners", angles.histogram[i]}});
-        agreements.push_back({{"basis", name_of(agreement.basis)},
+        agreements.push_back({{"basis", enum_name(agreement.method)},
                               {"agreeing", agreement.agreeing()},
                               {"variant", variant_of(agreement)},
                               {"w_negated", agreement.negated},
@@ -277,12 +277,12 @@ nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
                               {"histogram", std::move(histogram)}});
     }
     nlohmann::ordered_json equivalent_methods = nlohmann::ordered_json::array();
-    for (const TangentBasis basis : identified.equivalent_methods)
-        equivalent_methods.push_back(name_of(basis));
+    for (const TangentMethod method : identified.equivalent_methods)
+        equivalent_methods.push_back(enum_name(method));
     const TangentAgreement* best = identified.best();
-    return {{"basis", identified.basis ? std::string(name_of(*identified.basis)) : "unknown"},
+    return {{"basis", identified.method ? std::string(enum_name(*identified.method)) : "unknown"},
             {"variant", best == nullptr ? "" : variant_of(*best)},
-            {"nearest", best == nullptr ? "" : std::string(name_of(best->basis))},
+            {"nearest", best == nullptr ? "" : std::string(enum_name(best->method))},
             {"nearest_by_far", identified.is_clearly_best()},
             {"same_here", std::move(equivalent_methods)},
             {"texcoord_set", tangents.texcoord_set},

@@ -31,7 +31,7 @@ struct ProcessRequest {
     std::filesystem::path input;
     std::filesystem::path output;
     NormalMode normals = NormalMode::keep;
-    TangentMode tangents = TangentMode::keep;
+    TangentMethod tangents = TangentMethod::keep;
     std::optional<int> uv_set;  ///< For computed tangents. Default: the set of the normal texture.
     std::optional<double> crease_degrees;  ///< For averaged normals, see frames.h.
     double weld_tolerance = 0.0;           ///< For averaged or repaired normals, see frames.h.
@@ -124,10 +124,6 @@ std::string normal_name(NormalMode mode) {
     return name_of(mode, normal_choices());
 }
 
-std::string tangent_name(TangentMode mode) {
-    return name_of(mode, tangent_choices());
-}
-
 struct Totals {
     std::size_t triangles = 0;
     std::size_t vertices_read = 0;
@@ -168,8 +164,8 @@ std::string part_normals_text(const FramedPart& part) {
 }
 
 /// "MikkTSpace", "area-weighted", ...
-std::string method_text(TangentMode mode) {
-    return mode == TangentMode::mikktspace ? "MikkTSpace" : tangent_name(mode);
+std::string method_text(TangentMethod method) {
+    return method == TangentMethod::mikktspace ? "MikkTSpace" : enum_name(method);
 }
 
 std::string part_tangents_text(const FramedPart& part) {
@@ -177,7 +173,7 @@ std::string part_tangents_text(const FramedPart& part) {
         case AttributeOutcome::kept:
             return "kept";
         case AttributeOutcome::computed: {
-            const std::string method = "computed, " + method_text(part.tangent_mode);
+            const std::string method = "computed, " + method_text(part.tangent_method);
             if (part.texcoords.is_only && part.texcoords.set == 0) return method;
             return fmt::format("{}, from texture coordinate set {} ({})", method,
                                part.texcoords.set, part.texcoords.reason);
@@ -260,7 +256,7 @@ nlohmann::ordered_json parts_json(const Processed& done) {
         }
         json["tangents"] = outcome_name(part.tangents);
         if (part.tangents == AttributeOutcome::computed) {
-            json["tangent_method"] = tangent_name(part.tangent_mode);
+            json["tangent_method"] = enum_name(part.tangent_method);
             json["texcoord_set"] = part.texcoords.set;
             json["texcoord_set_reason"] = part.texcoords.reason;
         }
@@ -315,7 +311,7 @@ std::string line_of(const ProcessRequest& request, const Processed& done, const 
 
 nlohmann::ordered_json options_json(const ProcessRequest& request) {
     nlohmann::ordered_json json = {{"normals", normal_name(request.normals)},
-                                   {"tangents", tangent_name(request.tangents)}};
+                                   {"tangents", enum_name(request.tangents)}};
     if (request.uv_set) json["uv_set"] = *request.uv_set;
     if (request.crease_degrees) json["crease_degrees"] = *request.crease_degrees;
     json["weld_tolerance"] = request.weld_tolerance;
@@ -388,7 +384,7 @@ void check_formats(const ProcessRequest& request) {
     const ModelFormat output = writable_format(request.output);
     if (computes_tangents(request.tangents) && !is_document(output)) {
         throw UsageError(fmt::format("--tangents {}: {} cannot store tangents",
-                                     tangent_name(request.tangents), extension_of(request.output)),
+                                     enum_name(request.tangents), extension_of(request.output)),
                          "write .glb or .gltf");
     }
     if (request.uv_set.value_or(0) > 0 && !is_document(input)) {
@@ -417,7 +413,7 @@ void check_normal_options(const ProcessRequest& request) {
 /// Refuses --uv-set if no tangents are computed.
 void check_tangent_options(const ProcessRequest& request) {
     const bool follow_normals =
-        request.tangents == TangentMode::keep && request.normals != NormalMode::keep;
+        request.tangents == TangentMethod::keep && request.normals != NormalMode::keep;
     if (!request.uv_set || computes_tangents(request.tangents) || follow_normals) return;
     throw UsageError(fmt::format("--uv-set {}: applies only to computed tangents", *request.uv_set),
                      "give --tangents mikktspace");

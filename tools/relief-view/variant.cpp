@@ -35,6 +35,16 @@ Choices<NormalMode> computed_normals() {
     return choices;
 }
 
+/// The mesh's tangents, computed ones, and none: the shader then derives frames.
+Choices<TangentMethod> displayed_tangents() {
+    Choices<TangentMethod> choices = {{"stored", TangentMethod::keep}};
+    for (const auto& [name, method] : tangent_choices()) {
+        if (computes_tangents(method)) choices.emplace_back(name, method);
+    }
+    choices.emplace_back("derivatives", TangentMethod::none);
+    return choices;
+}
+
 std::string unknown(const VariantTopic& topic) {
     std::vector<std::string> words;
     for (const auto& [word, variant] : topic.choices)
@@ -52,12 +62,7 @@ const std::vector<VariantTopic>& variant_topics() {
                               {"bump_map", MapUse::bump_map},
                               {"normal_map", MapUse::normal_map}}),
         topic("kernel", "The kernel that computes slopes from heights", kernel_choices()),
-        topic("tangents", "The tangent frames of the maps",
-              Choices<TangentBasis>{{"stored", TangentBasis::stored},
-                                    {"mikktspace", TangentBasis::mikktspace},
-                                    {"area-weighted", TangentBasis::area_weighted},
-                                    {"lengyel", TangentBasis::lengyel},
-                                    {"derivatives", TangentBasis::derivatives}}),
+        topic("tangents", "The tangent frames of the maps", displayed_tangents()),
         topic("bits", "Bits per channel of the normal map",
               Choices<MapBits>{{"8", MapBits::eight}, {"16", MapBits::sixteen}}),
         topic("normals", "The weights of vertex normals", computed_normals()),
@@ -188,7 +193,7 @@ class Preparation {
             refuse_change(variant_, "there is no normal map with more bits", "give --height-map");
     }
 
-    void change(TangentBasis basis) {
+    void change(TangentMethod method) {
         const bool has_frames = std::any_of(
             scene_.materials.begin(), scene_.materials.end(), [](const Material& material) {
                 const std::optional<NormalMap>& map = material.normal_map;
@@ -198,13 +203,11 @@ class Preparation {
             refuse_change(variant_, "there is no normal map or bump map that needs tangents",
                           "give --normal-map or --height-map");
         }
-        const bool is_derived = basis == TangentBasis::derivatives;
+        const bool is_derived = method == TangentMethod::none;
         result_.tangent_frame = is_derived ? TangentFrame::derivatives : TangentFrame::stored;
-        if (is_derived || basis == TangentBasis::stored) return;
+        if (!computes_tangents(method)) return;
         FrameOptions frames;
-        frames.tangents = basis == TangentBasis::mikktspace      ? TangentMode::mikktspace
-                          : basis == TangentBasis::area_weighted ? TangentMode::area_weighted
-                                                                 : TangentMode::lengyel;
+        frames.tangents = method;
         change_meshes(frames);
     }
 

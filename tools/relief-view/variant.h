@@ -35,13 +35,11 @@ struct ViewOptions;
 /// The kind of map that perturbs the normals.
 enum class MapUse { none, bump_map, normal_map };
 
-/// The origin of the tangent frames for normal and bump maps.
-enum class TangentBasis { stored, mikktspace, area_weighted, lengyel, derivatives };
-
 /// Bits per channel of a normal map.
 enum class MapBits { eight = 8, sixteen = 16 };
 
-using Variant = std::variant<Interpolation, MapUse, Kernel, TangentBasis, MapBits, NormalMode>;
+/// TangentMethod::none means that the shader derives the tangent frames of normal and bump maps.
+using Variant = std::variant<Interpolation, MapUse, Kernel, TangentMethod, MapBits, NormalMode>;
 
 /// All variants of one property.
 struct VariantTopic {

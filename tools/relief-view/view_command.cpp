@@ -214,9 +214,9 @@ void frame(GltfDocument& document, Report& report) {
         options.if_missing = NormalMode::flat;
         const bool has_normals = !mesh.normals.empty();
         const bool has_tangents = has_normals && !mesh.tangents.empty();
-        if (!has_tangents) options.tangents = TangentMode::none;
+        if (!has_tangents) options.tangents = TangentMethod::none;
         if (!has_tangents && !mesh.texcoords.empty() && texcoords.texture == "normalTexture")
-            options.tangents = TangentMode::mikktspace;
+            options.tangents = TangentMethod::mikktspace;
         if (has_normals && !computes_tangents(options.tangents)) continue;
         const FramedMesh framed = with_frames(std::move(mesh), options, report);
         document.set_frames(id, framed, options, report);
@@ -228,7 +228,7 @@ void frame(MeshFile& contents, Report& report) {
         std::any_of(contents.materials.begin(), contents.materials.end(),
                     [](const MtlMaterial& material) { return material.normal_map.has_value(); });
     FrameOptions options;
-    if (has_map && !contents.mesh.texcoords.empty()) options.tangents = TangentMode::mikktspace;
+    if (has_map && !contents.mesh.texcoords.empty()) options.tangents = TangentMethod::mikktspace;
     contents.mesh = with_frames(std::move(contents.mesh), options, report).mesh;
 }
 

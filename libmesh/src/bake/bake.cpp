@@ -78,9 +78,9 @@ LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& repo
     const bool to_tangent =
         options.space == VectorSpace::tangent && (options.layers.normals || options.sample_angle);
     FrameOptions frames;
-    frames.tangents = !to_tangent            ? TangentMode::none
-                      : low.tangents.empty() ? TangentMode::mikktspace
-                                             : TangentMode::keep;
+    frames.tangents = !to_tangent            ? TangentMethod::none
+                      : low.tangents.empty() ? TangentMethod::mikktspace
+                                             : TangentMethod::keep;
     mesh_ = with_frames(low, frames, report).mesh;
     if (options.cage != nullptr) {
         cage_ = cage_corners(*options.cage, low);

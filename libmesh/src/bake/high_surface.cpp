@@ -272,7 +272,7 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
                                 (mesh.tangents.empty() || mesh.normals.empty());
     if (!mesh.triangles.empty() && (mesh.normals.empty() || needs_tangents)) {
         FrameOptions frames;
-        frames.tangents = needs_tangents ? TangentMode::mikktspace : TangentMode::none;
+        frames.tangents = needs_tangents ? TangentMethod::mikktspace : TangentMethod::none;
         FramedMesh framed = with_frames(mesh, frames, report);
         made_[index] = std::move(framed.mesh);
         result.mesh = &made_[index];

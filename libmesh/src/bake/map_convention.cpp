@@ -31,8 +31,8 @@ constexpr std::array flats = {FlatCode::middle, FlatCode::half};
 constexpr std::array turns = {ImageOrientation::upright, ImageOrientation::upside_down,
                               ImageOrientation::mirrored, ImageOrientation::half_turn};
 constexpr std::array spaces = {VectorSpace::tangent, VectorSpace::object, VectorSpace::world};
-constexpr std::array bases = {MapBasis::used, MapBasis::mikktspace, MapBasis::area_weighted,
-                              MapBasis::lengyel};
+constexpr std::array<std::optional<TangentMethod>, 4> bases = {
+    std::nullopt, TangentMethod::mikktspace, TangentMethod::area_weighted, TangentMethod::lengyel};
 constexpr std::array frames = {FrameInterpolation::interpolated, FrameInterpolation::unit,
                                FrameInterpolation::orthonormal,
                                FrameInterpolation::vertex_bitangent};
@@ -66,11 +66,11 @@ CornerTangents corner_tangents(const Mesh& mesh) {
     return corners;
 }
 
-CornerTangents make_corner_tangents(const Mesh& mesh, MapBasis basis) {
+CornerTangents make_corner_tangents(const Mesh& mesh, std::optional<TangentMethod> basis) {
     Report ignored;  // The bake reports defects of the mesh.
-    const auto make = basis == MapBasis::area_weighted ? area_weighted_tangents
-                      : basis == MapBasis::lengyel     ? lengyel_tangents
-                                                       : mikktspace_tangents;
+    const auto make = basis == TangentMethod::area_weighted ? area_weighted_tangents
+                      : basis == TangentMethod::lengyel     ? lengyel_tangents
+                                                            : mikktspace_tangents;
     return make(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, ignored);
 }
 
@@ -120,15 +120,15 @@ class Readings {
         return kept.rms();
     }
 
-    const CornerTangents& tangents_by(MapBasis basis) {
+    const CornerTangents& tangents_by(std::optional<TangentMethod> basis) {
         const auto known = corners_.find(basis);
         if (known != corners_.end()) return known->second;
         const Mesh& low = *search_.low;
         const bool has_given = search_.given != nullptr && !search_.given->tangents.empty();
         CornerTangents made;
-        if (basis == MapBasis::used && !low.tangents.empty())
+        if (!basis && !low.tangents.empty())
             made = corner_tangents(low);
-        else if (basis == MapBasis::used && has_given)
+        else if (!basis && has_given)
             made = corner_tangents(*search_.given);
         else
             made = make_corner_tangents(low, basis);
@@ -210,7 +210,7 @@ class Readings {
     const Image& map_;
     const ConventionSearch& search_;
     std::vector<KnownTexel> texels_;
-    std::map<MapBasis, CornerTangents> corners_;
+    std::map<std::optional<TangentMethod>, CornerTangents> corners_;
 };
 
 /// Returns all conventions one step away from another, the simplest first.
@@ -234,7 +234,7 @@ std::vector<MapConvention> neighbors_of(const MapConvention& from) {
         add([&](MapConvention& c) { c.flat = flat; });
     if (from.space == VectorSpace::tangent) {
         for (const bool ignores : {false, true}) {
-            for (const MapBasis basis : bases) {
+            for (const std::optional<TangentMethod> basis : bases) {
                 for (const FrameInterpolation frame : frames) {
                     add([&](MapConvention& c) {
                         c.ignores_mirroring = ignores;

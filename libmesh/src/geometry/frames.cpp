@@ -109,6 +109,8 @@ void check_options(const Mesh& mesh, const FrameOptions& options) {
     if (options.if_missing == NormalMode::keep) {
         throw InvalidInput("normals that are missing cannot be kept: if_missing must name a mode");
     }
+    if (options.tangents == TangentMethod::triangle)
+        throw InvalidInput("tangents of single triangles can be identified, but not computed");
     if (computes_tangents(options.tangents) && mesh.texcoords.empty() && !mesh.positions.empty()) {
         throw InvalidInput("tangents need texture coordinates, but the mesh has none");
     }
@@ -278,24 +280,25 @@ void make_normals(FramedMesh& framed, NormalMode mode, const FrameOptions& optio
     }
 }
 
-std::vector<glm::vec4> corner_tangents(const Mesh& mesh, TangentMode mode, Report& report) {
+std::vector<glm::vec4> corner_tangents(const Mesh& mesh, TangentMethod mode, Report& report) {
     const auto tangents_by = [&](const auto& method) {
         return method(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
     };
     switch (mode) {
-        case TangentMode::area_weighted:
+        case TangentMethod::area_weighted:
             return tangents_by(area_weighted_tangents);
-        case TangentMode::lengyel:
+        case TangentMethod::lengyel:
             return tangents_by(lengyel_tangents);
-        case TangentMode::mikktspace:
-        case TangentMode::keep:
-        case TangentMode::none:
+        case TangentMethod::mikktspace:
+        case TangentMethod::keep:
+        case TangentMethod::none:
+        case TangentMethod::triangle:
             break;
     }
     return tangents_by(mikktspace_tangents);
 }
 
-void make_tangents(FramedMesh& framed, TangentMode mode, Report& report) {
+void make_tangents(FramedMesh& framed, TangentMethod mode, Report& report) {
     const std::vector<glm::vec4> tangents = corner_tangents(framed.mesh, mode, report);
     store_corners(framed, tangents, &Mesh::tangents, [&](std::size_t vertex) {
         report.add("tangent of an isolated vertex", "vertex", vertex,
@@ -306,14 +309,14 @@ void make_tangents(FramedMesh& framed, TangentMode mode, Report& report) {
 
 /// Resolves `keep` for tangents. Tangents belong to the normals from which they were computed, so a
 /// mesh with new normals gets new tangents if it has texture coordinates.
-TangentMode resolved_tangents(const Mesh& mesh, TangentMode tangents, NormalMode normals,
-                              Report& report) {
-    const bool outdated = tangents == TangentMode::keep && normals != NormalMode::keep;
+TangentMethod resolved_tangents(const Mesh& mesh, TangentMethod tangents, NormalMode normals,
+                                Report& report) {
+    const bool outdated = tangents == TangentMethod::keep && normals != NormalMode::keep;
     if (!outdated || mesh.tangents.empty()) return tangents;
-    if (!mesh.texcoords.empty()) return TangentMode::mikktspace;
+    if (!mesh.texcoords.empty()) return TangentMethod::mikktspace;
     report.add("tangents of other normals", "mesh", 0,
                "are removed: without texture coordinates there can be no new ones");
-    return TangentMode::none;
+    return TangentMethod::none;
 }
 
 }  // namespace
@@ -329,8 +332,8 @@ FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report) {
     framed.source_vertex.resize(framed.mesh.positions.size());
     std::iota(framed.source_vertex.begin(), framed.source_vertex.end(), 0U);
 
-    const TangentMode tangents = resolved_tangents(framed.mesh, options.tangents, mode, report);
-    if (tangents != TangentMode::keep) framed.mesh.tangents.clear();
+    const TangentMethod tangents = resolved_tangents(framed.mesh, options.tangents, mode, report);
+    if (tangents != TangentMethod::keep) framed.mesh.tangents.clear();
     {
         const ProgressStage stage("normals");
         make_normals(framed, mode, options, report);

@@ -32,8 +32,7 @@ constexpr double factor_alike = 1.5;
 
 /// One method: three tangents for each triangle.
 struct Method {
-    TangentBasis basis;
-    std::string_view word;
+    TangentMethod method;
     std::vector<glm::vec4> (*tangents)(const Mesh& mesh);
 };
 
@@ -59,10 +58,10 @@ std::vector<glm::vec4> tangents_by(const Mesh& mesh) {
 }
 
 constexpr std::array methods = {
-    Method{TangentBasis::mikktspace, "mikktspace", tangents_by<mikktspace_tangents>},
-    Method{TangentBasis::area_weighted, "area-weighted", tangents_by<area_weighted_tangents>},
-    Method{TangentBasis::lengyel, "lengyel", tangents_by<lengyel_tangents>},
-    Method{TangentBasis::triangle, "triangle", triangle_tangents},
+    Method{TangentMethod::mikktspace, tangents_by<mikktspace_tangents>},
+    Method{TangentMethod::area_weighted, tangents_by<area_weighted_tangents>},
+    Method{TangentMethod::lengyel, tangents_by<lengyel_tangents>},
+    Method{TangentMethod::triangle, triangle_tangents},
 };
 
 /// Returns 8 or 16 if all values are multiples of the step of signed integers with that many bits;
@@ -180,7 +179,7 @@ TangentAgreement agreement_with(const Method& method, const Mesh& mesh,
         }
     });
     TangentAgreement result;
-    result.basis = method.basis;
+    result.method = method.method;
     for (const float turn : turns) {
         for (int quarter = 0; quarter < 4; ++quarter)
             result.within[static_cast<std::size_t>(quarter)] +=
@@ -214,31 +213,15 @@ void choose(IdentifiedTangents& result) {
             best = &agreement;
     }
     if (best == nullptr) return;
-    result.basis = best->basis;
+    result.method = best->method;
     for (const TangentAgreement& agreement : result.agreements) {
         if (&agreement == best || agreement.share() < share_needed) continue;
         if (agreement.mean_clamped <= best->mean_clamped * factor_alike + means_alike)
-            result.equivalent_methods.push_back(agreement.basis);
+            result.equivalent_methods.push_back(agreement.method);
     }
 }
 
 }  // namespace
-
-std::span<const TangentBasis> tangent_bases() {
-    static const std::vector<TangentBasis> all = [] {
-        std::vector<TangentBasis> bases;
-        for (const Method& method : methods)
-            bases.push_back(method.basis);
-        return bases;
-    }();
-    return all;
-}
-
-std::string_view name_of(TangentBasis basis) {
-    return std::find_if(methods.begin(), methods.end(),
-                        [&](const Method& method) { return method.basis == basis; })
-        ->word;
-}
 
 double TangentAgreement::share() const {
     const std::size_t all = angles.count + angles.undefined;
@@ -247,9 +230,9 @@ double TangentAgreement::share() const {
 
 const TangentAgreement* IdentifiedTangents::best() const {
     if (agreements.empty()) return nullptr;
-    if (basis) {
+    if (method) {
         return &*std::find_if(agreements.begin(), agreements.end(),
-                              [&](const TangentAgreement& a) { return a.basis == *basis; });
+                              [&](const TangentAgreement& a) { return a.method == *method; });
     }
     // A method whose tangents are all parallel to the normals has no angles, and their mean would
     // be 0.

@@ -672,15 +672,15 @@ FramedMesh gathered(const Mesh& mesh, const Remains& remains, Report& report) {
 /// stay absent.
 FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Report& report) {
     const bool had_tangents = !input.tangents.empty() && !input.texcoords.empty();
-    if (frames.tangents == TangentMode::keep) {
-        frames.tangents = had_tangents ? TangentMode::mikktspace : TangentMode::none;
+    if (frames.tangents == TangentMethod::keep) {
+        frames.tangents = had_tangents ? TangentMethod::mikktspace : TangentMethod::none;
         if (!input.tangents.empty()) {
             report.add("tangents of other triangles", "mesh", 0,
                        had_tangents ? "are computed anew"
                                     : "are removed: there are no texture coordinates");
         }
     }
-    if (frames.normals == NormalMode::keep && frames.tangents == TangentMode::none) return small;
+    if (frames.normals == NormalMode::keep && frames.tangents == TangentMethod::none) return small;
     FramedMesh result = with_frames(std::move(small.mesh), frames, report);
     for (std::uint32_t& source : result.source_vertex)
         source = small.source_vertex[source];

@@ -265,13 +265,14 @@ void subdivide_once(Level& level, Report& report) {
 
 FrameOptions frames_for(const Mesh& input, FrameOptions frames, Report& report) {
     const bool had_tangents = !input.tangents.empty() && !input.texcoords.empty();
-    if (frames.tangents == TangentMode::keep)
-        frames.tangents = had_tangents ? TangentMode::mikktspace : TangentMode::none;
+    if (frames.tangents == TangentMethod::keep)
+        frames.tangents = had_tangents ? TangentMethod::mikktspace : TangentMethod::none;
     if (!input.tangents.empty()) {
         report.add("tangents of other triangles", "mesh", 0,
-                   frames.tangents == TangentMode::none ? "are removed" : "are computed anew");
+                   frames.tangents == TangentMethod::none ? "are removed" : "are computed anew");
     }
-    const bool needs_normals = !input.normals.empty() || frames.tangents == TangentMode::mikktspace;
+    const bool needs_normals =
+        !input.normals.empty() || frames.tangents == TangentMethod::mikktspace;
     if (frames.normals == NormalMode::keep && needs_normals) frames.normals = NormalMode::angle;
     return frames;
 }

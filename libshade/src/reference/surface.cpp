@@ -121,8 +121,8 @@ bool needs_tangents(const std::vector<Material>& materials, const Mesh& mesh) {
 
 Mesh framed_mesh(const std::vector<Material>& materials, const Mesh& mesh, Report& report) {
     FrameOptions options;
-    if (needs_tangents(materials, mesh)) options.tangents = TangentMode::mikktspace;
-    const bool complete = !mesh.normals.empty() && options.tangents == TangentMode::keep;
+    if (needs_tangents(materials, mesh)) options.tangents = TangentMethod::mikktspace;
+    const bool complete = !mesh.normals.empty() && options.tangents == TangentMethod::keep;
     return complete ? mesh : with_frames(mesh, options, report).mesh;
 }
 

@@ -27,7 +27,7 @@ void PlannedStreams::add(const PlannedInterface& planned) {
 Mesh with_planned_frames(const Mesh& mesh, const PlannedStreams& streams, Report& report) {
     FrameOptions options;
     if (streams.tangents && mesh.tangents.empty() && !mesh.texcoords.empty()) {
-        options.tangents = TangentMode::mikktspace;
+        options.tangents = TangentMethod::mikktspace;
     }
     return with_frames(mesh, options, report).mesh;
 }

@@ -366,7 +366,7 @@ void add_instances(const GltfDocument& document, const GltfView& view, SceneGrap
     // computes tangents where it needs them.
     FrameOptions options;
     options.if_missing = NormalMode::flat;
-    options.tangents = TangentMode::none;
+    options.tangents = TangentMethod::none;
     Scene& scene = graph.scene;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
     ProgressStage stage("meshes", view.primitives.size());

@@ -366,7 +366,7 @@ TEST(BakeSphere, IsTheHighMeshsNormalsWithinWhatCodesHold) {
     const Mesh high = bumpy_sphere(100);
     Report report;
     const Mesh low =
-        with_frames(make_sphere(46, 23), {.tangents = TangentMode::mikktspace}, report).mesh;
+        with_frames(make_sphere(46, 23), {.tangents = TangentMethod::mikktspace}, report).mesh;
     const BakedImage baked = bake({high}, low, sized(sphere_map_side, sphere_map_side));
     EXPECT_EQ(baked.result.texels_missed, 0U);
     // The bumps have 2% of the radius, and the facets of the sphere lie up to 0.7% inside. The bake

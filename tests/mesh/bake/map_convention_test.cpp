@@ -76,7 +76,7 @@ struct Pair {
     Pair() {
         Report report;
         high = bumpy(make_torus(0.4F, 400, 200), 9.0);
-        low = with_frames(torus(24, 12), {.tangents = TangentMode::mikktspace}, report).mesh;
+        low = with_frames(torus(24, 12), {.tangents = TangentMethod::mikktspace}, report).mesh;
     }
 };
 
@@ -210,24 +210,24 @@ TEST(MapConvention, ImagesLyingOtherwiseAreRecognised) {
 }
 
 /// The low mesh with other tangents.
-Mesh low_by(TangentMode mode) {
+Mesh low_by(TangentMethod mode) {
     Report report;
     return with_frames(pair().low, {.tangents = mode}, report).mesh;
 }
 
 TEST(MapConvention, BasesOfTangentsAreRecognised) {
-    const auto basis_of = [](TangentMode mode) {
+    const auto basis_of = [](TangentMethod mode) {
         const ConventionFit found = fit(encoded(baked(pair().high, low_by(mode), options_of())));
         expect_explained(found, {ConventionPart::basis});
         return found.convention.basis;
     };
-    EXPECT_EQ(basis_of(TangentMode::area_weighted), MapBasis::area_weighted);
-    EXPECT_EQ(basis_of(TangentMode::lengyel), MapBasis::lengyel);
+    EXPECT_EQ(basis_of(TangentMethod::area_weighted), TangentMethod::area_weighted);
+    EXPECT_EQ(basis_of(TangentMethod::lengyel), TangentMethod::lengyel);
     // The model has other tangents, and the map was baked with those of MikkTSpace.
     const ConventionFit found =
-        fit(encoded(tangent_normals()), VectorSpace::tangent, low_by(TangentMode::area_weighted));
+        fit(encoded(tangent_normals()), VectorSpace::tangent, low_by(TangentMethod::area_weighted));
     expect_explained(found, {ConventionPart::basis});
-    EXPECT_EQ(found.convention.basis, MapBasis::mikktspace);
+    EXPECT_EQ(found.convention.basis, TangentMethod::mikktspace);
 }
 
 /// Returns the components of the exact normals in a frame that another baker uses.

@@ -333,7 +333,7 @@ std::string run_bake() {
     return bytes_of(normals, heights, report);
 }
 
-std::string run_frames(NormalMode normals, TangentMode tangents) {
+std::string run_frames(NormalMode normals, TangentMethod tangents) {
     FrameOptions options;
     options.normals = normals;
     options.tangents = tangents;
@@ -422,9 +422,10 @@ std::vector<Operation> operations() {
                     fmt::format("{} {}", check.tiling.seam_x, check.tiling.seam_y);
          }},
         {"Bake", run_bake},
-        {"MikkTSpace", [] { return run_frames(NormalMode::automatic, TangentMode::mikktspace); }},
-        {"AreaWeighted", [] { return run_frames(NormalMode::angle, TangentMode::area_weighted); }},
-        {"Lengyel", [] { return run_frames(NormalMode::area, TangentMode::lengyel); }},
+        {"MikkTSpace", [] { return run_frames(NormalMode::automatic, TangentMethod::mikktspace); }},
+        {"AreaWeighted",
+         [] { return run_frames(NormalMode::angle, TangentMethod::area_weighted); }},
+        {"Lengyel", [] { return run_frames(NormalMode::area, TangentMethod::lengyel); }},
         {"Curvature",
          [] {
              Report report;

@@ -25,7 +25,7 @@ FramedMesh framed(const Mesh& mesh, const FrameOptions& options) {
 }
 
 FrameOptions with_tangents(NormalMode normals) {
-    return {normals, NormalMode::angle, TangentMode::mikktspace};
+    return {normals, NormalMode::angle, TangentMethod::mikktspace};
 }
 
 /// Checks the properties of every result: it is valid, its sources are in range, and the input
@@ -75,8 +75,8 @@ TEST(Frames, MissingNormalsAreMadeAsAsked) {
     Mesh mesh = test::cube();
     mesh.normals.clear();
     const FramedMesh smooth =
-        framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMode::keep});
-    const FramedMesh flat = framed(mesh, {NormalMode::keep, NormalMode::flat, TangentMode::keep});
+        framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMethod::keep});
+    const FramedMesh flat = framed(mesh, {NormalMode::keep, NormalMode::flat, TangentMethod::keep});
     for (std::size_t v = 0; v < 24; ++v) {
         EXPECT_LE(test::degrees_between(smooth.mesh.normals[v], mesh.positions[v]), 4e-6);
         EXPECT_EQ(flat.mesh.normals[v], test::cube().normals[v]);
@@ -192,7 +192,7 @@ TEST(Frames, ComputedNormalsReplaceTheTangentsMadeForOthers) {
     const std::vector<glm::vec4> along_u(4, {1, 0, 0, 1});
     EXPECT_EQ(framed(mesh, {NormalMode::area}).mesh.tangents, along_u);
     EXPECT_EQ(framed(mesh, {}).mesh.tangents, mesh.tangents) << "kept with the normals";
-    EXPECT_TRUE(framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMode::none})
+    EXPECT_TRUE(framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMethod::none})
                     .mesh.tangents.empty());
     mesh.normals.clear();
     EXPECT_EQ(framed(mesh, {}).mesh.tangents, along_u) << "tangents without normals";
@@ -280,6 +280,9 @@ TEST(Frames, WhatCannotBeDoneIsRefusedWithAReason) {
         },
         ThrowsMessage<InvalidInput>(
             StrEq("normals that are missing cannot be kept: if_missing must name a mode")));
+    EXPECT_THAT([&] { framed(mesh, {.tangents = TangentMethod::triangle}); },
+                ThrowsMessage<InvalidInput>(
+                    StrEq("tangents of single triangles can be identified, but not computed")));
     mesh.texcoords.clear();
     EXPECT_THAT([&] { framed(mesh, with_tangents(NormalMode::keep)); },
                 ThrowsMessage<InvalidInput>(

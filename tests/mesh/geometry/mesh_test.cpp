@@ -161,7 +161,7 @@ constexpr double placed_rounding = 1e-4;
 
 Mesh framed(Mesh mesh, NormalMode normals) {
     Report report;
-    return with_frames(std::move(mesh), {.normals = normals, .tangents = TangentMode::mikktspace},
+    return with_frames(std::move(mesh), {.normals = normals, .tangents = TangentMethod::mikktspace},
                        report)
         .mesh;
 }

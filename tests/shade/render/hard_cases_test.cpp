@@ -389,7 +389,7 @@ Scene leaning_sphere() {
     material.normal_map = NormalMap{Texture{0}, 1.0F, Green::up, FlatCode::middle};
     Report report;
     FrameOptions options;
-    options.tangents = TangentMode::mikktspace;
+    options.tangents = TangentMethod::mikktspace;
     Scene scene = test::scene_of(with_frames(test::sphere(24, 12), options, report).mesh, material);
     Image map = make_image(1, 1, 3, 8, ColorSpace::data);
     map.samples = std::vector<std::uint8_t>{178, 108, 228};

@@ -96,7 +96,7 @@ Scene bumpy_scene() {
     scene.directional_lights = {{{1, -0.5F, -1}, {0.8F, 0.8F, 0.8F}}};
     Report report;
     FrameOptions options;
-    options.tangents = TangentMode::mikktspace;
+    options.tangents = TangentMethod::mikktspace;
     scene.meshes[0] = with_frames(scene.meshes[0], options, report).mesh;
     return scene;
 }

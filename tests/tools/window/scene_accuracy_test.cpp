@@ -128,11 +128,11 @@ TEST(SceneAccuracy, InapplicableMethodIsAnErrorAndNotChosen) {
     ViewerState state = state_of("torus.obj");
     SceneAccuracy accuracy([] {});
     accuracy.follow(state);
-    accuracy.use(Variant(TangentBasis::lengyel));  // No map of the scene needs tangents.
+    accuracy.use(Variant(TangentMethod::lengyel));  // No map of the scene needs tangents.
     accuracy.follow(state);
     wait_for(accuracy, state);
     EXPECT_NE(accuracy.result().error, "");
-    EXPECT_FALSE(accuracy.is_used(Variant(TangentBasis::lengyel), state.options()));
+    EXPECT_FALSE(accuracy.is_used(Variant(TangentMethod::lengyel), state.options()));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "relief/export.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/tangents.h"
 
 namespace RELIEF_API relief {
 
@@ -77,23 +78,10 @@ enum class NormalMode {
     area_angle,
 };
 
-enum class TangentMode {
-    keep,        ///< The mesh's tangents, or none; recomputed (mikktspace) if normals change.
-    none,        ///< Tangents are removed.
-    mikktspace,  ///< Computed, see tangents.h.
-    area_weighted,
-    lengyel,
-};
-
-/// Returns true if this mode computes tangents, which requires texture coordinates.
-constexpr bool computes_tangents(TangentMode mode) {
-    return mode != TangentMode::keep && mode != TangentMode::none;
-}
-
 struct FrameOptions {
     NormalMode normals = NormalMode::keep;
     NormalMode if_missing = NormalMode::angle;  ///< Any mode except keep. glTF requires flat.
-    TangentMode tangents = TangentMode::keep;
+    TangentMethod tangents = TangentMethod::keep;
 
     // Options of averaged normals:
     /// Vertices within this distance share their normal (normals.h).
@@ -132,8 +120,8 @@ struct FramedMesh {
 ///         position and get the fallback frames. If normals change and there are no texture
 ///         coordinates, tangents are removed and counted
 /// \throws InvalidInput if the mesh is not valid (mesh.h), if tangents must be computed without
-///         texture coordinates, if `if_missing` is keep, or if an option is outside of the range in
-///         normals.h
+///         texture coordinates or by TangentMethod::triangle, if `if_missing` is keep, or if an
+///         option is outside of the range in normals.h
 FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report);
 
 }  // namespace relief

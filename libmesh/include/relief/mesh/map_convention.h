@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normal_map_check.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/tangents.h"
 #include "relief/mesh/texel_coverage.h"
 
 namespace RELIEF_API relief {
@@ -67,14 +69,6 @@ ConvertedNormals tangent_from_object(const Image& normals, const Mesh& mesh,
 // Finds the convention (axes, tangent basis, orientation, coding) with which a normal map matches
 // known normals of a mesh. Part of the library relief::bake.
 
-/// The tangents of a map.
-enum class MapBasis {
-    used,  ///< The tangents of the renderer: those of the low mesh, or MikkTSpace's without any.
-    mikktspace,
-    area_weighted,
-    lengyel,
-};
-
 /// The interpolation of tangent frames from vertices to fragments.
 enum class FrameInterpolation {
     /// Interpolated without normalization, with the bitangent computed from them, as in MikkTSpace
@@ -96,7 +90,9 @@ struct MapConvention {
     /// The source of x, y and z among the components of the stored vectors, with y up.
     AxisMapping axes = same_axes;
     VectorSpace space = VectorSpace::tangent;
-    MapBasis basis = MapBasis::used;
+    /// The method of the tangents. If absent, the tangents of the renderer: those of the low mesh,
+    /// or MikkTSpace's without any.
+    std::optional<TangentMethod> basis{};
     FrameInterpolation frame = FrameInterpolation::interpolated;
     bool ignores_mirroring = false;  ///< The handedness w counts as +1 everywhere.
 

@@ -47,7 +47,7 @@ struct FramedPart {
     std::size_t normals_by_area = 0;  ///< Vertices for which the automatic mode used area weights.
     bool smoothing_groups = false;    ///< The normals followed the smoothing groups of the file.
     AttributeOutcome tangents = AttributeOutcome::absent;
-    TangentMode tangent_mode = TangentMode::keep;  ///< The method of computed tangents.
+    TangentMethod tangent_method = TangentMethod::keep;  ///< The method of computed tangents.
     TangentTexcoords texcoords;
     std::vector<std::string> notes;  ///< Notes that do not concern a defect of the input.
     Report report;

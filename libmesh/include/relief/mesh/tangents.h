@@ -15,11 +15,38 @@
 
 #include "relief/export.h"
 #include "relief/mesh/buffers.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
+
+/// The source of tangents.
+enum class TangentMethod {
+    keep,           ///< The mesh's tangents, or none; recomputed (mikktspace) if normals change.
+    none,           ///< Tangents are removed.
+    mikktspace,     ///< mikktspace_tangents()
+    area_weighted,  ///< area_weighted_tangents()
+    lengyel,        ///< lengyel_tangents()
+    /// The gradient of each triangle, without averaging: faceted. identify_tangents() recognizes
+    /// it; with_frames() does not compute it.
+    triangle,
+};
+
+template <>
+inline constexpr auto enum_names<TangentMethod> =
+    std::to_array<EnumName<TangentMethod>>({{"keep", TangentMethod::keep},
+                                            {"none", TangentMethod::none},
+                                            {"mikktspace", TangentMethod::mikktspace},
+                                            {"area-weighted", TangentMethod::area_weighted},
+                                            {"lengyel", TangentMethod::lengyel},
+                                            {"triangle", TangentMethod::triangle}});
+
+/// Returns true if this method computes tangents, which requires texture coordinates.
+constexpr bool computes_tangents(TangentMethod method) {
+    return method != TangentMethod::keep && method != TangentMethod::none;
+}
 
 // Computes tangent frames from texture coordinates: MikkTSpace and two other weightings.
 
@@ -104,19 +131,10 @@ std::vector<glm::vec4> lengyel_tangents(StridedSpan<const glm::vec3> positions,
 // method. Therefore the tangents are computed by all known methods and compared with the stored
 // ones.
 
-/// The methods that can be identified.
-enum class TangentBasis {
-    mikktspace,  ///< See tangents.h, also for the next two.
-    area_weighted,
-    lengyel,
-    triangle,  ///< The gradient of each triangle, without averaging: faceted.
-};
-
-/// All methods, in the order of the enumeration.
-std::span<const TangentBasis> tangent_bases();
-
-/// Returns the name as in the tools: "mikktspace", "area-weighted", "lengyel", "triangle".
-std::string_view name_of(TangentBasis basis);
+/// The methods that can be identified, in the order of their agreements.
+inline constexpr std::array identifiable_tangent_methods = {
+    TangentMethod::mikktspace, TangentMethod::area_weighted, TangentMethod::lengyel,
+    TangentMethod::triangle};
 
 /// The agreement of stored tangents with one method, over all corners that can be compared.
 ///
@@ -124,7 +142,7 @@ std::string_view name_of(TangentBasis basis);
 /// of this plane. Stored frames may be rotated by multiples of 90 degrees, if a program uses
 /// another axis as the tangent or flipped texture coordinates.
 struct TangentAgreement {
-    TangentBasis basis = TangentBasis::mikktspace;
+    TangentMethod method = TangentMethod::mikktspace;
     /// Number of corners within the tolerance of the method's tangent, its bitangent (rotated by 90
     /// degrees), and the opposites of both.
     std::array<std::size_t, 4> within{};
@@ -145,10 +163,10 @@ struct TangentAgreement {
 
 struct IdentifiedTangents {
     /// The identified method; absent if no known method agrees.
-    std::optional<TangentBasis> basis;
+    std::optional<TangentMethod> method;
     /// Other methods with the same result on this mesh, such as all methods on a plane.
-    std::vector<TangentBasis> equivalent_methods;
-    /// The agreement with each method, in the order of the enumeration; empty if nothing can be
+    std::vector<TangentMethod> equivalent_methods;
+    /// The agreement with each of identifiable_tangent_methods; empty if nothing can be
     /// compared, because there are no tangents, normals or texture coordinates.
     std::vector<TangentAgreement> agreements;
     std::size_t corners = 0;  ///< Number of compared corners.
@@ -159,7 +177,7 @@ struct IdentifiedTangents {
     /// 8 or 16 if all values are multiples of what this number of bits can store; 0 for floats.
     int stored_bits = 0;
 
-    /// The agreement with `basis`, or with the method of the smallest mean if no method was
+    /// The agreement with `method`, or with the method of the smallest mean if no method was
     /// identified; null if there is none.
     [[nodiscard]] const TangentAgreement* best() const;
     /// Returns true if the means of all other methods are at least 1.5 times as large. If no method

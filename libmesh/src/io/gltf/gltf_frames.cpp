@@ -386,9 +386,9 @@ MorphReplacement::MorphReplacement(GltfContents& contents, GltfPrimitiveId id,
     has_new_tangents_ = !framed_.mesh.tangents.empty() &&
                         (has_new_normals_ || computes_tangents(options_.tangents));
     if (!has_new_tangents_)
-        options_.tangents = TangentMode::none;
+        options_.tangents = TangentMethod::none;
     else if (!computes_tangents(options_.tangents))
-        options_.tangents = TangentMode::mikktspace;  // New normals require new tangents.
+        options_.tangents = TangentMethod::mikktspace;  // New normals require new tangents.
 }
 
 /// A target needs the displacements that it had. It also needs those that renderers derived from
@@ -423,7 +423,7 @@ void MorphReplacement::compute(TargetFrames& frames, const Mesh& rest,
         }
     }
     FrameOptions options = options_;
-    if (!frames.wants_tangents) options.tangents = TangentMode::none;
+    if (!frames.wants_tangents) options.tangents = TangentMethod::none;
     Report report;
     const FramedMesh displaced = with_frames(std::move(shape), options, report);
     report_new(report, at_rest_, frames.target, report_);

@@ -22,7 +22,7 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
         }
         FrameOptions options;
         options.if_missing = NormalMode::flat;
-        options.tangents = TangentMode::none;
+        options.tangents = TangentMethod::none;
         mesh = with_frames(std::move(mesh), options, report).mesh;
     }
     return {document.describe(id), std::move(mesh), {}, {}, set};
@@ -58,7 +58,7 @@ void add_missing_tangents(MapModel& model, Report& report) {
     for (MapModelPart& part : model.parts) {
         if (has_tangents(part) || part.mesh.texcoords.empty()) continue;
         FrameOptions options;
-        options.tangents = TangentMode::mikktspace;
+        options.tangents = TangentMethod::mikktspace;
         part.mesh = with_frames(std::move(part.mesh), options, report).mesh;
     }
 }

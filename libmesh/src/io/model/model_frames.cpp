@@ -52,8 +52,8 @@ void add_material_notes(const GltfDocument& document, GltfPrimitiveId id, Framed
 }
 
 /// Reports tangents without normals, which glTF requires to ignore.
-void report_ignored(const Mesh& mesh, std::size_t index, TangentMode tangents, Report& report) {
-    if (!mesh.normals.empty() || mesh.tangents.empty() || tangents != TangentMode::keep) return;
+void report_ignored(const Mesh& mesh, std::size_t index, TangentMethod tangents, Report& report) {
+    if (!mesh.normals.empty() || mesh.tangents.empty() || tangents != TangentMethod::keep) return;
     if (mesh.texcoords.empty()) return;  // with_frames() reports that they are removed.
     report.add("tangents without normals", "primitive", index,
                "are ignored, as glTF requires, and recomputed");
@@ -61,12 +61,12 @@ void report_ignored(const Mesh& mesh, std::size_t index, TangentMode tangents, R
 
 /// Returns how to treat the tangents of a primitive without texture coordinates. Existing tangents
 /// are kept if their normals are kept.
-TangentMode without_texcoords(const Mesh& mesh, std::size_t index, const FrameOptions& options,
-                              const char* what, Report& report) {
+TangentMethod without_texcoords(const Mesh& mesh, std::size_t index, const FrameOptions& options,
+                                const char* what, Report& report) {
     const bool are_kept =
         !mesh.tangents.empty() && !mesh.normals.empty() && options.normals == NormalMode::keep;
     report.add(what, "primitive", index, are_kept ? "keeps its tangents" : "gets no tangents");
-    return are_kept ? TangentMode::keep : TangentMode::none;
+    return are_kept ? TangentMethod::keep : TangentMethod::none;
 }
 
 /// Computes the frames of a primitive and records the outcome in `part`.
@@ -81,9 +81,9 @@ FramedMesh framed_part(Mesh mesh, const FrameOptions& options, FramedPart& part)
         part.normal_mode = options.normals;
     const bool has_new_tangents =
         computes_tangents(options.tangents) ||
-        (options.tangents == TangentMode::keep && part.normal_mode != NormalMode::keep);
-    part.tangent_mode =
-        computes_tangents(options.tangents) ? options.tangents : TangentMode::mikktspace;
+        (options.tangents == TangentMethod::keep && part.normal_mode != NormalMode::keep);
+    part.tangent_method =
+        computes_tangents(options.tangents) ? options.tangents : TangentMethod::mikktspace;
 
     FramedMesh framed = with_frames(std::move(mesh), options, part.report);
     part.normals_by_area = framed.normals_by_area;

@@ -112,7 +112,7 @@ FramedMesh JoinedPrimitives::with_new_tangents(FramedMesh part, const FramedMesh
         }
     }
     FramedMesh framed =
-        with_frames(std::move(part.mesh), {.tangents = TangentMode::mikktspace}, report);
+        with_frames(std::move(part.mesh), {.tangents = TangentMethod::mikktspace}, report);
     for (std::uint32_t& source : framed.source_vertex)
         source = part.source_vertex[source];
     return framed;

@@ -435,7 +435,7 @@ void process_and_compare(const std::filesystem::path& file, const std::filesyste
         FrameOptions options;
         options.normals = normals;
         options.if_missing = NormalMode::flat;
-        options.tangents = mesh.texcoords.empty() ? TangentMode::none : TangentMode::mikktspace;
+        options.tangents = mesh.texcoords.empty() ? TangentMethod::none : TangentMethod::mikktspace;
         const FramedMesh framed = with_frames(mesh, options, report);
         document.set_frames(id, framed);
         const Mesh stored = document.mesh(id);

@@ -420,7 +420,7 @@ TEST_F(GltfRoundTrip, ProcessingChangesFramesAndNothingElseAtAnyCorner) {
             const Mesh mesh = document.mesh(id);
             const FrameOptions options{
                 NormalMode::flat, NormalMode::flat,
-                mesh.texcoords.empty() ? TangentMode::none : TangentMode::mikktspace};
+                mesh.texcoords.empty() ? TangentMethod::none : TangentMethod::mikktspace};
             document.set_frames(id, with_frames(mesh, options, report_), options, report_);
         }
         document.write(out);
@@ -483,7 +483,7 @@ TEST_F(GltfValidator, ProcessedModelsHaveNoNewErrorsOrWarnings) {
                 FrameOptions options;
                 options.normals = count % 2 == 0 ? NormalMode::angle : NormalMode::flat;
                 options.tangents =
-                    mesh.texcoords.empty() ? TangentMode::none : TangentMode::mikktspace;
+                    mesh.texcoords.empty() ? TangentMethod::none : TangentMethod::mikktspace;
                 document.set_frames(id, with_frames(mesh, options, report_), options, report_);
             }
             const auto out = folder_ / fmt::format("{}.glb", count++);
@@ -508,7 +508,7 @@ TEST_F(GltfValidator, MadeDocumentsAreValid) {
         MeshFile file = read_mesh(objects / name, report_);
         FrameOptions options;
         options.tangents =
-            file.mesh.texcoords.empty() ? TangentMode::none : TangentMode::mikktspace;
+            file.mesh.texcoords.empty() ? TangentMethod::none : TangentMethod::mikktspace;
         file.mesh = with_frames(std::move(file.mesh), options, report_).mesh;
         const auto out = folder_ / fmt::format("{}.glb", count++);
         GltfDocument::from_mesh(file).write(out);

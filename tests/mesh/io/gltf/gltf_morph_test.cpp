@@ -66,18 +66,18 @@ class GltfMorph : public testing::Test {
         return root_["accessors"].size() - 1;
     }
     /// Processes the primitive of the document and reads the written file.
-    GltfContents processed(NormalMode normals, TangentMode tangents) {
+    GltfContents processed(NormalMode normals, TangentMethod tangents) {
         root_["buffers"] = {{{"byteLength", buffer_.size()}}};
         write_gltf_file(in_, root_, buffer_);
         process(in_, normals, tangents);
         return read_gltf(out_, report_);
     }
-    void process(const std::filesystem::path& file, NormalMode normals, TangentMode tangents) {
+    void process(const std::filesystem::path& file, NormalMode normals, TangentMethod tangents) {
         GltfDocument document = GltfDocument::read(file, report_);
         for (const GltfPrimitiveId id : document.triangle_primitives()) {
             FrameOptions options{normals, NormalMode::flat, tangents};
             const Mesh mesh = document.mesh(id);
-            if (mesh.texcoords.empty()) options.tangents = TangentMode::none;
+            if (mesh.texcoords.empty()) options.tangents = TangentMethod::none;
             const FramedMesh framed = with_frames(mesh, options, report_);
             vertices_ = document.set_frames(id, framed, options, report_);
         }
@@ -98,7 +98,7 @@ std::vector<glm::vec3> vectors(const GltfContents& contents, const json& accesso
 }
 
 TEST_F(GltfMorph, FlatNormalsOfADisplacedShapeSplitWhatIsFlatAtRest) {
-    const GltfContents written = processed(NormalMode::flat, TangentMode::none);
+    const GltfContents written = processed(NormalMode::flat, TangentMethod::none);
     // At rest, both triangles share all normals. In the displaced shape, the second one is tilted.
     EXPECT_EQ(vertices_, 6U);
     const Json& made = written.root["meshes"][0]["primitives"][0];
@@ -120,7 +120,7 @@ TEST_F(GltfMorph, FlatNormalsOfADisplacedShapeSplitWhatIsFlatAtRest) {
 }
 
 TEST_F(GltfMorph, AveragedNormalsOfADisplacedShapeNeedNoSplit) {
-    const GltfContents written = processed(NormalMode::area, TangentMode::none);
+    const GltfContents written = processed(NormalMode::area, TangentMethod::none);
     EXPECT_EQ(vertices_, 4U);
     const Json& made = written.root["meshes"][0]["primitives"][0];
     const auto moved = vectors(written, made["targets"][0]["NORMAL"]);
@@ -136,13 +136,13 @@ TEST_F(GltfMorph, AveragedNormalsOfADisplacedShapeNeedNoSplit) {
 TEST_F(GltfMorph, ATargetWithoutNormalsGetsNoneWhereItsPrimitiveHadThem) {
     // The author keeps the normals.
     primitive()["attributes"]["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0, 1, 0)));
-    GltfContents written = processed(NormalMode::area, TangentMode::mikktspace);
+    GltfContents written = processed(NormalMode::area, TangentMethod::mikktspace);
     json after = written.root["meshes"][0]["primitives"][0]["targets"][0];
     EXPECT_FALSE(after.contains("NORMAL"));
     EXPECT_TRUE(after.contains("TANGENT"));  // The input has none.
     // If the target has displacements of normals, they are recomputed.
     target()["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(7, 7, 7)));
-    written = processed(NormalMode::area, TangentMode::none);
+    written = processed(NormalMode::area, TangentMethod::none);
     after = written.root["meshes"][0]["primitives"][0]["targets"][0];
     EXPECT_EQ(vectors(written, after["NORMAL"])[1], glm::vec3(0.0F));
     EXPECT_FALSE(after.contains("TANGENT"));
@@ -151,11 +151,11 @@ TEST_F(GltfMorph, ATargetWithoutNormalsGetsNoneWhereItsPrimitiveHadThem) {
 TEST_F(GltfMorph, WhatIsKeptIsKeptInTheTargetsToo) {
     primitive()["attributes"]["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0, 0, 1)));
     target()["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0.5F, 0, 0)));
-    GltfContents written = processed(NormalMode::keep, TangentMode::keep);
+    GltfContents written = processed(NormalMode::keep, TangentMethod::keep);
     EXPECT_EQ(written.root, read_gltf(in_, report_).root);
     // With new tangents only, normals stay, and the tangents of the target belong to its displaced
     // normals.
-    written = processed(NormalMode::keep, TangentMode::mikktspace);
+    written = processed(NormalMode::keep, TangentMethod::mikktspace);
     const Json& made = written.root["meshes"][0]["primitives"][0];
     EXPECT_EQ(vectors(written, made["targets"][0]["NORMAL"])[2], glm::vec3(0.5F, 0, 0));
     const auto rest =
@@ -173,7 +173,7 @@ TEST_F(GltfMorph, WhatIsKeptIsKeptInTheTargetsToo) {
 TEST_F(GltfMorph, WhatOnlyTheDisplacedShapeShowsIsReported) {
     // The last corner moves onto the diagonal, so the second triangle has no area.
     target()["POSITION"] = accessor<glm::vec3>({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0.5F, -0.5F, 0}});
-    processed(NormalMode::flat, TangentMode::none);
+    processed(NormalMode::flat, TangentMethod::none);
     ASSERT_EQ(report_.findings().size(), 1U);
     EXPECT_EQ(report_.findings()[0].kind, "degenerate triangle, in a morph target");
     EXPECT_EQ(report_.findings()[0].element, "morph target");
@@ -191,7 +191,7 @@ TEST_F(GltfMorph, HandednessThatATargetCannotTurnIsReported) {
     primitive()["indices"] = accessor<std::uint8_t>({0, 1, 2, 3, 4, 5});
     target()["POSITION"] =
         accessor<glm::vec3>({{9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-    const GltfContents written = processed(NormalMode::area, TangentMode::mikktspace);
+    const GltfContents written = processed(NormalMode::area, TangentMethod::mikktspace);
     EXPECT_EQ(report_.count("tangents of other handedness in a morph target"), 1U);
     const Json& attributes = written.root["meshes"][0]["primitives"][0]["attributes"];
     EXPECT_EQ(float_elements<glm::vec4>(written, attributes["TANGENT"])[3].w, 1.0F);
@@ -216,7 +216,7 @@ TEST_F(GltfMorph, RealTargetsHaveTheFramesOfTheirShapesAtEveryCorner) {
         if (!std::filesystem::exists(file)) continue;
         for (const NormalMode normals : {NormalMode::flat, NormalMode::angle}) {
             SCOPED_TRACE(file);
-            process(file, normals, TangentMode::none);
+            process(file, normals, TangentMethod::none);
             const GltfContents written = read_gltf(out_, report_);
             const GltfDocument document = GltfDocument::read(out_, report_);
             for (const GltfPrimitiveId id : document.triangle_primitives()) {
@@ -227,7 +227,7 @@ TEST_F(GltfMorph, RealTargetsHaveTheFramesOfTheirShapesAtEveryCorner) {
                     const auto moved = vectors(written, made["targets"][i]["NORMAL"]);
                     Report ignored;
                     const Mesh shape = with_frames(displaced(written, made, i, rest),
-                                                   {normals, normals, TangentMode::none}, ignored)
+                                                   {normals, normals, TangentMethod::none}, ignored)
                                            .mesh;
                     for (std::size_t t = 0; t < rest.triangles.size(); ++t) {
                         for (int k = 0; k < 3; ++k) {

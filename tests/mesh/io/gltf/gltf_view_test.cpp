@@ -103,7 +103,7 @@ TEST_F(GltfViewTest, TextureTransformsTurnTangentsAsTheyTurnTheImage) {
     const auto framed = [](Mesh mesh) {
         Report report;
         mesh.tangents.clear();
-        return with_frames(std::move(mesh), {.tangents = TangentMode::mikktspace}, report).mesh;
+        return with_frames(std::move(mesh), {.tangents = TangentMethod::mikktspace}, report).mesh;
     };
     const std::vector<std::pair<Mesh, GltfTextureTransform>> cases = {
         // An undistorted image allows any rotation; otherwise, only scales and mirrors.
