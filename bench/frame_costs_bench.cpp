@@ -29,10 +29,7 @@ double median(const Contender& contender, std::size_t elements) {
     return time_statistics(contender.nanoseconds).median / static_cast<double>(elements);
 }
 
-using TangentFunction = std::vector<glm::vec4> (*)(std::span<const glm::vec3>,
-                                                   std::span<const glm::vec3>,
-                                                   std::span<const glm::vec2>,
-                                                   std::span<const glm::uvec3>, Report&);
+using TangentFunction = decltype(&mikktspace_tangents);
 
 struct Method {
     const char* name;

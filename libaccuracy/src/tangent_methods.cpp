@@ -105,9 +105,7 @@ CornerTangents exact_tangents(const TexturedMesh& ground_truth) {
 
 namespace {
 
-using TangentFunction = CornerTangents (*)(std::span<const glm::vec3>, std::span<const glm::vec3>,
-                                           std::span<const glm::vec2>, std::span<const glm::uvec3>,
-                                           Report&);
+using TangentFunction = decltype(&mikktspace_tangents);
 
 TangentFrameMethod stored(const char* name, TangentFunction function) {
     return {name, [function](const Mesh& mesh) {

@@ -16,6 +16,7 @@
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
+#include "relief/mesh/tangents.h"
 
 namespace relief::test {
 
@@ -39,9 +40,7 @@ using ReferenceTangent =
 /// A function that computes a tangent for every corner.
 struct NamedTangentMethod {
     std::string name;  ///< The name that options use.
-    std::vector<glm::vec4> (*call)(std::span<const glm::vec3>, std::span<const glm::vec3>,
-                                   std::span<const glm::vec2>, std::span<const glm::uvec3>,
-                                   Report&);
+    decltype(&mikktspace_tangents) call;
 };
 
 /// Builds a row: MeshCase(...).checked(...).normals(...).
