@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A function per mesh, except for simple ones. The tables at the end list all meshes.
-// Tests: tests/tools/conformance_kit_test.cpp.
+// Tests: tests/tools/conformance_test.cpp.
 #include "kit_meshes.h"
 
 #include <algorithm>

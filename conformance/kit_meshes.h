@@ -4,7 +4,7 @@
 ///
 /// Object space, triangles, normals and texture coordinates (upper left origin, v down). The meshes
 /// are computed from formulas and pseudo-random numbers, independently of relief's normals and
-/// tangents. Tests: tests/tools/conformance_kit_test.cpp.
+/// tangents. Tests: tests/tools/conformance_test.cpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -4,7 +4,7 @@
 ///
 /// Object space. Values are computed in double and rounded once. Random numbers are those of
 /// std::mt19937 without a standard distribution, so that they are the same on all machines.
-/// Tests: tests/tools/conformance_kit_test.cpp.
+/// Tests: tests/tools/conformance_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the meshes of the conformance kit into a folder: relief-make-conformance-kit FOLDER. Every
 // run writes the same bytes. Exit codes: 0 done, 1 failed, 2 wrong usage.
-// Tests: tests/tools/conformance_kit_test.cpp.
+// Tests: tests/tools/conformance_test.cpp.
 #include <fmt/format.h>
 
 #include <bit>

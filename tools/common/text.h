@@ -2,7 +2,7 @@
 /// \file
 /// Formats numbers, sizes, times and findings, prints the lines of summaries, and adds the options
 /// --report and --strict.
-/// Tests: tests/tools/text_test.cpp, relief_mesh_test.cpp, relief_bake_test.cpp.
+/// Tests: tests/tools/text_test.cpp, relief_mesh_test.cpp, relief_bake_bump_test.cpp.
 #pragma once
 
 #include <cstdint>
