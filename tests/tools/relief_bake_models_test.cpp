@@ -364,7 +364,7 @@ TEST(ModelPairs, PartsAreNamedByTheirObjectsElseByTheirFiles) {
     const MapModel low = model({"a_low", "b_low", "A_LOW"});
     const MapModel a = model({"one", "two"}), b = model({"x", "b_high"});
     const std::vector<NamedModel> high = {{"dir/a_high.obj", &a}, {"a-high-2.obj", &b}};
-    const ModelPairs pairs = pair_models(high, {"low.obj", &low}, MatchChoice::automatic);
+    const ModelPairs pairs = pair_models(high, {"low.obj", &low}, PartMatching::automatic);
     ASSERT_EQ(pairs.pairs.size(), 2U);
     EXPECT_EQ(pairs.pairs[0].name, "a");
     EXPECT_THAT(pairs.pairs[0].low, ElementsAre(0, 2));
@@ -373,28 +373,28 @@ TEST(ModelPairs, PartsAreNamedByTheirObjectsElseByTheirFiles) {
     EXPECT_THAT(pairs.pairs[0].high[2].triangles, ElementsAre(0));
     EXPECT_EQ(pairs.pairs[1].name, "b");
     EXPECT_THAT(pairs.pairs[1].low, ElementsAre(1));
-    EXPECT_TRUE(pair_models(high, {"low.obj", &low}, MatchChoice::all).pairs.empty());
+    EXPECT_TRUE(pair_models(high, {"low.obj", &low}, PartMatching::all).pairs.empty());
 }
 
 TEST(ModelPairs, PartsWithoutACounterpartAreSeenByAllRefusedOrCounted) {
     const MapModel low = model({"a_low", "b_low", "c"}), full = model({"a_low", "b_low"});
     const MapModel high = model({"a_high", "b_high", "floor"}), some = model({"a_high"});
     const std::vector<NamedModel> all = {{"h.obj", &high}}, one = {{"h.obj", &some}};
-    const ModelPairs automatic = pair_models(all, {"l.obj", &full}, MatchChoice::automatic);
+    const ModelPairs automatic = pair_models(all, {"l.obj", &full}, PartMatching::automatic);
     EXPECT_THAT(automatic.pairs, IsEmpty());
     EXPECT_THAT(automatic.unpaired, ElementsAre("parts without a name"));
-    EXPECT_THAT(pair_models(one, {"l.obj", &full}, MatchChoice::automatic).unpaired,
+    EXPECT_THAT(pair_models(one, {"l.obj", &full}, PartMatching::automatic).unpaired,
                 ElementsAre("b"));
-    const ModelPairs named = pair_models(all, {"l.obj", &full}, MatchChoice::name);
+    const ModelPairs named = pair_models(all, {"l.obj", &full}, PartMatching::name);
     EXPECT_EQ(named.pairs.size(), 2U);
     EXPECT_EQ(named.report.count("high part without a low one"), 1U);
     EXPECT_EQ(test::message_of<FileError>([&] {
-                  pair_models(all, {"l.obj", &low}, MatchChoice::name);
+                  pair_models(all, {"l.obj", &low}, PartMatching::name);
               }),
               "l.obj: 1 of its parts has no high part of the same name: c (name them X_low and "
               "X_high, or use --match all)");
     EXPECT_EQ(test::message_of<FileError>([&] {
-                  pair_models(one, {"l.obj", &low}, MatchChoice::name);
+                  pair_models(one, {"l.obj", &low}, PartMatching::name);
               }),
               "l.obj: 2 of its parts have no high part of the same name: c, b_low (name them X_low "
               "and X_high, or use --match all)");

@@ -353,9 +353,9 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
                "--cage, the distance to the cage.")
         .group(group);
     add_choice(app, "--match", request.match,
-               Choices<MatchChoice>{{"auto", MatchChoice::automatic},
-                                    {"name", MatchChoice::name},
-                                    {"all", MatchChoice::all}},
+               Choices<PartMatching>{{"auto", PartMatching::automatic},
+                                     {"name", PartMatching::name},
+                                     {"all", PartMatching::all}},
                "High parts that each low part sees: name selects parts with the same object or "
                "file name (X_low sees X_high), all selects all parts, and auto selects by name if "
                "every part has a counterpart. Default: auto.")

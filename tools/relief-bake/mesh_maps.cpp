@@ -244,8 +244,8 @@ BakeRecord record_of(const MeshBakeRequest& request) {
     add_number("--offset", request.bake.offset);
     add_number("--max-distance", request.bake.max_distance);
     if (request.bake.back_faces == BackFaces::take) record["--back-faces"] = "take";
-    if (request.match != MatchChoice::automatic)
-        record["--match"] = request.match == MatchChoice::name ? "name" : "all";
+    if (request.match != PartMatching::automatic)
+        record["--match"] = request.match == PartMatching::name ? "name" : "all";
     if (request.bake.placement.repeat) record["--outside"] = "repeat";
     if (request.map.dither) record["--dither"] = name_of(*request.map.dither, dither_choices());
     return record;

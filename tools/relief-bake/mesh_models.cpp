@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "common/text.h"
 #include "relief/mesh/bake_matching.h"
@@ -18,93 +17,17 @@
 namespace relief::tools {
 namespace {
 
-// Pairs of parts by name.
-
-/// An object of a part: its names, and its triangles, counted in the part.
-struct PartObject {
-    std::size_t model = 0;
-    std::size_t part = 0;
-    BakePartName name;
-    std::vector<std::uint32_t> triangles;
-
-    [[nodiscard]] const std::string& shown_name() const {
-        return name.object.empty() ? name.file : name.object;
-    }
-};
-
-/// Appends the objects of a model that have triangles.
-void add_objects(const NamedModel& model, std::size_t index, std::vector<PartObject>& objects) {
-    const std::string stem = model.file.stem().string();
-    for (std::size_t i = 0; i < model.model->parts.size(); ++i) {
-        const MapModelPart& part = model.model->parts[i];
-        std::vector<PartObject> of_part;
-        for (const std::string& name : part.objects)
-            of_part.push_back({index, i, {name, stem}, {}});
-        if (of_part.empty()) of_part.push_back({index, i, {"", stem}, {}});
-        for (std::uint32_t t = 0; t < part.mesh.triangles.size(); ++t)
-            of_part[part.object_of.empty() ? 0 : part.object_of[t]].triangles.push_back(t);
-        std::erase_if(of_part, [](const PartObject& object) { return object.triangles.empty(); });
-        std::ranges::move(of_part, std::back_inserter(objects));
-    }
-}
-
-std::vector<BakePartName> names_of(const std::vector<PartObject>& objects) {
-    std::vector<BakePartName> names;
-    for (const PartObject& object : objects)
-        names.push_back(object.name);
-    return names;
-}
-
-/// Returns whether the objects of a low model have several pair names; otherwise there is nothing
-/// to pair.
-bool has_several_names(const NamedModel& low) {
-    std::set<std::string> names;
-    for (const MapModelPart& part : low.model->parts) {
-        for (const std::string& object : part.objects) {
-            if (const auto name = pair_name(object, BakeSide::low)) names.insert(*name);
-        }
-    }
-    return names.size() > 1;
-}
-
-/// \throws FileError if a low part has no counterpart
-void require_counterparts(const std::filesystem::path& file,
-                          const std::vector<BakeNameGroup>& groups,
-                          const std::vector<PartObject>& low) {
+/// \throws FileError if low parts have no counterpart
+void require_counterparts(const std::filesystem::path& file, std::vector<std::string> unmatched) {
     constexpr std::size_t max_named = 4;
-    std::vector<std::string> alone;
-    for (const BakeNameGroup& group : groups) {
-        if (group.is_pair()) continue;
-        for (const std::size_t object : group.low)
-            alone.push_back(low[object].shown_name());
-    }
-    if (alone.empty()) return;
-    const std::size_t count = alone.size();
-    alone.resize(std::min(count, max_named));
+    if (unmatched.empty()) return;
+    const std::size_t count = unmatched.size();
+    unmatched.resize(std::min(count, max_named));
     throw failure(file,
                   fmt::format("{} of its parts {} no high part of the same name: {}{}", count,
-                              count == 1 ? "has" : "have", fmt::join(alone, ", "),
+                              count == 1 ? "has" : "have", fmt::join(unmatched, ", "),
                               count > max_named ? ", ..." : ""),
                   "name them X_low and X_high, or use --match all");
-}
-
-/// The names without a counterpart, if there are also names with one.
-std::vector<std::string> unpaired_names(const std::vector<BakeNameGroup>& groups) {
-    if (std::ranges::none_of(groups, &BakeNameGroup::is_pair)) return {};
-    std::vector<std::string> names;
-    for (const BakeNameGroup& group : groups) {
-        if (!group.is_pair())
-            names.push_back(group.name.empty() ? "parts without a name" : group.name);
-    }
-    return names;
-}
-
-/// The index of the first triangle of each part in the joined model.
-std::vector<std::uint32_t> first_triangles(const MapModel& model) {
-    std::vector<std::uint32_t> first = {0};
-    for (const MapModelPart& part : model.parts)
-        first.push_back(first.back() + static_cast<std::uint32_t>(part.mesh.triangles.size()));
-    return first;
 }
 
 // Reading.
@@ -180,42 +103,10 @@ void add_textures(const MeshBakeRequest& request, const std::vector<MapAppearanc
 }  // namespace
 
 ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low,
-                       MatchChoice choice) {
-    if (choice == MatchChoice::all || (choice == MatchChoice::automatic && !has_several_names(low)))
-        return {};
-    std::vector<PartObject> high_objects, low_objects;
-    for (std::size_t i = 0; i < high.size(); ++i)
-        add_objects(high[i], i, high_objects);
-    add_objects(low, 0, low_objects);
-    const std::vector<BakeNameGroup> groups =
-        group_by_pair_name(names_of(high_objects), names_of(low_objects));
-    ModelPairs result;
-    if (choice == MatchChoice::automatic && !std::ranges::all_of(groups, &BakeNameGroup::is_pair)) {
-        result.unpaired = unpaired_names(groups);
-        return result;
-    }
-    require_counterparts(low.file, groups, low_objects);
-    const std::vector<std::uint32_t> first = first_triangles(*low.model);
-    for (const BakeNameGroup& group : groups) {
-        ModelPair pair{group.name, {}, {}};
-        for (const std::size_t i : group.high) {
-            PartObject& object = high_objects[i];
-            pair.high.push_back({object.model, object.part, std::move(object.triangles)});
-        }
-        for (const std::size_t i : group.low) {
-            for (const std::uint32_t triangle : low_objects[i].triangles)
-                pair.low.push_back(first[low_objects[i].part] + triangle);
-        }
-        std::ranges::sort(pair.low);
-        if (group.is_pair()) {
-            result.pairs.push_back(std::move(pair));
-            continue;
-        }
-        for (const HighPiece& piece : pair.high)
-            result.report.add("high part without a low one", "part", piece.part,
-                              "is not seen by any low part");
-    }
-    return result;
+                       PartMatching matching) {
+    ModelPairs pairs = pair_parts(high, low, matching);
+    require_counterparts(low.file, pairs.unmatched_low);
+    return pairs;
 }
 
 const Image* HighTextures::image(const std::filesystem::path& file, ImageUse use) {

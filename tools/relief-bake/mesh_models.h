@@ -17,46 +17,16 @@
 #include "common/text.h"
 #include "mesh_request.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/bake_matching.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
 
 // Models.
 
-/// A file and its parts.
-struct NamedModel {
-    std::filesystem::path file;
-    const MapModel* model = nullptr;
-};
-
-/// Triangles of one part of a high model.
-struct HighPiece {
-    std::size_t model = 0;
-    std::size_t part = 0;
-    std::vector<std::uint32_t> triangles;
-};
-
-/// The high and low triangles with one name.
-struct ModelPair {
-    std::string name;
-    std::vector<HighPiece> high;
-    std::vector<std::uint32_t> low;  ///< Triangles of the joined low model, ascending.
-};
-
-struct ModelPairs {
-    std::vector<ModelPair> pairs;  ///< Sorted by name; empty: every low part sees all high parts.
-    Report report;                 ///< High parts that no low part sees.
-    /// The names without a counterpart that prevent automatic pairs.
-    std::vector<std::string> unpaired;
-};
-
-/// Pairs parts by name (pair_name() in bake_matching.h). A part is named by its object (glTF: node;
-/// OBJ: o, else g) if that has a pair name, else by its file.
-///
-/// automatic: pairs parts if the low model has several names and every part on both sides has a
-/// counterpart. name: every low part must have a counterpart; high parts without one are counted.
-/// \throws FileError naming low parts without a counterpart
-ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low, MatchChoice choice);
+/// Pairs parts by pair_parts(). \throws FileError naming low parts without a counterpart
+ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low,
+                       PartMatching matching);
 
 /// The textures of the high models, decoded.
 class HighTextures {

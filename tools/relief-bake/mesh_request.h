@@ -13,14 +13,12 @@
 
 #include "commands.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/bake_matching.h"
 #include "relief/mesh/error_stats.h"
 
 namespace relief::tools {
 
 enum class Background { flat, transparent };
-
-/// The high parts that each low part sees.
-enum class MatchChoice { automatic, name, all };
 
 /// The samples of a texel.
 struct SampleChoice {
@@ -84,7 +82,7 @@ struct MeshBakeRequest {
     /// texture coordinates.
     BakeOptions bake = default_bake();
     std::optional<double> max_missed;  ///< In percent of the covered texels.
-    MatchChoice match = MatchChoice::automatic;
+    PartMatching match = PartMatching::automatic;
     SampleChoice samples;
     std::optional<double> sample_angle;  ///< In degrees.
     bool fills_to_border = false;        ///< Instead of the padding.

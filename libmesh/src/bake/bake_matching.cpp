@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups parts by name, explains boxes that do not fit, and estimates missed texels.
+// Pairs parts by name, explains boxes that do not fit, and estimates missed texels.
 #include "relief/mesh/bake_matching.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 #include <string_view>
 
 namespace relief {
@@ -115,6 +117,118 @@ MissedEstimate estimate_missed(const Baker& baker, const BakeMapOptions& map) {
     return {reduced.width, reduced.height,
             baker.bake(
                 reduced, [](const BakedRows&) {}, unused)};
+}
+
+namespace {
+
+/// An object of a part: its names, and its triangles, counted in the part.
+struct PartObject {
+    std::size_t model = 0;
+    std::size_t part = 0;
+    BakePartName name;
+    std::vector<std::uint32_t> triangles;
+
+    [[nodiscard]] const std::string& shown_name() const {
+        return name.object.empty() ? name.file : name.object;
+    }
+};
+
+/// Appends the objects of a model that have triangles.
+void add_objects(const NamedModel& model, std::size_t index, std::vector<PartObject>& objects) {
+    const std::string stem = model.file.stem().string();
+    for (std::size_t i = 0; i < model.model->parts.size(); ++i) {
+        const MapModelPart& part = model.model->parts[i];
+        std::vector<PartObject> of_part;
+        for (const std::string& name : part.objects)
+            of_part.push_back({index, i, {name, stem}, {}});
+        if (of_part.empty()) of_part.push_back({index, i, {"", stem}, {}});
+        for (std::uint32_t t = 0; t < part.mesh.triangles.size(); ++t)
+            of_part[part.object_of.empty() ? 0 : part.object_of[t]].triangles.push_back(t);
+        std::erase_if(of_part, [](const PartObject& object) { return object.triangles.empty(); });
+        std::ranges::move(of_part, std::back_inserter(objects));
+    }
+}
+
+std::vector<BakePartName> names_of(const std::vector<PartObject>& objects) {
+    std::vector<BakePartName> names;
+    for (const PartObject& object : objects)
+        names.push_back(object.name);
+    return names;
+}
+
+/// Returns whether the objects of a low model have several pair names; otherwise there is nothing
+/// to pair.
+bool has_several_names(const NamedModel& low) {
+    std::set<std::string> names;
+    for (const MapModelPart& part : low.model->parts) {
+        for (const std::string& object : part.objects) {
+            if (const auto name = pair_name(object, BakeSide::low)) names.insert(*name);
+        }
+    }
+    return names.size() > 1;
+}
+
+/// The names without a counterpart, if there are also names with one.
+std::vector<std::string> unpaired_names(const std::vector<BakeNameGroup>& groups) {
+    if (std::ranges::none_of(groups, &BakeNameGroup::is_pair)) return {};
+    std::vector<std::string> names;
+    for (const BakeNameGroup& group : groups) {
+        if (!group.is_pair())
+            names.push_back(group.name.empty() ? "parts without a name" : group.name);
+    }
+    return names;
+}
+
+/// The index of the first triangle of each part in the joined model.
+std::vector<std::uint32_t> first_triangles(const MapModel& model) {
+    std::vector<std::uint32_t> first = {0};
+    for (const MapModelPart& part : model.parts)
+        first.push_back(first.back() + static_cast<std::uint32_t>(part.mesh.triangles.size()));
+    return first;
+}
+
+}  // namespace
+
+ModelPairs pair_parts(std::span<const NamedModel> high, const NamedModel& low,
+                      PartMatching matching) {
+    if (matching == PartMatching::all ||
+        (matching == PartMatching::automatic && !has_several_names(low)))
+        return {};
+    std::vector<PartObject> high_objects, low_objects;
+    for (std::size_t i = 0; i < high.size(); ++i)
+        add_objects(high[i], i, high_objects);
+    add_objects(low, 0, low_objects);
+    const std::vector<BakeNameGroup> groups =
+        group_by_pair_name(names_of(high_objects), names_of(low_objects));
+    ModelPairs result;
+    if (matching == PartMatching::automatic &&
+        !std::ranges::all_of(groups, &BakeNameGroup::is_pair)) {
+        result.unpaired = unpaired_names(groups);
+        return result;
+    }
+    const std::vector<std::uint32_t> first = first_triangles(*low.model);
+    for (const BakeNameGroup& group : groups) {
+        ModelPair pair{group.name, {}, {}};
+        for (const std::size_t i : group.high) {
+            PartObject& object = high_objects[i];
+            pair.high.push_back({object.model, object.part, std::move(object.triangles)});
+        }
+        for (const std::size_t i : group.low) {
+            for (const std::uint32_t triangle : low_objects[i].triangles)
+                pair.low.push_back(first[low_objects[i].part] + triangle);
+        }
+        std::ranges::sort(pair.low);
+        if (group.is_pair()) {
+            result.pairs.push_back(std::move(pair));
+            continue;
+        }
+        for (const std::size_t i : group.low)
+            result.unmatched_low.push_back(low_objects[i].shown_name());
+        for (const HighPiece& piece : pair.high)
+            result.report.add("high part without a low one", "part", piece.part,
+                              "is not seen by any low part");
+    }
+    return result;
 }
 
 }  // namespace relief

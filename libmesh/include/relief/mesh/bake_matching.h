@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +15,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/model.h"
 
 namespace RELIEF_API relief {
 
@@ -44,6 +47,47 @@ struct BakeNameGroup {
 /// Groups parts by pair name. \return the groups, sorted by name
 std::vector<BakeNameGroup> group_by_pair_name(std::span<const BakePartName> high,
                                               std::span<const BakePartName> low);
+
+/// The high parts that each low part sees.
+enum class PartMatching {
+    automatic,  ///< By name if the low model has several names and all parts have counterparts.
+    name,       ///< By name.
+    all,        ///< All high parts.
+};
+
+/// A file and its parts.
+struct NamedModel {
+    std::filesystem::path file;
+    const MapModel* model = nullptr;
+};
+
+/// Triangles of one part of a high model.
+struct HighPiece {
+    std::size_t model = 0;
+    std::size_t part = 0;
+    std::vector<std::uint32_t> triangles;
+};
+
+/// The high and low triangles with one name.
+struct ModelPair {
+    std::string name;
+    std::vector<HighPiece> high;
+    std::vector<std::uint32_t> low;  ///< Triangles of the joined low model, ascending.
+};
+
+struct ModelPairs {
+    std::vector<ModelPair> pairs;  ///< Sorted by name; empty: every low part sees all high parts.
+    Report report;                 ///< High parts that no low part sees.
+    /// The names without a counterpart that prevent automatic pairs.
+    std::vector<std::string> unpaired;
+    /// With PartMatching::name, the low parts without a counterpart, which are in no pair.
+    std::vector<std::string> unmatched_low;
+};
+
+/// Pairs parts by pair_name(). A part is named by its object (glTF: node; OBJ: o, else g) if that
+/// has a pair name, else by its file. High parts without a counterpart are counted.
+ModelPairs pair_parts(std::span<const NamedModel> high, const NamedModel& low,
+                      PartMatching matching);
 
 /// Returns the likely cause of models that do not fit, as a question or a remark: different units,
 /// a different up axis, or a missing transform. Empty if the boxes show none.
