@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// The installed library: examples build against a moved tree and print correct numbers, and
+// programs need only the third parties of their components.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "relief/version.h"
+#include "support/shared_data.h"
+#include "tools/run_program.h"
+
+namespace relief::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string build_folder = RELIEF_BUILD_FOLDER;
+const std::string compiler = RELIEF_COMPILER;
+const std::string abi_version =
+    std::to_string(RELIEF_VERSION_MAJOR) + "." + std::to_string(RELIEF_VERSION_MINOR);
+
+/// Runs a line in a shell without the variables that name folders of relief.
+ProgramResult run_clean(const std::string& line, const std::filesystem::path& folder) {
+    return run_program(
+        {"/usr/bin/env", "-u", "RELIEF_MODULE_DIR", "-u", "RELIEF_SHADER_DIR", "sh", "-c", line},
+        folder);
+}
+
+void expect_success(const std::string& line, const std::filesystem::path& folder) {
+    const ProgramResult result = run_clean(line, folder);
+    ASSERT_EQ(result.exit_code, 0) << line << "\n" << result.out << result.error;
+}
+
+/// Configures a project in folder/build.
+void configure(const std::string& source, const std::string& options,
+               const std::filesystem::path& folder) {
+    expect_success("cmake -G Ninja -S '" + source + "' -B build -DCMAKE_CXX_COMPILER='" + compiler +
+                       "' " + options,
+                   folder);
+}
+
+/// Returns the shared libraries that a file names, without those of the compiler and the C library.
+std::set<std::string> needed_libraries(const std::filesystem::path& file) {
+    const std::string table =
+        run_clean("readelf -d '" + file.string() + "'", file.parent_path()).out;
+    static const std::regex entry(R"(NEEDED.*\[(lib\w+)[^\]]*\])");
+    std::set<std::string> names;
+    for (std::sregex_iterator at(table.begin(), table.end(), entry), end; at != end; ++at)
+        names.insert((*at)[1]);
+    for (const char* name : {"libstdc", "libm", "libgcc_s", "libc", "libpthread", "libdl"})
+        names.erase(name);
+    return names;
+}
+
+/// Returns the numbers in the line that begins with `start`.
+std::vector<double> numbers_after(const std::string& output, const std::string& start) {
+    std::istringstream lines(output);
+    std::vector<double> numbers;
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with(start)) continue;
+        static const std::regex number(R"(-?\d+(\.\d+)?)");
+        const std::string rest = line.substr(start.size());
+        for (std::sregex_iterator at(rest.begin(), rest.end(), number), end; at != end; ++at)
+            numbers.push_back(std::stod(at->str()));
+    }
+    return numbers;
+}
+
+/// The installed tree, moved after the installation, and the examples built against it.
+class Installed : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        folder = std::make_unique<TemporaryDirectory>();
+        expect_success("cmake --install '" + build_folder + "' --prefix '" +
+                           (*folder / "first").string() + "'",
+                       folder->path());
+        if (HasFailure()) return;
+        std::filesystem::rename(*folder / "first", tree());
+        configure((source_directory() / "examples").string(),
+                  "-DCMAKE_PREFIX_PATH='" + tree().string() + "'", folder->path());
+        if (!HasFailure()) expect_success("cmake --build build", folder->path());
+    }
+    static void TearDownTestSuite() { folder.reset(); }
+
+    static std::filesystem::path tree() { return *folder / "moved"; }
+    static std::string output_of(const std::string& example) {
+        const ProgramResult result = run_clean("build/" + example, folder->path());
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return result.out;
+    }
+
+    static std::unique_ptr<TemporaryDirectory> folder;
+};
+std::unique_ptr<TemporaryDirectory> Installed::folder;
+
+TEST_F(Installed, NormalsAndTangentsFollowTheWave) {
+    const std::string output = output_of("normals_and_tangents");
+    // The wave's slope is -0.2 pi; between vertices at a distance of 1/32 it is 0.6 % less.
+    const double slope = 3.2 * std::sin(2.0 * M_PI / 32.0);
+    const double length = std::sqrt(1.0 + slope * slope);
+    const std::vector<double> normal = numbers_after(output, "normal");
+    const std::vector<double> tangent = numbers_after(output, "tangent");
+    ASSERT_EQ(normal.size(), 3) << output;
+    ASSERT_EQ(tangent.size(), 4) << output;
+    EXPECT_NEAR(normal[0], slope / length, 2e-4);
+    EXPECT_NEAR(normal[1], 0.0, 2e-4);
+    EXPECT_NEAR(normal[2], 1.0 / length, 2e-4);
+    EXPECT_NEAR(tangent[0], 1.0 / length, 2e-4);
+    EXPECT_NEAR(tangent[2], -slope / length, 2e-4);
+    EXPECT_EQ(tangent[3], 1.0);
+}
+
+TEST_F(Installed, TheHeightMapBecomesItsSlope) {
+    const std::string output = output_of("height_map_to_normal_map");
+    // (-1, 0, 2) / sqrt(5) as codes: 255 (n + 1) / 2, rounded up at the half.
+    EXPECT_EQ(numbers_after(output, "texel"), (std::vector<double>{70, 128, 242})) << output;
+    EXPECT_NEAR(numbers_after(output, "slope").at(0), 0.5, 0.01);
+    EXPECT_LT(numbers_after(output, "error").at(0), 0.4);  // half a code of 8 bits, twice
+    EXPECT_EQ(numbers_after(output, "findings"), std::vector<double>{0});
+}
+
+TEST_F(Installed, TheBakeHasTheSlopesOfTheWave) {
+    const std::string output = output_of("bake_in_memory");
+    const std::vector<double> counts = numbers_after(output, "baked");
+    EXPECT_EQ(counts, (std::vector<double>{128 * 128, 0, 128 * 128})) << output;
+    const std::vector<double> slopes = numbers_after(output, "steepest slope");
+    ASSERT_EQ(slopes.size(), 2);
+    EXPECT_NEAR(slopes[1], 0.08 * M_PI, 1e-4);
+    EXPECT_NEAR(slopes[0] / slopes[1], 1.0, 0.02);  // Texels average over one 32nd of a wave.
+}
+
+TEST_F(Installed, TheCheckFindsGreenDown) {
+    const std::string output = output_of("check_normal_map");
+    EXPECT_THAT(output, HasSubstr("tangent-space normals: yes\n"));
+    EXPECT_THAT(output, HasSubstr("green: down\n"));
+    EXPECT_GT(numbers_after(output, "confidence:").at(0), 0.99);
+    EXPECT_NEAR(numbers_after(output, "mean length:").at(0), 1.0, 0.01);
+}
+
+TEST_F(Installed, TheRenderedSphereFacesTheLight) {
+    const std::string output = output_of("render_to_memory");
+    for (const double channel : numbers_after(output, "center"))
+        EXPECT_NEAR(channel, 0.5, 0.005) << output;  // The facets have an angle of a few degrees.
+    const double covered = numbers_after(output, "covered").at(0);
+    EXPECT_GT(covered, 0.6);
+    EXPECT_LT(covered, M_PI / 4.0);
+}
+
+TEST_F(Installed, TheExplanationNamesWhatIsNeeded) {
+    const std::string output = output_of("explain_effects");
+    EXPECT_THAT(output, HasSubstr("\non  directional lights: "));
+    EXPECT_THAT(output, HasSubstr("\noff emission: "));
+    EXPECT_THAT(output, HasSubstr("\noff normal map: "));
+}
+
+TEST_F(Installed, ComponentsNeedOnlyTheirThirdParties) {
+    const std::set<std::string> mesh = {"libfmt", "libtbb"};
+    EXPECT_EQ(needed_libraries(*folder / "build/normals_and_tangents"), mesh);
+    EXPECT_EQ(needed_libraries(*folder / "build/height_map_to_normal_map"), mesh);
+    std::set<std::string> bake = mesh;
+    bake.insert("libembree3");
+    EXPECT_EQ(needed_libraries(*folder / "build/bake_in_memory"), bake);
+}
+
+TEST_F(Installed, ToolsAndProgramsFindTheModuleInTheMovedTree) {
+    const std::string tools = tree().string() + "/bin/";
+    EXPECT_EQ(run_clean(tools + "relief-mesh --version", folder->path()).out,
+              "relief-mesh " RELIEF_VERSION "\n");
+    const std::string heights = (source_directory() / "data/bricks-height.png").string();
+    expect_success(tools + "relief-bake bump '" + heights + "' map.tif --quiet", folder->path());
+    EXPECT_THAT(run_clean("build/check_normal_map map.tif", folder->path()).out,
+                HasSubstr("green: up\n"));
+}
+
+TEST_F(Installed, PkgConfigNamesTheSameProgram) {
+    const std::string example = (source_directory() / "examples/normals_and_tangents.cpp").string();
+    expect_success("PKG_CONFIG_PATH='" + tree().string() +
+                       "/lib/pkgconfig' && export PKG_CONFIG_PATH && '" + compiler +
+                       "' -std=c++20 '" + example +
+                       "' -o by_pkg_config $(pkg-config --cflags --libs relief-mesh)",
+                   folder->path());
+    EXPECT_EQ(run_clean("./by_pkg_config", folder->path()).out, output_of("normals_and_tangents"));
+}
+
+TEST_F(Installed, HeadersAndShadersAreInTheTree) {
+    for (const char* header : {"relief/mesh/frames.h", "relief/shade/renderer.h",
+                               "relief/accuracy/asset.h", "relief/version.h", "relief/export.h"})
+        EXPECT_TRUE(std::filesystem::exists(tree() / "include" / header)) << header;
+    EXPECT_TRUE(std::filesystem::exists(tree() / "share/relief/shaders/phong.glsl"));
+}
+
+// A project adds the sources with the mesh component as a shared library. One file is compiled;
+// building all takes minutes.
+TEST(AddedFolder, GivesTheMeshComponentAlone) {
+    const TemporaryDirectory folder;
+    std::filesystem::create_directory(folder / "engine");
+    std::ofstream(folder / "engine/CMakeLists.txt")
+        << "cmake_minimum_required(VERSION 3.25)\nproject(engine LANGUAGES C CXX)\n"
+        << "set(BUILD_SHARED_LIBS ON)\nset(RELIEF_COMPONENTS mesh)\nset(RELIEF_PCH OFF)\n"
+        << "add_subdirectory(" << source_directory().string() << " relief)\n"
+        << "add_executable(engine " << source_directory().string()
+        << "/examples/normals_and_tangents.cpp)\n"
+        << "target_link_libraries(engine PRIVATE relief::mesh)\n"
+        << "if(CMAKE_BUILD_TYPE OR CMAKE_CXX_FLAGS OR CMAKE_RUNTIME_OUTPUT_DIRECTORY)\n"
+        << "  message(FATAL_ERROR \"relief changes its parent\")\nendif()\n"
+        << "foreach(target relief_files relief-mesh relief_test_support)\n"
+        << "  if(TARGET ${target})\n    message(FATAL_ERROR \"${target}\")\n  "
+           "endif()\nendforeach()\n";
+    configure("engine", "", folder.path());
+    if (HasFailure()) return;
+    expect_success(
+        "cmake --build build -- relief/libmesh/CMakeFiles/relief_mesh.dir/src/base/report.cpp.o",
+        folder.path());
+    const std::string commands = run_clean("ninja -C build -t commands engine", folder.path()).out;
+    EXPECT_THAT(commands, HasSubstr("-Wl,-soname,librelief_mesh.so." + abi_version + " "));
+    EXPECT_THAT(commands, testing::Not(HasSubstr("libmesh/src/io/")));
+}
+
+// A shared library of the objects of the static one, which are position independent.
+TEST(SharedMesh, ExportsWhatPublicHeadersDeclare) {
+    const TemporaryDirectory folder;
+    const std::string library = (folder / "librelief_mesh.so").string();
+    expect_success("'" + compiler + "' -shared -Wl,--no-undefined -Wl,--whole-archive '" +
+                       build_folder + "/libmesh/librelief_mesh.a' -Wl,--no-whole-archive -o '" +
+                       library + "' -lfmt -ltbb",
+                   folder.path());
+    if (HasFailure()) return;
+    EXPECT_EQ(needed_libraries(library), (std::set<std::string>{"libfmt", "libtbb"}));
+    const std::string symbols =
+        run_clean("nm -DC --defined-only '" + library + "'", folder.path()).out;
+    EXPECT_THAT(symbols, HasSubstr("T relief::vertex_normals("));
+    EXPECT_THAT(symbols, testing::Not(HasSubstr("relief::sum_contributions(")));
+    const std::string source = source_directory().string();
+    expect_success(
+        "'" + compiler + "' -std=c++20 -I '" + source + "/libmesh/include' '" + source +
+            "/examples/normals_and_tangents.cpp' -o engine -L. -lrelief_mesh -Wl,-rpath,.",
+        folder.path());
+    EXPECT_EQ(numbers_after(run_clean("./engine", folder.path()).out, "vertices"),
+              std::vector<double>{33 * 33});
+}
+
+}  // namespace
+}  // namespace relief::test
