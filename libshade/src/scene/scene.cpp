@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "portable_math.h"
 #include "relief/mesh/report.h"
@@ -129,10 +128,7 @@ void check_view(float azimuth, float elevation, float vertical_fov, float aspect
         throw InvalidInput(
             fmt::format("camera direction {}, {} is not finite", azimuth, elevation));
     }
-    if (!(vertical_fov > 0.0F && vertical_fov < std::numbers::pi_v<float>)) {
-        throw InvalidInput(
-            fmt::format("vertical field of view is {}, but must be within (0, pi)", vertical_fov));
-    }
+    check_field_of_view("", vertical_fov);
     if (!(aspect > 0.0F) || !std::isfinite(aspect)) {
         throw InvalidInput(fmt::format("aspect ratio is {}, but must be positive", aspect));
     }

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <string>
 
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
@@ -35,6 +36,10 @@ inline bool is_finite(const glm::mat4& matrix) {
     }
     return true;
 }
+
+/// Checks that a vertical field of view is within its range, without the limits.
+/// \param owner  begins the message: "camera: "
+void check_field_of_view(const std::string& owner, float vertical_fov);
 
 // Scene graphs
 

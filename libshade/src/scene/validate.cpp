@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "relief/mesh/report.h"
@@ -176,14 +175,16 @@ void validate_instance(const Scene& scene, std::size_t index) {
 
 }  // namespace
 
+void check_field_of_view(const std::string& owner, float vertical_fov) {
+    const SceneField field = field_of(&Camera::vertical_fov);
+    if (vertical_fov > field.range.min && vertical_fov < field.range.max) return;
+    throw InvalidInput(
+        fmt::format("{}{} is {}, but must be within (0, pi)", owner, field.label(), vertical_fov));
+}
+
 void validate(const Camera& camera) {
     check_finite("camera matrix", camera.world_from_view);
-    if (!(camera.vertical_fov > 0.0F && camera.vertical_fov < std::numbers::pi_v<float>)) {
-        throw InvalidInput(
-            fmt::format("camera: vertical field of view is {}, but must be within "
-                        "(0, pi)",
-                        camera.vertical_fov));
-    }
+    check_field_of_view("camera: ", camera.vertical_fov);
     if (!(camera.near > 0.0F && camera.near < camera.far && std::isfinite(camera.far))) {
         throw InvalidInput(
             fmt::format("camera: near is {} and far is {}, but must be 0 < near < "
