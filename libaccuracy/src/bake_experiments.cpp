@@ -209,14 +209,14 @@ std::vector<BakeWayResult> BumpyBake::measured(std::span<const BakeSampling> way
     // One cast serves all formats of a way, which are consecutive here.
     const std::size_t depths = formats().size();
     BakeMeasurement trial;
-    const auto timings = [&] {
-        return measure_interleaved_rounds(ways.size() * depths, options, [&](std::size_t i) {
+    const auto timings = [&](const char* group) {
+        return measure_interleaved_rounds(group, ways.size() * depths, options, [&](std::size_t i) {
             if (i % depths == 0) trial = trials_.measure(ways[i / depths], formats());
             return trial.cast_seconds + trial.code_seconds[i % depths];
         });
     };
-    const std::vector<Timing> one = on_one_thread(options, timings);
-    const std::vector<Timing> all = timings();
+    const std::vector<Timing> one = on_one_thread(options, [&] { return timings("one thread"); });
+    const std::vector<Timing> all = timings("all threads");
     for (std::size_t i = 0; i < one.size(); ++i) {
         results[i / depths].one_thread.push_back(one[i]);
         results[i / depths].all_threads.push_back(all[i]);
@@ -418,7 +418,7 @@ Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
 }  // namespace
 
 std::vector<Experiment> bake_experiments(const RunOptions& options) {
-    const std::shared_ptr<const BumpyBake> bake = computed_once(options, [&] {
+    const std::shared_ptr<const BumpyBake> bake = computed_once(options, "bake", [&] {
         return std::make_shared<const BumpyBake>(options.is_quick ? 120 : 200,
                                                  options.is_quick ? 128 : 256);
     });

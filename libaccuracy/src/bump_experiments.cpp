@@ -270,8 +270,8 @@ Experiment on_wave(int bits, const RunOptions& options) {
     measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
                     experiment);
     experiment.finding = bump_finding(experiment);
-    experiment.charts.push_back(
-        computed_once(options, [&] { return wavelength_chart(bits, side, options.is_quick); }));
+    experiment.charts.push_back(computed_once(
+        options, "chart", [&] { return wavelength_chart(bits, side, options.is_quick); }));
     return experiment;
 }
 
@@ -392,7 +392,7 @@ Experiment on_large_map(const RunOptions& options) {
     experiment.question =
         "How much time and memory does a large normal map cost, and how much do finer texels help?";
     experiment.charts.push_back(
-        computed_once(options, [&] { return resolution_chart(options.is_quick); }));
+        computed_once(options, "chart", [&] { return resolution_chart(options.is_quick); }));
     return experiment;
 }
 

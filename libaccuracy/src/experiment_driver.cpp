@@ -85,8 +85,6 @@ Curve fitted_curve(std::string method, std::vector<CurvePoint> points,
 
 void PassHistory::begin_pass() {
     ++begun_;
-    for (auto& [id, record] : records_)
-        record.next_group = record.next_result = 0;
     id_.clear();
 }
 
@@ -99,20 +97,21 @@ std::size_t PassHistory::share_of(std::size_t rounds) const {
     return rounds / passes_ + (passes_before < rounds % passes_ ? 1 : 0);
 }
 
-std::vector<Timing>& PassHistory::next_group(std::size_t methods) {
-    Record& record = records_[id_];
-    if (record.next_group == record.groups.size()) record.groups.emplace_back(methods);
-    std::vector<Timing>& group = record.groups[record.next_group++];
+std::vector<Timing>& PassHistory::group(const std::string& name, std::size_t methods) {
+    std::vector<Timing>& timings = records_[id_].groups.try_emplace(name, methods).first->second;
     // The methods of an experiment can change if OpenGL becomes unavailable.
-    if (group.size() != methods)
+    if (timings.size() != methods)
         throw std::runtime_error("an experiment times other methods than in the pass before");
-    return group;
+    return timings;
 }
 
-const std::any& PassHistory::next_result(const std::function<std::any()>& make) {
-    Record& record = records_[id_];
-    if (record.next_result == record.results.size()) record.results.push_back(make());
-    return record.results[record.next_result++];
+const std::any& PassHistory::result(const std::string& name,
+                                    const std::function<std::any()>& make) {
+    const auto known = records_[id_].results.find(name);
+    if (known != records_[id_].results.end()) return known->second;
+    // `make` may ask for other results, so the entry is added afterwards.
+    std::any made = make();
+    return records_[id_].results.insert_or_assign(name, std::move(made)).first->second;
 }
 
 std::vector<Experiment> run_in_passes(

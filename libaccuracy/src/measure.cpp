@@ -57,7 +57,8 @@ double processor_seconds_of(const std::function<void()>& work) {
 }
 
 /// \param clock  returns the wall time or the processor time of a work
-std::vector<Timing> timings(std::span<const std::function<void()>> works, const RunOptions& options,
+std::vector<Timing> timings(const std::string& group, std::span<const std::function<void()>> works,
+                            const RunOptions& options,
                             double (*clock)(const std::function<void()>&)) {
     std::vector<std::size_t> times;
     for (const std::function<void()>& work : works) {
@@ -65,7 +66,7 @@ std::vector<Timing> timings(std::span<const std::function<void()>> works, const 
         work();  // The first run fills caches and is slower.
         times.push_back(repeats_per_round(work));
     }
-    return measure_interleaved_rounds(works.size(), options, [&](std::size_t i) {
+    return measure_interleaved_rounds(group, works.size(), options, [&](std::size_t i) {
         const double seconds = clock([&] {
             for (std::size_t repeat = 0; repeat < times[i]; ++repeat)
                 works[i]();
@@ -93,11 +94,11 @@ std::vector<Timing> on_one_thread(const RunOptions& options,
 }
 
 std::vector<Timing> measure_interleaved_rounds(
-    std::size_t things, const RunOptions& options,
+    const std::string& group, std::size_t things, const RunOptions& options,
     const std::function<double(std::size_t thing)>& seconds_of_round) {
     std::vector<Timing> of_one_pass(things);
     std::vector<Timing>& timings =
-        options.earlier ? options.earlier->next_group(things) : of_one_pass;
+        options.earlier ? options.earlier->group(group, things) : of_one_pass;
     Repeats repeats = options.repeats;
     if (options.earlier) repeats.counted = options.earlier->share_of(repeats.counted);
     interleave(things, repeats, [&](std::size_t thing, bool counted) {
@@ -125,14 +126,14 @@ std::vector<Cost> measure_costs(std::span<const std::function<void()>> works,
     std::vector<Cost> costs(works.size());
     if (!options.is_timed) return costs;
     if (choice.one_thread) {
-        const std::vector<Timing> result =
-            on_one_thread(options, [&] { return timings(works, options, processor_seconds_of); });
+        const std::vector<Timing> result = on_one_thread(
+            options, [&] { return timings("one thread", works, options, processor_seconds_of); });
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].one_thread = result[i];
     }
     set_thread_limit(options.threads);
     if (choice.all_threads) {
-        const std::vector<Timing> result = timings(works, options, seconds_of);
+        const std::vector<Timing> result = timings("all threads", works, options, seconds_of);
         for (std::size_t i = 0; i < works.size(); ++i)
             costs[i].all_threads = result[i];
     }

@@ -222,7 +222,7 @@ Experiment on_case(const Case& one, const RunOptions& options) {
         "Which weighting has the smallest error on this surface ({}), and what does it cost?",
         name_of(one));
     experiment.charts.push_back(
-        computed_once(options, [&] { return cells_chart(one, options.is_quick); }));
+        computed_once(options, "chart", [&] { return cells_chart(one, options.is_quick); }));
     return experiment;
 }
 

@@ -254,12 +254,13 @@ Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) 
     if (!device.is_available_for(experiment)) return experiment;
     const Balls balls;
     const std::vector<RenderedMethod> methods = balls.methods(shown);
-    const Image ground_truth = computed_once(
-        options, [&] { return supersampled_reference(mirror_ball(balls.finest, shown), size, 1); });
+    const Image ground_truth = computed_once(options, "ground truth", [&] {
+        return supersampled_reference(mirror_ball(balls.finest, shown), size, 1);
+    });
     const std::vector<RenderedImage> pictures =
         measure_rendered(device, methods, ground_truth, options, experiment);
-    experiment.charts = {
-        computed_once(options, [&] { return roughness_chart(device, balls, options.is_quick); })};
+    experiment.charts = {computed_once(
+        options, "chart", [&] { return roughness_chart(device, balls, options.is_quick); })};
     for (const std::size_t i : {0U, 2U}) {
         experiment.pictures.push_back(
             image_pair("A rough mirror", methods[i].name, pictures[i].picture, ground_truth));

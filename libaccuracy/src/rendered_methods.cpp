@@ -86,9 +86,10 @@ double seconds_of_frames(Renderer& renderer, const Camera& camera) {
 }
 
 /// Interleaved frame times of all methods, with the driver's threads.
-std::vector<Timing> frame_timings(std::span<const std::unique_ptr<Renderer>> renderers,
+std::vector<Timing> frame_timings(const std::string& group,
+                                  std::span<const std::unique_ptr<Renderer>> renderers,
                                   const Camera& camera, const RunOptions& options) {
-    return measure_interleaved_rounds(renderers.size(), options, [&](std::size_t i) {
+    return measure_interleaved_rounds(group, renderers.size(), options, [&](std::size_t i) {
         return seconds_of_frames(*renderers[i], camera);
     });
 }
@@ -145,9 +146,9 @@ std::vector<RenderedImage> measure_rendered(const GlDevice& device,
     std::vector<Timing> one;
     if (device.context().is_software()) {
         const SingleProcessor kept;
-        if (kept.is_active()) one = frame_timings(renderers, camera, options);
+        if (kept.is_active()) one = frame_timings("one thread", renderers, camera, options);
     }
-    const std::vector<Timing> all = frame_timings(renderers, camera, options);
+    const std::vector<Timing> all = frame_timings("all threads", renderers, camera, options);
     const std::size_t first = experiment.measurements.size() - methods.size();
     for (std::size_t i = 0; i < methods.size(); ++i) {
         Cost& cost = experiment.measurements[first + i].cost;

@@ -202,8 +202,8 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
     const std::vector<RenderedMethod> methods = highlight_methods(roughness);
     const std::vector<RenderedImage> pictures =
         measure_rendered(device, methods, ground_truth, options, experiment);
-    experiment.charts = {
-        computed_once(options, [&] { return chart_of(device, options.is_quick ? 96 : size); })};
+    experiment.charts = {computed_once(
+        options, "chart", [&] { return chart_of(device, options.is_quick ? 96 : size); })};
     for (const std::size_t i : {0U, 2U}) {
         add_images("Highlights of a rough metal", methods[i], pictures[i], ground_truth, 0.5,
                    experiment);
@@ -337,11 +337,12 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
     std::vector<RenderedMethod> methods;
     for (const AliasingChoice& choice : aliasing_choices)
         methods.push_back(method_of(choice, map, distance_for(shown, size)));
-    const Image ground_truth = computed_once(
-        options, [&] { return supersampled_reference(methods.front().scene, size, rays); });
+    const Image ground_truth = computed_once(options, "ground truth", [&] {
+        return supersampled_reference(methods.front().scene, size, rays);
+    });
     const std::vector<RenderedImage> pictures =
         measure_rendered(device, methods, ground_truth, options, experiment);
-    experiment.charts = {computed_once(options, [&] {
+    experiment.charts = {computed_once(options, "chart", [&] {
         return distance_chart(device, map, options.is_quick ? size / 2 : size, rays);
     })};
     for (const std::size_t i : {0U, 4U}) {

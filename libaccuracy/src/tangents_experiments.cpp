@@ -306,7 +306,7 @@ Experiment on_case(const TexturedCase& one, const RunOptions& options) {
     experiment.question = fmt::format(
         "What is the error of the normal of a texel tilted by 30 degrees, by frame method ({})?",
         one.name);
-    experiment.charts.push_back(computed_once(options, [&] {
+    experiment.charts.push_back(computed_once(options, "chart", [&] {
         return one.triangulation ? cells_chart(one, options.is_quick) : bevels_chart();
     }));
     return experiment;

@@ -141,9 +141,10 @@ RunOptions counted_rounds(std::size_t counted) {
 
 /// An experiment whose rounds have the times that `seconds` returns.
 Experiment timed_by(const RunOptions& options, std::size_t methods,
-                    const std::function<double(std::size_t)>& seconds) {
+                    const std::function<double(std::size_t)>& seconds,
+                    const std::string& group = "rounds") {
     Experiment experiment;
-    for (const Timing& timing : measure_interleaved_rounds(methods, options, seconds)) {
+    for (const Timing& timing : measure_interleaved_rounds(group, methods, options, seconds)) {
         experiment.measurements.emplace_back().cost.one_thread = timing;
     }
     return experiment;
@@ -160,7 +161,7 @@ TEST(Passes, ShareTheRoundsAndTheLastOneHasAll) {
         run_in_passes(3, counted_rounds(7), [&](const RunOptions& options, std::size_t pass) {
             passes.push_back(pass);
             const auto next = [&](std::size_t) { return ++clock; };
-            return std::vector{timed_by(options, 2, next), timed_by(options, 1, next)};
+            return std::vector{timed_by(options, 2, next), timed_by(options, 1, next, "others")};
         });
     EXPECT_THAT(passes, ElementsAre(0, 1, 2));
     // 7 rounds are divided into 3, 2 and 2. In each pass, both methods of the first experiment
@@ -214,8 +215,9 @@ TEST(Passes, MeasuredWorkHasItsRoundsOfAllPasses) {
 TEST(Passes, WhatIsTheSameInAllIsMadeOnce) {
     int made = 0;
     const auto references_of = [&](const RunOptions& options) {
-        const int first = computed_once(options, [&] { return ++made; });
-        const std::string second = computed_once(options, [&] { return std::to_string(++made); });
+        const int first = computed_once(options, "first", [&] { return ++made; });
+        const std::string second =
+            computed_once(options, "second", [&] { return std::to_string(++made); });
         return std::to_string(first) + second;
     };
     std::string all;
@@ -225,6 +227,26 @@ TEST(Passes, WhatIsTheSameInAllIsMadeOnce) {
     });
     EXPECT_EQ(all, "12 12 12 ");
     EXPECT_EQ(references_of({}), "34") << "without passes, each time";
+}
+
+TEST(Passes, FindRoundsAndResultsByNameInAnyOrder) {
+    double clock = 0.0;
+    std::string all;
+    const std::vector<Experiment> found =
+        run_in_passes(2, counted_rounds(2), [&](const RunOptions& options, std::size_t pass) {
+            std::vector<std::string> names = {"a", "b"};
+            if (pass == 1) std::swap(names[0], names[1]);
+            std::vector<Experiment> experiments;
+            for (const std::string& name : names) {
+                all += computed_once(options, name, [&] { return name; });
+                experiments.push_back(timed_by(
+                    options, 1, [&](std::size_t) { return ++clock; }, name));
+            }
+            return experiments;
+        });
+    EXPECT_EQ(all, "abba");
+    EXPECT_THAT(rounds_of(found[0], 0), ElementsAre(2, 3));  // b
+    EXPECT_THAT(rounds_of(found[1], 0), ElementsAre(1, 4));  // a
 }
 
 TEST(Passes, OfOtherMethodsAreRefused) {

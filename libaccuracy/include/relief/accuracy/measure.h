@@ -20,12 +20,13 @@ namespace RELIEF_API relief {
 
 /// Measures several things interleaved (A B C A B C ...). All experiments use this function.
 ///
+/// \param group  names these things within their experiment, so that passes find their rounds
 /// \param options  its repeats, or the share of them that belongs to this pass (PassHistory)
 /// \param seconds_of_round  runs one round of thing `thing` and returns its time
 /// \return the times of each thing, including those of earlier passes. Cancellation is checked
 ///         before each round
 std::vector<Timing> measure_interleaved_rounds(
-    std::size_t things, const RunOptions& options,
+    const std::string& group, std::size_t things, const RunOptions& options,
     const std::function<double(std::size_t thing)>& seconds_of_round);
 
 /// Runs `measured` with parallel loops limited to one thread, and then restores options.threads.
@@ -64,9 +65,8 @@ std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
 // slower. Passes spread the rounds of each method over the whole run, so that the median ignores
 // such a second. Memory is also allocated anew in each pass, which averages effects of its layout.
 
-/// The rounds of earlier passes, by experiment. A group is a set of methods that are timed
-/// together. An experiment has the same groups in the same order in every pass; the order and the
-/// number of experiments do not matter.
+/// The rounds and results of earlier passes, by experiment and name. A group is a set of methods
+/// that are timed together.
 class PassHistory {
   public:
     /// \param passes  at least 1
@@ -75,29 +75,26 @@ class PassHistory {
     /// Starts the next pass, outside of all experiments.
     void begin_pass();
 
-    /// Selects the experiment of the following calls. Its groups and results are counted from the
-    /// first one in each pass. The empty id stands for calls outside of all experiments.
+    /// Selects the experiment of the following calls. The empty id stands for calls outside of all
+    /// experiments.
     void begin_experiment(const std::string& id);
 
     /// Returns the number of `rounds` in this pass; if they cannot be divided evenly, the first
     /// passes have one more.
     [[nodiscard]] std::size_t share_of(std::size_t rounds) const;
 
-    /// Returns the rounds of the next group, to which new ones are added. \param methods  number of
+    /// Returns the rounds of a group, to which new ones are added. \param methods  number of
     /// methods in the group
     /// \throws std::runtime_error if the previous pass had another number of methods
-    std::vector<Timing>& next_group(std::size_t methods);
+    std::vector<Timing>& group(const std::string& name, std::size_t methods);
 
-    /// Returns the result that the first pass computed at this point, in the order of calls; the
-    /// first pass computes it with `make`.
-    const std::any& next_result(const std::function<std::any()>& make);
+    /// Returns the result of this name; the first pass computes it with `make`.
+    const std::any& result(const std::string& name, const std::function<std::any()>& make);
 
   private:
     struct Record {
-        std::vector<std::vector<Timing>> groups{};
-        std::vector<std::any> results{};
-        std::size_t next_group = 0;
-        std::size_t next_result = 0;
+        std::map<std::string, std::vector<Timing>> groups{};
+        std::map<std::string, std::any> results{};
     };
 
     std::size_t passes_;
@@ -108,11 +105,12 @@ class PassHistory {
 
 /// Returns the result of `make`, which is called only in the first pass: for ground truths and
 /// curves that are slow to compute and equal in every pass.
+/// \param name  of the result, unique in its experiment
 template <typename Make>
-auto computed_once(const RunOptions& options, const Make& make) {
+auto computed_once(const RunOptions& options, const std::string& name, const Make& make) {
     using Result = decltype(make());
     if (!options.earlier) return make();
-    return std::any_cast<Result>(options.earlier->next_result([&] { return std::any(make()); }));
+    return std::any_cast<Result>(options.earlier->result(name, [&] { return std::any(make()); }));
 }
 
 /// Runs experiments several times. Each pass sees the rounds of the previous ones, so the results
