@@ -55,7 +55,7 @@ AnalyticHeights sampled_heights(int width, int height,
                 const auto [value, slope] = field({column, row});
                 const std::size_t texel = texel_at(width, column, row);
                 heights[texel] = static_cast<float>(value);
-                // Rows run downwards, the normal's y upwards.
+                // Rows run downwards, but the y axis of normals points upwards.
                 result.normals[texel] = glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0));
             }
         }
@@ -85,7 +85,7 @@ std::vector<HeightWave> tiling_waves(int width, int height, int count, double sh
         const glm::dvec2 frequency = 2.0 * std::numbers::pi * times / glm::dvec2(width, height);
         const double steepness = glm::length(frequency);
         if (steepness == 0.0 || 2.0 * std::numbers::pi / steepness < shortest) continue;
-        // A sine's slope has the mean square (amplitude * frequency)^2 / 2.
+        // The mean square of the slope of a sine is (amplitude * frequency)^2 / 2.
         const double amplitude = rms_slope * std::sqrt(2.0 / count) / steepness;
         waves.push_back({amplitude, frequency, random.between(0.0, 2.0 * std::numbers::pi)});
     }
@@ -135,7 +135,7 @@ constexpr int waves_in_all = 24;
 
 using FieldFunction = std::function<HeightSample(const glm::dvec2&)>;
 
-/// Waves of any length: they do not tile.
+/// Waves of any length, which do not tile.
 std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
     Random random(recipe.seed);
     std::vector<HeightWave> waves;
@@ -152,7 +152,7 @@ std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
     return waves;
 }
 
-/// Bumps (1 - r^2)^3 in the cells of a lattice that goes into the size, of random heights.
+/// Bumps (1 - r^2)^3 of random heights in the cells of a lattice that divides the size.
 FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 size(width, height);
     const glm::dvec2 cells = glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
@@ -161,7 +161,7 @@ FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
     return [=](const glm::dvec2& place) -> HeightSample {
         const glm::dvec2 index = glm::floor(place / cell);
         Random random(recipe.seed + static_cast<std::uint32_t>(index.x + index.y * cells.x));
-        // rms slope of the shape is about the height over the radius.
+        // The RMS slope of the shape is about its height divided by its radius.
         const double peak = recipe.rms_slope * radius * random.between(0.5, 1.5);
         const glm::dvec2 from_center = place - (index + 0.5) * cell;
         const double inside = 1.0 - glm::dot(from_center, from_center) / (radius * radius);
@@ -171,7 +171,7 @@ FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
     };
 }
 
-/// Roofs along both axes: slopes of one size, and ridges between texels.
+/// Roofs along both axes with equal slopes and ridges between texels.
 FieldFunction creases(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 size(width, height);
     const glm::dvec2 period = size / glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
@@ -184,7 +184,7 @@ FieldFunction creases(int width, int height, const FieldRecipe& recipe) {
     };
 }
 
-/// Level ground whose height follows a long wave in stairs, with gentle waves on top.
+/// Level ground whose height follows a long wave in steps, with gentle waves added.
 FieldFunction terraces(int width, int height, const FieldRecipe& recipe) {
     const std::vector<HeightWave> shape =
         tiling_waves(width, height, 6, 2.0 * recipe.shortest, 1.0, recipe.seed);
@@ -199,7 +199,7 @@ FieldFunction terraces(int width, int height, const FieldRecipe& recipe) {
         HeightSample result = evaluate_waves(ground, place);
         const double own = level(place);
         result.height += wall * own;
-        // Where a neighbor is on another level, there is a wall in between, and no normal.
+        // A texel whose neighbor is on another level is beside a wall and has no normal.
         for (const glm::dvec2& step :
              {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1)}) {
             if (level(place + step) != own)
@@ -209,7 +209,7 @@ FieldFunction terraces(int width, int height, const FieldRecipe& recipe) {
     };
 }
 
-/// Long waves everywhere, short ones where a smooth mask of x lets them.
+/// Long waves everywhere, and short ones weighted by a smooth mask along x.
 FieldFunction mixed(int width, int height, const FieldRecipe& recipe) {
     const double longest = std::max(width, height);
     const std::vector<HeightWave> wide =
@@ -258,7 +258,7 @@ void add_noise(std::span<float> heights, const FieldRecipe& recipe) {
         height = static_cast<float>(static_cast<double>(height) + recipe.noise * random.normal());
 }
 
-/// The heights with 11 bits each, as half floats have; exponents of half are not looked at.
+/// Rounds heights to the 11 bits of half floats; the range of their exponents is ignored.
 void round_to_half(std::span<float> heights) {
     for (float& height : heights) {
         int exponent = 0;
@@ -267,7 +267,7 @@ void round_to_half(std::span<float> heights) {
     }
 }
 
-/// Codes of 8 bits told as others.
+/// Converts codes of 8 bits by a function.
 template <typename Code>
 Image recoded(const Image& codes, int bits, int (*recode)(int)) {
     Image result = make_image(codes.width, codes.height, 1, bits, ColorSpace::data);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters (s, t) in [0,1]^2 to a point, its normal and how it moves with them; the random
-// numbers are a generator of our own, since those of the standard library's distributions differ
-// between libraries. Tests: tests/accuracy/ground_truth_test.cpp.
+// Maps parameters (s, t) in [0,1]^2 to a point, its normal and its derivatives. The random numbers
+// are relief's own, because the distributions of standard libraries differ. Tests:
+// tests/accuracy/ground_truth_test.cpp.
 #include "relief/accuracy/ground_truth.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ struct SurfacePoint {
     glm::dvec3 along_t;
 };
 
-/// Where a surface runs back into itself when a parameter does.
+/// A surface by its parameters; it may be closed along each of them.
 struct Parametrised {
     std::function<SurfacePoint(double s, double t)> at;
     bool s_closes;
@@ -34,7 +34,7 @@ struct Parametrised {
 };
 
 SurfacePoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
-    // The poles, where triangles do not keep their shape when they shrink, are left out.
+    // The poles are omitted, because triangles there do not keep their shape when they shrink.
     constexpr double from_pole = 0.15 * std::numbers::pi;
     constexpr double pole_to_pole = std::numbers::pi - 2.0 * from_pole;
     const double polar = from_pole + t * pole_to_pole;
@@ -61,7 +61,7 @@ SurfacePoint on_torus(double s, double t) {
                 (std::cos(across) * glm::dvec3(0.0, 0.0, 1.0) - std::sin(across) * out)};
 }
 
-/// z = the sum of c[i][j] x^i y^j.
+/// The surface z = sum of c[i][j] x^i y^j.
 struct Cubic {
     std::array<std::array<double, 4>, 4> c{};
 
@@ -84,7 +84,7 @@ struct Cubic {
     }
 };
 
-/// \param lowest  degree of the terms there are: 1 slopes, 2 is level at the origin
+/// \param lowest  the lowest degree of a term: with 2 the surface is level at the origin
 Cubic random_cubic(Random& random, int lowest, double size) {
     Cubic cubic;
     for (int i = 0; i < 4; ++i) {
@@ -135,21 +135,22 @@ bool runs_clockwise(AnalyticSurface surface) {
     return surface == AnalyticSurface::sphere || surface == AnalyticSurface::ellipsoid;
 }
 
-/// How far points move, in cells.
+/// The maximum offset of points, in cells.
 double jitter_of(Triangulation triangulation) {
     switch (triangulation) {
         case Triangulation::regular:
             return 0.0;
         case Triangulation::jittered:
         case Triangulation::anisotropic:
-            return 0.24;  // As far as no cell stops being convex.
+            return 0.24;  // With larger offsets, cells would not stay convex.
         case Triangulation::folded:
             break;
     }
     return 0.6;
 }
 
-/// Cells, and the vertices that they are between: as many, or one more where nothing closes.
+/// The numbers of cells and vertices along both parameters. A closed direction has as many vertices
+/// as cells, an open one has one more.
 struct Grid {
     int columns;
     int rows;
@@ -165,7 +166,7 @@ Grid grid_of(Triangulation triangulation, int cells) {
     return {columns, rows, columns + 1, rows + 1};
 }
 
-/// Two triangles a cell, along a diagonal drawn at random where there is a generator.
+/// Adds two triangles per cell; with a generator, their diagonal is random.
 void add_cells(Mesh& mesh, const Grid& grid, Random* random) {
     for (int r = 0; r < grid.rows; ++r) {
         for (int c = 0; c < grid.columns; ++c) {
@@ -201,7 +202,7 @@ glm::dvec2 texcoord_at(TextureLayout layout, const glm::dvec2& parameters) {
     return {s, 1.0 - t};
 }
 
-/// From how the parameters change with u and v: the layouts' equations solved for s and t.
+/// Computes the frame from the derivatives by s and t and the equations of the texture layouts.
 SurfaceFrame frame_of(const SurfacePoint& point, TextureLayout layout, double s) {
     glm::dvec3 along_u = point.along_s;
     const glm::dvec3 up = point.along_t;
@@ -254,12 +255,12 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
     for (int r = 0; r < grid.down; ++r) {
         for (int c = 0; c < grid.across; ++c) {
             const bool inner = c > 0 && c < grid.columns && r > 0 && r < grid.rows;
-            // The line along which the image is mirrored is one of edges.
+            // The image is mirrored along edges.
             const bool stays = layout == TextureLayout::mirrored && 2 * c == grid.columns;
             const double move_s = inner && !stays ? random.between(-jitter, jitter) : 0.0;
             const double move_t = inner ? random.between(-jitter, jitter) : 0.0;
             const glm::dvec2 place((c + move_s) / grid.columns, (r + move_t) / grid.rows);
-            // The two sides of a seam are at the very same place.
+            // Both sides of a seam have the same position.
             const SurfacePoint point = where.at(where.s_closes && c == grid.columns ? 0.0 : place.x,
                                                 where.t_closes && r == grid.rows ? 0.0 : place.y);
             result.mesh.positions.emplace_back(point.position);
@@ -317,7 +318,8 @@ Mesh cubic_fan(int valence, std::uint32_t seed) {
     Random random(seed);
     const Cubic cubic = random_cubic(random, 2, 1.0);
     std::vector<double> angles;
-    // Drawn again until no gap is half a turn: the vertex must be inside of its neighbors.
+    // Directions are drawn again until no gap reaches 180 degrees, so that neighbors surround the
+    // vertex.
     for (bool closed = false; !closed;) {
         angles.clear();
         for (int i = 0; i < valence; ++i)

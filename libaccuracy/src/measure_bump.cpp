@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ways to convert a height map, run in turns on the map or on parts of it: stored normals are read
-// back and compared with the reference, in degrees; times are of all parts together. A bad map
-// throws. Tests: tests/accuracy/measure_bump_test.cpp.
+// Converts a height map, or parts of it, by all methods in interleaved rounds. The stored normals
+// are decoded and compared with the reference in degrees. A time is that of all parts together.
+// Tests: tests/accuracy/measure_bump_test.cpp.
 #include "relief/accuracy/measure_bump.h"
 
 #include <fmt/format.h>
@@ -19,19 +19,21 @@
 namespace relief {
 namespace {
 
-/// De-staircasing is for maps with fewer bits than this: the steps of more are nowhere to be seen.
+/// Only maps with fewer bits than this are de-staircased, because the steps of others are
+/// invisible.
 constexpr int fine_bits = 13;
 constexpr Kernel all_kernels[] = {
     Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3,   Kernel::scharr3,
     Kernel::sobel5,  Kernel::scharr5,  Kernel::central5, Kernel::central7, Kernel::gaussian};
 
-/// What conversions are tried on.
+/// The input of all conversions.
 struct Trial {
     std::vector<Image> heights;
-    std::vector<Image> smooth;  ///< De-staircased; empty if no method wants it.
+    std::vector<Image> smooth;  ///< De-staircased; empty if no method needs it.
     std::vector<std::vector<glm::dvec3>> ground_truth;
     BumpOptions bump;
-    int margin = 0;  ///< Texels along the border that are not compared: there, parts are no maps.
+    int margin =
+        0;  ///< Texels along the border that are not compared, because parts lack neighbors.
 
     [[nodiscard]] std::int64_t texels() const {
         std::int64_t sum = 0;
@@ -68,7 +70,7 @@ std::vector<glm::dvec3> vectors_of(const Image& normals) {
     return vectors;
 }
 
-/// Angles between what is stored and the truth, of the texels that count.
+/// Adds the angles between the stored normals and the ground truth, without those of the margin.
 void add_angles(const Image& map, const NormalMapFormat& format,
                 const std::vector<glm::dvec3>& ground_truth, int margin,
                 std::vector<float>& angles) {
@@ -151,8 +153,8 @@ void convert_parts(const Trial& trial, const BumpMethod& method, const NormalMap
                                format_of(method, format), maps[part], ignored);
 }
 
-/// Adds the times of so many rounds. In each, steps are smoothed away first, once for all methods
-/// that want it: their times then drift with the machine as those of the others do.
+/// Measures the times. Each round smooths the steps first, once for all methods that need it, so
+/// that their times share the drift of the machine with the others.
 void take_times(std::span<const BumpMethod> methods, const Trial& trial,
                 const BumpExperimentOptions& options, BumpExperiment& experiment) {
     const std::size_t smoothings = is_any_destaircased(methods) ? 1 : 0;
@@ -166,7 +168,7 @@ void take_times(std::span<const BumpMethod> methods, const Trial& trial,
             return;
         }
         const std::size_t i = turn - smoothings;
-        // Whatever shape the memory had last, it fits from here on.
+        // The first run allocates the maps, which are reused by the timed run.
         convert_parts(trial, methods[i], options.format, maps);
         const double seconds =
             seconds_of([&] { convert_parts(trial, methods[i], options.format, maps); });
@@ -182,7 +184,7 @@ void take_times(std::span<const BumpMethod> methods, const Trial& trial,
     }
 }
 
-/// Runs all methods on a trial that has its truth.
+/// Runs all methods on a trial with a ground truth.
 void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
                      const BumpExperimentOptions& options, BumpExperiment& experiment) {
     experiment.measurements.resize(methods.size());
@@ -208,7 +210,7 @@ double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
 
 double nominal_cost(const BumpMethod& method) {
     const GradientKernel kernel = gradient_kernel(method.kernel, method.gaussian_radius);
-    // Both slopes: a multiplication and two additions for each difference and each smoothed pair.
+    // Both slopes need a multiplication and two additions for each difference and smoothed pair.
     const double operations =
         6.0 * static_cast<double>(kernel.differences.size() + kernel.smoothing.size());
     return 1e6 * method.bits + (method.destaircased ? 1e5 : 0.0) +
