@@ -28,7 +28,7 @@ class RunTests : public testing::Test {
             R"({{"case_seconds": {}, "environment": {{"RUN_TESTS_SAMPLE_MARK": "{}"}},
                  "programs": [{{"name": "sample", "path": "{}", "label": "unit",
                                 "patterns": {{"slow": ["SlowOnes.*"], "alone": ["SharedFixture.First"],
-                                              "gl": ["Crash.*"]}}}}]}})",
+                                              "gl": ["Crash.*", "Renamed.*"]}}}}]}})",
             case_seconds, (build_ / "mark").string(), RELIEF_RUN_TESTS_SAMPLE);
     }
 
@@ -62,6 +62,10 @@ TEST_F(RunTests, CountsCasesAndKeepsResults) {
     EXPECT_THAT(results(),
                 HasSubstr(R"(<testsuite name="sample" tests="5" failures="1" skipped="1")"));
     EXPECT_THAT(results(), HasSubstr("the reason"));
+}
+
+TEST_F(RunTests, WarnsOfPatternsThatNoCaseFits) {
+    EXPECT_EQ(run("--list").error, "run-tests: warning: sample: no case fits GL Renamed.*\n");
 }
 
 TEST_F(RunTests, ReportsTheCaseThatCrashedAndRunsTheOthers) {

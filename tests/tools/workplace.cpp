@@ -55,6 +55,16 @@ void Workplace::write_bricks(const fs::path& name) const {
     write_image(folder_ / name, part);
 }
 
+void Workplace::shrink_bricks() const {
+    fs::remove(folder_ / "data");
+    fs::create_directory(folder_ / "data");
+    for (const auto& entry : fs::directory_iterator(source_directory() / "data")) {
+        const fs::path name = entry.path().filename();
+        if (name != "bricks-height.png") fs::create_symlink(entry.path(), folder_ / "data" / name);
+    }
+    write_bricks("data/bricks-height.png");
+}
+
 std::string Workplace::outputs() const {
     std::set<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder_ / "out"))

@@ -39,6 +39,9 @@ class Workplace {
     /// takes eight times as long.
     void write_bricks(const std::filesystem::path& name) const;
 
+    /// Puts that part in the place of data/bricks-height.png.
+    void shrink_bricks() const;
+
     /// All that stands in out/, sorted, by name: no half or temporary file escapes.
     [[nodiscard]] std::string outputs() const;
 

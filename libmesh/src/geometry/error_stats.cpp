@@ -17,15 +17,26 @@
 namespace relief {
 namespace {
 
-/// Returns the smallest value that `percent` of 100 of the values do not exceed. It reorders the
-/// values.
-double percentile(std::vector<float>& values, std::size_t percent) {
-    const std::size_t rank = (values.size() * percent + 99) / 100;
-    const auto place =
-        values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
-}
+/// Percentiles of values, in ascending order: each search begins at the last result, because no
+/// value below it is larger. They reorder the values.
+class Percentiles {
+  public:
+    explicit Percentiles(std::vector<float>& values) : values_(values), begin_(values.begin()) {}
+
+    /// Returns the smallest value that `percent` of 100 of the values do not exceed.
+    double next(std::size_t percent) {
+        const std::size_t rank = (values_.size() * percent + 99) / 100;
+        const auto place =
+            values_.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+        std::nth_element(begin_, place, values_.end());
+        begin_ = place;
+        return *place;
+    }
+
+  private:
+    std::vector<float>& values_;
+    std::vector<float>::iterator begin_;
+};
 
 }  // namespace
 
@@ -58,9 +69,10 @@ ErrorStats error_stats(std::vector<float> errors) {
     stats.rms = moments.rms();
     stats.mean = moments.mean();
     stats.max = moments.max();
-    stats.median = percentile(errors, 50);
-    stats.p90 = percentile(errors, 90);
-    stats.p99 = percentile(errors, 99);
+    Percentiles percentiles(errors);
+    stats.median = percentiles.next(50);
+    stats.p90 = percentiles.next(90);
+    stats.p99 = percentiles.next(99);
     return stats;
 }
 
