@@ -43,7 +43,7 @@ TEST(Interruption, LeavesTheOldFileAndNothingElseAndDiesByTheSignal) {
           std::pair{"out/normals.png", SIGHUP}, std::pair{"out/normals.tif", SIGINT}}) {
         place.write(name, "old");
         const ProgramResult result = run_program_until(
-            {"relief-bake", "bump", "heights.png", name}, place / ".",
+            {"relief-bake", "bump", "heights.png", name, "--kernel", "sobel3"}, place / ".",
             [&] { return is_writing(place / "out"); }, signal);
         EXPECT_EQ(result.exit_code, 128 + signal) << result.error;
         EXPECT_EQ(result.error, "");
@@ -73,8 +73,8 @@ TEST(Interruption, AFileThatGetsTooLargeIsAnErrorLikeAFullDisc) {
     write_noise(place / "heights.png", 500);
     for (const char* name : {"out/normals.png", "out/normals.tif"}) {
         place.write(name, "old");
-        const ProgramResult result =
-            place.run("ulimit -f 100; relief-bake bump heights.png " + std::string(name));
+        const ProgramResult result = place.run(
+            "ulimit -f 100; relief-bake bump --kernel sobel3 heights.png " + std::string(name));
         EXPECT_EQ(result.exit_code, 1);
         EXPECT_THAT(result.error, testing::StartsWith("relief-bake: error: " + std::string(name) +
                                                       ": cannot be written: "));

@@ -455,7 +455,7 @@ std::set<std::size_t> sampled_pieces(std::size_t count) {
 #elif defined(__SANITIZE_ADDRESS__)
     constexpr std::size_t max_pieces = 8;
 #else
-    constexpr std::size_t max_pieces = 24;
+    constexpr std::size_t max_pieces = 12;
 #endif
     std::set<std::size_t> pieces;
     for (std::size_t i = 0; i < max_pieces; ++i)
