@@ -2,7 +2,7 @@
 /// \file
 /// Headers of third parties and of the standard library that nearly every file includes, compiled
 /// once for each kind of target (cmake/relief.cmake: relief_precompile). Files include what they
-/// use all the same: builds with RELIEF_PCH=OFF, the debug preset's among them, have none of this.
+/// use nevertheless: builds with RELIEF_PCH=OFF, such as the debug preset, do not use this file.
 #pragma once
 
 #include <fmt/format.h>

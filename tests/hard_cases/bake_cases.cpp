@@ -96,25 +96,24 @@ std::string refusal_of(const Mesh& high, BakeOptions options = {}) {
 }
 
 HardCase self_case() {
-    return {
-        "mesh baked onto itself",
-        "A cube, a sphere and a torus as high and low mesh: every ray hits where it is, many on "
-        "edges and vertices.",
-        "rays that miss what they start on; bakers with a bias",
-        {{"bake", "flat within 0.001 degrees, no texel missed, height 0", [] {
-              for (const Mesh& mesh : {make_cube(), make_sphere(), make_torus()}) {
-                  const std::string problem = not_all(baked({mesh}, mesh), flat_normal, 0.0);
-                  if (!problem.empty()) return problem;
-              }
-              return std::string();
-          }}}};
+    return {"mesh baked onto itself",
+            "A cube, a sphere and a torus as both high and low mesh. Every ray hits "
+            "its starting point, often on an edge or vertex.",
+            "rays that miss the surface on which they start; bakers with a bias",
+            {{"bake", "flat within 0.001 degrees, no texel missed, height 0", [] {
+                  for (const Mesh& mesh : {make_cube(), make_sphere(), make_torus()}) {
+                      const std::string problem = not_all(baked({mesh}, mesh), flat_normal, 0.0);
+                      if (!problem.empty()) return problem;
+                  }
+                  return std::string();
+              }}}};
 }
 
 HardCase edges_case() {
     return {"rays on edges and vertices",
             "A square of 8 x 8 cells under a map whose texel centers lie on its diagonals.",
             "Embree#174, #181; tinybvh#168",
-            {{"bake", "one hit each, the same whatever the order of triangles", [] {
+            {{"bake", "one hit for each ray, independent of the order of triangles", [] {
                   Mesh high = moved(make_quad(8), {0, 0, 0.125F});
                   const HardBake map = baked({high}, make_quad());
                   std::reverse(high.triangles.begin(), high.triangles.end());
@@ -130,9 +129,9 @@ HardCase edges_case() {
 HardCase border_case() {
     return {
         "rays on open borders",
-        "A triangle that nothing joins onto itself: texels that only touch it have their place "
-        "exactly on its edges.",
-        "rays that slip past by the rounding of floats; dark rims",
+        "A single triangle, baked onto itself. Texels that only touch it are "
+        "sampled exactly on its edges.",
+        "rays that miss because of rounding; dark borders",
         {{"bake", "flat, height 0, no texel missed", [] {
               Mesh low;
               low.positions = {{0.31F, 0.12F, 2.03F}, {1.37F, 0.45F, 2.71F}, {0.58F, 1.19F, 1.6F}};
@@ -154,9 +153,9 @@ HardCase border_case() {
 
 HardCase needle_case() {
     return {"needles seen edge-on",
-            "A square, and above it upright triangles 1e-7 wide, between the rays.",
+            "A square, and above it vertical triangles of width 1e-7 between the rays.",
             "Embree#387",
-            {{"bake", "the square alone is hit", [] {
+            {{"bake", "only the square is hit", [] {
                   Mesh needles;
                   for (int i = 0; i < bake_side; ++i) {
                       const float x = static_cast<float>(i) / 8.0F - 1.0F;
@@ -170,8 +169,8 @@ HardCase needle_case() {
 }
 
 HardCase missed_case() {
-    return {"rays that meet nothing",
-            "The high mesh is over the left half of the low one alone.",
+    return {"rays that hit nothing",
+            "The high mesh covers only the left half of the low mesh.",
             "bakers that leave black texels",
             {{"bake", "flat; reported: 128 x texel missed by its rays",
               [] {
@@ -200,9 +199,10 @@ HardCase missed_case() {
 
 HardCase wall_case() {
     return {"far side of a thin wall",
-            "A square, and 0.3 above it a wall 0.01 thick, whose far side faces the same way.",
-            "wrong sheets in tight folds",
-            {{"bake", "the square; of two open sheets, the outer one", [] {
+            "A square, and 0.3 above it a wall of thickness 0.01 whose far side "
+            "faces the same direction.",
+            "the wrong surface in tight folds",
+            {{"bake", "the square is hit; of two open sheets, the outer one is hit", [] {
                   const Mesh own = moved(make_quad(), {0, 0, 0.05F});
                   Mesh near = moved(make_quad(), {0, 0, 0.3F});
                   for (glm::uvec3& triangle : near.triangles)
@@ -218,7 +218,7 @@ HardCase wall_case() {
 
 HardCase scale_case() {
     return {"bakes of size 1e-18 and 1e18",
-            "A torus onto itself, all its positions multiplied.",
+            "A torus with scaled positions, baked onto itself.",
             "Embree's floats, whose squares overflow",
             {{"bake", "flat within 0.001 degrees, no texel missed", [] {
                   for (const float size : {1e-18F, 1e18F}) {
@@ -238,7 +238,7 @@ HardCase broken_case() {
     return {"broken high meshes",
             "Nothing; triangles without area; vertices that are not finite, beside a valid square.",
             "crashes of ray casters",
-            {{"bake", "of nothing refused; else the square", [] {
+            {{"bake", "an empty mesh is refused; otherwise only the square is hit", [] {
                   if (refusal_of(Mesh{}) != "no surface") return std::string("nothing is taken");
                   Mesh high = make_quad();
                   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -289,9 +289,9 @@ HardCase apart_case() {
 
 HardCase unit_case() {
     return {"high mesh in another unit",
-            "A square 100 times, and a hundredth, as large as the low one.",
-            "bakers that write a map of something else",
-            {{"bake", "refused: size, unless that is allowed", [] {
+            "A square with 100 times and with a hundredth of the size of the low mesh.",
+            "bakers that write a wrong map",
+            {{"bake", "refused (size), unless allowed", [] {
                   for (const float scale : {100.0F, 0.01F}) {
                       Mesh high = make_quad();
                       for (glm::vec3& position : high.positions)
@@ -308,10 +308,10 @@ HardCase unit_case() {
 
 HardCase short_rays_case() {
     return {"rays too short for the high mesh",
-            "A square 0.5 above the low one, a triangle down to the low one's height beside it, "
-            "and rays that begin 0.25 outside.",
-            "holes without a reason",
-            {{"bake", "all missed, and 0.5 measured as the length that hits", [] {
+            "A square 0.5 above the low mesh, beside it a triangle that reaches down "
+            "to the low mesh, and rays that start at a distance of 0.25.",
+            "unexplained holes",
+            {{"bake", "all texels are missed, and 0.5 is reported as the length that hits", [] {
                   Mesh high = moved(make_quad(), {0, 0, 0.5F});
                   high.positions.insert(high.positions.end(), {{2, 0, 0}, {2, 1, 0}, {2, 0, 0.5F}});
                   high.triangles.emplace_back(4, 5, 6);
@@ -355,9 +355,10 @@ Mesh with_texcoords(Mesh mesh, float scale, const glm::vec2& by) {
 
 HardCase upright_case() {
     return {"upright walls",
-            "A cube whose texture lies on it from above, so that its walls are lines in the map.",
+            "A cube with texture coordinates projected from above, so that its walls "
+            "are lines in the map.",
             "jbake-tools#14",
-            {{"bake", "the top's own; reported: 8 x triangle without area in the image", [] {
+            {{"bake", "the map of the top; reported: 8 x triangle without area in the image", [] {
                   Mesh low = make_cube();
                   const Bounds box = bounds_of(low);
                   for (std::size_t i = 0; i < low.positions.size(); ++i) {
@@ -373,7 +374,7 @@ HardCase upright_case() {
 
 HardCase mesh_hole_case() {
     return {"high mesh with a hole",
-            "A square of 2 x 2 cells without one of them.",
+            "A square of 2 x 2 cells with one missing cell.",
             "bakers that leave black texels",
             {{"bake", "reported: 64 x texel missed by its rays", [] {
                   Mesh high = make_quad(2);
@@ -385,10 +386,10 @@ HardCase mesh_hole_case() {
 }
 
 HardCase crossing_case() {
-    return {"high mesh that passes through itself",
-            "Two squares that lean to either side and cross in the middle.",
+    return {"self-intersecting high mesh",
+            "Two inclined squares that intersect in the middle.",
             "wrong sheets",
-            {{"bake", "the outer one of the two", [] {
+            {{"bake", "the outer square is hit", [] {
                   Mesh right = make_quad(), left = make_quad();
                   for (std::size_t i = 0; i < 4; ++i) {
                       right.positions[i].z = 0.1F * right.positions[i].x;
@@ -405,9 +406,9 @@ HardCase crossing_case() {
 }
 
 HardCase coplanar_case() {
-    return {"high mesh in the low one's plane",
-            "The square itself, twice, and once more in 8 x 8 cells.",
-            "rays that start on what they should hit",
+    return {"coplanar high mesh",
+            "Two copies of the square itself, and one of 8 x 8 cells.",
+            "rays that start on the surface that they should hit",
             {{"bake", "flat within 0.001 degrees, no texel missed, height 0", [] {
                   return not_all(baked({make_quad(), make_quad(8), make_quad()}, make_quad()),
                                  flat_normal, 0.0);
@@ -415,10 +416,12 @@ HardCase coplanar_case() {
 }
 
 HardCase model_size_case() {
-    return {"high meshes far larger or smaller than the low one",
-            "A square 100000 times as large; one a thousandth as large, in the middle of a texel.",
-            "distances guessed from the high mesh",
-            {{"bake", "if allowed: all texels; one, and 255 x texel missed by its rays", [] {
+    return {"high meshes far larger or smaller than the low mesh",
+            "A square with 100000 times the size, and one with a thousandth of the "
+            "size inside a texel.",
+            "ray lengths derived from the high mesh",
+            {{"bake",
+              "if allowed: all texels are baked; one is, and 255 x texel missed by its rays", [] {
                   Mesh large = make_quad(), small = make_quad();
                   for (std::size_t i = 0; i < 4; ++i) {
                       large.positions[i] *= 1e5F;
@@ -438,8 +441,8 @@ HardCase model_size_case() {
 }
 
 HardCase fin_case() {
-    return {"high mesh that is no manifold",
-            "A square with a fin on its diagonal edge, so that three triangles meet there.",
+    return {"non-manifold high mesh",
+            "A square with a fin at its diagonal edge, which has three triangles.",
             "bakers that need closed solids",
             {{"bake", "flat within 0.001 degrees, no texel missed", [] {
                   Mesh high = make_quad();
@@ -457,34 +460,35 @@ HardCase fin_case() {
 }
 
 HardCase degenerate_case() {
-    return {"low triangles without area",
-            "The left half of the map is a square's, the right half two triangles' that are a "
-            "point.",
-            "bakers that divide by the area",
-            {{"bake", "every texel from where it is; reported: 2 x degenerate triangle", [] {
-                  Mesh low = make_quad();
-                  for (glm::vec2& texcoord : low.texcoords)
-                      texcoord.x *= 0.5F;
-                  for (int i = 0; i < 4; ++i) {
-                      low.positions.emplace_back(0, 0, 0);
-                      low.texcoords.push_back(low.texcoords[static_cast<std::size_t>(i)] +
-                                              glm::vec2(0.5F, 0));
-                  }
-                  low.normals.clear();
-                  low.tangents.clear();
-                  for (int i = 0; i < 2; ++i)
-                      low.triangles.push_back(low.triangles[static_cast<std::size_t>(i)] + 4U);
-                  const HardBake map = baked({make_quad()}, low);
-                  return says(map.result.texels_baked == bake_texels &&
-                                  map.report.count("degenerate triangle") == 2,
-                              fmt::format("{} baked, {} reported", map.result.texels_baked,
-                                          map.report.count("degenerate triangle")));
-              }}}};
+    return {
+        "low triangles without area",
+        "A square covers the left half of the map, and two triangles whose "
+        "corners coincide in space cover the right half.",
+        "bakers that divide by the area",
+        {{"bake", "all texels are baked at their position; reported: 2 x degenerate triangle", [] {
+              Mesh low = make_quad();
+              for (glm::vec2& texcoord : low.texcoords)
+                  texcoord.x *= 0.5F;
+              for (int i = 0; i < 4; ++i) {
+                  low.positions.emplace_back(0, 0, 0);
+                  low.texcoords.push_back(low.texcoords[static_cast<std::size_t>(i)] +
+                                          glm::vec2(0.5F, 0));
+              }
+              low.normals.clear();
+              low.tangents.clear();
+              for (int i = 0; i < 2; ++i)
+                  low.triangles.push_back(low.triangles[static_cast<std::size_t>(i)] + 4U);
+              const HardBake map = baked({make_quad()}, low);
+              return says(map.result.texels_baked == bake_texels &&
+                              map.report.count("degenerate triangle") == 2,
+                          fmt::format("{} baked, {} reported", map.result.texels_baked,
+                                      map.report.count("degenerate triangle")));
+          }}}};
 }
 
 HardCase nothing_low_case() {
     return {"low mesh without triangles",
-            "Vertices with texture coordinates, and nothing else.",
+            "Vertices with texture coordinates, without triangles.",
             "crashes",
             {{"bake", "an empty map", [] {
                   Mesh low = make_quad();
@@ -498,9 +502,9 @@ HardCase nothing_low_case() {
 HardCase outside_case() {
     return {
         "texture coordinates outside of the unit square",
-        "A square whose texture lies one to the right, and one down.",
+        "A square whose texture coordinates are offset by (1, 1).",
         "bakers that silently wrap or drop it",
-        {{"bake", "left out; repeating: all of it; its tile: all of it",
+        {{"bake", "not baked; with repetition: all texels; as its UDIM tile: all texels",
           [] {
               const Mesh low = with_texcoords(make_quad(), 1.0F, {1, 1});
               BakeOptions options;
@@ -514,7 +518,7 @@ HardCase outside_case() {
               options.placement = {{1, 1}, false};
               return says(left_out == 0 && repeated == bake_texels && count() == bake_texels);
           }},
-         {"tiles", "2 triangles outside of the map, and of all UDIM tiles", [] {
+         {"tiles", "reported: 2 triangles outside of the map and of all UDIM tiles", [] {
               const Mesh low = with_texcoords(make_quad(), 1.0F, {1, 1});
               for (const TileRange& range : {TileRange{}, udim_tiles}) {
                   if (tiles_of(low.texcoords, low.triangles, std::nullopt, range).outside.size() !=
@@ -526,35 +530,37 @@ HardCase outside_case() {
 }
 
 HardCase texture_overlap_case() {
-    return {"bake of charts that overlap, one of them mirrored",
-            "Two squares with the same texture; the second one's is mirrored, and it is lower.",
-            "two charts mixed texel by texel",
-            {{"bake", "the first one's; reported: 256 x texel of mirrored triangles", [] {
-                  Mesh low = moved(make_quad(), {0, 0, -1});
-                  for (glm::vec2& texcoord : low.texcoords)
-                      texcoord.x = 1.0F - texcoord.x;
-                  const Mesh upper = make_quad();
-                  const auto first = static_cast<std::uint32_t>(low.positions.size());
-                  low.positions.insert(low.positions.end(), upper.positions.begin(),
-                                       upper.positions.end());
-                  low.texcoords.insert(low.texcoords.end(), upper.texcoords.begin(),
-                                       upper.texcoords.end());
-                  low.normals.clear();
-                  low.tangents.clear();
-                  for (const glm::uvec3& triangle : upper.triangles)
-                      low.triangles.push_back(triangle + first);
-                  const HardBake map = baked({moved(make_quad(), {0, 0, 0.01F})}, low);
-                  if (map.report.count("texel of mirrored triangles") != bake_texels)
-                      return std::string("not reported");
-                  return not_all(map, flat_normal, 0.01);
-              }}}};
+    return {
+        "bake of overlapping charts, one of them mirrored",
+        "Two squares with the same texture coordinates; the second is mirrored "
+        "and lower.",
+        "maps that mix both charts",
+        {{"bake", "the map of the first square; reported: 256 x texel of mirrored triangles", [] {
+              Mesh low = moved(make_quad(), {0, 0, -1});
+              for (glm::vec2& texcoord : low.texcoords)
+                  texcoord.x = 1.0F - texcoord.x;
+              const Mesh upper = make_quad();
+              const auto first = static_cast<std::uint32_t>(low.positions.size());
+              low.positions.insert(low.positions.end(), upper.positions.begin(),
+                                   upper.positions.end());
+              low.texcoords.insert(low.texcoords.end(), upper.texcoords.begin(),
+                                   upper.texcoords.end());
+              low.normals.clear();
+              low.tangents.clear();
+              for (const glm::uvec3& triangle : upper.triangles)
+                  low.triangles.push_back(triangle + first);
+              const HardBake map = baked({moved(make_quad(), {0, 0, 0.01F})}, low);
+              if (map.report.count("texel of mirrored triangles") != bake_texels)
+                  return std::string("not reported");
+              return not_all(map, flat_normal, 0.01);
+          }}}};
 }
 
 HardCase speck_case() {
     return {"bake of a chart smaller than a texel",
-            "A square on a tenth of a texel, between the centers of all.",
-            "charts that vanish",
-            {{"bake", "one texel", [] {
+            "A square with a tenth of the size of a texel that covers no texel center.",
+            "charts that disappear",
+            {{"bake", "one texel is baked", [] {
                   const Mesh low = with_texcoords(make_quad(), 0.1F / bake_side,
                                                   glm::vec2(5.1F / bake_side, 3.1F / bake_side));
                   const HardBake map = baked({make_quad()}, low);
@@ -565,8 +571,8 @@ HardCase speck_case() {
 
 HardCase map_size_case() {
     return {"maps of 1 x 1, 3 x 17 and 16384 x 64 texels",
-            "A square onto itself.",
-            "sizes that are no power of two; bakers that stop at 8192",
+            "A square, baked onto itself.",
+            "sizes that are not powers of two; bakers with a limit of 8192",
             {{"bake", "flat within 0.001 degrees, no texel missed", [] {
                   for (const auto& [width, height] : {std::pair(1, 1), {3, 17}, {16384, 64}}) {
                       BakeOptions options;
@@ -582,9 +588,10 @@ HardCase map_size_case() {
 
 HardCase memory_case() {
     return {"8192 texels across with 16 samples each",
-            "A map of 8192 x 512 whose chart is a 64th of it; baked in strips from the top.",
+            "A map of 8192 x 512 texels with a chart on a 64th of its area, baked in "
+            "bands of rows.",
             "TexTools-Blender#35: buffers of 32K x 32K",
-            {{"bake", "under half of the GB that its samples would take, on two threads", [] {
+            {{"bake", "less than half of the gigabyte that all samples need, with two threads", [] {
                   set_thread_limit(2);
                   const double before = test::peak_megabytes();
                   const Mesh low = with_texcoords(make_quad(), 0.125F, glm::vec2(0.5F));

@@ -65,7 +65,7 @@ TEST(HardCasesPage, SaysWhatTheTableDoes) {
     std::ifstream file(source_directory() / "docs/hard-cases.md", std::ios::binary);
     const std::string page{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     EXPECT_EQ(page, hard_cases_page())
-        << "write it anew: build/release/bin/relief-hard-cases-page docs/hard-cases.md";
+        << "regenerate it: build/release/bin/relief-hard-cases-page docs/hard-cases.md";
 }
 
 /// Random values. The standard distributions differ between libraries, so the class has its own.

@@ -73,31 +73,32 @@ std::string not_unit(const Image& normals) {
 HardCase constant_case() {
     const auto heights = [] { return heights_of(9, 7, [](int, int) { return 0.3; }); };
     return {"constant height map",
-            "All heights are 0.3, which no float is exactly.",
-            "flat maps that are not flat after rounding",
-            {{"bump", "exactly (0,0,1) under every kernel, border and arithmetic",
+            "All heights are 0.3, which is not a float.",
+            "flat maps that rounding makes uneven",
+            {{"bump", "exactly (0,0,1) with every kernel, border mode and precision",
               [=] { return in_every_way(heights(), 16.0, not_flat); }},
-             {"bump, 8 bit", "the code of flat, which decodes to exactly (0,0,1)",
+             {"bump, 8 bit", "the flat code, which decodes to exactly (0,0,1)",
               [=] {
                   Report report;
                   const Image codes = normal_map_from_height(heights(), {}, {.bits = 8}, report);
                   return not_flat(decode_normal_map(codes, Green::up, FlatCode::half, report,
                                                     FlatTexels::exact));
               }},
-             {"choice of kernel", "the cheapest: every one is exact",
+             {"choice of kernel", "the fastest, because all are exact",
               [=]() -> std::string {
                   return choose_kernel(heights(), {}).kernel == Kernel::central3 ? "" : "another";
               }},
-             {"de-staircasing", "stays to the bit", [=]() -> std::string {
+             {"de-staircasing", "unchanged bit for bit", [=]() -> std::string {
                   return destaircase(heights()).heights.samples == heights().samples ? "" : "moved";
               }}}};
 }
 
 HardCase size_case() {
     return {"tiny and odd sizes",
-            "Maps of 1 x 1, 1 x 9, 9 x 1, 2 x 3 and 7 x 5 texels, smaller than the kernels.",
-            "reads beyond the border",
-            {{"bump", "unit under every kernel, border and arithmetic; a single texel is flat",
+            "Maps of 1 x 1, 1 x 9, 9 x 1, 2 x 3 and 7 x 5 texels, which are smaller "
+            "than the kernels.",
+            "reads outside of the image",
+            {{"bump", "unit with every kernel, border mode and precision; a single texel is flat",
               []() -> std::string {
                   for (const auto& [width, height] : {std::pair(1, 9), {9, 1}, {2, 3}, {7, 5}}) {
                       const std::string found = in_every_way(rough(width, height), 16.0, not_unit);
@@ -105,7 +106,7 @@ HardCase size_case() {
                   }
                   return in_every_way(rough(1, 1), 16.0, not_flat);
               }},
-             {"choice of kernel, de-staircasing", "done all the same", []() -> std::string {
+             {"choice of kernel, de-staircasing", "completes", []() -> std::string {
                   for (const auto& [width, height] :
                        {std::pair(1, 1), {1, 9}, {9, 1}, {2, 3}, {7, 5}}) {
                       const Image map = rough(width, height);
@@ -143,16 +144,17 @@ std::string worse_at_the_seam() {
 }
 
 HardCase tiling_case() {
-    return {"height map that tiles",
-            "Waves whose periods divide the size of the map.",
-            "maketx has errors of 11 to 20 degrees at the edges",
-            {{"bump, repeat", "no worse at the seam than inside", worse_at_the_seam}}};
+    return {
+        "height map that tiles",
+        "Waves whose periods divide the size of the map.",
+        "maketx has errors of 11 to 20 degrees at the edges",
+        {{"bump, repeat", "the error at the seam is not larger than inside", worse_at_the_seam}}};
 }
 
 HardCase staircase_case() {
     return {
         "8-bit staircase",
-        "A gentle slope in 25 codes of 8 bits: treads of many texels, and risers.",
+        "A gentle slope that is quantized to 25 codes of 8 bits: wide steps.",
         "Sobel's kernel has an error of 20 degrees there, measured",
         {{"choice of kernel",
           "a Gaussian over 21 texels or more, with a tenth of the error of Sobel's kernel",
@@ -173,7 +175,7 @@ HardCase staircase_case() {
                   return choice.reason;
               return chosen < 0.1 * sobel ? "" : fmt::format("{} and {}", chosen, sobel);
           }},
-         {"de-staircasing", "no height moves by more than half a step", []() -> std::string {
+         {"de-staircasing", "no height changes by more than half a step", []() -> std::string {
               const BumpField field = make_bump_field(
                   {"", FieldShape::waves, 120.0, 0.3, FieldCoding::bits8_dim, 0.0, 10}, 128, 128);
               const Image stored = to_float(field.heights);
@@ -188,41 +190,41 @@ HardCase staircase_case() {
 }
 
 HardCase hole_case() {
-    return {
-        "heights that are not finite",
-        "A plane with one NaN and one infinite texel.",
-        "one texel that spoils a whole map",
-        {{"bump",
-          "unit under every kernel; read as the mean around them; reported: 2 x non-finite "
-          "height",
-          [] {
-              Image plane = heights_of(16, 16, [](int x, int y) { return 0.01 * x + 0.02 * y; });
-              plane.as<float>()[7 * 16 + 7] = std::numeric_limits<float>::quiet_NaN();
-              plane.as<float>()[3 * 16 + 11] = std::numeric_limits<float>::infinity();
-              Report report;
-              normals_from_height(plane, {}, report);
-              if (report.findings().size() != 1 || report.findings()[0].count != 2)
-                  return std::string("not counted twice");
-              return in_every_way(plane, 16.0, not_unit);
-          }},
-         {"de-staircasing", "stay as they are; their neighbors stay finite", []() -> std::string {
-              Image steps = heights_of(
-                  16, 16, [](int x, int y) { return std::round(0.2 * x + 0.1 * y) / 255.0; });
-              steps.as<float>()[50] = std::numeric_limits<float>::quiet_NaN();
-              const Image smooth = destaircase(steps).heights;
-              for (std::size_t i = 0; i < 256; ++i) {
-                  if (std::isfinite(smooth.as<float>()[i]) == (i == 50))
-                      return fmt::format("texel {}", i);
-              }
-              return "";
-          }}}};
+    return {"heights that are not finite",
+            "A plane with one NaN and one infinite texel.",
+            "one texel that makes a whole map invalid",
+            {{"bump",
+              "unit with every kernel; the mean of the neighbors replaces them; "
+              "reported: 2 x non-finite height",
+              [] {
+                  Image plane =
+                      heights_of(16, 16, [](int x, int y) { return 0.01 * x + 0.02 * y; });
+                  plane.as<float>()[7 * 16 + 7] = std::numeric_limits<float>::quiet_NaN();
+                  plane.as<float>()[3 * 16 + 11] = std::numeric_limits<float>::infinity();
+                  Report report;
+                  normals_from_height(plane, {}, report);
+                  if (report.findings().size() != 1 || report.findings()[0].count != 2)
+                      return std::string("not counted twice");
+                  return in_every_way(plane, 16.0, not_unit);
+              }},
+             {"de-staircasing", "unchanged; their neighbors stay finite", []() -> std::string {
+                  Image steps = heights_of(
+                      16, 16, [](int x, int y) { return std::round(0.2 * x + 0.1 * y) / 255.0; });
+                  steps.as<float>()[50] = std::numeric_limits<float>::quiet_NaN();
+                  const Image smooth = destaircase(steps).heights;
+                  for (std::size_t i = 0; i < 256; ++i) {
+                      if (std::isfinite(smooth.as<float>()[i]) == (i == 50))
+                          return fmt::format("texel {}", i);
+                  }
+                  return "";
+              }}}};
 }
 
 HardCase texel_case() {
     return {"texels that are not square",
-            "A plane of slope 1 to the right and 2 upwards, in texels of 0.5 x 0.25.",
-            "slopes scaled alike in x and y",
-            {{"bump", "its slopes, each by its own axis, within 1e-6", [] {
+            "A plane with slopes 1 (right) and 2 (up), in texels of 0.5 x 0.25.",
+            "the same scale for x and y",
+            {{"bump", "the slopes within 1e-6, each with the texel size of its axis", [] {
                   const Image plane =
                       heights_of(12, 12, [](int x, int y) { return 0.5 * x - 0.5 * y; });
                   BumpOptions options{.wrap = Wrap::clamp, .strength = 1.0};
@@ -241,8 +243,8 @@ HardCase texel_case() {
 HardCase strength_case() {
     return {"huge and tiny strength",
             "Noise at strengths of 1e30, -1e30, 1e-30 and 0.",
-            "slopes whose squares overflow",
-            {{"bump", "unit under every kernel, border and arithmetic; at 0 exactly flat",
+            "squares of slopes overflow",
+            {{"bump", "unit with every kernel, border mode and precision; exactly flat at 0",
               [] {
                   for (const double strength : {1e30, -1e30, 1e-30}) {
                       const std::string found = in_every_way(rough(9, 8), strength, not_unit);
@@ -250,7 +252,7 @@ HardCase strength_case() {
                   }
                   return in_every_way(rough(9, 8), 0.0, not_flat);
               }},
-             {"choice of kernel", "done all the same", []() -> std::string {
+             {"choice of kernel", "completes", []() -> std::string {
                   for (const double strength : {1e30, -1e30, 1e-30, 0.0}) {
                       BumpOptions options;
                       options.strength = strength;
@@ -288,12 +290,11 @@ std::string unexpected_heights(const Image& heights, const std::vector<float>& e
 
 HardCase half_case() {
     return {"slopes beyond half floats",
-            "Slopes of 1e5 and -1e5, which half floats have no number for, one of 65519, which "
-            "rounds to their largest, and an infinite one.",
+            "Slopes of 1e5 and -1e5, which are outside the range of half floats; "
+            "65519, which rounds to their largest value; and infinity.",
             "infinities in filtered slope maps",
             {{"write, half EXR",
-              "65504 with its sign, counted; infinity stays; reported: 2 x "
-              "texel beyond half's range",
+              "+-65504; infinity is unchanged; reported: 2 x texel beyond half's range",
               []() -> std::string {
                   const TemporaryDirectory folder;
                   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -364,17 +365,17 @@ std::string cmyk_tiff(const std::string& texels) {
 }
 
 HardCase kind_case() {
-    return {"colors by palette and in CMYK",
-            "A PNG with a palette, and a TIFF of cyan, magenta, yellow and black.",
-            "indices and inks taken for heights",
-            {{"heights, palette", "the mean of the color that is meant",
+    return {"palette and CMYK colors",
+            "A PNG file with a palette, and a TIFF file in CMYK.",
+            "indices and ink amounts that are read as heights",
+            {{"heights, palette", "the mean of the channels of the palette color",
               [] {
                   const TemporaryDirectory folder;
                   write_bytes(folder / "p.png", palette_png());
                   return unexpected_heights(
                       height_field(read_image(folder / "p.png", ImageUse::data)), {0.4F, 1.0F});
               }},
-             {"heights, CMYK", "of the colors as RGB: no ink is white, black is black", [] {
+             {"heights, CMYK", "those of the colors in RGB: no ink is white", [] {
                   const TemporaryDirectory folder;
                   write_bytes(folder / "c.tif",
                               cmyk_tiff(std::string("\0\0\0\0\0\0\0\xff\xff\0\0\0", 12)));
@@ -386,11 +387,11 @@ HardCase kind_case() {
 
 HardCase transparent_case() {
     return {"transparent texels",
-            "A gray plane with alpha, black and transparent on the right.",
-            "cliffs at the border of what is shown",
+            "A gray plane with alpha; the right half is black and transparent.",
+            "steps at the border of the visible area",
             {{"bump",
-              "flat where it is transparent; beside it no slope above the plane's, where "
-              "black would be a cliff of 8",
+              "flat where transparent; the slope at the border does not exceed the "
+              "plane's (black would give 8)",
               []() -> std::string {
                   const TemporaryDirectory folder;
                   Image image = make_image(12, 5, 2, 32, ColorSpace::data);
@@ -419,10 +420,10 @@ HardCase transparent_case() {
 }
 
 HardCase damaged_case() {
-    return {"image files cut short",
-            "Noise as PNG, TIFF and EXR, cut at each of 40 places.",
-            "half pictures read as whole ones",
-            {{"bump", "an error that names the file, and no output", []() -> std::string {
+    return {"truncated image files",
+            "Noise as PNG, TIFF and EXR, truncated at 40 positions.",
+            "partial images that are read as complete ones",
+            {{"bump", "an error with the name of the file, and no output", []() -> std::string {
                   const TemporaryDirectory folder;
                   for (const std::string name : {"h.png", "h.tif", "h.exr"}) {
                       Image noise = rough(40, 30);

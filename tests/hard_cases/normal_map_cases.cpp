@@ -44,12 +44,12 @@ Image steep_normals() {
 
 HardCase steep_case() {
     return {"normals with z = 0 or below",
-            "A normal map with texels that stand upright, and one that faces back: their slopes "
-            "are infinite, or none.",
-            "OpenImageIO's maketx divides by z unguarded",
+            "A normal map with texels at 90 degrees, whose slopes are infinite, and "
+            "one that faces backwards and has no slope.",
+            "OpenImageIO's maketx divides by z without a check",
             {{"slopes",
-              "1024 long (89.94 degrees), each in its own direction; reported: 3 x normal "
-              "too steep for a slope",
+              "of length 1024 (89.94 degrees) in the direction of the normal; "
+              "reported: 3 x normal too steep for a slope",
               [] {
                   Report report;
                   const Image slopes = slopes_from_normals(steep_normals(), report);
@@ -57,8 +57,8 @@ HardCase steep_case() {
                                   not_counted(report, "normal too steep for a slope", 3));
               }},
              {"strength 2",
-              "finite; upright ones stay upright; reported: 3 x normal that does not "
-              "face outwards",
+              "finite; normals at 90 degrees are unchanged; reported: 3 x normal that "
+              "does not face outwards",
               [] {
                   Image normals = steep_normals();
                   Report report;
@@ -69,8 +69,8 @@ HardCase steep_case() {
                       not_counted(report, "normal that does not face outwards", 3));
               }},
              {"blend, reoriented",
-              "finite; onto a base that faces straight back, the base; "
-              "reported: 1 x blend without direction",
+              "finite; a base that faces backwards is unchanged; reported: 1 x blend "
+              "without direction",
               [] {
                   Image base = image_of<float>(3, {0, 0, -1});
                   Report report;
@@ -115,9 +115,9 @@ HardCase zero_case() {
 
 HardCase two_channel_case() {
     return {"x and y longer than 1",
-            "Two channels, from which z is to be computed, that compression left longer than 1.",
+            "Two channels without z; compression has made (x, y) longer than 1.",
             "Daemon PR#260, Falcor#478 (NaN)",
-            {{"rebuild z", "z = 0, x and y of length 1; reported: 1 x x and y longer than 1", [] {
+            {{"rebuild z", "z = 0 and (x, y) normalized; reported: 1 x x and y longer than 1", [] {
                   Report report;
                   const Image normals = decode_xy_map(image_of<std::uint8_t>(2, {255, 1}), {0, 1},
                                                       Green::up, FlatCode::middle, report);
@@ -138,12 +138,13 @@ Image checker() {
 
 HardCase checker_case() {
     return {
-        "chequerboard of slopes",
-        "Slopes of 1 and -1 in turns: every mip level is flat, and would shine like a mirror.",
+        "checkerboard of slopes",
+        "Alternating slopes of 1 and -1. Every mip level is flat and would look "
+        "like a mirror.",
         "renormalized mip levels",
         {{"mips",
-          "flat, of length 0.7071 on each level; roughness 0 becomes 1, the slopes' "
-          "variance of 0.5 along each axis being kept",
+          "flat with length 0.7071 on each level; roughness 0 becomes 1; the slope "
+          "variance of 0.5 along each axis is preserved",
           [] {
               for (Image& level : normal_mip_levels(checker())) {
                   Report report;
@@ -161,10 +162,9 @@ HardCase checker_case() {
 
 HardCase code_zero_case() {
     return {"code 0 of a signed component",
-            "In the convention where 128 is zero, 1 stands for -1, and so does 0, which has no "
-            "opposite.",
+            "If 128 is zero, then both 1 and 0 stand for -1, and code 0 has no opposite.",
             "signed 8-bit maps",
-            {{"flip", "255, as of code 1; reported: 1 x code 0 without an opposite", [] {
+            {{"flip", "255, as for code 1; reported: 1 x code 0 without an opposite", [] {
                   Image map = image_of<std::uint8_t>(3, {0, 128, 128, 1, 128, 128});
                   Report report;
                   map_axes(map, {{{0, true}, {1, false}, {2, false}}}, FlatCode::middle, report);
@@ -218,8 +218,8 @@ std::string not_found(const Image& map, const std::vector<MapCondition>& expecte
 
 HardCase color_case() {
     return {"normal map stored as a color",
-            "The sRGB curve was applied when it was saved, or undone when it was read: flat is 188 "
-            "or 55 of 255.",
+            "The sRGB curve was applied when it was saved, or removed when it was "
+            "read: the flat code is 188 or 55 of 255.",
             "paintsystem#132",
             {{"check map", "problem: stored through the sRGB curve",
               [] {
@@ -263,8 +263,8 @@ HardCase green_case() {
 }
 
 HardCase whirl_case() {
-    return {"normals that no heights have",
-            "Slopes that run in circles, 0.1 each way.",
+    return {"normals without a height field",
+            "A circular slope field of magnitude 0.1.",
             "painted and blended normal maps",
             {{"heights", "flat; the report has the remaining slope: 0.1 (RMS)", [] {
                   Image normals = make_image(32, 32, 3, 32, ColorSpace::data);
@@ -317,9 +317,11 @@ std::string not_owned(const std::string& rows, const std::string& expected, cons
 
 HardCase shared_edge_case() {
     return {"texel centers on a shared edge",
-            "A square of two triangles on 4 x 4 texels: their diagonal runs through four centers.",
-            "rasterisers without a fill rule",
-            {{"cover texels", "each of the 16 has one owner, in either order of the triangles", [] {
+            "A square of two triangles on 4 x 4 texels. The diagonal passes through "
+            "four texel centers.",
+            "rasterizers without a fill rule",
+            {{"cover texels",
+              "each of the 16 texels has one owner, for both orders of the triangles", [] {
                   const std::vector<glm::vec2> corners = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};
                   Report report;
                   const std::string problem =
@@ -333,9 +335,9 @@ HardCase shared_edge_case() {
 
 HardCase small_chart_case() {
     return {"chart smaller than a texel",
-            "A triangle of a tenth of a texel, away from the center of any.",
-            "bakers that lose such charts",
-            {{"cover texels", "owns the texel, with the nearest point on it", [] {
+            "A triangle with a tenth of the size of a texel that covers no texel center.",
+            "bakers that drop such charts",
+            {{"cover texels", "it owns the texel; the nearest point of the triangle is used", [] {
                   Report report;
                   return not_owned(
                       owners({{1.1F, 1.1F}, {1.2F, 1.1F}, {1.1F, 1.2F}}, {{0, 2, 1}}, 3, report),
@@ -344,12 +346,12 @@ HardCase small_chart_case() {
 }
 
 HardCase overlap_case() {
-    return {"charts on top of each other",
-            "Two squares with the same texels, the first of them mirrored.",
+    return {"overlapping charts",
+            "Two squares with the same texels; the first is mirrored.",
             "bakers in which the last chart wins",
             {{"cover texels",
-              "the one that is not mirrored owns all; reported: 4 x texel of "
-              "mirrored triangles",
+              "the unmirrored square owns all texels; reported: 4 x texel of mirrored "
+              "triangles",
               [] {
                   Report report;
                   const std::vector<glm::vec2> corners = {{-1, -1}, {5, -1}, {-1, 5}};
@@ -360,8 +362,9 @@ HardCase overlap_case() {
 
 HardCase nothing_case() {
     return {"texture triangles that cover nothing",
-            "One on a line, one at a point, one with a coordinate that is not finite.",
-            "models without a full unwrap",
+            "A collinear triangle, one whose corners coincide, and one with a "
+            "non-finite coordinate.",
+            "incompletely unwrapped models",
             {{"cover texels",
               "no texel; reported: 2 x triangle without area in the image, 1 x "
               "texture not finite",
@@ -380,9 +383,9 @@ HardCase nothing_case() {
 
 HardCase no_frame_case() {
     return {"tangent along the normal, under a map",
-            "A square whose stored tangents point along its normals: no plane to express a normal "
-            "in.",
-            "models with broken tangents",
+            "A square whose stored tangents are parallel to its normals, so there is "
+            "no tangent frame.",
+            "models with invalid tangents",
             {{"to tangent space", "(0, 0, 1); reported: 16 x texel without a frame", [] {
                   Mesh quad = make_quad();
                   quad.tangents.assign(quad.positions.size(), glm::vec4(0, 0, 1, 1));

@@ -41,9 +41,9 @@ std::optional<glm::dvec3> unscaled_normal(const Mesh&, std::size_t vertex) {
 }
 
 HardCase scale_case(float scale) {
-    return MeshCase(
-               fmt::format("torus of size {:g}", scale), "A torus, all its positions multiplied.",
-               "meshoptimizer gives NaN at 1e20, measured", [scale] { return scaled_torus(scale); })
+    return MeshCase(fmt::format("torus of size {:g}", scale), "A torus with scaled positions.",
+                    "meshoptimizer returns NaN at 1e20 (measured)",
+                    [scale] { return scaled_torus(scale); })
         .checked({})
         .normals()
         .accurate({NormalWeight::angle}, 1e-4, "those at size 1", unscaled_normal)
@@ -82,7 +82,7 @@ HardCase non_finite_case(const std::string& name, float value) {
     return MeshCase(name,
                     "A flat grid whose middle vertex has no finite position; its six triangles are "
                     "skipped, all others are unaffected.",
-                    "meshoptimizer: one NaN spoils 36 corners, measured",
+                    "meshoptimizer: one NaN affects 36 corners (measured)",
                     [value] { return grid_with(value); })
         .checked({{triangle_not_finite, 6}, {edge_boundary, 22}, {vertex_not_finite, 1}})
         .normals({{"triangle with a non-finite corner", 6}, {"non-finite position", 1}})
@@ -121,10 +121,10 @@ std::vector<HardCase> number_cases() {
         scale_case(1e30F),
         MeshCase("a million from the origin",
                  "A wavy grid with cells of size 1, where floats are 1/16 apart.",
-                 "MikkTSpace gives tangents of length zero, measured", far_grid)
+                 "MikkTSpace returns tangents of length zero (measured)", far_grid)
             .checked({{edge_boundary, 24}, {mesh_far_away, 1}})
             .normals()
-            .expect("normals", "the same bits as of the mesh moved back", differs_when_moved_back)
+            .expect("normals", "the same bits as at the origin", differs_when_moved_back)
             .tangents(),
         non_finite_case("NaN in a position", std::numeric_limits<float>::quiet_NaN()),
         non_finite_case("infinity in a position", std::numeric_limits<float>::infinity()),
@@ -141,7 +141,7 @@ std::vector<HardCase> number_cases() {
             .checked({})
             .normals()
             .tangents(),
-        MeshCase("one triangle", "Nothing else.", "bevy#14874",
+        MeshCase("one triangle", "A single triangle.", "bevy#14874",
                  [] {
                      return mesh_from({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
                  })
@@ -173,9 +173,8 @@ std::vector<HardCase> stored_cases() {
     using enum MeshCondition;
     return {
         MeshCase(
-            "normals that are none",
-            "A square whose normals are NaN, zero, of length 2, and valid.",
-            "MikkTSpace: 3000 bad corners from normals that are not unit, measured",
+            "invalid normals", "A square whose normals are NaN, zero, of length 2, and valid.",
+            "MikkTSpace: 3000 wrong corners with normals that are not unit (measured)",
             [] {
                 return square_with_normals({{0, 0, not_a_number}, {0, 0, 0}, {0, 0, 2}, {0, 0, 1}});
             })
@@ -184,8 +183,8 @@ std::vector<HardCase> stored_cases() {
                       {normal_zero, 1},
                       {normal_not_unit, 1}})
             .tangents({{"normal without direction", 2}}),
-        MeshCase("normals that face the wrong way",
-                 "A square with a normal that points backwards and one that lies in it.",
+        MeshCase("normals that face backwards",
+                 "A square with a normal that points backwards and one that lies in its plane.",
                  "the Corset of the glTF samples",
                  [] {
                      return square_with_normals({{0, 0, 1}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}});
@@ -194,9 +193,10 @@ std::vector<HardCase> stored_cases() {
             .tangents({{"corner without texture direction", 1},
                        {"texture direction along the normal", 1}}),
         MeshCase(
-            "tangents that are none",
-            "A square whose tangents are NaN, of length 2 without handedness, along the "
-            "normal, and leaning by 6 degrees.",
+            "invalid tangents",
+            "A square with a NaN tangent, one of length 2 without handedness, one "
+            "along the normal, and one that deviates from the tangent plane by 6 "
+            "degrees.",
             "the VertexColorTest of the glTF samples",
             [] {
                 return square_with_tangents(
@@ -209,7 +209,8 @@ std::vector<HardCase> stored_cases() {
                       {tangent_along_normal, 1},
                       {tangent_not_perpendicular, 1}})
             .tangents(),
-        MeshCase("all texture coordinates equal", "A square that shows one point of the image.",
+        MeshCase("all texture coordinates equal",
+                 "A square whose corners have the same texture coordinates.",
                  "MikkTSpace#1, lslib#51",
                  [] {
                      return changed(textured_square(), [](Mesh& mesh, std::size_t v) {
@@ -220,7 +221,7 @@ std::vector<HardCase> stored_cases() {
             .tangents({{"corner without texture direction", 6},
                        {"triangle without texture gradient", 2}}),
         MeshCase("texture coordinate that is NaN",
-                 "One corner of a square; its triangles have no place in the image.",
+                 "A square with one NaN corner; its triangles have no position in the image.",
                  "exporters that divide by zero",
                  [] {
                      Mesh mesh = textured_square();
@@ -239,8 +240,8 @@ std::vector<HardCase> stored_cases() {
             .checked({{edge_boundary, 4}, {texture_mirrored, 2}})
             .tangents(),
         MeshCase("overlapping texture",
-                 "A square whose two triangles show the same half of the image.",
-                 "bakes where two places write one texel",
+                 "A square whose two triangles have the same texture coordinates.",
+                 "bakes in which two triangles write to one texel",
                  [] {
                      Mesh mesh = textured_square();
                      mesh.positions.push_back(mesh.positions[0]);
@@ -309,11 +310,11 @@ std::string lost_in_codes(const Mesh& mesh) {
 }  // namespace
 
 std::vector<HardCase> encoding_cases() {
-    return {MeshCase("frames in few bits, turned by 180 degrees",
+    return {MeshCase("encoded frames, rotated by 180 degrees",
                      "Right- and left-handed frames, rotated by 180 degrees about 342 axes, where "
                      "the real part of a quaternion is 0.",
-                     "QTangents whose sign is lost when the real part is rounded to 0", half_turns)
-                .expect("encodings", "orthonormal, w as it was, in each of the eight encodings",
+                     "QTangents lose the sign when the real part is rounded to 0", half_turns)
+                .expect("encodings", "orthonormal with unchanged w, in each of the eight encodings",
                         lost_in_codes)};
 }
 

@@ -58,7 +58,7 @@ std::vector<HardCase> triangle_cases() {
             .accurate(all_weights(), 0, "the square's", up_at_first(4))
             .tangents({{"triangle with coinciding corners", 1}}),
         MeshCase("triangle on a line",
-                 "A triangle whose three corners are on a line, on the side of another.",
+                 "A triangle with three collinear corners that shares an edge with another.",
                  "libigl#791, libigl#1923",
                  [] {
                      return mesh_from({{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 0, 0}},
@@ -69,21 +69,17 @@ std::vector<HardCase> triangle_cases() {
             .accurate(all_weights(), 0, "the valid triangle's", up_at_first(3))
             .tangents({{"corner without texture direction", 1},
                        {"triangle without texture gradient", 1}}),
-        MeshCase(
-            "vertex with only degenerate triangles",
-            "A square and a vertex that only a collapsed triangle uses; its normal is (0,0,1).",
-            "trimesh#522",
-            [] {
-                return with_triangle(with_vertex(square(), {3, 3, 3}), {0, 4, 4});
-            })
+        MeshCase("vertex with only degenerate triangles",
+                 "A square, and a vertex that only a collapsed triangle uses.", "trimesh#522",
+                 [] {
+                     return with_triangle(with_vertex(square(), {3, 3, 3}), {0, 4, 4});
+                 })
             .checked({{triangle_collapsed, 1}, {edge_boundary, 4}, {vertex_degenerate_fan, 1}})
             .normals({{"degenerate triangle", 1}, {"vertex with only degenerate triangles", 1}})
             .accurate(all_weights(), 0, "(0,0,1)", up_at_first(5))
             .tangents(
                 {{"corner without texture direction", 2}, {"triangle with coinciding corners", 1}}),
-        MeshCase("isolated vertex",
-                 "A square and a vertex that no triangle uses; its normal is (0,0,1).",
-                 "CGAL PR#847",
+        MeshCase("isolated vertex", "A square, and a vertex that no triangle uses.", "CGAL PR#847",
                  [] {
                      return with_vertex(square(), {3, 3, 3});
                  })
@@ -100,9 +96,10 @@ std::vector<HardCase> triangle_cases() {
                           return glm::dvec3(0, -std::sin(0.5), std::cos(0.5));
                       })
             .tangents(),
-        MeshCase("edges all but parallel",
-                 "A triangle between two edges whose directions differ by less than a float can "
-                 "hold: an arc cosine of their product would have an argument above 1.",
+        MeshCase("nearly parallel edges",
+                 "A triangle between two edges whose directions differ by less than float "
+                 "precision; the arc cosine of their dot product would have an argument "
+                 "above 1.",
                  "rgl#372", parallel_edges)
             .checked({{triangle_needle, 1}, {edge_boundary, 3}})
             .normals()
@@ -113,8 +110,8 @@ std::vector<HardCase> triangle_cases() {
             .tangents({{"corner without texture direction", 3},
                        {"triangle without texture gradient", 1}}),
         MeshCase("repeated triangle",
-                 "A square with one of its triangles three times over, begun at different corners.",
-                 "three copies of a face in assets exported twice",
+                 "A square with three copies of one triangle, each starting at another corner.",
+                 "duplicate faces in assets that were exported twice",
                  [] {
                      return with_triangle(with_triangle(square(), {1, 2, 0}), {2, 0, 1});
                  })
@@ -234,9 +231,9 @@ std::vector<HardCase> surface_cases() {
     using enum MeshCondition;
     return {
         MeshCase("fold-over",
-                 "Two triangles on one edge, the smaller folded back over the larger, both the "
-                 "right way round.",
-                 "Max's weights fail on it, measured", fold_over)
+                 "Two consistently wound triangles with a common edge; the smaller is "
+                 "folded back over the larger.",
+                 "weights by [Max 1999] fail here (measured)", fold_over)
             .checked({{edge_folded, 1}, {edge_boundary, 4}})
             .normals_by("normals, uniform", {NormalWeight::uniform}, {{"cancelling normals", 2}})
             .normals_by("normals, other weights",
@@ -251,84 +248,86 @@ std::vector<HardCase> surface_cases() {
             .expect("normals, auto", "nowhere a larger error than by area", worse_than_area)
             .tangents(),
         MeshCase("flipped triangle", "A flat grid with one inverted triangle in its middle.",
-                 "scans and hand-made meshes", flipped_triangle)
+                 "scanned and hand-made meshes", flipped_triangle)
             .checked({{edge_flipped, 3}, {edge_boundary, 16}})
             .normals()
             .accurate(all_weights(), 0, "the grid's", facing_up)
             .tangents(),
         MeshCase("double-sided sheet",
-                 "A square with a back on the same vertices: its normals cancel, and are (0,0,1).",
+                 "A square with a back face on the same vertices; its normals cancel.",
                  "leaves and cloth in games", double_sided_square)
             .checked({{triangle_two_sided, 4}})
             .normals({{"cancelling normals", 4}})
             .accurate(all_weights(), 0, "(0,0,1)", facing_up)
             .tangents(),
         MeshCase("tip of a cone",
-                 "A cone with an open base; no normal at its tip suits every side.",
+                 "A cone with an open base; no single normal at its tip is correct for "
+                 "all triangles.",
                  "bevy PR#10905", cone)
             .checked({{edge_boundary, 16}})
             .normals()
             .accurate(all_weights(), 1e-5, "the axis at the tip", cone_axis_at_tip)
             .tangents(),
         MeshCase("cube with an uneven triangulation",
-                 "Eight vertices; some corners have three triangles, some four or more.",
+                 "A cube of eight vertices; some have three triangles, some have four or more.",
                  "CGAL#2047", uneven_cube)
             .checked({})
             .normals()
             .accurate({NormalWeight::angle}, 1e-5, "the diagonals of the cube", corner_of_cube)
             .tangents({{"triangle without texture gradient", 8}}),
-        MeshCase("flat fan of 10000 triangles", "So many triangles around one vertex, in a plane.",
-                 "CGAL PR#8684", [] { return fan(10000); })
+        MeshCase("flat fan of 10000 triangles",
+                 "All triangles share one vertex and lie in a plane.", "CGAL PR#8684",
+                 [] { return fan(10000); })
             .checked({{edge_boundary, 10000}})
             .normals()
             .accurate(all_weights(), 0, "the plane's", facing_up)
             .tangents(),
         MeshCase("edge of three triangles",
-                 "Three triangles on one edge, so that there is no inside and outside.",
-                 "pairs of corners that depend on order in MikkTSpace", three_on_an_edge)
+                 "Three triangles with a common edge, so inside and outside are undefined.",
+                 "MikkTSpace's result depends on the order of triangles", three_on_an_edge)
             .checked({{edge_non_manifold, 1}, {edge_boundary, 6}})
             .normals()
             .tangents({{"corner without texture direction", 1},
                        {"triangle without texture gradient", 1}}),
-        MeshCase("bow-tie", "Two triangles that touch in one vertex, at right angles.",
+        MeshCase("bow-tie", "Two perpendicular triangles with one common vertex.",
                  "meshes cut along a line", bow_tie)
             .checked({{edge_boundary, 6}, {vertex_bow_tie, 1}})
             .normals()
-            .accurate(all_weights(), 1e-5, "half way between the two where they touch",
+            .accurate(all_weights(), 1e-5, "the bisector at the common vertex",
                       [](const Mesh&, std::size_t vertex) -> std::optional<glm::dvec3> {
                           if (vertex != 0) return std::nullopt;
                           return glm::dvec3(0, 1, 1);
                       })
-            .expect("normals, crease 180", "each triangle's own: they share no edge",
-                    [](const Mesh& mesh) {
-                        return all_flat(mesh, 180.0) ? "" : "they are averaged all the same";
-                    })
+            .expect(
+                "normals, crease 180",
+                "the face normal of each triangle, because they share no edge",
+                [](const Mesh& mesh) { return all_flat(mesh, 180.0) ? "" : "they are averaged"; })
             .tangents({{"corner without texture direction", 2},
                        {"triangle without texture gradient", 1}}),
-        MeshCase("crease", "A flat square and one that rises from it at 45 degrees.",
-                 "angles exactly at a crease's limit", [] { return ramp(0.0F, 0.0F); })
+        MeshCase("crease", "Two squares with a common edge and a dihedral angle of 45 degrees.",
+                 "angles that equal the crease angle", [] { return ramp(0.0F, 0.0F); })
             .checked({{edge_boundary, 6}})
             .normals()
-            .accurate({NormalWeight::angle}, 1e-5, "half way on the common edge", ramp_normal)
-            .expect("normals, crease 45", "smooth: an edge at the limit is",
+            .accurate({NormalWeight::angle}, 1e-5, "the bisector at the common edge", ramp_normal)
+            .expect("normals, crease 45", "smooth, because the angle does not exceed the limit",
                     [](const Mesh& mesh) { return all_flat(mesh, 45.0) ? "it is hard" : ""; })
-            .expect("normals, crease 44.99", "each square's own",
+            .expect("normals, crease 44.99", "the normal of each square",
                     [](const Mesh& mesh) { return all_flat(mesh, 44.99) ? "" : "it is smooth"; })
             .tangents(),
-        MeshCase("+0 and -0", "The crease with its edge stored twice, once at +0 and once at -0.",
-                 "bitwise comparison of positions", [] { return ramp(0.0F, -0.0F); })
+        MeshCase("+0 and -0", "The crease with two copies of the common edge, at +0 and at -0.",
+                 "positions compared by their bits", [] { return ramp(0.0F, -0.0F); })
             .checked({{edge_boundary, 6}})
             .normals()
-            .accurate({NormalWeight::angle}, 1e-5, "half way on the common edge", ramp_normal)
+            .accurate({NormalWeight::angle}, 1e-5, "the bisector at the common edge", ramp_normal)
             .tangents(),
         MeshCase("vertices one unit in the last place apart",
-                 "The crease with its edge stored twice, at 1 and at the float after it: "
-                 "positions are equal or they are not, unless a tolerance is asked for.",
-                 "exporters that compute seams twice",
+                 "The crease with two copies of the common edge, at 1 and at the next "
+                 "float. Without a tolerance, only equal positions are welded.",
+                 "exporters that compute both sides of a seam",
                  [] { return ramp(1.0F, std::nextafter(1.0F, 2.0F)); })
             .checked({{edge_boundary, 8}, {vertex_near_duplicate, 4}})
             .normals()
-            .accurate({NormalWeight::angle}, 1e-5, "each square's own",
+            .accurate({NormalWeight::angle}, 1e-5, "the normal of each square",
                       [](const Mesh&, std::size_t vertex) -> std::optional<glm::dvec3> {
                           return vertex < 4 ? glm::dvec3(0, 0, 1) : glm::dvec3(-1, 0, 1);
                       })

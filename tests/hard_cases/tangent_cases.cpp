@@ -139,16 +139,18 @@ Mesh between_handednesses() {
 }
 
 HardCase texture_scale_case(float scale) {
-    return MeshCase(fmt::format("texture of size {:g}", scale),
-                    "A torus with texture, all its texture coordinates multiplied.",
-                    scale < 1e-20F
-                        ? "MikkTSpace and meshoptimizer: five in six tangents lean, measured"
-                        : "MikkTSpace: five in six tangents lean, measured",
-                    [scale] {
-                        return changed(textured_torus(), [scale](Mesh& mesh, std::size_t v) {
-                            mesh.texcoords[v] *= scale;
-                        });
-                    })
+    return MeshCase(
+               fmt::format("texture of size {:g}", scale),
+               "A textured torus with scaled texture coordinates.",
+               scale < 1e-20F
+                   ? "MikkTSpace and meshoptimizer: 5 of 6 tangents are not perpendicular to "
+                     "the normal (measured)"
+                   : "MikkTSpace: 5 of 6 tangents are not perpendicular to the normal (measured)",
+               [scale] {
+                   return changed(textured_torus(), [scale](Mesh& mesh, std::size_t v) {
+                       mesh.texcoords[v] *= scale;
+                   });
+               })
         .checked({})
         .tangents()
         .expect("tangents", "within 0.0001 degrees of those at size 1",
@@ -157,7 +159,7 @@ HardCase texture_scale_case(float scale) {
 
 HardCase position_scale_case(float scale, const std::string& source) {
     return MeshCase(fmt::format("textured torus of size {:g}", scale),
-                    "A torus with texture, all its positions multiplied.", source,
+                    "A textured torus with scaled positions.", source,
                     [scale] {
                         return changed(textured_torus(), [scale](Mesh& mesh, std::size_t v) {
                             mesh.positions[v] *= scale;
@@ -175,9 +177,10 @@ constexpr float far = 1e6F;
 HardCase texture_value_case(const std::string& name, float value) {
     using enum MeshCondition;
     return MeshCase(name,
-                    "A flat grid whose middle vertex is nowhere in the image; its six triangles "
-                    "have no place there, all others are unharmed.",
-                    "meshoptimizer: one NaN spoils 36 corners, measured",
+                    "A flat grid with non-finite texture coordinates at the middle vertex. "
+                    "Its six triangles have no position in the image; all others are "
+                    "unaffected.",
+                    "meshoptimizer: one NaN affects 36 corners (measured)",
                     [value] {
                         Mesh mesh = textured_grid();
                         mesh.texcoords[12].y = value;
@@ -185,9 +188,9 @@ HardCase texture_value_case(const std::string& name, float value) {
                     })
         .checked({{edge_boundary, 16}, {texture_not_finite, 1}})
         .tangents({{not_finite, 6}, {no_direction, 6}})
-        .tangents_near(0, "the grid's, but for w at the six", [](const Mesh&, std::size_t) {
-            return std::optional(glm::dvec4(1, 0, 0, 0));
-        });
+        .tangents_near(
+            0, "the grid's, except for w of the six triangles",
+            [](const Mesh&, std::size_t) { return std::optional(glm::dvec4(1, 0, 0, 0)); });
 }
 
 HardCase normal_value_case(const std::string& name, const glm::vec3& normal,
@@ -201,7 +204,7 @@ HardCase normal_value_case(const std::string& name, const glm::vec3& normal,
                     })
         .checked({{MeshCondition::edge_boundary, 16}, {condition, 1}})
         .tangents({{no_normal, 1}})
-        .tangents_near(0, "along the texture", along_x);
+        .tangents_near(0, "along u", along_x);
 }
 
 Mesh with_normals_of_lengths() {
@@ -220,54 +223,56 @@ Mesh with_normals_along_the_texture() {
 std::vector<HardCase> tangent_cases() {
     using enum MeshCondition;
     return {
-        MeshCase("texture on a line", "A grid that shows a line of the image.",
+        MeshCase("texture on a line", "A grid whose texture coordinates are collinear.",
                  "MikkTSpace#1, lslib#51", collinear_texture)
             .checked({{edge_boundary, 16}, {texture_degenerate, 32}})
             .tangents({{no_gradient, 32}, {no_direction, 96}})
             .tangents_near(
-                0, "the x axis, turned into the plane of the normal",
+                0, "the x axis, projected into the plane of the normal",
                 [](const Mesh&, std::size_t) { return std::optional(glm::dvec4(1, 0, 0, -1)); }),
-        MeshCase("texture on one side only", "A grid half of which shows a line of the image.",
-                 "meshes unwrapped in part", half_textured)
+        MeshCase("texture on one half", "A grid with collinear texture coordinates in one half.",
+                 "partly unwrapped meshes", half_textured)
             .checked({{edge_boundary, 16}, {texture_degenerate, 16}})
             .tangents({{no_gradient, 16}, {no_direction, 36}})
             .tangents_near(
-                0, "the texture's, also where there is none",
+                0, "those of the textured half, in the other half too",
                 [](const Mesh&, std::size_t) { return std::optional(glm::dvec4(1, 0, 0, 0)); }),
-        MeshCase("sliver with a good texture",
-                 "A triangle of length 1 and width 1e-6 that shows the whole image.",
+        MeshCase("sliver with a regular texture",
+                 "A triangle of length 1 and width 1e-6 that is textured with the whole image.",
                  "glTF-Transform#1859", textured_sliver)
             .checked({{triangle_needle, 1}, {edge_boundary, 3}})
             .tangents()
-            .tangents_near(1e-4, "its length", along_sliver),
-        MeshCase(
-            "texture on a triangle of no area",
-            "A square, and a triangle on its edge that lies on a line in space, but has an area "
-            "in the image.",
-            "the conformance kit: a corner of angle 0 has no weight, but a direction",
-            textured_line)
+            .tangents_near(1e-4, "its long axis", along_sliver),
+        MeshCase("texture on a triangle without area",
+                 "A square, and a triangle at its edge that is collinear in space, but "
+                 "has an area in the image.",
+                 "conformance kit: a corner with angle 0 has a direction, but no weight",
+                 textured_line)
             .checked({{triangle_collinear, 1}, {edge_boundary, 5}, {vertex_degenerate_fan, 1}})
             .tangents()
-            .tangents_near(1e-5, "each triangle's own", on_textured_line),
+            .tangents_near(1e-5, "the tangent of each triangle", on_textured_line),
         MeshCase("mirrored texture on shared vertices",
-                 "A grid whose image is mirrored about its middle column.", "Godot#114508",
+                 "A grid with an image that is mirrored at the middle column.", "Godot#114508",
                  mirrored_grid)
             .checked({{edge_boundary, 16}, {texture_mirrored, 16}, {texture_overlapping, 32}})
             .tangents()
-            .tangents_near(0, "each side's own", mirrored_reference)
-            .expect("frames", "5 vertices of the line are split, and no other", wrongly_split),
+            .tangents_near(0, "the tangents of each half", mirrored_reference)
+            .expect("frames", "exactly the 5 vertices of the middle column are split",
+                    wrongly_split),
         MeshCase("no gradient between both handednesses",
-                 "A triangle that shows a line, between an upright and a mirrored one.",
-                 "glTF#2480: w must be one all over a triangle", between_handednesses)
+                 "A triangle with collinear texture coordinates between an upright and a "
+                 "mirrored triangle.",
+                 "glTF#2480: all corners of a triangle must have the same w", between_handednesses)
             .checked({{edge_boundary, 5}, {texture_degenerate, 1}, {texture_mirrored, 1}})
             .tangents({{no_gradient, 1}}),
         texture_scale_case(1e-18F),
         texture_scale_case(1e-25F),
         texture_scale_case(1e18F),
         MeshCase("texture a million from its origin",
-                 "A wavy grid whose texture coordinates are multiples of 1/16 out there, which is "
-                 "what floats are.",
-                 "MikkTSpace and meshoptimizer: 540 of 3072 corners lean, measured",
+                 "A wavy grid with texture coordinates that are multiples of 1/16, the "
+                 "spacing of floats at this distance.",
+                 "MikkTSpace and meshoptimizer: 540 of 3072 tangents are not "
+                 "perpendicular to the normal (measured)",
                  [] {
                      return changed(coarsely_textured(), [](Mesh& mesh, std::size_t v) {
                          mesh.texcoords[v] += glm::vec2(far, -far);
@@ -275,23 +280,25 @@ std::vector<HardCase> tangent_cases() {
                  })
             .checked({{edge_boundary, 24}, {texture_far_away, 1}})
             .tangents()
-            .expect("tangents", "exactly those of the texture moved back",
+            .expect("tangents", "exactly those without the offset",
                     differs_from(coarsely_textured, 0.0)),
         texture_value_case("NaN in a texture coordinate", not_a_number),
         texture_value_case("infinity in a texture coordinate", infinity),
         normal_value_case("normal of length zero", {0, 0, 0}, normal_zero),
         normal_value_case("normal that is NaN", {0, not_a_number, 1}, normal_not_finite),
         normal_value_case("normal that is infinite", {0, 0, infinity}, normal_not_finite),
-        MeshCase("normals of any length", "A torus with normals of lengths from 2^-40 to 2^40.",
-                 "MikkTSpace and meshoptimizer: 3000 of 3072 corners lean, measured",
+        MeshCase("normals of various lengths",
+                 "A torus with normals of lengths from 2^-40 to 2^40.",
+                 "MikkTSpace and meshoptimizer: 3000 of 3072 tangents are not "
+                 "perpendicular to the normal (measured)",
                  with_normals_of_lengths)
             .tangents()
             .expect("tangents", "exactly those of unit normals", differs_from(textured_torus, 0.0)),
-        MeshCase("normals along the texture", "A flat grid whose normals are where u grows.",
-                 "baked meshes with broken normals", with_normals_along_the_texture)
+        MeshCase("normals along u", "A flat grid with normals in the direction of increasing u.",
+                 "baked meshes with invalid normals", with_normals_along_the_texture)
             .tangents({{no_direction, 96}, {along_normal, 96}}),
         position_scale_case(1e-25F, "underflow of squared lengths"),
-        position_scale_case(1e20F, "meshoptimizer: 3067 NaN, measured"),
+        position_scale_case(1e20F, "meshoptimizer: 3067 NaN (measured)"),
         position_scale_case(1e25F, "overflow of squared lengths"),
     };
 }
@@ -520,47 +527,51 @@ std::string averaged_over_the_fold(const Mesh& mesh) {
 std::vector<HardCase> tangent_surface_cases() {
     using enum MeshCondition;
     return {
-        MeshCase("triangles in another order", "A torus, its triangles shuffled in twelve ways.",
-                 "MikkTSpace and meshoptimizer: other bits at 72 of 100 corners, measured",
+        MeshCase("triangles in another order",
+                 "A torus with twelve random orders of its triangles.",
+                 "MikkTSpace and meshoptimizer: different bits at 72 % of the corners (measured)",
                  textured_torus)
             .tangents()
             .expect("tangents", "the same bits, with 1, 2, 3 threads or all", depends_on_order),
-        MeshCase("no normals, but tangents",
-                 "A wavy grid whose stored tangents go with normals that it has not.", "glTF#2480",
+        MeshCase("tangents without normals",
+                 "A wavy grid with stored tangents, but without normals.", "glTF#2480",
                  without_normals)
-            .expect("frames, flat", "flat normals, and each triangle's tangent for them",
+            .expect("frames, flat", "flat normals, and tangents that are recomputed for them",
                     wrong_flat_frames),
-        MeshCase("poles of a sphere", "A sphere by longitude and latitude, of 12 slices.",
-                 "p5.js PR#9068", sphere_with_poles)
+        MeshCase("poles of a sphere", "A UV sphere with 12 slices.", "p5.js PR#9068",
+                 sphere_with_poles)
             .checked({{triangle_collapsed, 24}})
             .tangents(
                 {{"triangle with coinciding corners", 24}, {"corner without texture direction", 2}})
-            .tangents_near(1e-4, "each triangle's own east at the poles", east_at_poles)
-            .tangents_near(15.001, "east elsewhere: half a slice, at the seam", east_beside_poles),
-        MeshCase("texture folded over",
-                 "Two triangles on an edge, one over the other under one normal: it sees the back "
-                 "of one, and their v opposite.",
-                 "the limit of 180 degrees of MikkTSpace; meshoptimizer has none", folded_over)
+            .tangents_near(1e-4, "the eastward direction of each triangle at the poles",
+                           east_at_poles)
+            .tangents_near(15.001, "the eastward direction elsewhere (half a slice at the seam)",
+                           east_beside_poles),
+        MeshCase("folded texture",
+                 "Two triangles with a common edge lie on top of each other and share "
+                 "normals. One is back-facing, and their v directions are opposite.",
+                 "MikkTSpace's angular threshold of 180 degrees; meshoptimizer has no threshold",
+                 folded_over)
             .tangents()
-            .expect("tangents, mikktspace and area-weighted", "each triangle's own",
+            .expect("tangents, mikktspace and area-weighted", "the tangent of each triangle",
                     averaged_over_the_fold),
         MeshCase("thin bevel",
-                 "A floor and a wall, and between them a bevel of a hundredth of their size with a "
-                 "sheared texture.",
+                 "A floor and a wall with a bevel between them that has 1 % of their size "
+                 "and a sheared texture.",
                  "meshoptimizer PR#1047", bevelled_edge)
             .tangents()
-            .expect(
-                "tangents, area-weighted",
-                "the floor's and the wall's own within 2 degrees, where MikkTSpace turns them by "
-                "more than 20",
-                not_turned_as_told),
-        MeshCase("quads begun at other corners",
-                 "A wavy sheet of quads, read from OBJ files that begin them at each of their "
-                 "corners.",
+            .expect("tangents, area-weighted",
+                    "within 2 degrees of those of the floor and the wall; MikkTSpace's "
+                    "differ by more than 20",
+                    not_turned_as_told),
+        MeshCase("quads that start at other corners",
+                 "A wavy sheet of quads, read from four OBJ files whose quads start at "
+                 "different corners.",
                  "MikkTSpace#2", coarsely_textured)
-            .expect("tangents", "within 0.0001 degrees the same: they are cut along one diagonal",
+            .expect("tangents", "equal within 0.0001 degrees, because the same diagonal is used",
                     depends_on_first_corner),
-        MeshCase("mirrored surface", "A torus mirrored in x, its triangles still facing outwards.",
+        MeshCase("mirrored surface",
+                 "A torus that is mirrored in x, with outward-facing triangles.",
                  "instances scaled by -1", mirrored_torus)
             .checked({{texture_mirrored, 576}})
             .tangents()

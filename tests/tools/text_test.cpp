@@ -47,7 +47,7 @@ TEST(SummaryText, ExtensionsAreLowerCase) {
 
 Report report_of(const std::string& kind) {
     Report report;
-    report.add(kind, "triangle", 7, "has no say");
+    report.add(kind, "triangle", 7, "does not contribute");
     return report;
 }
 
@@ -79,7 +79,7 @@ TEST(Findings, KeepEverythingInJson) {
                                               {"element", "triangle"},
                                               {"count", 1},
                                               {"first", {7}},
-                                              {"outcome", "has no say"}}};
+                                              {"outcome", "does not contribute"}}};
     EXPECT_EQ(findings.json(), nlohmann::ordered_json::array({expected[0]}));
 }
 

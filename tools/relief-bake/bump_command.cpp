@@ -686,8 +686,8 @@ void add_accuracy_options(CLI::App& app, BumpAccuracyRequest& request) {
                "else. Default: auto.")
         .group(group);
     add_switch(app, "--destaircase", request.destaircase,
-               "First smooth the quantization steps of maps with few bits; no height moves by more "
-               "than half a step.")
+               "First smooth the quantization steps of maps with few bits; no height "
+               "changes by more than half a step.")
         .group(group);
     const Choices<std::optional<Arithmetic>> precisions = {
         {"float32", Arithmetic::float32}, {"float64", Arithmetic::float64}, {"auto", std::nullopt}};

@@ -108,7 +108,7 @@ std::vector<double> Occlusion::open_shares(const RayScene& scene,
         const bool is_usable = glm::dot(point.normal, point.face) >= min_cosine;
         if (!is_usable) {
             report.add("normal along its triangle or behind it", "texel", point.texel,
-                       "has its occlusion about the triangle's");
+                       "gets the occlusion about the normal of its triangle");
         }
         const glm::dmat3 axes = axes_about(is_usable ? point.normal : point.face);
         const std::uint64_t scramble = scrambled(point.texel);

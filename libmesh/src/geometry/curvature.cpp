@@ -152,16 +152,17 @@ std::optional<double> mean_around(std::span<const Spoke> sorted, const std::vect
 
 void count_flat_triangles(std::span<const glm::vec3> positions,
                           std::span<const glm::uvec3> triangles, Report& report) {
-    parallel_for_reporting(
-        triangles.size(), grain, report, [&](std::size_t begin, std::size_t end, Report& found) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const glm::dvec3 a(positions[triangles[i].x]);
-                if (has_area(glm::dvec3(positions[triangles[i].y]) - a,
-                             glm::dvec3(positions[triangles[i].z]) - a))
-                    continue;
-                found.add("triangle without area under curvature", "triangle", i, "has no say");
-            }
-        });
+    parallel_for_reporting(triangles.size(), grain, report,
+                           [&](std::size_t begin, std::size_t end, Report& found) {
+                               for (std::size_t i = begin; i < end; ++i) {
+                                   const glm::dvec3 a(positions[triangles[i].x]);
+                                   if (has_area(glm::dvec3(positions[triangles[i].y]) - a,
+                                                glm::dvec3(positions[triangles[i].z]) - a))
+                                       continue;
+                                   found.add("triangle without area under curvature", "triangle", i,
+                                             "does not contribute");
+                               }
+                           });
 }
 
 }  // namespace
@@ -196,7 +197,7 @@ std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
         const auto value = mean_around(rings.around(i), kinds, values, scratch);
         values[i] = static_cast<float>(value.value_or(0.0));
         found.add("vertex on an open or non-manifold edge", "vertex", i,
-                  "has the mean curvature of those around it that are not, or 0");
+                  "gets the mean curvature of its regular neighbors, or 0");
     });
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = values[welded[i]];

@@ -331,7 +331,7 @@ glm::dvec3 sound_tangent(const glm::dvec3& tangent, const glm::dvec3& normal, st
         report_length(tangent, "tangent not of unit length", index, found);
         if (std::abs(glm::dot(unit, normal)) > leaning_tolerance) {
             found.add("tangent not perpendicular to its normal", "vertex", index,
-                      "turned into the plane of the normal");
+                      "projected into the plane of the normal");
         }
         // Projected twice, because a short remainder contains the rounding error of the first
         // projection.

@@ -231,11 +231,11 @@ void report_kept(std::span<const glm::vec3> normals, bool repaired, Report& repo
                 break;
             case KeptNormal::zero:
                 report.add("zero normal", "vertex", v,
-                           repaired ? "averaged anew" : "kept as it is");
+                           repaired ? "averaged again" : "kept as it is");
                 break;
             case KeptNormal::non_finite:
                 report.add("non-finite normal", "vertex", v,
-                           repaired ? "averaged anew" : "kept as it is");
+                           repaired ? "averaged again" : "kept as it is");
                 break;
         }
     }
@@ -302,7 +302,7 @@ void make_tangents(FramedMesh& framed, TangentMethod mode, Report& report) {
     const std::vector<glm::vec4> tangents = corner_tangents(framed.mesh, mode, report);
     store_corners(framed, tangents, &Mesh::tangents, [&](std::size_t vertex) {
         report.add("tangent of an isolated vertex", "vertex", vertex,
-                   "is a fixed one perpendicular to its normal");
+                   "is a fixed direction perpendicular to its normal");
         return glm::vec4(perpendicular_to(framed.mesh.normals[vertex]), -1.0F);
     });
 }

@@ -431,7 +431,7 @@ void report_vertex(PlaceKind kind, std::size_t vertex, Report& report) {
 void report_all(const AveragingResult& averaged, StridedSpan<const glm::vec3> positions,
                 TriangleSpan triangles, Report& report) {
     report_triangles(positions, triangles, averaged.odd_triangles,
-                     "has no say in its vertices' normals", report);
+                     "does not contribute to vertex normals", report);
     for (const auto& [vertex, kind] : averaged.problems)
         report_vertex(kind, vertex, report);
 }
@@ -578,7 +578,7 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
                                             fans.fans, normals);
 
     report_triangles(positions, triangles, averaged.odd_triangles,
-                     "has no say in its vertices' normals", report);
+                     "does not contribute to vertex normals", report);
     for (const auto& [vertex, kind] : averaged.problems)
         report_vertex(kind, fans.vertex[vertex], report);
     CornerNormals result;

@@ -203,7 +203,7 @@ void report_normals(StridedSpan<const glm::vec3> normals, Report& report) {
                                for (std::size_t v = begin; v < end; ++v) {
                                    if (!is_finite(normals[v]) || normals[v] == glm::vec3(0.0F)) {
                                        found.add("normal without direction", "vertex", v,
-                                                 "its tangents follow the texture alone");
+                                                 "its tangents depend only on the texture");
                                    }
                                }
                            });
@@ -217,15 +217,15 @@ void report_triangles(const TriangleGradients& gradients, Report& report) {
                 break;
             case Gradient::none:
                 report.add("triangle without texture gradient", "triangle", triangle,
-                           "takes its neighbors' tangents");
+                           "gets the tangents of its neighbors");
                 break;
             case Gradient::coinciding:
                 report.add("triangle with coinciding corners", "triangle", triangle,
-                           "takes the tangents of triangles at its vertices");
+                           "gets the tangents of other triangles at its vertices");
                 break;
             case Gradient::non_finite:
                 report.add("triangle with non-finite values", "triangle", triangle,
-                           "takes the tangents of triangles at its vertices");
+                           "gets the tangents of other triangles at its vertices");
                 break;
         }
     }
@@ -234,14 +234,14 @@ void report_triangles(const TriangleGradients& gradients, Report& report) {
 void report_groups(const GroupFindings& findings, Report& report) {
     for (const GroupFindings::Repeated& repeated : findings.repeated) {
         report.add("repeated triangle", "triangle", repeated.triangle,
-                   "counts once and shares its tangents");
+                   "counts once and gets the same tangents");
     }
     for (const Corner corner : findings.along_normal) {
         report.add("texture direction along the normal", "corner", corner,
-                   "takes the tangent of others at its vertex");
+                   "gets the tangent of other corners at its vertex");
     }
     for (const Corner corner : findings.cancelled)
-        report.add("cancelling tangents", "corner", corner, "keeps its own triangle's tangent");
+        report.add("cancelling tangents", "corner", corner, "keeps the tangent of its triangle");
 }
 
 /// Triangles with indices of welded vertices. Copies nothing if all vertices differ.

@@ -152,7 +152,7 @@ void scale_slopes(Image& normals, double strength, Report& report) {
         float* const normal = &all[texel * 3];
         if (!(normal[2] > 0.0F))
             found.add("normal that does not face outwards", "texel", texel,
-                      "x and y multiplied all the same");
+                      "x and y are multiplied");
         Direction scaled{normal[0] * strength, normal[1] * strength, normal[2]};
         if (!make_unit(scaled)) found.add("normal without direction", "texel", texel, "made flat");
         store(scaled, normal);

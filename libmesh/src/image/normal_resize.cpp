@@ -188,7 +188,7 @@ Image slopes_to_average(const Image& normals, Report& report) {
         const bool is_steep = !(across <= max_averaged_slope * n[2]);
         if (is_steep)
             found.add("normal too steep to average slopes", "texel", texel,
-                      "vectors averaged around it");
+                      "the vectors around it are averaged");
         to[texel * 2] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[0] / n[2];
         to[texel * 2 + 1] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[1] / n[2];
     });

@@ -675,9 +675,9 @@ FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Repo
     if (frames.tangents == TangentMethod::keep) {
         frames.tangents = had_tangents ? TangentMethod::mikktspace : TangentMethod::none;
         if (!input.tangents.empty()) {
-            report.add("tangents of other triangles", "mesh", 0,
-                       had_tangents ? "are computed anew"
-                                    : "are removed: there are no texture coordinates");
+            report.add(
+                "tangents of other triangles", "mesh", 0,
+                had_tangents ? "are recomputed" : "are removed: there are no texture coordinates");
         }
     }
     if (frames.normals == NormalMode::keep && frames.tangents == TangentMethod::none) return small;

@@ -269,7 +269,7 @@ FrameOptions frames_for(const Mesh& input, FrameOptions frames, Report& report) 
         frames.tangents = had_tangents ? TangentMethod::mikktspace : TangentMethod::none;
     if (!input.tangents.empty()) {
         report.add("tangents of other triangles", "mesh", 0,
-                   frames.tangents == TangentMethod::none ? "are removed" : "are computed anew");
+                   frames.tangents == TangentMethod::none ? "are removed" : "are recomputed");
     }
     const bool needs_normals =
         !input.normals.empty() || frames.tangents == TangentMethod::mikktspace;

@@ -89,7 +89,7 @@ struct EffectRow {
     Decision (*decide)(const DrawSubject& subject) = nullptr;
     /// If the effect changes the picture when it is forced on: whose choice it is.
     const char* choice = nullptr;
-    /// With a choice: true if the effect is neutral on this draw all the same. Null: it never is.
+    /// With a choice: true if the effect is nevertheless neutral on this draw. Null: it never is.
     bool (*neutral)(const ForcingSubject& subject) = nullptr;
     /// A more specific reason than effect.hidden; "" if it does not apply.
     const char* (*hidden_by)(const Features& requested, const Features& shown) = nullptr;

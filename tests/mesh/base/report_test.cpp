@@ -71,15 +71,15 @@ TEST(Report, TakesWhatWasCountedElsewhere) {
 
 TEST(Report, SaysAFindingInOneLine) {
     Report report;
-    report.add("degenerate triangle", "triangle", 17, "has no say");
-    report.add("degenerate triangle", "triangle", 3, "has no say");
+    report.add("degenerate triangle", "triangle", 17, "does not contribute");
+    report.add("degenerate triangle", "triangle", 3, "does not contribute");
     EXPECT_EQ(to_string(report.findings()[0]),
-              "2 x degenerate triangle (triangle 3, 17): has no say");
+              "2 x degenerate triangle (triangle 3, 17): does not contribute");
     for (std::size_t i = 100; i < 110; ++i)
-        report.add("degenerate triangle", "triangle", i, "has no say");
+        report.add("degenerate triangle", "triangle", i, "does not contribute");
     EXPECT_EQ(to_string(report.findings()[0]),
-              "12 x degenerate triangle (triangle 3, 17, 100, 101, 102, 103, 104, 105, ...): has "
-              "no say");
+              "12 x degenerate triangle (triangle 3, 17, 100, 101, 102, 103, 104, 105, ...): "
+              "does not contribute");
 }
 
 const std::vector<std::string> materials = {"black plastic", "bronze",     "cyan plastic",

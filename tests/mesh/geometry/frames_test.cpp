@@ -182,8 +182,8 @@ TEST(Frames, RepairTouchesOnlyBrokenNormals) {
     EXPECT_EQ(report.findings()[0],
               (Finding{"normal not of unit length", "vertex", "scaled", 1, {0}}));
     EXPECT_EQ(report.findings()[1],
-              (Finding{"non-finite normal", "vertex", "averaged anew", 1, {2}}));
-    EXPECT_EQ(report.findings()[2], (Finding{"zero normal", "vertex", "averaged anew", 1, {3}}));
+              (Finding{"non-finite normal", "vertex", "averaged again", 1, {2}}));
+    EXPECT_EQ(report.findings()[2], (Finding{"zero normal", "vertex", "averaged again", 1, {3}}));
 }
 
 TEST(Frames, ComputedNormalsReplaceTheTangentsMadeForOthers) {

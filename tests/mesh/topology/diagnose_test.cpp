@@ -366,8 +366,8 @@ TEST(DiagnoseWords, FindingsCarryThemAndTheirSeverity) {
     const Report remarks = to_report(diagnosis, Severity::note);
     ASSERT_EQ(remarks.findings().size(), 1U);
     EXPECT_EQ(to_string(remarks.findings()[0]),
-              "6 x boundary edge (edge of triangle 0, 1, 2, ...): has one triangle: the surface is "
-              "open there");
+              "6 x boundary edge (edge of triangle 0, 1, 2, ...): has one triangle: "
+              "the surface is open");
     EXPECT_EQ(to_report(diagnosis, Severity::problem).count("non-manifold edge"), 1U);
     EXPECT_FALSE(diagnose(mesh_from({o, x_axis, y_axis}, {{0, 1, 2}})).has_problem());
 }

@@ -218,7 +218,7 @@ TEST_F(Following, FilesOfLinkedProgramsStayWatched) {
     drawn({"image.png"});
     write("shaders/light.glsl", "22");
     EXPECT_EQ(reported(), "shaders ");
-    drawn({"image.png"});  // Another picture is prepared before programs are linked anew.
+    drawn({"image.png"});  // Another picture is prepared before programs are linked again.
     EXPECT_EQ(reported_later(), "") << "once a change";
     drawn({"shaders/light.glsl", "image.png"});
     write("shaders/light.glsl", "333");

@@ -49,7 +49,7 @@ class FileError : public Error {
 struct Finding {
     std::string kind;       ///< The problem, a fixed text: "degenerate triangle".
     std::string element;    ///< The type of element: "triangle", "vertex", "corner", "texel".
-    std::string outcome;    ///< The outcome: "has no say in its vertices' normals".
+    std::string outcome;    ///< The outcome: "does not contribute to vertex normals".
     std::size_t count = 0;  ///< Number of affected elements.
     std::vector<std::size_t> first;  ///< The smallest indices, ascending, at most 8.
 
@@ -83,7 +83,7 @@ class Report {
     std::vector<Finding> findings_;
 };
 
-/// Formats a finding as one line: "2 degenerate triangles (triangle 3, 17): have no say ...".
+/// Formats a finding as one line: "2 degenerate triangles (triangle 3, 17): do not contribute ...".
 std::string to_string(const Finding& finding);
 
 }  // namespace relief

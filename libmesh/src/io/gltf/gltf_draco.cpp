@@ -302,7 +302,7 @@ std::size_t Unpacking::fill(std::size_t accessor, Source source, const std::stri
     const std::size_t count = elements.size() / size;
     if (size_in(json, "count") != count) {
         report_.add("accessor count that is not its Draco data's", "accessor", accessor,
-                    "the data's is taken");
+                    "that of the data is used");
     }
     json["bufferView"] = view;
     json["count"] = count;

@@ -241,7 +241,7 @@ void complete_corners(ObjStatements& statements, Report& report) {
             }
             if (any_normal && corner.normal < 0) {
                 report.add("corner without a normal", "corner", face.first_corner + k,
-                           "has that of its face");
+                           "gets that of its face");
                 if (own_normal < 0) {
                     own_normal = static_cast<std::int32_t>(statements.normals.size());
                     statements.normals.push_back(face_normal(statements, face));

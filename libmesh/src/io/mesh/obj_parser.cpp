@@ -589,12 +589,12 @@ void check_indices(ObjStatements& result, const std::filesystem::path& file, Rep
             }
             if (is_beyond(corner.texcoord, result.texcoords.size())) {
                 report.add("texture coordinate that does not exist", "corner",
-                           face.first_corner + k, "taken as none");
+                           face.first_corner + k, "read as none");
                 corner.texcoord = -1;
             }
             if (is_beyond(corner.normal, result.normals.size())) {
                 report.add("normal that does not exist", "corner", face.first_corner + k,
-                           "taken as none");
+                           "read as none");
                 corner.normal = -1;
             }
         }

@@ -379,7 +379,7 @@ class PlyElements {
     void end_element(const PlyElement& element, std::uint64_t index) {
         if (values_.end_element()) return;
         report_.add("line with more values than the header names", element.name, index,
-                    "the surplus left out");
+                    "the surplus is ignored");
     }
 
     void read_vertices(const PlyElement& element);
