@@ -49,10 +49,10 @@ std::string command_of(const BumpMethod& method, const BumpOptions& bump,
                        const AssetOptions& options) {
     std::string command =
         fmt::format("relief-bake bump {} OUT.{} --strength {:g} --kernel {}", options.arguments,
-                    method.bits == 32 ? "exr" : "png", bump.strength, name_of(method.kernel));
+                    method.bits == 32 ? "exr" : "png", bump.strength, enum_name(method.kernel));
     if (method.kernel == Kernel::gaussian)
         command += fmt::format(" --kernel-radius {}", method.gaussian_radius);
-    command += " --precision " + name_of(method.arithmetic);
+    command += std::string(" --precision ") + enum_name(method.arithmetic);
     if (method.bits != 32) command += fmt::format(" --bits {}", method.bits);
     if (method.destaircased) command += " --destaircase";
     return command + " --wrap " + name_of(*bump.wrap) + options.height_arguments;

@@ -109,23 +109,16 @@ WaveMap surface_at(int side) {
     return map;
 }
 
-std::string name_of(Kernel kernel) {
-    constexpr std::array<std::string_view, 10> words = {
-        "forward", "central3", "prewitt3", "sobel3",   "scharr3",
-        "sobel5",  "scharr5",  "central5", "central7", "gaussian"};
-    return std::string(words.at(static_cast<std::size_t>(kernel)));
-}
-
 MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error) {
     const std::string kernel = method.kernel == Kernel::gaussian
                                    ? fmt::format("gaussian {}", method.gaussian_radius)
-                                   : name_of(method.kernel);
+                                   : enum_name(method.kernel);
     const std::string bits = fmt::format("{} bit", method.bits);
     MeasuredMethod measured;
-    measured.name = fmt::format("{}, {}, {}{}", kernel, name_of(method.arithmetic), bits,
+    measured.name = fmt::format("{}, {}, {}{}", kernel, enum_name(method.arithmetic), bits,
                                 method.destaircased ? ", steps smoothed" : "");
     measured.choices = {{"kernel", kernel},
-                        {"arithmetic", name_of(method.arithmetic)},
+                        {"arithmetic", enum_name(method.arithmetic)},
                         {"depth", bits},
                         {"steps", method.destaircased ? "smoothed" : "as they are"}};
     measured.error = error;
@@ -257,8 +250,8 @@ Experiment on_wave(int bits, const RunOptions& options) {
     for (const NamedKernel& kernel : named_kernels()) {
         for (const Arithmetic arithmetic : both_arithmetics) {
             MeasuredMethod method;
-            method.name = fmt::format("{}, {}", kernel.name, name_of(arithmetic));
-            method.choices = {{"kernel", kernel.name}, {"arithmetic", name_of(arithmetic)}};
+            method.name = fmt::format("{}, {}", kernel.name, enum_name(arithmetic));
+            method.choices = {{"kernel", kernel.name}, {"arithmetic", enum_name(arithmetic)}};
             method.error = wave_errors(wave, kernel, arithmetic);
             method.work = [&wave, chosen = with_kernel(wave.options, kernel, arithmetic)] {
                 Report report;
@@ -322,10 +315,10 @@ Experiment on_recipe(const std::string& id, const FieldRecipe& recipe, int side,
         const std::string kernel = name_of(one.method.kernel, one.method.gaussian_radius);
         const char* const steps = one.method.destaircased ? "smoothed away" : "as they are";
         MeasuredMethod method;
-        method.name = fmt::format("{}, {}{}", kernel, name_of(one.method.arithmetic),
+        method.name = fmt::format("{}, {}{}", kernel, enum_name(one.method.arithmetic),
                                   one.method.destaircased ? ", steps smoothed away" : "");
         method.choices = {
-            {"kernel", kernel}, {"arithmetic", name_of(one.method.arithmetic)}, {"steps", steps}};
+            {"kernel", kernel}, {"arithmetic", enum_name(one.method.arithmetic)}, {"steps", steps}};
         method.error = one.error;
         method.work = [&field, chosen = one.method] { convert(field, chosen); };
         measured.push_back(std::move(method));

@@ -56,9 +56,6 @@ ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmeti
 /// The same surface at several resolutions: waves that tile a square of `side` texels.
 WaveMap surface_at(int side);
 
-/// The name of a kernel in relief-bake: "scharr3", ...
-std::string name_of(Kernel kernel);
-
 /// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel.
 MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error);
 

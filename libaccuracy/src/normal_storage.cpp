@@ -63,17 +63,6 @@ Image decoded(const Image& codes, Direction direction) {
     return normals;
 }
 
-std::string name_of(Dither dither) {
-    switch (dither) {
-        case Dither::ordered:
-            return "ordered";
-        case Dither::blue_noise:
-            return "blue-noise";
-        default:
-            return "none";
-    }
-}
-
 /// \param zero  the code of zero in integer maps; "exact" for layouts that represent 0 exactly
 NormalCode named(const std::string& layout, const std::string& bits, const std::string& rounding,
                  double bytes, const std::string& zero = "exact") {
@@ -86,7 +75,7 @@ NormalCode named(const std::string& layout, const std::string& bits, const std::
 }
 
 std::string rounding_of(const NormalMapFormat& format) {
-    return format.dither == Dither::none ? "nearest" : name_of(format.dither);
+    return format.dither == Dither::none ? "nearest" : enum_name(format.dither);
 }
 
 std::string zero_of(FlatCode flat, int bits) {

@@ -38,11 +38,11 @@ NormalMethod chosen(Arithmetic arithmetic) {
 }  // namespace
 
 std::string NormalMethod::name() const {
-    return weighting + ", " + name_of(arithmetic);
+    return weighting + ", " + enum_name(arithmetic);
 }
 
 std::vector<std::pair<std::string, std::string>> NormalMethod::choices() const {
-    return {{"weighting", weighting}, {"arithmetic", name_of(arithmetic)}};
+    return {{"weighting", weighting}, {"arithmetic", enum_name(arithmetic)}};
 }
 
 std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics) {

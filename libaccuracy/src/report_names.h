@@ -34,8 +34,4 @@ inline std::string name_of(Triangulation triangulation) {
     return names.at(static_cast<std::size_t>(triangulation));
 }
 
-inline std::string name_of(Arithmetic arithmetic) {
-    return arithmetic == Arithmetic::float64 ? "float64" : "float32";
-}
-
 }  // namespace relief

@@ -418,8 +418,8 @@ constexpr double swept_wavelength = 32.0;
 
 SweptSlopes by_kernel(Kernel kernel, Arithmetic arithmetic) {
     const std::string name = name_of(kernel, 0);
-    return {fmt::format("{}, {}", name, name_of(arithmetic)),
-            {{"kernel", name}, {"arithmetic", name_of(arithmetic)}},
+    return {fmt::format("{}, {}", name, enum_name(arithmetic)),
+            {{"kernel", name}, {"arithmetic", enum_name(arithmetic)}},
             [=](const WaveMap& wave) {
                 BumpOptions options = wave.options;
                 options.kernel = kernel;

@@ -244,8 +244,8 @@ TEST(AssetNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
 }
 
 TEST(BumpWords, AreThoseOfTheTools) {
-    EXPECT_EQ(name_of(Kernel::forward), "forward");
-    EXPECT_EQ(name_of(Kernel::gaussian), "gaussian");
+    EXPECT_STREQ(enum_name(Kernel::forward), "forward");
+    EXPECT_STREQ(enum_name(Kernel::gaussian), "gaussian");
     EXPECT_EQ(name_of(Wraps(Wrap::mirror)), "mirror");
     EXPECT_EQ(name_of(Wraps(Wrap::repeat, Wrap::clamp)), "repeat,clamp");
 }

@@ -29,7 +29,7 @@ std::string green_text(const MapInputOptions& options, const InputMap& map) {
     const char* source = options.detects_green ? "from its slopes"
                          : options.green       ? "given"
                                                : "from its metadata";
-    return fmt::format("green {} ({})", name_of(*map.green, green_choices()), source);
+    return fmt::format("green {} ({})", enum_name(*map.green), source);
 }
 
 std::string zero_text(const MapInputOptions& options, const InputMap& map) {
@@ -38,7 +38,7 @@ std::string zero_text(const MapInputOptions& options, const InputMap& map) {
     const char* source = options.flat                           ? "given"
                          : map.metadata.contains("relief:flat") ? "from its metadata"
                                                                 : "the default of glTF";
-    return fmt::format("zero is {} of 255 ({})", name_of(map.flat, zero_code_choices()), source);
+    return fmt::format("zero is {} of 255 ({})", enum_name(map.flat), source);
 }
 
 /// Returns whether more than one in a thousand float samples is negative. Fewer may be overshoots

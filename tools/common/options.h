@@ -183,19 +183,6 @@ void add_general_options(CLI::App& app, GeneralOptions& options);
 
 // The option words of normals, tangents, height maps and normal maps, which all tools share.
 
-inline Choices<NormalMode> normal_choices() {
-    return {{"keep", NormalMode::keep},
-            {"flat", NormalMode::flat},
-            {"auto", NormalMode::automatic},
-            {"uniform", NormalMode::uniform},
-            {"area", NormalMode::area},
-            {"angle", NormalMode::angle},
-            {"sine", NormalMode::sine},
-            {"max", NormalMode::max},
-            {"angle-edges", NormalMode::angle_edges},
-            {"area-angle", NormalMode::area_angle}};
-}
-
 /// All methods except those that with_frames() does not compute.
 inline Choices<TangentMethod> tangent_choices() {
     Choices<TangentMethod> choices = enum_choices<TangentMethod>();
@@ -203,44 +190,12 @@ inline Choices<TangentMethod> tangent_choices() {
     return choices;
 }
 
-inline Choices<Kernel> kernel_choices() {
-    return {{"forward", Kernel::forward},   {"central3", Kernel::central3},
-            {"prewitt3", Kernel::prewitt3}, {"sobel3", Kernel::sobel3},
-            {"scharr3", Kernel::scharr3},   {"sobel5", Kernel::sobel5},
-            {"scharr5", Kernel::scharr5},   {"central5", Kernel::central5},
-            {"central7", Kernel::central7}, {"gaussian", Kernel::gaussian}};
-}
-
 /// "auto" is an absent kernel, which is chosen by the map.
 inline Choices<std::optional<Kernel>> kernel_or_auto_choices() {
     Choices<std::optional<Kernel>> choices = {{"auto", std::nullopt}};
-    for (const auto& [name, kernel] : kernel_choices())
-        choices.emplace_back(name, kernel);
+    for (const EnumName<Kernel>& entry : enum_names<Kernel>)
+        choices.emplace_back(entry.name, entry.value);
     return choices;
-}
-
-inline Choices<HeightChannel> height_channel_choices() {
-    return {{"mean", HeightChannel::mean}, {"luminance", HeightChannel::luminance},
-            {"red", HeightChannel::red},   {"green", HeightChannel::green},
-            {"blue", HeightChannel::blue}, {"alpha", HeightChannel::alpha}};
-}
-
-inline Choices<MapAlpha> map_alpha_choices() {
-    return {{"none", MapAlpha::none}, {"height", MapAlpha::height}, {"keep", MapAlpha::keep}};
-}
-
-inline Choices<Green> green_choices() {
-    return {{"up", Green::up}, {"down", Green::down}};
-}
-
-/// The words are codes of 8 bits. In 16 bits the codes are 32767.5 and 32768.
-inline Choices<FlatCode> zero_code_choices() {
-    return {{"127.5", FlatCode::half}, {"128", FlatCode::middle}};
-}
-
-inline Choices<Dither> dither_choices() {
-    return {
-        {"none", Dither::none}, {"ordered", Dither::ordered}, {"blue-noise", Dither::blue_noise}};
 }
 
 /// "auto" is an absent value, which is detected from the map.

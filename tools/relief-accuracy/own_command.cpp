@@ -180,7 +180,7 @@ std::vector<AssetExperiment> measure_heights(const AssetInput& input, const Asse
     description += fmt::format("a height map of {} bits, {:g} texels high, {} at the border",
                                map.info().bits, bump.strength, name_of(*bump.wrap));
     if (request.channel) {
-        const std::string name = name_of(*request.channel, height_channel_choices());
+        const std::string name = enum_name(*request.channel);
         description += fmt::format(", channel {}", name);
         options.height_arguments = " --channel " + name;
     }
@@ -292,8 +292,7 @@ std::string options_text(const AssetRequest& request) {
         words += *request.reference == NormalReference::file ? " --truth file" : " --truth surface";
     if (request.crease_degrees) words += fmt::format(" --crease {:g}", *request.crease_degrees);
     if (request.strength) words += fmt::format(" --strength {:g}", *request.strength);
-    if (request.channel)
-        words += " --channel " + name_of(*request.channel, height_channel_choices());
+    if (request.channel) words += std::string(" --channel ") + enum_name(*request.channel);
     if (request.wrap && request.wrap->is_settled())
         words += " --wrap " + name_of(request.wrap->value_or({}));
     if (request.size) words += fmt::format(" --size {}", *request.size);
@@ -467,7 +466,7 @@ void add_input_options(CLI::App& app, AssetRequest& request) {
                "Height maps: the height of the value 1.0 in texels. Default: 16.")
         .group(image);
     add_choice(
-        app, "--channel", request.channel, height_channel_choices(),
+        app, "--channel", request.channel, enum_choices<HeightChannel>(),
         "Height maps: the height channel of a color image, as for relief-bake bump; the image is "
         "then read as a height map. Default: mean, with a finding if the channels differ.")
         .group(image);

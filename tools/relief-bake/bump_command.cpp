@@ -362,7 +362,7 @@ namespace {
 
 /// "gaussian of radius 2", or the plain name.
 std::string kernel_text(const BumpOptions& bump) {
-    const std::string name = name_of(*bump.kernel, kernel_choices());
+    const std::string name = enum_name(*bump.kernel);
     return bump.kernel == Kernel::gaussian
                ? fmt::format("{} of radius {}", name, bump.gaussian_radius)
                : name;
@@ -403,7 +403,7 @@ std::string input_text(const Job& job, const BumpConversion& conversion) {
 std::string format_text(const BumpFileFormat& format) {
     if (format.content == BumpContent::slope_moments) {
         return fmt::format("slope moments, 32 bit float, dh/dy {}{}",
-                           name_of(format.normals.green, green_choices()),
+                           enum_name(format.normals.green),
                            format.write.half ? ", half floats" : "");
     }
     std::string text = to_string(format.normals);
@@ -412,10 +412,6 @@ std::string format_text(const BumpFileFormat& format) {
     if (format.alpha == MapAlpha::keep) text += ", alpha kept";
     if (format.write.half) text += ", half floats";
     return text;
-}
-
-std::string precision_name(const BumpMethod& method) {
-    return method.arithmetic == Arithmetic::float64 ? "float64" : "float32";
 }
 
 /// The table of --compare, sorted by error.
@@ -429,13 +425,13 @@ std::vector<std::string> comparison_table(const BumpExperiment& experiment) {
         fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9} {:>9} {:>9} {:>9} {:>9}", "kernel", "precision",
                     "bits", "steps", "RMS deg", "max deg", "with map", "time", "MPixel/s")};
     for (const BumpMeasurement* row : rows) {
-        lines.push_back(
-            fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
-                        kernel_name(row->method), precision_name(row->method), row->method.bits,
-                        row->method.destaircased ? "smooth" : "as is", row->error.rms,
-                        row->error.max, expected_error(experiment.reference, *row).total(),
-                        duration(1000.0 * row->seconds.median), row->megapixels_per_second,
-                        row->is_pareto_optimal ? "*" : ""));
+        lines.push_back(fmt::format(
+            "{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
+            kernel_name(row->method), enum_name(row->method.arithmetic), row->method.bits,
+            row->method.destaircased ? "smooth" : "as is", row->error.rms, row->error.max,
+            expected_error(experiment.reference, *row).total(),
+            duration(1000.0 * row->seconds.median), row->megapixels_per_second,
+            row->is_pareto_optimal ? "*" : ""));
     }
     lines.emplace_back("RMS and max: added by the conversion; with map: total expected RMS error");
     lines.emplace_back("* no other method is both faster and more accurate");
@@ -490,11 +486,11 @@ nlohmann::ordered_json measurement_json(const BumpMeasurement& measurement,
                                         const BumpReference& reference) {
     const BumpMethod& method = measurement.method;
     const ExpectedError expected = expected_error(reference, measurement);
-    return {{"kernel", name_of(method.kernel, kernel_choices())},
+    return {{"kernel", enum_name(method.kernel)},
             {"kernel_radius", method.kernel == Kernel::gaussian
                                   ? nlohmann::ordered_json(method.gaussian_radius)
                                   : nullptr},
-            {"precision", precision_name(method)},
+            {"precision", enum_name(method.arithmetic)},
             {"bits", method.bits},
             {"destaircased", method.destaircased},
             {"degrees",
@@ -553,13 +549,13 @@ void add_accuracy(const BumpAccuracy& accuracy, nlohmann::ordered_json& json) {
 }  // namespace
 
 std::string kernel_name(const BumpMethod& method) {
-    const std::string name = name_of(method.kernel, kernel_choices());
+    const std::string name = enum_name(method.kernel);
     return method.kernel == Kernel::gaussian ? fmt::format("{} {}", name, method.gaussian_radius)
                                              : name;
 }
 
 std::string to_string(const BumpMethod& method) {
-    return fmt::format("{} in {}, {} bit{}", kernel_name(method), precision_name(method),
+    return fmt::format("{} in {}, {} bit{}", kernel_name(method), enum_name(method.arithmetic),
                        method.bits, method.destaircased ? ", steps smoothed" : "");
 }
 
@@ -603,7 +599,7 @@ nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stag
         {"height", conversion.input.height},
         {"by_rows", conversion.is_streamed},
         {"transparent", conversion.transparent},
-        {"kernel", name_of(*bump.kernel, kernel_choices())},
+        {"kernel", enum_name(*bump.kernel)},
         {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
         {"strength", bump.strength},
         {"texel_size", {bump.texel.x, bump.texel.y}},
@@ -611,11 +607,11 @@ nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stag
         {"seams", seams},
         {"content", has_moments ? "slope moments" : "normals"},
         {"xy_only", conversion.format.xy_only},
-        {"alpha", name_of(conversion.format.alpha, map_alpha_choices())},
+        {"alpha", enum_name(conversion.format.alpha)},
         {"bits", format.bits},
-        {"green", name_of(format.green, green_choices())},
-        {"zero_code", name_of(format.flat, zero_code_choices())},
-        {"dither", name_of(format.dither, dither_choices())},
+        {"green", enum_name(format.green)},
+        {"zero_code", enum_name(format.flat)},
+        {"dither", enum_name(format.dither)},
         {"findings", conversion.findings.json()},
         {"milliseconds", durations_json(stages.finished())},
         {"megapixels_per_second", megapixels_per_second(conversion, stages)}};
@@ -638,7 +634,7 @@ glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
 
 void add_height_options(CLI::App& app, BumpRequest& request) {
     const std::string group = "Heights";
-    add_choice(app, "--channel", request.channel, height_channel_choices(),
+    add_choice(app, "--channel", request.channel, enum_choices<HeightChannel>(),
                "The height of a color texel; luminance is computed from decoded sRGB. Grayscale "
                "images accept mean, luminance and red, which are the same. Default: mean.")
         .group(group);
@@ -735,7 +731,7 @@ void add_content_options(CLI::App& app, BumpRequest& request) {
     add_switch(app, "--xy", request.xy_only,
                "Store 0 in blue, for shaders that compute z from x and y.")
         .group(group);
-    add_choice(app, "--alpha", request.alpha, map_alpha_choices(),
+    add_choice(app, "--alpha", request.alpha, enum_choices<MapAlpha>(),
                "Content of the alpha channel: none, the height (for parallax mapping), or the "
                "alpha of the height map (keep). Default: none.")
         .group(group);

@@ -57,7 +57,7 @@ CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> gre
     try {
         const Image image = read_image(file, ImageUse::data);
         std::map<std::string, std::string> metadata = read_image_info(file).metadata;
-        if (green) metadata["relief:green"] = name_of(*green, green_choices());
+        if (green) metadata["relief:green"] = enum_name(*green);
         map.color_tag = color_tag(file);
         map.width = image.width;
         map.height = image.height;
@@ -137,7 +137,7 @@ std::string describe(const GreenEvidence& green) {
         fmt::format("(correlation {:+.2f} +- {:.2g}; +1 is up, -1 is down)", green.correlation,
                     green.deviation);
     if (!green.green) return "cannot be determined from the slopes " + evidence;
-    return fmt::format("{}, from the slopes {}", name_of(*green.green, green_choices()), evidence);
+    return fmt::format("{}, from the slopes {}", enum_name(*green.green), evidence);
 }
 
 /// "along x and y", and the differences across the seams.
@@ -231,7 +231,7 @@ nlohmann::ordered_json lengths_json(const VectorLengths& lengths) {
 nlohmann::ordered_json green_json(const CheckedMap& map) {
     if (!map.has_green()) return nullptr;
     const GreenEvidence& green = map.check.green;
-    return {{"is", green.green ? name_of(*green.green, green_choices()) : "unknown"},
+    return {{"is", green.green ? enum_name(*green.green) : "unknown"},
             {"correlation", green.correlation},
             {"deviation", green.deviation},
             {"confidence", green.confidence},
@@ -262,7 +262,7 @@ nlohmann::ordered_json json_of(const CheckedMap& map) {
             {"lengths", lengths_json(check.lengths)},
             {"lengths_uncurved", lengths_json(check.lengths_uncurved)},
             {"green", green_json(map)},
-            {"zero_code", name_of(check.flat, zero_code_choices())},
+            {"zero_code", enum_name(check.flat)},
             {"seams", {check.tiling.seam_x, check.tiling.seam_y}},
             {"bits_used", check.bits},
             {"alpha_correlation", check.alpha_correlation
@@ -510,7 +510,7 @@ Command add_map_check_command(CLI::App& tool) {
     const auto options = std::make_shared<CheckOptions>();
     add_files(app, "MAPS", options->files, "Images to read: PNG, JPEG, TIFF, EXR, ...").required();
     add_surface_options(app, options->surface);
-    add_choice(app, "--green", options->green, green_choices(),
+    add_choice(app, "--green", options->green, enum_choices<Green>(),
                "Expected direction of the green channel; slopes that contradict it are a problem. "
                "Default: from the file's metadata, if it has an entry.");
     add_switch(

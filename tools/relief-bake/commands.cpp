@@ -160,7 +160,7 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
         return " Default: " + (follows_input ? std::string("as in the input.") : otherwise);
     };
     const Choices<int> depths = {{"8", 8}, {"16", 16}, {"32", 32}};
-    add_choice(app, "--green", options.green, green_choices(),
+    add_choice(app, "--green", options.green, enum_choices<Green>(),
                "Direction of the green channel: up (OpenGL, glTF) or down (DirectX)." +
                    default_text("up."))
         .group(group);
@@ -168,14 +168,14 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
                "Bits per channel: 8 or 16 for .png; 8, 16 or 32 (float) for .tif; 32 for .exr." +
                    default_text("16, and 32 for .exr."))
         .group(group);
-    add_choice(app, "--zero-code", options.flat, zero_code_choices(),
+    add_choice(app, "--zero-code", options.flat, enum_choices<FlatCode>(),
                "The code of 255 that represents zero; in 16 bits, the corresponding code of 65535. "
                "127.5: glTF and engines decode maps this way; no code is exactly zero. 128: flat "
                "texels are exactly flat for readers that use this convention, but engines decode "
                "all normals with an error of 0.32 degrees (8 bits) or 0.0012 degrees (16 bits)." +
                    default_text("127.5."))
         .group(group);
-    add_choice(app, "--dither", options.dither, dither_choices(),
+    add_choice(app, "--dither", options.dither, enum_choices<Dither>(),
                "Rounding to codes: none rounds to the nearest code; ordered (a short repeated "
                "pattern) and blue-noise (the least visible pattern) keep the mean over a few "
                "texels correct. Default: none.")
@@ -219,11 +219,10 @@ ImageWriteOptions write_options_of(const MapOutputOptions& options,
 }
 
 std::string to_string(const NormalMapFormat& format) {
-    const std::string green = "green " + name_of(format.green, green_choices());
+    const std::string green = std::string("green ") + enum_name(format.green);
     if (format.bits == 32) return "32 bit float, " + green;
-    const std::string dither = format.dither == Dither::none
-                                   ? ""
-                                   : ", dithered " + name_of(format.dither, dither_choices());
+    const std::string dither =
+        format.dither == Dither::none ? "" : std::string(", dithered ") + enum_name(format.dither);
     return fmt::format("{} bit, {}, {}{}", format.bits, describe_zero_code(format), green, dither);
 }
 

@@ -96,7 +96,7 @@ std::string line_of(const Job& job, const MapConversion& conversion, const Stage
 
 nlohmann::ordered_json results_json(const MapConversion& conversion, const Stages& stages) {
     nlohmann::ordered_json green = nullptr;
-    if (conversion.green) green = name_of(*conversion.green, green_choices());
+    if (conversion.green) green = enum_name(*conversion.green);
     return {{"width", conversion.levels.front().width},
             {"height", conversion.levels.front().height},
             {"input_size", {conversion.width, conversion.height}},
@@ -104,8 +104,8 @@ nlohmann::ordered_json results_json(const MapConversion& conversion, const Stage
             {"input_lengths", lengths_json(conversion.lengths)},
             {"bits", conversion.format.bits},
             {"green", green},
-            {"zero_code", name_of(conversion.format.flat, zero_code_choices())},
-            {"dither", name_of(conversion.format.dither, dither_choices())},
+            {"zero_code", enum_name(conversion.format.flat)},
+            {"dither", enum_name(conversion.format.dither)},
             {"levels", levels_json(conversion)},
             {"findings", conversion.findings.json()},
             {"milliseconds", durations_json(stages.finished())}};
@@ -162,7 +162,7 @@ glm::dvec2 parse_repeat(const std::string& subject, const std::string& text) {
 AddedOption add_green(CLI::App& app, const std::string& name, MapInputOptions& input,
                       const std::string& description) {
     Choices<std::optional<Green>> choices = {{"auto", std::nullopt}};
-    for (const auto& [word, green] : green_choices())
+    for (const auto& [word, green] : enum_choices<Green>())
         choices.emplace_back(word, green);
     return add_value(app, name, "up|down|auto", description,
                      [&input, choices](const std::string& subject, const std::string& text) {
@@ -178,7 +178,7 @@ void add_input_options(CLI::App& app, ConvertRequest& request) {
               "detected from the slopes like relief-bake check does (auto). Default: from the "
               "file's metadata, else unknown; only --green and --to-object need it.")
         .group(group);
-    add_choice(app, "--input-zero-code", request.input.flat, zero_code_choices(),
+    add_choice(app, "--input-zero-code", request.input.flat, enum_choices<FlatCode>(),
                "The code that represents zero in the input; see --zero-code. Flat texels are read "
                "as exactly flat with both. Default: from the file's metadata, else 127.5.")
         .group(group);
@@ -262,7 +262,7 @@ void add_detail_options(CLI::App& app, DetailOptions& detail) {
               "Direction of the green channel of the detail. Default: from its metadata, else that "
               "of the base.")
         .group(group);
-    add_choice(app, "--detail-zero-code", detail.input.flat, zero_code_choices(),
+    add_choice(app, "--detail-zero-code", detail.input.flat, enum_choices<FlatCode>(),
                "The code that represents zero in the detail. Default: as for --input-zero-code.")
         .group(group);
 }

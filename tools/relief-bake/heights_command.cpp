@@ -66,11 +66,11 @@ int bits_of(const HeightsRequest& request, const std::filesystem::path& output) 
 
 void add_heights_options(CLI::App& app, HeightsRequest& request) {
     const std::string input = "Input";
-    add_choice(app, "--input-green", request.input.green, green_choices(),
+    add_choice(app, "--input-green", request.input.green, enum_choices<Green>(),
                "Direction of the green channel of the input: up (OpenGL) or down (DirectX). "
                "Default: from the file's metadata, else detected from the slopes.")
         .group(input);
-    add_choice(app, "--input-zero-code", request.input.flat, zero_code_choices(),
+    add_choice(app, "--input-zero-code", request.input.flat, enum_choices<FlatCode>(),
                "The code of 255 that represents zero in the input: 128, or 127.5 as in glTF. Flat "
                "texels are read as exactly flat with both. Default: from the file's metadata, else "
                "127.5.")
@@ -79,7 +79,7 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
                "Float samples of the input store the components n from -1 to 1, not (n + 1) / 2.")
         .group(input);
     const std::string group = "Heights";
-    add_choice(app, "--kernel", request.integration.kernel, kernel_choices(),
+    add_choice(app, "--kernel", request.integration.kernel, enum_choices<Kernel>(),
                "The kernel with which relief-bake bump will reproduce the normals. central7 is the "
                "most accurate for smooth maps. Default: central7.")
         .group(group);
@@ -161,7 +161,7 @@ Image take_stored_heights(HeightsConversion& conversion) {
 std::map<std::string, std::string> metadata_of(const HeightsConversion& conversion) {
     return {{"relief:content", "height map"},
             {"relief:strength", fmt::format("{:.9g}", conversion.strength)},
-            {"relief:kernel", name_of(conversion.integration.kernel, kernel_choices())},
+            {"relief:kernel", enum_name(conversion.integration.kernel)},
             {"relief:wrap", name_of(conversion.integration.wrap)}};
 }
 
@@ -216,7 +216,7 @@ std::string storage_text(const HeightsConversion& conversion) {
 std::string inverse_command(const Job& job, const HeightsConversion& conversion) {
     return fmt::format("relief-bake bump {} normals.png --strength {:.9g} --kernel {} --wrap {}{}",
                        job.output.string(), conversion.strength,
-                       name_of(conversion.integration.kernel, kernel_choices()),
+                       enum_name(conversion.integration.kernel),
                        name_of(conversion.integration.wrap),
                        conversion.green == Green::down ? " --green down" : "");
 }
@@ -229,12 +229,12 @@ void print_summary(const Job& job, const HeightsConversion& conversion, const St
                             counted(static_cast<std::size_t>(conversion.channels), "channel"),
                             conversion.bits_read, conversion.input_text));
     if (conversion.green_by_slopes)
-        print_entry("green", name_of(conversion.green, green_choices()) + ", from the slopes");
+        print_entry("green", std::string(enum_name(conversion.green)) + ", from the slopes");
     print_entry("slopes", fmt::format("{:.4g} (RMS), mean {:.3g} and {:.3g}{}, {}, {} at the "
                                       "border",
                                       result.rms_slope, result.mean_slope.x, result.mean_slope.y,
                                       conversion.integration.level ? " (removed)" : "",
-                                      name_of(conversion.integration.kernel, kernel_choices()),
+                                      enum_name(conversion.integration.kernel),
                                       name_of(conversion.integration.wrap)));
     print_entry("residual",
                 fmt::format("slopes of {:.3g} (RMS) that no height field has: {:.3g} degrees, "
@@ -263,9 +263,9 @@ nlohmann::ordered_json results_json(const HeightsConversion& conversion, const S
     const IntegratedHeights& result = conversion.result;
     return {{"width", conversion.width},
             {"height", conversion.height},
-            {"green", name_of(conversion.green, green_choices())},
+            {"green", enum_name(conversion.green)},
             {"green_by_slopes", conversion.green_by_slopes},
-            {"kernel", name_of(conversion.integration.kernel, kernel_choices())},
+            {"kernel", enum_name(conversion.integration.kernel)},
             {"wrap", name_of(conversion.integration.wrap)},
             {"steepest", conversion.integration.max_slope},
             {"bits", conversion.bits},

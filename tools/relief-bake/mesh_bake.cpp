@@ -376,11 +376,11 @@ std::vector<std::string> comparison_table(const MeshAccuracy& accuracy) {
     for (const MeasuredBake* row : rows) {
         const double rate =
             row->seconds > 0.0 ? static_cast<double>(row->rays) / row->seconds / 1e6 : 0.0;
-        lines.push_back(fmt::format(
-            "{:<9} {:<4} {:<10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.2f} {}", sample_cell(*row),
-            row->format.bits, name_of(row->format.dither, dither_choices()), row->error.rms,
-            row->error.p99, row->error.max, duration(1000.0 * row->seconds), rate,
-            row->is_pareto_optimal ? "*" : ""));
+        lines.push_back(
+            fmt::format("{:<9} {:<4} {:<10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.2f} {}",
+                        sample_cell(*row), row->format.bits, enum_name(row->format.dither),
+                        row->error.rms, row->error.p99, row->error.max,
+                        duration(1000.0 * row->seconds), rate, row->is_pareto_optimal ? "*" : ""));
     }
     lines.emplace_back("* no other method is both faster and more accurate");
     lines.emplace_back("auto: 4 samples, and 16 if they differ by more than this angle in degrees");
@@ -557,7 +557,7 @@ nlohmann::ordered_json measured_json(const MeasuredBake& bake) {
             {"sample_angle", bake.sample_angle ? nlohmann::ordered_json(*bake.sample_angle)
                                                : nlohmann::ordered_json(nullptr)},
             {"bits", bake.format.bits},
-            {"dither", name_of(bake.format.dither, dither_choices())},
+            {"dither", enum_name(bake.format.dither)},
             {"rms", bake.error.rms},
             {"mean", bake.error.mean},
             {"p99", bake.error.p99},
@@ -635,9 +635,9 @@ nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBa
                                       {"height", request.size.y},
                                       {"space", enum_name(request.space)},
                                       {"bits", bake.format.bits},
-                                      {"green", name_of(bake.format.green, green_choices())},
-                                      {"zero_code", name_of(bake.format.flat, zero_code_choices())},
-                                      {"dither", name_of(bake.format.dither, dither_choices())},
+                                      {"green", enum_name(bake.format.green)},
+                                      {"zero_code", enum_name(bake.format.flat)},
+                                      {"dither", enum_name(bake.format.dither)},
                                       {"high_triangles", bake.high_triangles},
                                       {"low_triangles", bake.low_triangles},
                                       {"offset", result.distances.offset},

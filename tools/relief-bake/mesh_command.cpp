@@ -329,10 +329,7 @@ ExitCode run(const CLI::App& app, MeshOptions& options) {
 
 void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
     const std::string group = "Rays";
-    add_choice(app, "--rays", request.directions,
-               Choices<RayDirections>{{"averaged", RayDirections::averaged},
-                                      {"shading", RayDirections::shading},
-                                      {"face", RayDirections::face}},
+    add_choice(app, "--rays", request.directions, enum_choices<RayDirections>(),
                "Ray directions: smoothed normals, which ignore hard edges (averaged); the vertex "
                "normals of the low mesh (shading); or its face normals (face). Default: averaged.")
         .group(group);

@@ -223,12 +223,6 @@ constexpr std::array recorded_options = {
     "--back-faces", "--cage",    "--dither", "--hardness", "--match",        "--max-distance",
     "--offset",     "--outside", "--rays",   "--samples",  "--sample-angle", "--space"};
 
-const char* to_text(RayDirections directions) {
-    return directions == RayDirections::averaged  ? "averaged"
-           : directions == RayDirections::shading ? "shading"
-                                                  : "face";
-}
-
 BakeRecord record_of(const MeshBakeRequest& request) {
     BakeRecord record;
     const auto add_number = [&](const char* name, const std::optional<double>& number) {
@@ -238,7 +232,7 @@ BakeRecord record_of(const MeshBakeRequest& request) {
     record["--samples"] =
         request.samples.is_auto ? "auto" : fmt::format("{}", request.samples.count);
     add_number("--sample-angle", request.sample_angle);
-    if (request.directions) record["--rays"] = to_text(*request.directions);
+    if (request.directions) record["--rays"] = enum_name(*request.directions);
     add_number("--hardness", request.hardness);
     if (request.cage) record["--cage"] = "given";
     add_number("--offset", request.bake.offset);
@@ -247,7 +241,7 @@ BakeRecord record_of(const MeshBakeRequest& request) {
     if (request.match != PartMatching::automatic)
         record["--match"] = request.match == PartMatching::name ? "name" : "all";
     if (request.bake.placement.repeat) record["--outside"] = "repeat";
-    if (request.map.dither) record["--dither"] = name_of(*request.map.dither, dither_choices());
+    if (request.map.dither) record["--dither"] = enum_name(*request.map.dither);
     return record;
 }
 
@@ -312,7 +306,7 @@ void apply_record(const BakeRecord& record, MeshBakeRequest& request) {
     CLI::App app;
     add_ray_options(app, request);
     add_texel_options(app, request);
-    add_choice(app, "--dither", request.map.dither, dither_choices(), "");
+    add_choice(app, "--dither", request.map.dither, enum_choices<Dither>(), "");
     std::vector<std::string> arguments;  // In reverse order, as CLI11 expects.
     for (const auto& [name, value] : record) {
         arguments.insert(arguments.begin(), name);

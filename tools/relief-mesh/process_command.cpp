@@ -120,10 +120,6 @@ Processed process(const ProcessRequest& request, Stages& stages) {
     return done;
 }
 
-std::string normal_name(NormalMode mode) {
-    return name_of(mode, normal_choices());
-}
-
 struct Totals {
     std::size_t triangles = 0;
     std::size_t vertices_read = 0;
@@ -152,7 +148,7 @@ std::string part_normals_text(const FramedPart& part) {
             break;
     }
     if (part.normal_mode == NormalMode::flat) return "computed, one per triangle";
-    std::string text = fmt::format("computed, averaged by {}", normal_name(part.normal_mode));
+    std::string text = fmt::format("computed, averaged by {}", enum_name(part.normal_mode));
     if (part.normal_mode == NormalMode::automatic) {
         text = "computed, averaged by max";
         if (part.normals_by_area != 0) {
@@ -249,7 +245,7 @@ nlohmann::ordered_json parts_json(const Processed& done) {
                                        {"vertices_written", part.vertices_written},
                                        {"normals", outcome_name(part.normals)}};
         if (part.normals == AttributeOutcome::computed) {
-            json["normal_method"] = normal_name(part.normal_mode);
+            json["normal_method"] = enum_name(part.normal_mode);
             if (part.normal_mode == NormalMode::automatic)
                 json["vertices_by_area"] = part.normals_by_area;
             json["smoothing_groups"] = part.smoothing_groups;
@@ -310,7 +306,7 @@ std::string line_of(const ProcessRequest& request, const Processed& done, const 
 }
 
 nlohmann::ordered_json options_json(const ProcessRequest& request) {
-    nlohmann::ordered_json json = {{"normals", normal_name(request.normals)},
+    nlohmann::ordered_json json = {{"normals", enum_name(request.normals)},
                                    {"tangents", enum_name(request.tangents)}};
     if (request.uv_set) json["uv_set"] = *request.uv_set;
     if (request.crease_degrees) json["crease_degrees"] = *request.crease_degrees;
@@ -477,7 +473,7 @@ void add_file_options(CLI::App& app, ProcessOptions& options) {
 
 void add_normal_options(CLI::App& app, ProcessRequest& request) {
     const char* group = "Normals";
-    add_choice(app, "--normals", request.normals, normal_choices(),
+    add_choice(app, "--normals", request.normals, enum_choices<NormalMode>(),
                "The source of normals: the file (keep), one per triangle (flat), or an average "
                "around each vertex with the named weights. auto uses max, the most accurate on "
                "smooth meshes, and area at folded triangles. docs/normals.md lists errors and "

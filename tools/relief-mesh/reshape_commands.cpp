@@ -102,7 +102,8 @@ nlohmann::ordered_json report_json(const std::string& command, const ReshapeRequ
 void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals) {
     add_file(app, "IN", request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
     add_file(app, "OUT", request.output, "Model to write: .glb .gltf .obj .ply. May be IN itself.");
-    add_choice(app, "--normals", request.normals, normal_choices(), about_normals).group("Frames");
+    add_choice(app, "--normals", request.normals, enum_choices<NormalMode>(), about_normals)
+        .group("Frames");
     add_report_options(app, request.report);
     add_general_options(app, request.general);
 }
@@ -155,7 +156,7 @@ nlohmann::ordered_json options_json(const DecimateCommand& command) {
     if (command.triangles) json["triangles"] = *command.triangles;
     if (command.ratio) json["ratio"] = *command.ratio;
     if (command.max_error) json["max_error"] = *command.max_error;
-    json["normals"] = name_of(command.request.normals, normal_choices());
+    json["normals"] = enum_name(command.request.normals);
     return json;
 }
 
@@ -208,8 +209,7 @@ ExitCode subdivide(const CLI::App& app, const SubdivideCommand& command) {
             subdivided(mesh, command.levels, {.normals = command.request.normals}, report), {}};
     };
     return reshape(app, command.request, change,
-                   {{"levels", command.levels},
-                    {"normals", name_of(command.request.normals, normal_choices())}});
+                   {{"levels", command.levels}, {"normals", enum_name(command.request.normals)}});
 }
 
 void add_subdivide_options(CLI::App& app, SubdivideCommand& command) {

@@ -33,7 +33,7 @@ constexpr const char* maps_group = "Maps for all materials (the model needs text
 void add_normal_options(CLI::App& app, ViewOptions& options) {
     add_path(app, "--normal-map", options.normal_map, "Read a normal map from FILE.")
         .group(maps_group);
-    add_choice(app, "--green", options.green, green_choices(),
+    add_choice(app, "--green", options.green, enum_choices<Green>(),
                "Set the direction of the normal map's green channel: up (OpenGL, glTF) or down "
                "(DirectX). Default: up.")
         .group(maps_group);

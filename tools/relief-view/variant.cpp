@@ -30,7 +30,7 @@ VariantTopic topic(const std::string& name, const std::string& what,
 
 /// All modes except keeping the normals.
 Choices<NormalMode> computed_normals() {
-    Choices<NormalMode> choices = normal_choices();
+    Choices<NormalMode> choices = enum_choices<NormalMode>();
     std::erase_if(choices, [](const auto& choice) { return choice.second == NormalMode::keep; });
     return choices;
 }
@@ -61,7 +61,7 @@ const std::vector<VariantTopic>& variant_topics() {
               Choices<MapUse>{{"none", MapUse::none},
                               {"bump_map", MapUse::bump_map},
                               {"normal_map", MapUse::normal_map}}),
-        topic("kernel", "The kernel that computes slopes from heights", kernel_choices()),
+        topic("kernel", "The kernel that computes slopes from heights", enum_choices<Kernel>()),
         topic("tangents", "The tangent frames of the maps", displayed_tangents()),
         topic("bits", "Bits per channel of the normal map",
               Choices<MapBits>{{"8", MapBits::eight}, {"16", MapBits::sixteen}}),

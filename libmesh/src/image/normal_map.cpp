@@ -203,7 +203,7 @@ FlatCode detect_flat_code(const Image& map, const std::map<std::string, std::str
 
 std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format) {
     return {{"relief:content", "normal map, tangent space"},
-            {"relief:green", format.green == Green::up ? "up" : "down"},
+            {"relief:green", enum_name(format.green)},
             {"relief:flat", zero_code(format)}};
 }
 

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/map_convention.h"
@@ -117,6 +118,12 @@ enum class RayDirections {
     shading,   ///< The vertex normals of the low mesh; rays diverge at hard edges.
     face,      ///< The face normal of each triangle.
 };
+
+template <>
+inline constexpr auto enum_names<RayDirections> =
+    std::to_array<EnumName<RayDirections>>({{"averaged", RayDirections::averaged},
+                                            {"shading", RayDirections::shading},
+                                            {"face", RayDirections::face}});
 
 /// The sides of the high meshes' triangles that rays can hit.
 enum class BackFaces {

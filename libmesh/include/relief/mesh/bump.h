@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map.h"
@@ -40,6 +41,19 @@ enum class Kernel {
     /// 2.
     gaussian,
 };
+
+template <>
+inline constexpr auto enum_names<Kernel> =
+    std::to_array<EnumName<Kernel>>({{"forward", Kernel::forward},
+                                     {"central3", Kernel::central3},
+                                     {"prewitt3", Kernel::prewitt3},
+                                     {"sobel3", Kernel::sobel3},
+                                     {"scharr3", Kernel::scharr3},
+                                     {"sobel5", Kernel::sobel5},
+                                     {"scharr5", Kernel::scharr5},
+                                     {"central5", Kernel::central5},
+                                     {"central7", Kernel::central7},
+                                     {"gaussian", Kernel::gaussian}});
 
 /// The difference of two heights along the axis of the slope.
 struct HeightDifference {

@@ -15,6 +15,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/bump.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -88,6 +89,10 @@ enum class MapAlpha {
     height,  ///< The height as it was read: 0 to 1.
     keep,    ///< The alpha of the height map; 1 if it has none.
 };
+
+template <>
+inline constexpr auto enum_names<MapAlpha> = std::to_array<EnumName<MapAlpha>>(
+    {{"none", MapAlpha::none}, {"height", MapAlpha::height}, {"keep", MapAlpha::keep}});
 
 struct BumpFileFormat {
     BumpContent content = BumpContent::normals;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
@@ -25,6 +26,10 @@ namespace RELIEF_API relief {
 /// The floating-point type of a computation. Each option of this type documents its accuracy and
 /// time.
 enum class Arithmetic { float64, float32 };
+
+template <>
+inline constexpr auto enum_names<Arithmetic> = std::to_array<EnumName<Arithmetic>>(
+    {{"float64", Arithmetic::float64}, {"float32", Arithmetic::float32}});
 
 // Limits the number of threads of parallel loops.
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
@@ -77,6 +78,19 @@ enum class NormalMode {
     angle_edges,
     area_angle,
 };
+
+template <>
+inline constexpr auto enum_names<NormalMode> =
+    std::to_array<EnumName<NormalMode>>({{"keep", NormalMode::keep},
+                                         {"flat", NormalMode::flat},
+                                         {"auto", NormalMode::automatic},
+                                         {"uniform", NormalMode::uniform},
+                                         {"area", NormalMode::area},
+                                         {"angle", NormalMode::angle},
+                                         {"sine", NormalMode::sine},
+                                         {"max", NormalMode::max},
+                                         {"angle-edges", NormalMode::angle_edges},
+                                         {"area-angle", NormalMode::area_angle}});
 
 struct FrameOptions {
     NormalMode normals = NormalMode::keep;

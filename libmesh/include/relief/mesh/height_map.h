@@ -12,6 +12,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/bump.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
@@ -31,6 +32,15 @@ enum class HeightChannel {
     blue,
     alpha,
 };
+
+template <>
+inline constexpr auto enum_names<HeightChannel> =
+    std::to_array<EnumName<HeightChannel>>({{"mean", HeightChannel::mean},
+                                            {"luminance", HeightChannel::luminance},
+                                            {"red", HeightChannel::red},
+                                            {"green", HeightChannel::green},
+                                            {"blue", HeightChannel::blue},
+                                            {"alpha", HeightChannel::alpha}});
 
 /// Extracts the heights of an image as one float channel.
 ///

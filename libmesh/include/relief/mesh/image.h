@@ -169,6 +169,10 @@ enum class Dither {
     blue_noise,  ///< By a tile of 64 x 64 without low frequencies: least visible.
 };
 
+template <>
+inline constexpr auto enum_names<Dither> = std::to_array<EnumName<Dither>>(
+    {{"none", Dither::none}, {"ordered", Dither::ordered}, {"blue-noise", Dither::blue_noise}});
+
 /// Returns the threshold of a texel: a value between two codes is rounded up if its fraction
 /// exceeds the threshold.
 ///

@@ -43,6 +43,10 @@ enum class Green {
     down,  ///< DirectX.
 };
 
+template <>
+inline constexpr auto enum_names<Green> = std::to_array<EnumName<Green>>(
+    {{"up", Green::up, "up (OpenGL)"}, {"down", Green::down, "down (DirectX)"}});
+
 /// The code of zero in maps of 8 or 16 bits. Decoding with the wrong one causes an error of up to
 /// 0.7 degrees in 8 bits, 0.003 in 16: half a code in addition to rounding.
 enum class FlatCode {
@@ -53,6 +57,11 @@ enum class FlatCode {
     /// flat (0.0012 in 16 bits). FlatTexels::exact corrects this.
     half,
 };
+
+/// The names are codes of 8 bits. In 16 bits the codes are 32767.5 and 32768.
+template <>
+inline constexpr auto enum_names<FlatCode> =
+    std::to_array<EnumName<FlatCode>>({{"127.5", FlatCode::half}, {"128", FlatCode::middle}});
 
 /// The decoding of flat texels with FlatCode::half.
 enum class FlatTexels {

@@ -332,7 +332,7 @@ std::map<std::string, std::string> metadata_of(const BumpFileFormat& format) {
     std::map<std::string, std::string> metadata = format.metadata;
     if (format.content == BumpContent::slope_moments) {
         metadata["relief:content"] = "slope moments";
-        metadata["relief:green"] = format.normals.green == Green::up ? "up" : "down";
+        metadata["relief:green"] = enum_name(format.normals.green);
         return metadata;
     }
     metadata.merge(normal_map_metadata(format.normals));

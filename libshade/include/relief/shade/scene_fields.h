@@ -48,12 +48,6 @@ template <>
 inline constexpr auto enum_names<NormalSpace> = std::to_array<EnumName<NormalSpace>>(
     {{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}});
 template <>
-inline constexpr auto enum_names<Green> = std::to_array<EnumName<Green>>(
-    {{"up", Green::up, "up (OpenGL)"}, {"down", Green::down, "down (DirectX)"}});
-template <>
-inline constexpr auto enum_names<FlatCode> =
-    std::to_array<EnumName<FlatCode>>({{"127.5", FlatCode::half}, {"128", FlatCode::middle}});
-template <>
 inline constexpr auto enum_names<TextureFilter> = std::to_array<EnumName<TextureFilter>>(
     {{"linear", TextureFilter::linear}, {"nearest", TextureFilter::nearest}});
 template <>
