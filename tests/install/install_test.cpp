@@ -173,8 +173,9 @@ TEST_F(Installed, ComponentsNeedOnlyTheirThirdParties) {
 
 TEST_F(Installed, ToolsAndProgramsFindTheModuleInTheMovedTree) {
     const std::string tools = tree().string() + "/bin/";
-    EXPECT_EQ(run_clean(tools + "relief-mesh --version", folder->path()).out,
-              "relief-mesh " RELIEF_VERSION "\n");
+    for (const std::string tool : {"relief-mesh", "relief-bake", "relief-view", "relief-accuracy"})
+        EXPECT_EQ(run_clean(tools + tool + " --version", folder->path()).out,
+                  tool + " " RELIEF_VERSION "\n");
     const std::string heights = (source_directory() / "data/bricks-height.png").string();
     expect_success(tools + "relief-bake bump '" + heights + "' map.tif --quiet", folder->path());
     EXPECT_THAT(run_clean("build/check_normal_map map.tif", folder->path()).out,
