@@ -3,7 +3,8 @@
 #
 # CCACHE_BASEDIR and CCACHE_NOHASHDIR let a clone in another folder hit the same entries. The sloppiness is
 # what ccache requires for precompiled headers: it cannot see macros that a precompiled header hides. GCC must
-# write its precompiled headers into the preprocessed text (-fpch-preprocess) for ccache to hash them.
+# write its precompiled headers into the preprocessed text (-fpch-preprocess) for ccache to hash them. Clang must
+# leave the times of headers out of its own.
 option(RELIEF_CCACHE "Compile through ccache where it is installed" ON)
 find_program(RELIEF_CCACHE_PROGRAM ccache)
 if(RELIEF_CCACHE AND RELIEF_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
@@ -15,5 +16,7 @@ if(RELIEF_CCACHE AND RELIEF_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     endforeach()
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
         add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
+    elseif(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+        add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
     endif()
 endif()

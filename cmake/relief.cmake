@@ -33,7 +33,7 @@ if(RELIEF_SANITIZE)
     target_compile_options(
         relief_flags INTERFACE -fsanitize=address "$<IF:${is_test},-O0;-g0,${undefined}>"
                                "$<${is_tool}:-O0>" -fno-sanitize-recover=all -fno-omit-frame-pointer
-                               -Wno-maybe-uninitialized)
+                               $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
@@ -60,7 +60,7 @@ set(CMAKE_UNITY_BUILD ${RELIEF_UNITY})
 if(NOT DEFINED CMAKE_UNITY_BUILD_BATCH_SIZE)
     set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 endif()
-if(RELIEF_UNITY)
+if(RELIEF_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # GCC takes the files of a batch for headers, whose types should not hold types of anonymous namespaces.
     target_compile_options(relief_flags
                            INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)

@@ -130,10 +130,10 @@ struct DoubleDouble {
 
     friend DoubleDouble operator-(const DoubleDouble& a) { return {-a.high, -a.low}; }
     friend DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
-        const DoubleDouble high = exact_sum(a.high, b.high);
-        const DoubleDouble low = exact_sum(a.low, b.low);
-        const DoubleDouble sum = ordered_sum(high.high, high.low + low.high);
-        return ordered_sum(sum.high, sum.low + low.low);
+        const DoubleDouble highs = exact_sum(a.high, b.high);
+        const DoubleDouble lows = exact_sum(a.low, b.low);
+        const DoubleDouble sum = ordered_sum(highs.high, highs.low + lows.high);
+        return ordered_sum(sum.high, sum.low + lows.low);
     }
     friend DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
     friend DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
