@@ -203,7 +203,7 @@ void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
 }
 
 double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
-    return kind == ErrorKind::rms ? measurement.error.rms : measurement.error.max;
+    return measurement.error.*figure_of(kind);
 }
 
 }  // namespace

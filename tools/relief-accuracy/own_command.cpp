@@ -315,31 +315,16 @@ std::vector<AssetExperiment> measure(const AssetInput& input, const AssetRequest
     });
 }
 
-/// The error figure of --max-error.
-enum class BoundKind { rms, p99, max };
-
 struct AssetCommandOptions {
     AssetRequest request;
     std::optional<double> max_error;
-    std::optional<BoundKind> max_error_kind;
+    std::optional<ErrorKind> max_error_kind;
     std::optional<double> max_milliseconds;
     ExperimentOptions how;
 };
 
 /// Longer tables show only the efficient and the recommended methods.
 constexpr std::size_t max_rows = 24;
-
-double ErrorStats::*figure_of(BoundKind kind) {
-    switch (kind) {
-        case BoundKind::p99:
-            return &ErrorStats::p99;
-        case BoundKind::max:
-            return &ErrorStats::max;
-        case BoundKind::rms:
-            break;
-    }
-    return &ErrorStats::rms;
-}
 
 void check(const AssetCommandOptions& options) {
     check(options.how);
@@ -397,7 +382,7 @@ AssetOptions asset_options(const AssetCommandOptions& options, Stages& stages) {
     };
     own.command = command_for(options);
     own.request.max_error = options.max_error;
-    own.request.figure = figure_of(options.max_error_kind.value_or(BoundKind::rms));
+    own.request.figure = figure_of(options.max_error_kind.value_or(ErrorKind::rms));
     if (options.max_milliseconds) own.request.max_seconds = 1e-3 * *options.max_milliseconds;
     return own;
 }
@@ -490,9 +475,7 @@ void add_limit_options(CLI::App& app, AssetCommandOptions& options) {
                "method that stores the fewest bytes, then the one with the fewest operations. Exit "
                "with 1 if an experiment has no such method.")
         .group(group);
-    const Choices<BoundKind> kinds = {
-        {"rms", BoundKind::rms}, {"p99", BoundKind::p99}, {"max", BoundKind::max}};
-    add_choice(app, "--max-error-kind", options.max_error_kind, kinds,
+    add_choice(app, "--max-error-kind", options.max_error_kind, enum_choices<ErrorKind>(),
                "The error figure of --max-error: root mean square, 99th percentile, or maximum. "
                "Default: rms.")
         .group(group);

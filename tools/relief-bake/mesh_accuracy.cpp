@@ -154,7 +154,7 @@ class SampleSearch {
 /// The number of texels to measure: all of them for a limit of the maximum.
 std::size_t texels_for(const MeshBakeRequest& request, const BakeMapOptions& map,
                        std::size_t usual) {
-    const bool needs_all = request.bound.kind == BoundKind::max;
+    const bool needs_all = request.bound.kind == ErrorKind::max;
     return needs_all ? static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height)
                      : usual;
 }

@@ -415,9 +415,7 @@ void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& desc
     const std::string group = "Accuracy";
     add_number(app, "--max-error", "DEG", bound.degrees, {0.0, 180.0, "degrees"}, description)
         .group(group);
-    add_choice(app, "--max-error-kind", bound.kind,
-               Choices<BoundKind>{
-                   {"rms", BoundKind::rms}, {"p99", BoundKind::p99}, {"max", BoundKind::max}},
+    add_choice(app, "--max-error-kind", bound.kind, enum_choices<ErrorKind>(),
                "Error that --max-error limits: the root mean square, the error that 99 of 100 "
                "texels do not exceed (p99), or the maximum. Default: rms.")
         .group(group);
@@ -445,21 +443,14 @@ int bits_of(const LayerOptions& options, LayerKind kind) {
 }
 
 double ErrorBound::error(const ErrorStats& summary) const {
-    switch (kind.value_or(BoundKind::rms)) {
-        case BoundKind::p99:
-            return summary.p99;
-        case BoundKind::max:
-            return summary.max;
-        default:
-            return summary.rms;
-    }
+    return summary.*figure_of(kind.value_or(ErrorKind::rms));
 }
 
 std::string to_string(const ErrorBound& bound) {
-    const BoundKind kind = bound.kind.value_or(BoundKind::rms);
+    const ErrorKind kind = bound.kind.value_or(ErrorKind::rms);
     return fmt::format("{:g} degrees ({})", bound.degrees.value_or(0.0),
-                       kind == BoundKind::rms   ? "RMS"
-                       : kind == BoundKind::p99 ? "99 of 100 texels"
+                       kind == ErrorKind::rms   ? "RMS"
+                       : kind == ErrorKind::p99 ? "99 of 100 texels"
                                                 : "maximum");
 }
 

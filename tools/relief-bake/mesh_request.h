@@ -47,13 +47,10 @@ struct LayerOptions {
 /// \throws UsageError if the file format cannot store it
 int bits_of(const LayerOptions& options, LayerKind kind);
 
-/// The error that a limit applies to.
-enum class BoundKind { rms, p99, max };
-
 /// A limit of the error.
 struct ErrorBound {
     std::optional<double> degrees;
-    std::optional<BoundKind> kind;  ///< Absent: rms.
+    std::optional<ErrorKind> kind;  ///< Absent: rms.
 
     /// The error that the limit applies to.
     [[nodiscard]] double error(const ErrorStats& summary) const;

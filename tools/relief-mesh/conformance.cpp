@@ -312,21 +312,10 @@ void show_text(const std::vector<Result>& results) {
                     conforming.meshes, scores.usable.passed, scores.usable.meshes));
 }
 
-const char* group_name(KitGroup group) {
-    switch (group) {
-        case KitGroup::conformance:
-            return "conformance";
-        case KitGroup::defect:
-            return "defect";
-        case KitGroup::stability:
-            break;
-    }
-    return "stability";
-}
-
 nlohmann::ordered_json json_of(const Result& result) {
-    nlohmann::ordered_json json = {
-        {"name", result.name}, {"group", group_name(result.group)}, {"passed", result.passed()}};
+    nlohmann::ordered_json json = {{"name", result.name},
+                                   {"group", name_of(result.group, kit_groups)},
+                                   {"passed", result.passed()}};
     if (!result.error.empty()) {
         json["error"] = result.error;
         return json;

@@ -133,13 +133,11 @@ BumpExperiment measure_bump(const BumpSample& sample, std::span<const BumpMethod
 BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> methods,
                             BumpExperimentOptions options);
 
-/// The statistic that an error limit applies to.
-enum class ErrorKind { rms, max };
-
 /// Returns the expected error of a measured method against the surface from which the map was made.
 ///
 /// \param kind  of both parts. For ErrorKind::max the root of the sum of squares is an estimate,
-///         because the maxima of both parts seldom occur in the same texel
+///         because the maxima of both parts seldom occur in the same texel. For ErrorKind::p99 the
+///         part of the reference is its maximum
 ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
                              ErrorKind kind = ErrorKind::rms);
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 
 namespace RELIEF_API relief {
 
@@ -44,6 +45,26 @@ struct ErrorStats {
 
     friend bool operator==(const ErrorStats&, const ErrorStats&) = default;
 };
+
+/// The figure of an error that a limit applies to.
+enum class ErrorKind { rms, p99, max };
+
+template <>
+inline constexpr auto enum_names<ErrorKind> = std::to_array<EnumName<ErrorKind>>(
+    {{"rms", ErrorKind::rms}, {"p99", ErrorKind::p99}, {"max", ErrorKind::max}});
+
+/// Returns the member that holds a figure.
+constexpr double ErrorStats::*figure_of(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::p99:
+            return &ErrorStats::p99;
+        case ErrorKind::max:
+            return &ErrorStats::max;
+        case ErrorKind::rms:
+            break;
+    }
+    return &ErrorStats::rms;
+}
 
 /// Computes the statistics of errors.
 ///
