@@ -45,29 +45,15 @@ if(RELIEF_TSAN)
     target_link_options(relief_flags INTERFACE -fsanitize=thread)
 endif()
 
-# Most of the time of compiling a file goes into headers. Headers that never change are precompiled, and the
-# files of a target are compiled a dozen at a time, which halves the time of a build without a cache. Whoever
-# edits the sources sets RELIEF_UNITY=OFF, so that a changed file does not recompile its whole batch; the
-# debug preset does.
+# Most of the time of compiling a file is spent on headers. Headers that never change are precompiled. Libraries and
+# tools compile each file alone. Test files are compiled in batches, which halves the time of compiling them; with
+# RELIEF_UNITY=OFF they are compiled alone too, as in the debug preset.
 option(RELIEF_PCH "Precompile the headers that nearly every file includes" ON)
-option(RELIEF_UNITY "Compile the files of a target in batches" ON)
+option(RELIEF_UNITY "Compile test files in batches" ON)
 set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
 
-# What stands in a target's anonymous namespaces is therefore named apart. Where the batches end moves as
-# files come and go: -DCMAKE_UNITY_BUILD_BATCH_SIZE=0, all of a target in one, finds every clash. Files
-# with options of their own (relief_vectorise) are compiled by themselves.
-set(CMAKE_UNITY_BUILD ${RELIEF_UNITY})
-if(NOT DEFINED CMAKE_UNITY_BUILD_BATCH_SIZE)
-    set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
-endif()
-if(RELIEF_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    # GCC takes the files of a batch for headers, whose types should not hold types of anonymous namespaces.
-    target_compile_options(relief_flags
-                           INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
-endif()
-
-# relief_precompile(TARGET [LIKE OTHER] [AND HEADERS...]): with OTHER's, where both are compiled alike; or
-# with more headers than all have.
+# relief_precompile(TARGET [LIKE OTHER] [AND HEADERS...]): precompiles the headers, with further HEADERS, or reuses those
+# of OTHER, whose compile options must be equal.
 function(relief_precompile target)
     if(NOT RELIEF_PCH)
         return()
@@ -80,9 +66,9 @@ function(relief_precompile target)
     endif()
 endfunction()
 
-# relief_vectorise(TARGET SOURCES...): loops over square roots and selections become vector instructions
-# only where neither errno nor floating-point traps are to be kept, which nobody in these files looks
-# at. No result changes. (Precompiled headers are for files with their target's own options.)
+# relief_vectorise(TARGET SOURCES...): lets the compiler vectorize loops over square roots and selections. It may do so
+# only if errno and floating-point traps need not be preserved; these files use neither. No result changes. The files
+# use no precompiled header, because that requires the same options.
 function(relief_vectorise target)
     set_source_files_properties(
         ${ARGN} TARGET_DIRECTORY ${target}
@@ -141,6 +127,7 @@ function(relief_add_tests name)
     target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES} GTest::gmock
                                           GTest::gtest)
     relief_precompile(${name} LIKE relief_test_precompiled)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ${RELIEF_UNITY} UNITY_BUILD_BATCH_SIZE 12)
     foreach(key ${labels} SLOW ALONE)
         set_target_properties(${name} PROPERTIES RELIEF_${key}_CASES "${ARG_${key}}")
     endforeach()
