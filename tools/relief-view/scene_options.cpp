@@ -759,4 +759,11 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
     return composed;
 }
 
+std::size_t triangle_count(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Instance& instance : scene.instances)
+        count += scene.meshes[instance.mesh]->triangles.size();
+    return count;
+}
+
 }  // namespace relief::tools

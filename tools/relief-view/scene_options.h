@@ -103,4 +103,7 @@ struct ComposedScene {
 /// \throws UsageError if an option would have no effect in this scene
 ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report);
 
+/// Returns the number of triangles of all instances.
+std::size_t triangle_count(const Scene& scene);
+
 }  // namespace relief::tools

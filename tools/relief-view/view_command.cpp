@@ -313,13 +313,6 @@ std::string lights_text(const Scene& scene) {
     return text;
 }
 
-std::size_t triangle_count(const Scene& scene) {
-    std::size_t count = 0;
-    for (const Instance& instance : scene.instances)
-        count += scene.meshes[instance.mesh]->triangles.size();
-    return count;
-}
-
 /// For example "24, each 12.3 ms to draw and 0.9 ms to read back (median)".
 std::string frames_text(const SequenceTimes& times) {
     return fmt::format("{}, each {:.3g} ms to draw and {:.3g} ms to read back (median)",

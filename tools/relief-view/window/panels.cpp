@@ -673,18 +673,11 @@ namespace {
 
 constexpr float column_width = 23.0F;  // In line heights.
 
-std::size_t triangles_of(const Scene& scene) {
-    std::size_t count = 0;
-    for (const Instance& instance : scene.instances)
-        count += scene.meshes[instance.mesh]->triangles.size();
-    return count;
-}
-
 std::string status_text(const PanelInput& input) {
     if (!input.state.has_scene()) return "";
     const std::string saved = input.captured.empty() ? "" : "   " + input.captured;
     return fmt::format("{}   {} x {} pixels   {:.1f} ms per picture   picture {}, {}   {}{}",
-                       counted(triangles_of(input.state.scene()), "triangle"),
+                       counted(triangle_count(input.state.scene()), "triangle"),
                        input.drawn.settings.width, input.drawn.settings.height,
                        input.drawn.times.draw, input.drawn.frames,
                        input.is_drawing ? "drawing" : "idle", input.renderer, saved);
