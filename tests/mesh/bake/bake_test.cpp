@@ -219,6 +219,21 @@ TEST(Bake, HardDirectionsLeaveGapsAndAveragedOnesNone) {
     EXPECT_LT(half, 0.25F);
 }
 
+TEST(Bake, RaysWithoutADirectionRunAlongTheTrianglesNormal) {
+    // Smoothed normals and vertex normals of the opposite direction cancel at the hardness 0.5.
+    Mesh low = make_quad();
+    for (glm::vec3& normal : low.normals)
+        normal = -normal;
+    BakeOptions options = sized(8, 8);
+    options.space = VectorSpace::object;
+    options.hardness = 0.5;
+    const BakedImage image = bake({moved(make_quad(), 1.0F, {0, 0, 0.25F})}, low, options);
+    EXPECT_EQ(image.report.count("ray without a direction"), 64U);
+    EXPECT_EQ(image.count(TexelState::baked), 64U);
+    for (const float height : image.heights)
+        EXPECT_NEAR(height, 0.25F, 1e-6F);
+}
+
 TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
     const Mesh high = gentle_waves(64);
     BakeOptions options = sized(16, 16);

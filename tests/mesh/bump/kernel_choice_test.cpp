@@ -231,6 +231,21 @@ TEST(KernelChoice, SaysWhatItSawAndWhy) {
     EXPECT_THAT(walls.reason, HasSubstr("beside sharp walls"));
 }
 
+TEST(KernelChoice, StatesTheShareOfTexelsThatStickOut) {
+    const FieldRecipe recipe{"", FieldShape::waves, 32.0, 0.3, FieldCoding::bits16, 0.0, 1};
+    BumpField field = make_bump_field(recipe, 256, 256);
+    const std::span<std::uint16_t> codes = field.heights.as<std::uint16_t>();
+    for (std::size_t y = 8; y < 256; y += 16) {
+        for (std::size_t x = 8; x < 256; x += 16) {
+            std::uint16_t& code = codes[y * 256 + x];
+            code = static_cast<std::uint16_t>(code < 32768 ? code + 20000 : code - 20000);
+        }
+    }
+    const KernelChoice choice = choose_kernel(field.heights, field.options);
+    EXPECT_EQ(choice.spikes, 1.0 / 256.0);
+    EXPECT_THAT(choice.reason, HasSubstr("0.39% of texels that stick out on their own"));
+}
+
 TEST(KernelChoice, ExpectsTheErrorThatThereIs) {
     // If rounding and noise are white, the prediction is accurate within one half.
     for (const char* name : {"smooth, 16 bit", "detailed, 8 bit", "steep, 8 bit",

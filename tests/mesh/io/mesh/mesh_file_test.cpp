@@ -272,7 +272,9 @@ TEST_F(FarPositions, StayAsTheyAreWhereFloatsHoldThem) {
     EXPECT_EQ(whole.origin, glm::dvec3(0.0));
     EXPECT_TRUE(report_.empty());
     EXPECT_EQ(whole.mesh.positions[1], glm::vec3(524289.0F, 524288.0F, 0.25F));
-    EXPECT_EQ(read_as("b.obj", obj_text(10.0)).origin, glm::dvec3(0.0)) << "not far for its size";
+    // The limit is a distance of 16 sizes; the farthest corner is 1 beyond the given distance.
+    EXPECT_EQ(read_as("b.obj", obj_text(15.0)).origin, glm::dvec3(0.0)) << "not far for its size";
+    EXPECT_EQ(read_as("d.obj", obj_text(15.5)).origin, glm::dvec3(16.0)) << "far for its size";
     EXPECT_EQ(read_as("c.obj", "v nan 0 0\nv inf 1 0\nv 0 nan 1\nf 1 2 3\n").origin,
               glm::dvec3(0.0));
 }
