@@ -49,7 +49,7 @@ TEST(AssetNormals, AreJudgedAsByTheTruthThatNobodyTold) {
     }
     EXPECT_EQ(found(own, "max").error.count, ground_truth.mesh.positions.size());
     EXPECT_EQ(own.command(), "relief-mesh process vase.obj -o OUT.glb --normals max");
-    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("2304 of 2304 places"));
+    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("2304 of 2304 examined places"));
     EXPECT_THAT(own.experiment.finding, HasSubstr(". To do it: relief-mesh process"));
 }
 
@@ -223,7 +223,7 @@ TEST(AssetTangents, LeaveOutTrianglesWithoutADirection) {
     Mesh mesh = test::grid(4);
     mesh.texcoords.assign(mesh.positions.size(), glm::vec2(0.5F));
     const std::vector<AssetExperiment> all = measure_asset_mesh(mesh, {}, untimed_mesh());
-    EXPECT_THAT(all[1].experiment.input, HasSubstr("(32 have no direction in the image)"));
+    EXPECT_THAT(all[1].experiment.input, HasSubstr("(32 have no texture gradient)"));
     EXPECT_EQ(all[1].recommendation.method, std::nullopt);
 }
 
@@ -236,7 +236,7 @@ TEST(AssetMesh, OfManyTrianglesIsMeasuredOnEightRuns) {
     AssetMeshOptions how;
     how.max_triangles = 160;
     EXPECT_EQ(normals_of(mesh, how).experiment.input,
-              "160 triangles, eight runs of the mesh's 2048");
+              "160 triangles, eight ranges of the 2048 of the mesh");
 }
 
 TEST(AssetMesh, IsTimedAndRecommendedByTime) {

@@ -135,7 +135,7 @@ TEST(Buffers, VertexTangentsReportCornersThatDiffer) {
         mesh.normals.push_back(mesh.normals[from]);
         mesh.texcoords.emplace_back(-mesh.texcoords[from].x, mesh.texcoords[from].y);
     }
-    // A vertex without a triangle.
+    // A vertex without a triangle, beside vertex 4.
     mesh.positions.emplace_back(9.0F);
     mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
     mesh.texcoords.emplace_back(0.0F);
@@ -149,7 +149,7 @@ TEST(Buffers, VertexTangentsReportCornersThatDiffer) {
     EXPECT_EQ(tangents[mesh.triangles[2].y], glm::vec4(-1.0F, 0.0F, 0.0F, -1.0F));
     EXPECT_EQ(tangents.back(), glm::vec4(1.0F, 0.0F, 0.0F, -1.0F));
     EXPECT_EQ(text_of(report),
-              "vertex whose corners have different tangents 1\nisolated vertex 1\n");
+              "vertex whose corners have different tangents 1\nisolated vertex 2\n");
 }
 
 TEST(Buffers, RefuseMemoryOfAnotherSizeAndIndicesBeyondTheVertices) {
