@@ -9,6 +9,7 @@ target_compile_features(relief_flags INTERFACE cxx_std_20)
 target_compile_options(
     relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow>
                            $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
+                           $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion> # GCC's -Wconversion has none.
                            $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 if(RELIEF_WERROR)
     target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
@@ -33,7 +34,8 @@ if(RELIEF_SANITIZE)
     target_compile_options(
         relief_flags INTERFACE -fsanitize=address "$<IF:${is_test},-O0;-g0,${undefined}>"
                                "$<${is_tool}:-O0>" -fno-sanitize-recover=all -fno-omit-frame-pointer
-                               $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+                               $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+                               $<$<CXX_COMPILER_ID:Clang>:-D__SANITIZE_ADDRESS__=1>)  # As GCC defines it.
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
