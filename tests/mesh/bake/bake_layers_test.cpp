@@ -45,7 +45,8 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
     const Mesh low = make_torus();
     for (const auto& [samples, angle] :
          {std::pair<int, std::optional<double>>(1, {}), {16, {}}, {16, 0.02}}) {
-        const auto with = [&](BakeOptions options) {
+        // Clang 14 captures structured bindings only by name.
+        const auto with = [&, samples = samples, angle = angle](BakeOptions options) {
             options.samples = samples;
             options.sample_angle = angle;
             options.padding = 3;

@@ -360,7 +360,7 @@ TEST(Tangents, NonFiniteValuesStayAtTheirOwnTriangles) {
 /// the bevel, and its texture is rotated by 45 degrees.
 Mesh bevelled() {
     Mesh mesh;
-    const glm::vec3 up(0, 0, 1), slanted = glm::normalize(glm::vec3(1, 0, 1)), side(1, 0, 0);
+    const glm::vec3 up(0, 0, 1), slanted = glm::normalize(glm::vec3(1, 0, 1));
     const auto quad = [&](const std::array<glm::vec3, 4>& corners, const glm::vec3& normal,
                           const std::array<glm::vec2, 4>& texcoords) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());

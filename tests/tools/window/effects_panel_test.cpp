@@ -71,7 +71,7 @@ TEST_F(EffectTimesTest, CoverAllEffectsOfTheFrame) {
     EXPECT_FALSE(effect_times_.milliseconds("emission"));
     const nlohmann::ordered_json described = json_of(state);
     EXPECT_EQ(described["done"], 3);
-    EXPECT_EQ(described["size"], nlohmann::json({48, 32}));
+    EXPECT_EQ(described["size"], nlohmann::ordered_json({48, 32}));
     EXPECT_TRUE(described["effects"].contains("directional lights"));
 }
 

@@ -326,7 +326,7 @@ TEST_F(State, IsWrittenAsJson) {
     state().camera().azimuth = glm::radians(40.0F);
     const nlohmann::ordered_json described = state().json(RenderedPicture{});
     EXPECT_NEAR(described["camera"]["azimuth"].get<double>(), 40.0, 1e-5);
-    EXPECT_EQ(described["view"], nlohmann::json({400, 300}));
+    EXPECT_EQ(described["view"], nlohmann::ordered_json({400, 300}));
     EXPECT_EQ(described["triangles"], 2);
     EXPECT_EQ(described["drawn"]["frames"], 0);
     EXPECT_EQ(described["error"], "");
