@@ -30,16 +30,18 @@ struct NormalCoding {
     }
 
     // The cast truncates, which gives the nearest code after adding one half. There are no
-    // branches, so that loops are vectorized.
+    // branches, so that loops are vectorized. Loops also encode values that are replaced
+    // afterwards: std::max() turns NaN into a number, because a cast of NaN is undefined.
     RELIEF_INLINE static Code from_half_steps(Real steps) {
         // Zero lies between two codes, so only the sum can be rounded.
-        return static_cast<Code>(
-            static_cast<std::int32_t>(largest / 2 + steps + static_cast<Real>(0.5)));
+        return static_cast<Code>(static_cast<std::int32_t>(
+            std::max(Real(0), largest / 2 + steps + static_cast<Real>(0.5))));
     }
     RELIEF_INLINE static Code from_middle_steps(Real steps) {
         return static_cast<Code>(
             static_cast<std::int32_t>(middle) +
-            static_cast<std::int32_t>(steps + std::copysign(static_cast<Real>(0.5), steps)));
+            static_cast<std::int32_t>(
+                std::max(-middle, steps + std::copysign(static_cast<Real>(0.5), steps))));
     }
     RELIEF_INLINE static Code to_half(Real component) {
         return from_half_steps(largest / 2 * component);
@@ -58,8 +60,8 @@ struct NormalCoding {
     /// code.
     [[nodiscard]] RELIEF_INLINE Code dithered(Real component, Real threshold) const {
         const bool is_middle = flat == FlatCode::middle;
-        const Real place =
-            is_middle ? (middle - 1) * std::abs(component) : largest / 2 + largest / 2 * component;
+        const Real place = std::max(Real(0), is_middle ? (middle - 1) * std::abs(component)
+                                                       : largest / 2 + largest / 2 * component);
         const auto below = static_cast<std::int32_t>(place);
         const std::int32_t code = below + (place - static_cast<Real>(below) > threshold ? 1 : 0);
         if (!is_middle) return static_cast<Code>(code);
