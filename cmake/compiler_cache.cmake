@@ -4,7 +4,8 @@
 # CCACHE_BASEDIR and CCACHE_NOHASHDIR let a clone in another folder hit the same entries. The sloppiness is
 # what ccache requires for precompiled headers: it cannot see macros that a precompiled header hides. GCC must
 # write its precompiled headers into the preprocessed text (-fpch-preprocess) for ccache to hash them. Clang must
-# leave the times of headers out of its own.
+# leave the times of headers out of its own; they hold absolute paths, so with Clang only a clone in the same folder
+# hits the cache.
 option(RELIEF_CCACHE "Compile through ccache where it is installed" ON)
 find_program(RELIEF_CCACHE_PROGRAM ccache)
 if(RELIEF_CCACHE AND RELIEF_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
