@@ -25,7 +25,7 @@ struct AssetMethod {
     double natural_cost = 0.0;           ///< RecommendationRule::nominal_costs.
 };
 
-/// How to recommend one of the methods.
+/// The rule that selects the recommended method.
 struct AssetRule {
     CostKind cost = CostKind::time;
     double negligible_error = 0.0;  ///< Degrees; RecommendationRule::negligible_error.

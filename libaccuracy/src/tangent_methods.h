@@ -22,7 +22,7 @@ namespace relief {
 /// Three tangents per triangle; empty if the shader derives its frame.
 using CornerTangents = std::vector<glm::vec4>;
 
-/// How a fragment shader builds its basis from interpolated vectors.
+/// The basis that a fragment shader computes from interpolated vectors.
 enum class ShaderBasis {
     as_interpolated,  ///< Without normalization, as in shaders/tangent_frame.glsl#stored.
     made_unit,        ///< Normalizes normal and tangent first, as many shaders do.

@@ -24,7 +24,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "geometry/check_triangles.h"
@@ -51,17 +50,19 @@ std::size_t slot_of(float sign) {
     return sign > 0.0F ? 0 : 1;
 }
 
-bool comes_before(const glm::vec3& a, const glm::vec3& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+template <glm::length_t size>
+bool comes_first(const glm::vec<size, float>& a, const glm::vec<size, float>& b) {
+    return std::lexicographical_compare(&a[0], &a[0] + size, &b[0], &b[0] + size);
 }
 
-/// Returns the most frequent value; ties: the first.
-Offer most_frequent(std::vector<glm::vec3>& values) {
-    std::sort(values.begin(), values.end(), comes_before);
-    Offer best;
+/// Returns the most frequent value, if there is one; ties: the first by value. Sorts the values.
+template <glm::length_t size>
+std::optional<glm::vec<size, float>> most_frequent(std::vector<glm::vec<size, float>>& values) {
+    std::sort(values.begin(), values.end(), comes_first<size>);
+    std::optional<glm::vec<size, float>> best;
     std::ptrdiff_t most = 0;
     for (auto first = values.begin(); first != values.end();) {
-        const auto last = std::upper_bound(first, values.end(), *first, comes_before);
+        const auto last = std::upper_bound(first, values.end(), *first, comes_first<size>);
         if (last - first > most) {
             most = last - first;
             best = *first;
@@ -325,25 +326,13 @@ void settle_differing(std::span<const glm::vec4> of_corners, TriangleSpan triang
                       std::span<const std::uint32_t> differing, StridedSpan<glm::vec4> tangents,
                       Report& report) {
     if (differing.empty()) return;
-    const auto comes_first = [](const glm::vec4& a, const glm::vec4& b) {
-        return std::tie(a.x, a.y, a.z, a.w) < std::tie(b.x, b.y, b.z, b.w);
-    };
     const CornersByVertex corners(tangents.size(), triangles);
     std::vector<glm::vec4> values;
     for (const std::uint32_t vertex : differing) {
         values.clear();
         for (const Corner corner : corners.at(vertex))
             values.push_back(of_corners[corner]);
-        std::sort(values.begin(), values.end(), comes_first);
-        std::ptrdiff_t most = 0;
-        for (auto first = values.begin(); first != values.end();) {
-            const auto last = std::upper_bound(first, values.end(), *first, comes_first);
-            if (last - first > most) {
-                most = last - first;
-                tangents[vertex] = *first;
-            }
-            first = last;
-        }
+        if (const auto value = most_frequent(values)) tangents[vertex] = *value;
         report.add("vertex whose corners have different tangents", "vertex", vertex,
                    "gets the tangent of most of its corners (split it to keep all)");
     }

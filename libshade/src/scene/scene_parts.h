@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What scene files, validation, poses and framing share: parts of scene graphs (scene_graph.h),
+/// Declares parts of scene graphs (scene_graph.h) that files, validation, poses and framing share,
 /// and parts of load_scene_graph (scene_file.h), one function for each kind of file. World space,
 /// radians, seconds.
 #pragma once

@@ -42,7 +42,7 @@ enum class TimeVerdict {
     cannot_tell,  ///< No change is seen, but one beyond the bound would not be seen either.
 };
 
-/// How the time of one method changed. Ratios are new by old: more than 1 is slower.
+/// The change of one method's time. Ratios are new by old: more than 1 is slower.
 struct TimeChange {
     std::string experiment;
     std::string method;

@@ -63,7 +63,7 @@ std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
 // Passes: the methods of an experiment are interleaved, so that none has an advantage. But all its
 // rounds may lie within a second, and if the machine is busy in that second, the methods look
 // slower. Passes spread the rounds of each method over the whole run, so that the median ignores
-// such a second. Memory is also allocated anew in each pass, which averages effects of its layout.
+// such a second. Each pass also allocates its memory again, which averages effects of its layout.
 
 /// The rounds and results of earlier passes, by experiment and name. A group is a set of methods
 /// that are timed together.

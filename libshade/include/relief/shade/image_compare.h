@@ -54,7 +54,7 @@ FlipDifference flip_difference(const Image& reference, const Image& test,
 
 /// Angles between corresponding directions, in degrees.
 struct AngleDifference {
-    /// Of all texels. `undefined` counts those without a direction (zero or not finite) in one
+    /// Covers all texels. `undefined` counts those without a direction (zero or not finite) in one
     /// image or in both, which count as angles as well.
     ErrorStats angles;
     Image map;  ///< Degrees for each texel: one float channel, data.
