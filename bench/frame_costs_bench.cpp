@@ -15,10 +15,9 @@
 #include "mesh/bumpy_sphere.h"
 #include "mesh/contenders.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/frame_encoding.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/timing.h"
 #include "relief/shade/renderer.h"
 #include "shade/typical_scenes.h"
 

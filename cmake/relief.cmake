@@ -39,6 +39,10 @@ if(RELIEF_SANITIZE)
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+if(RELIEF_FUZZ)
+    target_compile_options(relief_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
 if(RELIEF_TSAN)
     if(RELIEF_SANITIZE)
         message(FATAL_ERROR "RELIEF_TSAN and RELIEF_SANITIZE exclude each other")
@@ -47,12 +51,23 @@ if(RELIEF_TSAN)
     target_link_options(relief_flags INTERFACE -fsanitize=thread)
 endif()
 
-# Most of the time of compiling a file is spent on headers. Headers that never change are precompiled. Libraries and
-# tools compile each file alone. Test files are compiled in batches, which halves the time of compiling them; with
-# RELIEF_UNITY=OFF they are compiled alone too, as in the debug preset.
+# Most of the time of compiling a file is spent on headers and their templates. Headers that never change are
+# precompiled. Libraries and tools compile each file alone. Test files are compiled in batches, which takes half of the
+# time. The sanitized build, whose instrumented templates cost most, compiles all files in batches. With
+# RELIEF_UNITY=OFF each file is compiled alone, as in the debug preset.
 option(RELIEF_PCH "Precompile the headers that nearly every file includes" ON)
-option(RELIEF_UNITY "Compile test files in batches" ON)
+option(RELIEF_UNITY "Compile test files in batches, and all files under sanitizers" ON)
 set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
+
+# relief_batch(TARGET SIZE): compiles the files of a target in batches of so many if it is a test or a sanitized build.
+# A batch should not take so long that one processor waits for it at the end.
+function(relief_batch target size)
+    set(tests ${PROJECT_SOURCE_DIR}/tests)
+    cmake_path(IS_PREFIX tests ${CMAKE_CURRENT_SOURCE_DIR} in_tests)
+    if(RELIEF_UNITY AND (RELIEF_SANITIZE OR in_tests))
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+    endif()
+endfunction()
 
 # relief_precompile(TARGET [LIKE OTHER] [AND HEADERS...]): precompiles the headers, with further HEADERS, or reuses those
 # of OTHER, whose compile options must be equal.
@@ -129,7 +144,7 @@ function(relief_add_tests name)
     target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES} GTest::gmock
                                           GTest::gtest)
     relief_precompile(${name} LIKE relief_test_precompiled)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD ${RELIEF_UNITY} UNITY_BUILD_BATCH_SIZE 12)
+    relief_batch(${name} 12)
     foreach(key ${labels} SLOW ALONE)
         set_target_properties(${name} PROPERTIES RELIEF_${key}_CASES "${ARG_${key}}")
     endforeach()
@@ -139,7 +154,7 @@ endfunction()
 # GoogleTest program. Its cases have the label `label` if they fit no pattern of their group. Object libraries that
 # the groups need are named again, because CMake does not pass on their object files. Cases that fit a pattern
 # below NOT_SANITIZED do not run under sanitizers: they measure errors, memory or whole programs, and other cases
-# run the same code on smaller inputs.
+# run the same code on smaller inputs. A program of which no case runs (`NOT_SANITIZED *`) is not built then.
 #
 # scripts/run-tests runs the programs. ctest has one entry for each program and label, which calls it.
 function(relief_add_test_program name)
@@ -150,6 +165,10 @@ function(relief_add_test_program name)
     add_executable(${name})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
     target_link_libraries(${name} PRIVATE ${ARG_GROUPS} ${ARG_OBJECTS} relief_test_main)
+    if(ARG_NOT_SANITIZED STREQUAL "*" AND (RELIEF_SANITIZE OR RELIEF_TSAN))
+        return()
+    endif()
+    set_property(GLOBAL APPEND PROPERTY RELIEF_TEST_TARGETS ${name})
     foreach(group ${ARG_GROUPS})
         # What a group runs must be built with the program, too; linking does not pass that on.
         get_target_property(needed ${group} MANUALLY_ADDED_DEPENDENCIES)
@@ -192,8 +211,11 @@ function(relief_add_test_program name)
     endforeach()
 endfunction()
 
-# Writes tests/test-programs.json in the build folder, which scripts/run-tests reads.
+# Writes tests/test-programs.json in the build folder, which scripts/run-tests reads. The target relief_tests is all
+# test programs and what they run; the preset `sanitize` builds nothing else.
 function(relief_write_test_programs)
+    get_property(targets GLOBAL PROPERTY RELIEF_TEST_TARGETS)
+    add_custom_target(relief_tests DEPENDS ${targets})
     get_property(programs GLOBAL PROPERTY RELIEF_TEST_PROGRAMS)
     list(JOIN programs ",\n    " programs)
     set(variables "")

@@ -72,13 +72,27 @@ function(relief_add_library component folder)
         PUBLIC ${needed}
         PRIVATE $<BUILD_INTERFACE:relief_flags> fmt::fmt ${ARG_PRIVATE})
     relief_precompile(${target} LIKE relief_precompiled)
+    if(NOT component STREQUAL mesh)  # Its files are small, and repeat names.
+        relief_batch(${target} 5)
+    endif()
+    if(BUILD_SHARED_LIBS)
+        # Static third parties, such as Draco, stay private.
+        target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+    endif()
     if(RELIEF_INSTALL)
-        install(TARGETS ${target} EXPORT relief-${component})
+        install(
+            TARGETS ${target}
+            EXPORT relief-${component}
+            COMPONENT development)
         install(
             EXPORT relief-${component}
             NAMESPACE relief::
-            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
-        install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/include/ TYPE INCLUDE)
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief
+            COMPONENT development)
+        install(
+            DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/include/
+            TYPE INCLUDE
+            COMPONENT development)
     endif()
 endfunction()
 
@@ -100,7 +114,8 @@ function(relief_install_package)
         INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
     write_basic_package_version_file(${PROJECT_BINARY_DIR}/relief-config-version.cmake COMPATIBILITY SameMinorVersion)
     install(FILES ${PROJECT_BINARY_DIR}/relief-config.cmake ${PROJECT_BINARY_DIR}/relief-config-version.cmake
-            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief
+            COMPONENT development)
 
     set(pc_folder ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
     foreach(directory LIBDIR INCLUDEDIR)
@@ -117,6 +132,9 @@ function(relief_install_package)
         list(JOIN needed " " needed)
         list(JOIN libraries " " libraries)
         configure_file(${PROJECT_SOURCE_DIR}/cmake/relief.pc.in ${PROJECT_BINARY_DIR}/relief-${component}.pc @ONLY)
-        install(FILES ${PROJECT_BINARY_DIR}/relief-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+        install(
+            FILES ${PROJECT_BINARY_DIR}/relief-${component}.pc
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+            COMPONENT development)
     endforeach()
 endfunction()

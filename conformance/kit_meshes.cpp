@@ -241,7 +241,7 @@ KitMesh quads() {
         return point;
     });
     KitMesh kit{"quads",
-                Group::conformance,
+                KitGroup::conformance,
                 "Quads, also as OBJ; each is cut along the diagonal that is shorter in the image.",
                 whole,
                 {}};
@@ -291,7 +291,7 @@ Mesh one_triangle() {
 }
 
 std::vector<KitMesh> conformance_meshes() {
-    const auto judged = Group::conformance;
+    const auto judged = KitGroup::conformance;
     return {
         {"one-triangle", judged, "Nothing else.", one_triangle(), {}},
         {"sphere", judged, "A sphere with a texture seam and two poles.", sphere(16, 8), {}},
@@ -367,7 +367,7 @@ std::vector<KitMesh> conformance_meshes() {
          folded_over(),
          {}},
         {"unsorted-bucket",
-         Group::defect,
+         KitGroup::defect,
          "A vertex whose edges the reference does not sort, so that it misses neighbors.",
          unsorted_bucket(),
          {}},
@@ -413,7 +413,7 @@ Mesh half_textured() {
 }
 
 std::vector<KitMesh> stability_meshes() {
-    const auto usable = Group::stability;
+    const auto usable = KitGroup::stability;
     const auto none = [](Texcoord) { return Texcoord(0.5); };
     const auto line = [](Texcoord t) { return Texcoord(t.x, 0.5 * t.x); };
     return {
@@ -483,18 +483,6 @@ std::vector<KitMesh> kit_meshes() {
     for (KitMesh& mesh : stability_meshes())
         all.push_back(std::move(mesh));
     return all;
-}
-
-std::string name_of(Group group) {
-    switch (group) {
-        case Group::conformance:
-            return "conformance";
-        case Group::defect:
-            return "defect";
-        case Group::stability:
-            break;
-    }
-    return "stability";
 }
 
 }  // namespace relief::conformance

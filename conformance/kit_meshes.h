@@ -11,20 +11,16 @@
 #include <string>
 #include <vector>
 
+#include "relief-mesh/conformance.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief::conformance {
 
-/// The criteria for a mesh.
-enum class Group {
-    conformance,  ///< Each corner is compared with the reference if that is unambiguous.
-    defect,       ///< The same, with the results of the corrected reference.
-    stability,    ///< Hard input: tangents must only be finite, unit and perpendicular.
-};
+using tools::KitGroup;
 
 struct KitMesh {
     std::string name;
-    Group group;
+    KitGroup group;
     std::string about;  ///< One sentence.
     Mesh mesh;
     std::vector<glm::uvec4> quads;  ///< Empty if the mesh does not consist of quads.
@@ -33,8 +29,5 @@ struct KitMesh {
 
 /// All meshes of the kit. Every run computes the same bits.
 std::vector<KitMesh> kit_meshes();
-
-/// "conformance", "defect", "stability"
-std::string name_of(Group group);
 
 }  // namespace relief::conformance

@@ -22,7 +22,7 @@
 
 #include "kit_meshes.h"
 #include "kit_shapes.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 
 extern "C" {
 #include <mikktspace.h>
@@ -203,7 +203,7 @@ Tally write_expected(const std::filesystem::path& file, const kit::KitMesh& mesh
         });
         const bool is_untouched = tangent == glm::vec4(0.0F);
         const bool is_quads = agree(tangent, by_quads[corner]);
-        const bool is_excused = is_defect && mesh.group != kit::Group::defect;
+        const bool is_excused = is_defect && mesh.group != kit::KitGroup::defect;
         tally.defect += is_defect ? 1U : 0U;
         if (is_stable && !is_untouched && is_quads && !is_excused) continue;
         ++tally.unjudged;
@@ -231,7 +231,7 @@ int main(int count, char** arguments) {
             "| mesh | corners | not judged | order decides | no answer | quads differ | defect |\n"
             "|---|---|---|---|---|---|---|\n");
         for (const kit::KitMesh& mesh : kit::kit_meshes()) {
-            if (mesh.group == kit::Group::stability) continue;
+            if (mesh.group == kit::KitGroup::stability) continue;
             const Tally tally =
                 write_expected(std::filesystem::path(arguments[1]) / (mesh.name + ".f32"), mesh);
             fmt::print("| `{}` | {} | {} | {} | {} | {} | {} |\n", mesh.name, tally.corners,

@@ -154,7 +154,7 @@ void write_list(const std::filesystem::path& file, const std::vector<KitMesh>& m
     Json list = Json::array();
     for (const KitMesh& mesh : meshes) {
         list.push_back({{"name", mesh.name},
-                        {"group", name_of(mesh.group)},
+                        {"group", enum_name(mesh.group)},
                         {"about", mesh.about},
                         {"vertices", mesh.mesh.positions.size()},
                         {"triangles", mesh.mesh.triangles.size()}});

@@ -29,14 +29,14 @@ int main() {
     high.tangents.clear();
 
     relief::BakeOptions options;
-    options.width = 128;
-    options.height = 128;
-    options.samples = 4;
-    options.padding = 4;
+    options.map.width = 128;
+    options.map.height = 128;
+    options.map.samples = 4;
+    options.map.padding = 4;
 
     // The baker hands over bands of rows, from the top.
     relief::Image normals =
-        relief::make_image(options.width, options.height, 3, 32, relief::ColorSpace::data);
+        relief::make_image(options.map.width, options.map.height, 3, 32, relief::ColorSpace::data);
     const relief::BakeResult result = relief::bake_normals(
         std::span(&high, 1), low, options,
         [&](const relief::BakedRows& rows) {

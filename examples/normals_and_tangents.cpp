@@ -50,8 +50,8 @@ int main() {
     const relief::TriangleSpan triangles{std::span<const std::uint16_t>(indices)};
 
     relief::Report report;  // Counts degenerate elements. It is optional.
-    relief::vertex_normals(positions, triangles, relief::NormalOptions{}, normals, &report);
-    relief::vertex_tangents(positions, normals, texcoords, triangles, tangents, &report);
+    relief::vertex_normals(positions, triangles, relief::NormalOptions{}, normals, report);
+    relief::vertex_tangents(positions, normals, texcoords, triangles, tangents, report);
 
     for (const relief::Finding& finding : report.findings())
         std::printf("%s\n", relief::to_string(finding).c_str());

@@ -7,7 +7,6 @@
 
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/context.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 

@@ -15,7 +15,7 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::bench {
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_bytes.h"
 #include "io/image/image_module_client.h"
 #include "mesh/contenders.h"
 #include "relief/accuracy/ground_truth.h"
@@ -75,7 +76,9 @@ void read_by_module(const fs::path& file, Image& image) {
     const ImageModule& module = image_module(file);
     ImageModuleHeader header;
     const ImageModuleText none{nullptr, [](void*, const char*, const char*) {}};
-    ImageModuleReader* reader = module.open_file("png", file.c_str(), &header, none, failure);
+    const RandomAccessFile opened(file);
+    ImageModuleReader* reader =
+        module.open_descriptor("png", opened.descriptor(), &header, none, failure);
     std::visit([&](auto& all) { module.read(reader, 0, header.height, all.data(), failure); },
                image.samples);
     module.close(reader);

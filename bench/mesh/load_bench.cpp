@@ -16,7 +16,7 @@
 #include "mesh/bumpy_sphere.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh_file.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::bench {
 namespace {

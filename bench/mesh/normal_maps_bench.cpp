@@ -10,7 +10,7 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace {
 

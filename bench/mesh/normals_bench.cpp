@@ -13,7 +13,7 @@
 #include "mesh/peers.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::bench {
 namespace {

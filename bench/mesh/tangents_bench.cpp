@@ -15,8 +15,8 @@
 #include "mesh/bumpy_sphere.h"
 #include "mesh/contenders.h"
 #include "relief/mesh/execution.h"
+#include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/timing.h"
 
 namespace relief::bench {
 namespace {

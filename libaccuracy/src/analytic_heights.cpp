@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "parallel.h"
-#include "random.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -112,7 +112,7 @@ CodedHeights coded_heights(const Image& heights, int bits) {
 ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, int margin) {
     if (normals.width != reference.heights.width || normals.height != reference.heights.height ||
         normals.channels != 3) {
-        throw InvalidInput(fmt::format("normals of {} x {} texels and a truth of {} x {}",
+        throw InvalidInput(fmt::format("normals of {} x {} texels and a ground truth of {} x {}",
                                        normals.width, normals.height, reference.heights.width,
                                        reference.heights.height));
     }
@@ -323,6 +323,7 @@ std::span<const FieldRecipe> tuning_fields() {
     using enum FieldShape;
     using enum FieldCoding;
     static constexpr FieldRecipe all[] = {
+        // name, shape, shortest, rms_slope, coding, noise, seed
         {"smooth, float", waves, 32, 0.3, float32, 0, 1},
         {"smooth, half float", waves, 32, 0.3, float16, 0, 2},
         {"smooth, 16 bit", waves, 32, 0.3, bits16, 0, 3},
@@ -370,6 +371,7 @@ std::span<const FieldRecipe> evaluation_fields() {
     using enum FieldShape;
     using enum FieldCoding;
     static constexpr FieldRecipe all[] = {
+        // name, shape, shortest, rms_slope, coding, noise, seed
         {"waves of 26, float", waves, 26, 0.15, float32, 0, 501},
         {"waves of 14, half float", waves, 14, 0.4, float16, 0, 502},
         {"waves of 60, 16 bit", waves, 60, 0.25, bits16, 0, 503},

@@ -13,13 +13,13 @@
 #include <numbers>
 #include <utility>
 
-#include "random.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
 namespace {
 
-struct SurfacePoint {
+struct PlacedPoint {
     glm::dvec3 position;
     glm::dvec3 normal;
     glm::dvec3 along_s;  ///< The position's derivatives.
@@ -28,12 +28,12 @@ struct SurfacePoint {
 
 /// A surface by its parameters; it may be closed along each of them.
 struct Parametrised {
-    std::function<SurfacePoint(double s, double t)> at;
+    std::function<PlacedPoint(double s, double t)> at;
     bool s_closes;
     bool t_closes;
 };
 
-SurfacePoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
+PlacedPoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
     // The poles are omitted, because triangles there do not keep their shape when they shrink.
     constexpr double from_pole = 0.15 * std::numbers::pi;
     constexpr double pole_to_pole = std::numbers::pi - 2.0 * from_pole;
@@ -48,7 +48,7 @@ SurfacePoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
             axes * east * (2.0 * std::numbers::pi * std::sin(polar)), axes * down * pole_to_pole};
 }
 
-SurfacePoint on_torus(double s, double t) {
+PlacedPoint on_torus(double s, double t) {
     constexpr double minor = 0.4;
     const double around = 2.0 * std::numbers::pi * s;
     const double across = 2.0 * std::numbers::pi * t;
@@ -65,7 +65,7 @@ SurfacePoint on_torus(double s, double t) {
 struct Cubic {
     std::array<std::array<double, 4>, 4> c{};
 
-    [[nodiscard]] SurfacePoint at(double x, double y) const {
+    [[nodiscard]] PlacedPoint at(double x, double y) const {
         double z = 0.0;
         double along_x = 0.0;
         double along_y = 0.0;
@@ -100,7 +100,7 @@ Cubic random_cubic(Random& random, int lowest, double size) {
 Parametrised parametrised(AnalyticSurface surface, Random& random) {
     const auto over_square = [](auto at) {
         return [at](double s, double t) {
-            SurfacePoint point = at(2.0 * s - 1.0, 2.0 * t - 1.0);
+            PlacedPoint point = at(2.0 * s - 1.0, 2.0 * t - 1.0);
             point.along_s *= 2.0;
             point.along_t *= 2.0;
             return point;
@@ -203,7 +203,7 @@ glm::dvec2 texcoord_at(TextureLayout layout, const glm::dvec2& parameters) {
 }
 
 /// Computes the frame from the derivatives by s and t and the equations of the texture layouts.
-SurfaceFrame frame_of(const SurfacePoint& point, TextureLayout layout, double s) {
+SurfaceFrame frame_of(const PlacedPoint& point, TextureLayout layout, double s) {
     glm::dvec3 along_u = point.along_s;
     const glm::dvec3 up = point.along_t;
     if (layout == TextureLayout::sheared) along_u += 0.5 * point.along_t;
@@ -232,7 +232,7 @@ AnalyticMesh analytic_mesh(AnalyticSurface surface, Triangulation triangulation,
                                (where.t_closes || (r > 0 && r < rows));
             const double move_s = inner ? random.between(-jitter, jitter) : 0.0;
             const double move_t = inner ? random.between(-jitter, jitter) : 0.0;
-            const SurfacePoint point = where.at((c + move_s) / columns, (r + move_t) / rows);
+            const PlacedPoint point = where.at((c + move_s) / columns, (r + move_t) / rows);
             result.mesh.positions.emplace_back(point.position);
             result.normals.push_back(point.normal);
             result.inner.push_back(inner ? 1 : 0);
@@ -261,8 +261,8 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
             const double move_t = inner ? random.between(-jitter, jitter) : 0.0;
             const glm::dvec2 place((c + move_s) / grid.columns, (r + move_t) / grid.rows);
             // Both sides of a seam have the same position.
-            const SurfacePoint point = where.at(where.s_closes && c == grid.columns ? 0.0 : place.x,
-                                                where.t_closes && r == grid.rows ? 0.0 : place.y);
+            const PlacedPoint point = where.at(where.s_closes && c == grid.columns ? 0.0 : place.x,
+                                               where.t_closes && r == grid.rows ? 0.0 : place.y);
             result.mesh.positions.emplace_back(point.position);
             result.mesh.normals.emplace_back(point.normal);
             result.mesh.texcoords.emplace_back(texcoord_at(layout, place));

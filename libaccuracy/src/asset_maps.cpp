@@ -12,10 +12,10 @@
 
 #include "bump_experiments.h"
 #include "relief/accuracy/asset.h"
-#include "relief/mesh/bake_check.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/accuracy/bake_accuracy.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/statistics.h"
 #include "report_names.h"
 #include "storage_experiments.h"
 
@@ -91,7 +91,7 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
     experiment.question = "Which kernel is most accurate on this map, and what does it cost?";
     experiment.ground_truth =
         fmt::format("The most accurate conversion that is known for this map: {}. {}.",
-                    result.reference.words, choice.reason);
+                    result.reference.description, choice.reason);
     experiment.reference_error = result.reference.reference_degrees;
     experiment.input = result.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
                                        : fmt::format("{} texels in nine parts of {} x {}",
@@ -100,8 +100,8 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
     experiment.items = static_cast<double>(result.texels);
     std::vector<AssetMethod> measured;
     for (const BumpMeasurement& one : result.measurements) {
-        measured.push_back(
-            {measured_method(one.method, one.error), command_of(one.method, bump, options)});
+        measured.push_back({described(one.method), command_of(one.method, bump, options)});
+        measured.back().measured.error = known_error(one.error);
         measured.back().measured.work = work_of(one.method, sample, bump);
         measured.back().natural_cost = nominal_cost(one.method);
     }
@@ -144,7 +144,7 @@ AssetMethod as_it_is(const NormalMapStorage& file, std::size_t texels,
     method.measured.choices = {
         {"layout", "as it is"}, {"bits", fmt::format("{} bit", file.bits)}, {"rounding", "none"}};
     method.measured.stored_bytes = file.channels * file.bits / 8.0;
-    method.measured.error = error_stats(std::vector<float>(texels, 0.0F));
+    method.measured.error = known_error(error_stats(std::vector<float>(texels, 0.0F)));
     method.measured.note = "Every code is kept; there is no work to time.";
     method.command = fmt::format("relief-bake convert {} OUT{}", options.arguments, file.extension);
     return method;
@@ -181,7 +181,7 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
         std::vector<float> degrees;
         for (const Image& part : parts)
             add_angles(code.stored(part), part, degrees);
-        method.measured.error = error_stats(std::move(degrees));
+        method.measured.error = known_error(error_stats(std::move(degrees)));
         method.measured.work = [&parts, code] {
             for (const Image& part : parts)
                 static_cast<void>(code.stored(part));
@@ -234,32 +234,31 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
     BakeMapOptions map;
     map.width = size;
     map.height = size;
-    const BakeBenchmark trials(baker, map, max_bake_texels);
+    const BakeReference reference(baker, map, max_bake_texels);
     const std::span<const BakeSampling> ways = default_bake_samplings();
     const std::vector<NormalMapFormat> formats = default_map_formats({});
     const Repeats repeats{options.run.is_timed ? options.run.repeats.counted : 1, 0};
-    const std::vector<TimedBakeMeasurement> trial_results =
-        measure_interleaved(trials, ways, formats, repeats);
+    const std::vector<TimedBakeMeasurement> results =
+        measure_interleaved(reference, ways, formats, repeats);
     Experiment& experiment = asset.experiment;
     experiment.question = "How many samples and bits does a map of these meshes need?";
     experiment.ground_truth = fmt::format(
         "The mean of {} samples per texel of the normals of the high mesh, in the tangent space of "
         "the low mesh. This is the best result that a map of this size can have. It does not show "
         "the effect of a larger map, nor whether the rays hit the intended surface.",
-        trials.reference_samples());
+        reference.samples());
     experiment.input =
         fmt::format("{} x {} texels{}; {} triangles of the low mesh", size, size,
-                    trials.is_whole() ? "" : fmt::format(", {} of them", trials.texels()),
+                    reference.is_whole() ? "" : fmt::format(", {} of them", reference.texels()),
                     baker.low().triangles.size());
     experiment.item = "texel";
-    experiment.items = static_cast<double>(trials.texels());
+    experiment.items = static_cast<double>(reference.texels());
     std::vector<AssetMethod> methods;
     for (std::size_t way = 0; way < ways.size(); ++way) {
         for (std::size_t f = 0; f < formats.size(); ++f) {
             methods.push_back(method_of(ways[way], formats[f], size, options));
-            methods.back().measured.error = trial_results[way].trial.errors[f];
-            if (options.run.is_timed)
-                methods.back().known_time = Timing{trial_results[way].seconds[f]};
+            methods.back().measured.error = known_error(results[way].measurement.errors[f]);
+            if (options.run.is_timed) methods.back().known_time = Timing{results[way].seconds[f]};
         }
     }
     finish(asset, std::move(methods), {CostKind::time, invisible_degrees}, options);

@@ -14,11 +14,10 @@
 
 #include "normals_experiments.h"
 #include "relief/accuracy/asset.h"
-#include "relief/mesh/error_stats.h"
-#include "relief/mesh/frame_encoding.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "report_names.h"
 #include "storage_experiments.h"
 #include "tangent_methods.h"
@@ -32,19 +31,19 @@ constexpr double min_degrees_of_normals = 15.0;
 CreaseRule by_angle(double degrees, const std::string& why) {
     CreaseRule creases;
     creases.edges.crease_angle = glm::radians(degrees);
-    creases.words = fmt::format("edges sharper than {:g} degrees are hard{}", degrees, why);
+    creases.description = fmt::format("edges sharper than {:g} degrees are hard{}", degrees, why);
     creases.option = fmt::format(" --crease {:g}", degrees);
     return creases;
 }
 
 CreaseRule by_normals(const Mesh& mesh) {
     CreaseRule none;
-    none.words = "no edge is hard";
+    none.description = "no edge is hard";
     const InferredCreases stored = inferred_creases(mesh);
     if (stored.hard == 0) return none;
     const double degrees = std::round(glm::degrees(stored.crease_angle));
     if (degrees < min_degrees_of_normals) {
-        none.words += " (the mesh has face normals, which do not show hard edges)";
+        none.description += " (the mesh has face normals, which do not show hard edges)";
         return none;
     }
     return by_angle(degrees,
@@ -57,7 +56,7 @@ CreaseRule by_normals(const Mesh& mesh) {
 
 CreaseRule crease_rule(const Mesh& mesh, const std::optional<double>& crease_angle) {
     CreaseRule none;
-    none.words = "no edge is hard";
+    none.description = "no edge is hard";
     if (crease_angle) {
         const bool has_any = *crease_angle < std::numbers::pi;
         // A given angle overrides the smoothing groups of the file.
@@ -71,7 +70,7 @@ CreaseRule crease_rule(const Mesh& mesh, const std::optional<double>& crease_ang
                     [](std::uint32_t group) { return group != 0; })) {
         CreaseRule groups;
         groups.edges.smoothing_groups = mesh.smoothing_groups;
-        groups.words = "edges between the file's smoothing groups are hard";
+        groups.description = "edges between the file's smoothing groups are hard";
         return groups;
     }
     return mesh.normals.empty() ? none : by_normals(mesh);
@@ -84,7 +83,7 @@ struct CornerGroundTruth {
     std::vector<std::uint32_t> corners;
     std::vector<glm::dvec3> normals;
     std::optional<double> expected_error{};  ///< Of the normals, in degrees, if they are estimates.
-    std::string words;
+    std::string description;
     double unjudged = 0.0;  ///< Share of the examined corners without a known normal.
     bool is_enough = true;  ///< Whether there are enough normals for a recommendation.
 };
@@ -94,13 +93,13 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
     fit.hard_edges = creases.edges;
     FittedNormals fitted = fitted_normals(mesh, fit);
     CornerGroundTruth ground_truth;
-    ground_truth.words = fmt::format(
+    ground_truth.description = fmt::format(
         "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). "
         "It is known at {} of {} examined places; the others have too few neighbors or no smooth "
         "surface. Its own expected error is {:.2g} degrees. It assumes that the vertices lie on "
         "the "
         "surface, and is not valid for models whose vertices do not.",
-        creases.words, fitted.corners.size(), fitted.places, fitted.reference_degrees);
+        creases.description, fitted.corners.size(), fitted.places, fitted.reference_degrees);
     constexpr std::size_t fewest = 16;
     ground_truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.places / 10);
     ground_truth.expected_error = fitted.reference_degrees;
@@ -117,10 +116,10 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
 CornerGroundTruth by_file(const Mesh& mesh, const CreaseRule& creases) {
     if (mesh.normals.empty()) throw InvalidInput("the mesh has no normals to compare with");
     CornerGroundTruth ground_truth;
-    ground_truth.words = fmt::format(
+    ground_truth.description = fmt::format(
         "The normals of the file ({}). They show which method is closest to the one that computed "
         "them, not which is closest to a surface.",
-        creases.words);
+        creases.description);
     std::vector<unsigned char> is_seen(mesh.positions.size(), 0);
     for (std::uint32_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
         const std::uint32_t vertex = mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
@@ -168,7 +167,11 @@ std::vector<AssetMethod> methods_on(const Mesh& mesh, const CreaseRule& creases,
         AssetMethod asset;
         asset.measured = {.name = std::string(method.weighting),
                           .choices = {{"weighting", std::string(method.weighting)}},
-                          .error = errors_of(normals(), creases.has_any(), mesh, ground_truth),
+                          .error =
+                              [=, &mesh, &creases, &ground_truth] {
+                                  return errors_of(normals(), creases.has_any(), mesh,
+                                                   ground_truth);
+                              },
                           .work = [normals] { normals(); }};
         asset.command = fmt::format("relief-mesh process {} -o OUT.glb --normals {}{}",
                                     options.arguments, method.weighting, creases.option);
@@ -182,7 +185,7 @@ std::vector<AssetMethod> methods_on(const Mesh& mesh, const CreaseRule& creases,
 void add_caveats(AssetExperiment& asset, const CornerGroundTruth& ground_truth,
                  const CreaseRule& creases) {
     if (!asset.recommendation.method) return;
-    std::string& words = asset.recommendation.words;
+    std::string& words = asset.recommendation.description;
     const std::size_t taken = *asset.recommendation.method;
     const std::vector<Measurement>& all = asset.experiment.measurements;
     std::vector<std::string> alike;
@@ -220,17 +223,18 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
     experiment.question = is_file ? "Which weighting is closest to the normals of this file?"
                                   : "Which weighting is closest to the normals of the surface that "
                                     "this mesh approximates, and what does it cost?";
-    experiment.ground_truth = ground_truth.words;
+    experiment.ground_truth = ground_truth.description;
     experiment.input = fmt::format("{} triangles{}", mesh.triangles.size(), whole);
     experiment.item = "triangle";
     experiment.items = static_cast<double>(mesh.triangles.size());
     std::vector<AssetMethod> methods = methods_on(mesh, creases, ground_truth, options);
     if (!is_file && !mesh.normals.empty()) {
-        methods.push_back({{.name = "the file's own",
-                            .choices = {{"weighting", "file"}},
-                            .error = errors_of(mesh.normals, false, mesh, ground_truth),
-                            .note = "The stored normals; there is no work to time."},
-                           {}});
+        methods.push_back(
+            {{.name = "the file's own",
+              .choices = {{"weighting", "file"}},
+              .error = known_error(errors_of(mesh.normals, false, mesh, ground_truth)),
+              .note = "The stored normals; there is no work to time."},
+             {}});
     }
     if (!ground_truth.is_enough) {
         for (AssetMethod& method : methods)
@@ -241,7 +245,7 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
     if (ground_truth.is_enough) {
         add_caveats(asset, ground_truth, creases);
     } else {
-        asset.recommendation.words =
+        asset.recommendation.description =
             "no recommendation: the mesh is too coarse or too rough to fit a smooth surface; "
             "--truth file compares with its stored normals instead";
     }
@@ -325,7 +329,7 @@ AssetMethod method_of(const Basis& basis, std::vector<float> degrees) {
     AssetMethod method;
     method.measured = {.name = basis.name,
                        .choices = {{"basis", basis.name}},
-                       .error = error_stats(std::move(degrees)),
+                       .error = known_error(error_stats(std::move(degrees))),
                        .work = basis.work,
                        .note = basis.work ? "" : "There is no work to time."};
     method.command = basis.command;
@@ -371,7 +375,7 @@ AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases
     finish(asset, std::move(methods), {}, options);
     if (asset.recommendation.method) {
         const Measurement& taken = experiment.measurements[*asset.recommendation.method];
-        asset.recommendation.words = fmt::format(
+        asset.recommendation.description = fmt::format(
             "mikktspace: {:.3g} degrees RMS; bakers and renderers agree on it, and another "
             "average would show seams",
             taken.error.rms);
@@ -415,7 +419,7 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
         if (nearest == nullptr || one.error.rms < nearest->error.rms) nearest = &one;
     }
     if (asset.recommendation.method && nearest != nullptr) {
-        asset.recommendation.words = fmt::format(
+        asset.recommendation.description = fmt::format(
             "mikktspace for a map that was baked for it; {} has an error of {:.2g} degrees RMS, "
             "{:.2g} at most",
             nearest->method, nearest->error.rms, nearest->error.max);
@@ -446,22 +450,22 @@ AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
                               const AssetOptions& options) {
     AssetExperiment asset =
         asset_experiment(Subject::storage, "frames", "Frames in few bytes", options);
-    const SampleFrames frames = frames_of(mesh, tangents);
+    const auto frames = std::make_shared<const SampleFrames>(frames_of(mesh, tangents));
     Experiment& experiment = asset.experiment;
     experiment.question = "How many bytes do this mesh's tangent frames need?";
     experiment.ground_truth =
         "The mesh's normals and MikkTSpace's tangents in double, alternately right- and "
         "left-handed.";
-    experiment.input = fmt::format("{} frames", frames.normals.size());
+    experiment.input = fmt::format("{} frames", frames->normals.size());
     experiment.item = "frame";
-    experiment.items = static_cast<double>(frames.normals.size());
+    experiment.items = static_cast<double>(frames->normals.size());
     std::vector<AssetMethod> methods;
     for (const FrameCode& code : all_frame_codes()) {
-        AssetMethod method{code.measured(frames)};
-        method.measured.work = [&frames, code] {
+        AssetMethod method{code.method(frames)};
+        method.measured.work = [frames, code] {
             Report report;
-            encode_frames(frames.float_normals, frames.float_tangents, code.encoding, code.rounding,
-                          report);
+            encode_frames(frames->float_normals, frames->float_tangents, code.encoding,
+                          code.rounding, report);
         };
         method.command = fmt::format(
             "encode_frames(normals, tangents, FrameEncoding::{}, FrameRounding::{}, report)",

@@ -204,13 +204,13 @@ Recommendation recommended(const Experiment& experiment, const RecommendationRul
     Recommendation result;
     const Candidate* taken = taken_of(experiment, kept, rule);
     if (taken == nullptr) {
-        result.words = refusal_text(experiment, rule, all);
+        result.description = refusal_text(experiment, rule, all);
         return result;
     }
     const Candidate* next = next_more_accurate(all, *taken);
     result.method = taken->index;
     if (next != nullptr) result.next = next->index;
-    result.words = recommendation_text(experiment, rule, *taken, next);
+    result.description = recommendation_text(experiment, rule, *taken, next);
     return result;
 }
 
@@ -224,28 +224,33 @@ AssetExperiment asset_experiment(Subject subject, const std::string& topic,
     experiment.title = options.file.empty() ? title : fmt::format("{} of {}", title, options.file);
     experiment.error_unit = "degrees";
     experiment.command = options.command;
-    if (options.run.tell) options.run.tell(experiment.title, 0, 1);
+    if (options.run.tell) options.run.tell({.title = experiment.title});
     return asset;
 }
 
+std::function<MethodError()> known_error(const ErrorStats& error) {
+    return [error] { return error; };
+}
+
 void set_finding(AssetExperiment& asset) {
-    asset.experiment.finding = asset.recommendation.words + ".";
+    asset.experiment.finding = asset.recommendation.description + ".";
     if (!asset.command().empty()) asset.experiment.finding += " To do it: " + asset.command();
 }
 
 void finish(AssetExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
             const AssetOptions& options) {
     const ProgressStage stage("measuring");
-    std::vector<MeasuredMethod> measured;
+    PreparedExperiment prepared{.report = std::move(asset.experiment), .costs = options.costs};
     std::vector<unsigned char> choosable;
     std::vector<double> nominal_costs;
     for (AssetMethod& method : methods) {
-        measured.push_back(std::move(method.measured));
+        method.measured.id = method_id(prepared.methods.size());
+        prepared.methods.push_back(std::move(method.measured));
         choosable.push_back(method.command.empty() ? 0 : 1);
         nominal_costs.push_back(method.natural_cost);
         asset.commands.push_back(std::move(method.command));
     }
-    measure_methods(measured, options.run, options.costs, asset.experiment);
+    asset.experiment = measured(std::move(prepared), options.run);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         Measurement& one = asset.experiment.measurements[i];
         if (methods[i].known_time) one.cost.all_threads = methods[i].known_time;

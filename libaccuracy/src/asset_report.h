@@ -4,6 +4,7 @@
 /// hard edges, and the recommendation at the end.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,9 +18,12 @@ namespace relief {
 /// A smaller error is invisible, and not worth a byte.
 inline constexpr double invisible_degrees = 0.01;
 
+/// The error of a method that is known already, as a function.
+std::function<MethodError()> known_error(const ErrorStats& error);
+
 /// A method with the command that applies it.
 struct AssetMethod {
-    MeasuredMethod measured;
+    ExperimentMethod measured;
     std::string command{};
     std::optional<Timing> known_time{};  ///< On all threads, if it was measured elsewhere.
     double natural_cost = 0.0;           ///< RecommendationRule::nominal_costs.
@@ -51,8 +55,8 @@ Mesh part_to_measure(const Mesh& mesh, std::size_t max_triangles);
 /// The rule for hard edges of a mesh; the mesh must outlive it.
 struct CreaseRule {
     HardEdges edges;
-    std::string words;   ///< "edges sharper than 40 degrees are hard"
-    std::string option;  ///< For relief-mesh process, after a space: " --crease 40".
+    std::string description;  ///< "edges sharper than 40 degrees are hard"
+    std::string option;       ///< For relief-mesh process, after a space: " --crease 40".
 
     [[nodiscard]] bool has_any() const {
         return edges.crease_angle.has_value() || !edges.smoothing_groups.empty();

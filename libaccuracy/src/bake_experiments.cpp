@@ -15,7 +15,6 @@
 #include <stdexcept>
 
 #include "experiment_driver.h"
-#include "relief/accuracy/measure.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
@@ -24,8 +23,8 @@
 namespace relief {
 namespace {
 
-constexpr double height = 0.02;
-constexpr double waves = 12.0;
+constexpr double bump_height = 0.02;
+constexpr double waves_around = 12.0;
 
 struct SphereAngles {
     double longitude = 0.0;  ///< From +z towards +x.
@@ -37,7 +36,8 @@ SphereAngles angles_of(const glm::dvec3& p) {
 }
 
 double radius_at(const SphereAngles& a) {
-    return 1.0 + height * std::sin(waves * a.longitude) * std::sin(waves * a.polar);
+    return 1.0 +
+           bump_height * std::sin(waves_around * a.longitude) * std::sin(waves_around * a.polar);
 }
 
 glm::dvec3 direction_at(const SphereAngles& a) {
@@ -52,10 +52,10 @@ glm::dvec3 normal_at(const SphereAngles& a) {
     const glm::dvec3 polar_wards(std::cos(a.polar) * std::sin(a.longitude), -std::sin(a.polar),
                                  std::cos(a.polar) * std::cos(a.longitude));
     const glm::dvec3 east(std::cos(a.longitude), 0.0, -std::sin(a.longitude));
-    const double by_polar =
-        height * waves * std::sin(waves * a.longitude) * std::cos(waves * a.polar);
-    const double by_longitude =
-        height * waves * std::cos(waves * a.longitude) * std::sin(waves * a.polar);
+    const double by_polar = bump_height * waves_around * std::sin(waves_around * a.longitude) *
+                            std::cos(waves_around * a.polar);
+    const double by_longitude = bump_height * waves_around * std::cos(waves_around * a.longitude) *
+                                std::sin(waves_around * a.polar);
     const double radius = radius_at(a);
     return glm::normalize(direction_at(a) - by_polar / radius * polar_wards -
                           by_longitude / (radius * sine) * east);
@@ -148,7 +148,7 @@ Mesh low_sphere(Report& report) {
         .mesh;
 }
 
-BakeMapOptions square_map(int side) {
+BakeMapOptions square_options(int side) {
     BakeMapOptions map;
     map.width = map.height = side;
     return map;
@@ -165,8 +165,8 @@ std::string name_of(const BakeSampling& way) {
 BumpyBake::BumpyBake(int high_stacks, int side)
     : high_(high_stacks),
       baker_(std::span(&high_.mesh(), 1), low_sphere(report_), BakeOptions{}, report_),
-      map_(square_map(side)),
-      trials_(baker_, map_, static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
+      map_(square_options(side)),
+      reference_(baker_, map_, static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
 
 std::string BumpyBake::description() const {
     return fmt::format("sphere with bumps, {} triangles, for one of {}; map of {} x {} texels",
@@ -176,11 +176,6 @@ std::string BumpyBake::description() const {
 
 double BumpyBake::texels() const {
     return static_cast<double>(map_.width) * map_.height;
-}
-
-const std::vector<NormalMapFormat>& BumpyBake::formats() {
-    static const std::vector<NormalMapFormat> all = {{.bits = 8}, {.bits = 16}, {.bits = 32}};
-    return all;
 }
 
 Image BumpyBake::map_by(const BakeSampling& way, const NormalMapFormat& format) const {
@@ -200,30 +195,6 @@ Image BumpyBake::map_by(const BakeSampling& way, const NormalMapFormat& format) 
     return encode_normal_map(normals, format, ignored);
 }
 
-std::vector<BakeWayResult> BumpyBake::measured(std::span<const BakeSampling> ways,
-                                               const RunOptions& options) const {
-    std::vector<BakeWayResult> results;
-    for (const BakeSampling& way : ways)
-        results.push_back({trials_.measure(way, formats())});
-    if (!options.is_timed) return results;
-    // One cast serves all formats of a way, which are consecutive here.
-    const std::size_t depths = formats().size();
-    BakeMeasurement trial;
-    const auto timings = [&](const char* group) {
-        return measure_interleaved_rounds(group, ways.size() * depths, options, [&](std::size_t i) {
-            if (i % depths == 0) trial = trials_.measure(ways[i / depths], formats());
-            return trial.cast_seconds + trial.code_seconds[i % depths];
-        });
-    };
-    const std::vector<Timing> one = on_one_thread(options, [&] { return timings("one thread"); });
-    const std::vector<Timing> all = timings("all threads");
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        results[i / depths].one_thread.push_back(one[i]);
-        results[i / depths].all_threads.push_back(all[i]);
-    }
-    return results;
-}
-
 namespace {
 
 /// One finished map.
@@ -233,14 +204,14 @@ struct BakedMap {
 };
 
 constexpr int picture_side = 320;
-constexpr int rays_per_side = 2;
+constexpr int picture_rays_per_side = 2;
 
 std::string name_of(const BakedMap& map) {
     return fmt::format("{}, {}", name_of(map.way), depth_name(map.format.bits));
 }
 
 Image picture_of(const Scene& scene) {
-    return supersampled_reference(scene, picture_side, rays_per_side);
+    return supersampled_reference(scene, picture_side, picture_rays_per_side);
 }
 
 /// Adds a heat map of the errors of each map. \param brightest  degrees shown at full brightness
@@ -248,7 +219,8 @@ void add_error_maps(const BumpyBake& bake, std::span<const BakedMap> maps, doubl
                     Experiment& experiment) {
     for (const BakedMap& map : maps) {
         experiment.heat_maps.push_back({"Error of the map", name_of(map),
-                                        bake.trials().error_map(map.way, map.format), brightest});
+                                        bake_error_map(bake.reference(), map.way, map.format),
+                                        brightest});
     }
 }
 
@@ -270,163 +242,231 @@ void add_renderings(const BumpyBake& bake, std::span<const BakedMap> maps, Exper
     }
 }
 
-double rays_per_texel(const BakeWayResult& result, const BumpyBake& bake) {
-    return static_cast<double>(result.trial.rays) / bake.texels();
-}
+/// The ways to bake of an experiment, each in some formats, and their results. The id of a method
+/// is the index of its way times the number of formats, plus the index of its format.
+class BakedWays {
+  public:
+    BakedWays(std::shared_ptr<const BumpyBake> bake, std::vector<BakeSampling> ways,
+              std::vector<NormalMapFormat> formats)
+        : bake_(std::move(bake)),
+          ways_(std::move(ways)),
+          formats_(std::move(formats)),
+          results_(ways_.size()) {}
 
-Cost nominal_cost(const BakeWayResult& result, std::size_t format) {
-    Cost cost{.stored_bytes = 3.0 * BumpyBake::formats()[format].bits / 8.0};
-    if (result.one_thread.empty()) return cost;
-    cost.one_thread = result.one_thread[format];
-    cost.all_threads = result.all_threads[format];
-    return cost;
-}
+    [[nodiscard]] const BumpyBake& bake() const { return *bake_; }
+    [[nodiscard]] const std::vector<BakeSampling>& ways() const { return ways_; }
+    [[nodiscard]] const std::vector<NormalMapFormat>& formats() const { return formats_; }
+    [[nodiscard]] std::size_t count() const { return ways_.size() * formats_.size(); }
 
-/// The common part of both experiments, and a measurement of each way in each of `formats`.
-Experiment measured(const BumpyBake& bake, std::span<const BakeSampling> ways,
-                    const std::vector<BakeWayResult>& results,
-                    std::span<const std::size_t> formats) {
-    Experiment experiment{
-        .subject = Subject::bake,
+    [[nodiscard]] std::size_t way_of(std::size_t method) const { return method / formats_.size(); }
+    [[nodiscard]] std::size_t format_of(std::size_t method) const {
+        return method % formats_.size();
+    }
+    [[nodiscard]] MethodId method(std::size_t way, std::size_t format) const {
+        return method_id(way * formats_.size() + format);
+    }
+
+    /// The errors of a way in all formats; the rays are cast once.
+    const BakeMeasurement& result(std::size_t way) {
+        if (!results_[way]) results_[way] = measure_bake(bake_->reference(), ways_[way], formats_);
+        return *results_[way];
+    }
+
+    [[nodiscard]] double rays_per_texel(std::size_t way) {
+        return static_cast<double>(result(way).rays) / bake_->texels();
+    }
+
+    /// Seconds for casting rays and encoding together. One cast serves a round of all formats.
+    double seconds_of_round(std::size_t method) {
+        const std::size_t way = way_of(method);
+        const std::size_t format = format_of(method);
+        if (timed_way_ != way || is_format_used_[format]) {
+            timed_ = measure_bake(bake_->reference(), ways_[way], formats_);
+            timed_way_ = way;
+            is_format_used_.assign(formats_.size(), false);
+        }
+        is_format_used_[format] = true;
+        return timed_.cast_seconds + timed_.code_seconds[format];
+    }
+
+  private:
+    std::shared_ptr<const BumpyBake> bake_;
+    std::vector<BakeSampling> ways_;
+    std::vector<NormalMapFormat> formats_;
+    std::vector<std::optional<BakeMeasurement>> results_;
+    BakeMeasurement timed_{};  ///< The last cast of seconds_of_round().
+    std::optional<std::size_t> timed_way_{};
+    std::vector<bool> is_format_used_{};
+};
+
+/// The common part of both experiments.
+PreparedExperiment on_ways(const std::shared_ptr<BakedWays>& baked) {
+    PreparedExperiment prepared;
+    prepared.report = {
         .ground_truth = fmt::format(
             "The mean of {} rays per texel, not rounded to codes. A test verifies bakes by the "
             "formula of the surface, without the baker's rays.",
-            bake.trials().reference_samples()),
-        .input = bake.description(),
+            baked->bake().reference().samples()),
+        .input = baked->bake().description(),
         .error_unit = "degrees",
         .item = "texel",
-        .items = bake.texels()};
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-        for (const std::size_t format : formats) {
-            const NormalMapFormat& depth = BumpyBake::formats()[format];
-            experiment.measurements.push_back(
-                {.method = fmt::format("{}, {}", name_of(ways[i]), depth_name(depth.bits)),
-                 .choices = {{"rays", name_of(ways[i])}, {"depth", depth_name(depth.bits)}},
-                 .error = nan_if_empty(results[i].trial.errors[format]),
-                 .cost = nominal_cost(results[i], format),
-                 .note = fmt::format("{:.2f} rays per texel.", rays_per_texel(results[i], bake))});
-        }
+        .items = baked->bake().texels()};
+    prepared.costs.memory = false;
+    for (std::size_t i = 0; i < baked->count(); ++i) {
+        const std::string way = name_of(baked->ways()[baked->way_of(i)]);
+        const int bits = baked->formats()[baked->format_of(i)].bits;
+        prepared.methods.push_back(
+            {.id = method_id(i),
+             .name = fmt::format("{}, {}", way, depth_name(bits)),
+             .choices = {{"rays", way}, {"depth", depth_name(bits)}},
+             .error =
+                 [baked, i] {
+                     const std::size_t at = baked->way_of(i);
+                     return MethodError(
+                         baked->result(at).errors[baked->format_of(i)],
+                         fmt::format("{:.2f} rays per texel.", baked->rays_per_texel(at)));
+                 },
+             .stored_bytes = 3.0 * bits / 8.0});
     }
-    mark_pareto_optimal(experiment);
-    return experiment;
+    prepared.round = [baked](MethodId id) { return baked->seconds_of_round(index_of(id)); };
+    return prepared;
 }
 
-Curve curve_of(const std::string& name, const BumpyBake& bake,
-               std::span<const BakeWayResult> results, std::size_t format) {
+/// The error of ways first to last (excluded) over their rays.
+Curve curve_of(const std::string& name, BakedWays& baked, std::size_t first, std::size_t last,
+               std::size_t format) {
     Curve curve{.method = name};
-    for (const BakeWayResult& one : results)
-        curve.points.push_back({rays_per_texel(one, bake), curve_error(one.trial.errors[format])});
+    for (std::size_t way = first; way < last; ++way)
+        curve.points.push_back(
+            {baked.rays_per_texel(way), curve_error(baked.result(way).errors[format])});
     return curve;
 }
 
 /// The speed of ray casting, from a float map, whose encoding time is negligible; empty if not
 /// timed.
-std::string speed_of(const BakeWayResult& result) {
-    if (result.one_thread.empty()) return {};
+std::string speed_of(std::size_t rays, const Cost& cost) {
+    if (!cost.one_thread) return {};
     const auto millions = [&](const Timing& timing) {
-        return 1e-6 * static_cast<double>(result.trial.rays) / timing.spread().median;
+        return 1e-6 * static_cast<double>(rays) / timing.spread().median;
     };
     return fmt::format(
         " It casts {:.2g} million rays per second on one thread, {:.2g} on all threads.",
-        millions(result.one_thread.back()), millions(result.all_threads.back()));
+        millions(*cost.one_thread), millions(*cost.all_threads));
 }
 
-Experiment by_samples(const BumpyBake& bake, const RunOptions& options) {
-    std::vector<BakeSampling> ways = {{1}, {4}, {16}};
-    if (!options.is_quick) ways.push_back({64});
-    const std::vector<BakeWayResult> results = bake.measured(ways, options);
-    constexpr std::array<std::size_t, 3> formats = {0, 1, 2};
-    Experiment experiment = measured(bake, ways, results, formats);
-    experiment.id = "bake/samples";
-    experiment.question = "How many rays does a texel need, and how many bits?";
+void finish_samples(BakedWays& baked, Experiment& report) {
+    constexpr std::size_t in_8 = 0;
+    constexpr std::size_t in_16 = 1;
+    constexpr std::size_t in_floats = 2;
+    const std::vector<BakeSampling>& ways = baked.ways();
     Chart chart{.id = "rays",
                 .title = "Error by rays",
                 .x_label = "rays per texel",
                 .y_label = "RMS error, degrees"};
-    for (const std::size_t format : formats)
+    for (const std::size_t format : {in_8, in_16, in_floats}) {
         chart.curves.push_back(
-            curve_of(depth_name(BumpyBake::formats()[format].bits), bake, results, format));
+            curve_of(depth_name(baked.formats()[format].bits), baked, 0, ways.size(), format));
+    }
     // Sample points are the centers of equal squares: halving their distance quarters the error.
     chart.curves.back() =
         fitted_curve(chart.curves.back().method, chart.curves.back().points, -1.0);
-    experiment.charts = {std::move(chart)};
+    report.charts = {std::move(chart)};
     const std::array maps = {BakedMap{ways.front(), {.bits = 8}}, BakedMap{ways[2], {.bits = 8}},
                              BakedMap{ways[2], {.bits = 16}}};
-    add_error_maps(bake, maps, 2.0, experiment);
-    add_renderings(bake, std::span(maps).first(2), experiment);
+    add_error_maps(baked.bake(), maps, 2.0, report);
+    add_renderings(baked.bake(), std::span(maps).first(2), report);
     const auto rms = [&](std::size_t way, std::size_t format) {
-        return results[way].trial.errors[format].rms;
+        return baked.result(way).errors[format].rms;
     };
     const std::size_t last = ways.size() - 1;
-    experiment.finding = fmt::format(
+    const Cost& last_cost = measurement_of(report, baked.method(last, in_floats)).cost;
+    report.finding = fmt::format(
         "Without rounding, {} per texel has an error of {:.3f} degrees (RMS), {} {:.3f} and {} "
         "{:.4f}. Rounding alone has an error of {:.3f} degrees in 8 bits and {:.4f} in 16 bits; "
         "with {} the error is {:.3f} in 8 bits and {:.4f} in 16 bits.{}",
-        name_of(ways[0]), rms(0, 2), name_of(ways[1]), rms(1, 2), name_of(ways[last]), rms(last, 2),
-        results[0].trial.quantization[0].rms, results[0].trial.quantization[1].rms,
-        name_of(ways[last]), rms(last, 0), rms(last, 1), speed_of(results[last]));
-    return experiment;
+        name_of(ways[0]), rms(0, in_floats), name_of(ways[1]), rms(1, in_floats),
+        name_of(ways[last]), rms(last, in_floats), baked.result(0).quantization[in_8].rms,
+        baked.result(0).quantization[in_16].rms, name_of(ways[last]), rms(last, in_8),
+        rms(last, in_16), speed_of(baked.result(last).rays, last_cost));
 }
 
-Experiment by_threshold(const BumpyBake& bake, const RunOptions& options) {
-    const int max_rays = options.is_quick ? 16 : 64;
-    std::vector<BakeSampling> ways;
-    for (const double degrees : {16.0, 8.0, 4.0, 2.0, 1.0, 0.5})
-        ways.push_back({max_rays, degrees});
-    const auto adaptive = static_cast<std::ptrdiff_t>(ways.size());
-    ways.push_back({max_rays / 4});
-    ways.push_back({max_rays});
-    const std::vector<BakeWayResult> results = bake.measured(ways, options);
-    constexpr std::array<std::size_t, 1> formats = {2};
-    Experiment experiment = measured(bake, ways, results, formats);
-    experiment.id = "bake/adaptive";
-    experiment.question = "Does it pay to cast more rays only where the first rays differ?";
+PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
+    std::vector<BakeSampling> ways = {{1}, {4}, {16}};
+    if (!is_quick) ways.push_back({64});
+    const auto baked = std::make_shared<BakedWays>(
+        bake, std::move(ways),
+        std::vector<NormalMapFormat>{{.bits = 8}, {.bits = 16}, {.bits = 32}});
+    PreparedExperiment prepared = on_ways(baked);
+    prepared.report.question = "How many rays does a texel need, and how many bits?";
+    prepared.finish = [baked](Experiment& report) { finish_samples(*baked, report); };
+    return prepared;
+}
+
+constexpr std::array thresholds_in_degrees = {16.0, 8.0, 4.0, 2.0, 1.0, 0.5};
+
+/// The ways are one per threshold, a quarter of the rays everywhere, and all rays everywhere.
+void finish_thresholds(BakedWays& baked, int max_rays, Experiment& report) {
+    const std::vector<BakeSampling>& ways = baked.ways();
+    const std::size_t adaptive = thresholds_in_degrees.size();
+    const auto error_of = [&](std::size_t way) -> const ErrorStats& {
+        return baked.result(way).errors.front();
+    };
     Chart rays{.id = "rays",
                .title = "Error by rays",
                .x_label = "rays per texel",
                .y_label = "RMS error, degrees",
-               .curves = {curve_of("more where they differ", bake,
-                                   {results.begin(), results.begin() + adaptive}, 2),
-                          curve_of("as many everywhere", bake,
-                                   {results.begin() + adaptive, results.end()}, 2)}};
+               .curves = {curve_of("more where they differ", baked, 0, adaptive, 0),
+                          curve_of("as many everywhere", baked, adaptive, ways.size(), 0)}};
     Chart thresholds{.id = "threshold",
                      .title = "Error by threshold",
                      .x_label = "limit of the angle between the first rays, degrees",
                      .y_label = "RMS error, degrees",
                      .curves = {{.method = "more where they differ"}}};
-    for (std::ptrdiff_t i = adaptive - 1; i >= 0; --i) {
-        const auto at = static_cast<std::size_t>(i);
+    for (std::size_t i = adaptive; i-- > 0;)
         thresholds.curves.front().points.push_back(
-            {*ways[at].sample_degrees, curve_error(results[at].trial.errors[2])});
-    }
-    experiment.charts = {std::move(rays), std::move(thresholds)};
-    const std::array maps = {BakedMap{ways.front(), {.bits = 32}}, BakedMap{ways[2], {.bits = 32}},
+            {thresholds_in_degrees.at(i), curve_error(error_of(i))});
+    report.charts = {std::move(rays), std::move(thresholds)};
+    constexpr std::size_t shown = 2;
+    const std::array maps = {BakedMap{ways.front(), {.bits = 32}},
+                             BakedMap{ways[shown], {.bits = 32}},
                              BakedMap{ways.back(), {.bits = 32}}};
-    add_error_maps(bake, maps, 0.5, experiment);
-    const BakeWayResult& chosen = results[2];
-    experiment.finding = fmt::format(
+    add_error_maps(baked.bake(), maps, 0.5, report);
+    report.finding = fmt::format(
         "If only texels whose first rays differ by more than {:g} degrees get all {} rays, the "
-        "mean "
-        "is {:.1f} rays per texel and the error is {:.4f} degrees (RMS), compared with {:.4f} with "
-        "{} rays everywhere and {:.4f} with all rays everywhere.",
-        *ways[2].sample_degrees, max_rays, rays_per_texel(chosen, bake), chosen.trial.errors[2].rms,
-        results[results.size() - 2].trial.errors[2].rms, max_rays / 4,
-        results.back().trial.errors[2].rms);
-    return experiment;
+        "mean is {:.1f} rays per texel and the error is {:.4f} degrees (RMS), compared with {:.4f} "
+        "with {} rays everywhere and {:.4f} with all rays everywhere.",
+        thresholds_in_degrees.at(shown), max_rays, baked.rays_per_texel(shown), error_of(shown).rms,
+        error_of(adaptive).rms, max_rays / 4, error_of(adaptive + 1).rms);
+}
+
+PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
+    const int max_rays = is_quick ? 16 : 64;
+    std::vector<BakeSampling> ways;
+    for (const double degrees : thresholds_in_degrees)
+        ways.push_back({max_rays, degrees});
+    ways.push_back({max_rays / 4});
+    ways.push_back({max_rays});
+    const auto baked = std::make_shared<BakedWays>(bake, std::move(ways),
+                                                   std::vector<NormalMapFormat>{{.bits = 32}});
+    PreparedExperiment prepared = on_ways(baked);
+    prepared.report.question = "Does it pay to cast more rays only where the first rays differ?";
+    prepared.finish = [baked, max_rays](Experiment& report) {
+        finish_thresholds(*baked, max_rays, report);
+    };
+    return prepared;
 }
 
 }  // namespace
 
-std::vector<Experiment> bake_experiments(const RunOptions& options) {
-    const std::shared_ptr<const BumpyBake> bake = computed_once(options, "bake", [&] {
-        return std::make_shared<const BumpyBake>(options.is_quick ? 120 : 200,
-                                                 options.is_quick ? 128 : 256);
+std::vector<PlannedExperiment> bake_plan(const PlanOptions& options) {
+    const bool is_quick = options.is_quick;
+    const SharedInput<BumpyBake> bake([is_quick] {
+        return std::make_shared<const BumpyBake>(is_quick ? 120 : 200, is_quick ? 128 : 256);
     });
-    const std::vector<PlannedExperiment> plan = {
-        {"Baked normals: rays and bits", [&] { return by_samples(*bake, options); }},
-        {"Baked normals: rays where they are needed",
-         [&] { return by_threshold(*bake, options); }}};
-    return run_planned(plan, options);
+    return {{"bake/samples", Subject::bake, "Baked normals: rays and bits",
+             [bake, is_quick] { return by_samples(bake.get(), is_quick); }},
+            {"bake/adaptive", Subject::bake, "Baked normals: rays where they are needed",
+             [bake, is_quick] { return by_threshold(bake.get(), is_quick); }}};
 }
 
 }  // namespace relief

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "relief/accuracy/bake_accuracy.h"
 #include "relief/accuracy/experiment.h"
-#include "relief/mesh/bake_check.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief {
@@ -45,14 +45,6 @@ class BumpySphere {
 
 std::string name_of(const BakeSampling& way);  ///< "16 rays", "up to 64 rays beyond 2°"
 
-/// The results of one way to bake.
-struct BakeWayResult {
-    BakeMeasurement trial;  ///< Errors by format.
-    /// By format, for casting rays and encoding together; empty if not timed.
-    std::vector<Timing> one_thread{};
-    std::vector<Timing> all_threads{};
-};
-
 /// The high and the low mesh, ready for ray casting, and the ground truth of their map.
 class BumpyBake {
   public:
@@ -64,17 +56,9 @@ class BumpyBake {
 
     [[nodiscard]] const Baker& baker() const { return baker_; }
     [[nodiscard]] const BakeMapOptions& map() const { return map_; }
-    [[nodiscard]] const BakeBenchmark& trials() const { return trials_; }
+    [[nodiscard]] const BakeReference& reference() const { return reference_; }
     [[nodiscard]] std::string description() const;  ///< Of the meshes and the map.
     [[nodiscard]] double texels() const;
-
-    /// 8 and 16 bits, and float.
-    static const std::vector<NormalMapFormat>& formats();
-
-    /// Measures all ways in interleaved rounds. Times include ray casting and encoding, not the
-    /// preparation of the meshes.
-    [[nodiscard]] std::vector<BakeWayResult> measured(std::span<const BakeSampling> ways,
-                                                      const RunOptions& options) const;
 
     /// Bakes a map.
     [[nodiscard]] Image map_by(const BakeSampling& way, const NormalMapFormat& format) const;
@@ -85,11 +69,7 @@ class BumpyBake {
     Report report_;
     Baker baker_;
     BakeMapOptions map_;
-    BakeBenchmark trials_;
+    BakeReference reference_;
 };
-
-/// Compares fixed numbers of rays per texel, and additional rays only in texels whose first rays
-/// differ, in 8 and 16 bits and in float.
-std::vector<Experiment> bake_experiments(const RunOptions& options);
 
 }  // namespace relief

@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string_view>
 
 #include "error_metrics.h"
 #include "experiment_driver.h"
-#include "relief/accuracy/measure.h"
-#include "relief/accuracy/measure_bump.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
@@ -55,7 +55,7 @@ double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius) {
     return field_error(normals_from_height(field.heights, options, report), field).rms;
 }
 
-const FieldRecipe& recipe_named(const std::string& name) {
+const FieldRecipe& field_recipe(const std::string& name) {
     for (const auto& set : {tuning_fields(), evaluation_fields()}) {
         for (const FieldRecipe& recipe : set) {
             if (name == recipe.name) return recipe;
@@ -109,21 +109,16 @@ WaveMap surface_at(int side) {
     return map;
 }
 
-MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error) {
-    const std::string kernel = method.kernel == Kernel::gaussian
-                                   ? fmt::format("gaussian {}", method.gaussian_radius)
-                                   : enum_name(method.kernel);
+ExperimentMethod described(const BumpMethod& method) {
+    const std::string kernel = name_of(method.kernel, method.gaussian_radius);
     const std::string bits = fmt::format("{} bit", method.bits);
-    MeasuredMethod measured;
-    measured.name = fmt::format("{}, {}, {}{}", kernel, enum_name(method.arithmetic), bits,
-                                method.destaircased ? ", steps smoothed" : "");
-    measured.choices = {{"kernel", kernel},
+    return {.name = fmt::format("{}, {}, {}{}", kernel, enum_name(method.arithmetic), bits,
+                                method.destaircased ? ", steps smoothed" : ""),
+            .choices = {{"kernel", kernel},
                         {"arithmetic", enum_name(method.arithmetic)},
                         {"depth", bits},
-                        {"steps", method.destaircased ? "smoothed" : "as they are"}};
-    measured.error = error;
-    measured.stored_bytes = 3.0 * method.bits / 8.0;
-    return measured;
+                        {"steps", method.destaircased ? "smoothed" : "as they are"}},
+            .stored_bytes = 3.0 * method.bits / 8.0};
 }
 
 namespace {
@@ -198,30 +193,18 @@ BumpOptions with_kernel(BumpOptions options, const NamedKernel& kernel, Arithmet
     return options;
 }
 
-Experiment of_texels(const std::string& id, double texels) {
-    Experiment experiment;
-    experiment.id = id;
-    experiment.subject = Subject::bump;
-    experiment.error_unit = "degrees";
-    experiment.item = "texel";
-    experiment.items = texels;
-    return experiment;
+Experiment square_map(int side) {
+    return {.error_unit = "degrees", .item = "texel", .items = static_cast<double>(side) * side};
 }
 
 /// "gaussian 4, float64 has the smallest error, 0.32 degrees RMS (sobel3: 0.99). ..."
-/// \param experiment  measures each of named_kernels() in both arithmetics; then again after
-/// smoothing,
-///         or not
-std::string bump_finding(const Experiment& experiment) {
+/// \param methods  those of the measurements, in both arithmetics
+std::string bump_finding(const Experiment& experiment, const std::vector<BumpMethod>& methods) {
     const Measurement& best = *most_accurate(experiment);
     std::string text =
         fmt::format("{} has the smallest error, {:.2g} degrees RMS", best.method, best.error.rms);
     const auto& all = experiment.measurements;
-    const std::span<const NamedKernel> kernels = named_kernels();
-    const auto kernel_of = [&](const Measurement& one) {
-        const auto index = static_cast<std::size_t>(&one - all.data());
-        return kernels[index / both_arithmetics.size() % kernels.size()].kernel;
-    };
+    const auto kernel_of = [&](const Measurement& one) { return methods[index_of(one.id)].kernel; };
     const auto usual = std::find_if(all.begin(), all.end(), [&](const Measurement& one) {
         return kernel_of(one) == Kernel::sobel3;
     });
@@ -230,49 +213,11 @@ std::string bump_finding(const Experiment& experiment) {
     return text + ". " + arithmetic_finding(experiment, "kernels");
 }
 
-Experiment on_wave(int bits, const RunOptions& options) {
-    constexpr int side = 256 + 2 * wave_margin;
-    constexpr double wavelength = 32.0;
-    const WaveMap wave = oblique_wave(side, wavelength, bits);
-    Experiment experiment =
-        of_texels(fmt::format("bump/wave-{}", bits == 32 ? "float" : std::to_string(bits)),
-                  static_cast<double>(side) * side);
-    experiment.question =
-        fmt::format("Which kernel is most accurate on a wave, by its length, with heights in {}?",
-                    depth_name(bits));
-    experiment.ground_truth =
-        "The slopes of the wave in closed form. A test verifies the errors by the closed-form "
-        "frequency response of each kernel.";
-    experiment.input =
-        fmt::format("{} x {} texels of a wave {} texels long, slope 1, heights in {}", side, side,
-                    wavelength, depth_name(bits));
-    std::vector<MeasuredMethod> measured;
-    for (const NamedKernel& kernel : named_kernels()) {
-        for (const Arithmetic arithmetic : both_arithmetics) {
-            MeasuredMethod method;
-            method.name = fmt::format("{}, {}", kernel.name, enum_name(arithmetic));
-            method.choices = {{"kernel", kernel.name}, {"arithmetic", enum_name(arithmetic)}};
-            method.error = wave_errors(wave, kernel, arithmetic);
-            method.work = [&wave, chosen = with_kernel(wave.options, kernel, arithmetic)] {
-                Report report;
-                normals_from_height(wave.heights, chosen, report);
-            };
-            measured.push_back(std::move(method));
-        }
-    }
-    measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
-                    experiment);
-    experiment.finding = bump_finding(experiment);
-    experiment.charts.push_back(computed_once(
-        options, "chart", [&] { return wavelength_chart(bits, side, options.is_quick); }));
-    return experiment;
-}
-
-/// Every kernel in both arithmetics; for 8-bit heights also after the steps are smoothed.
-std::vector<BumpMethod> methods_for(const BumpField& field, int bits) {
+/// Every kernel in both arithmetics; then again after the steps are smoothed, or not.
+std::vector<BumpMethod> kernel_methods(int bits, bool has_smoothed) {
     std::vector<BumpMethod> methods;
     for (const bool smoothed : {false, true}) {
-        if (smoothed && field.heights.bits() != 8) continue;
+        if (smoothed && !has_smoothed) continue;
         for (const NamedKernel& kernel : named_kernels()) {
             for (const Arithmetic arithmetic : both_arithmetics)
                 methods.push_back({kernel.kernel, kernel.radius, arithmetic, bits, smoothed});
@@ -281,8 +226,47 @@ std::vector<BumpMethod> methods_for(const BumpField& field, int bits) {
     return methods;
 }
 
+PreparedExperiment on_wave(int bits, bool is_quick) {
+    constexpr int side = 256 + 2 * wave_margin;
+    constexpr double wavelength = 32.0;
+    const auto wave = std::make_shared<const WaveMap>(oblique_wave(side, wavelength, bits));
+    PreparedExperiment prepared;
+    prepared.report = square_map(side);
+    prepared.report.question =
+        fmt::format("Which kernel is most accurate on a wave, by its length, with heights in {}?",
+                    depth_name(bits));
+    prepared.report.ground_truth =
+        "The slopes of the wave in closed form. A test verifies the errors by the closed-form "
+        "frequency response of each kernel.";
+    prepared.report.input =
+        fmt::format("{} x {} texels of a wave {} texels long, slope 1, heights in {}", side, side,
+                    wavelength, depth_name(bits));
+    prepared.costs.memory = false;
+    const std::vector<BumpMethod> methods = kernel_methods(32, false);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const Arithmetic arithmetic = methods[i].arithmetic;
+        const NamedKernel kernel{name_of(methods[i].kernel, methods[i].gaussian_radius),
+                                 methods[i].kernel, methods[i].gaussian_radius};
+        prepared.methods.push_back(
+            {.id = method_id(i),
+             .name = fmt::format("{}, {}", kernel.name, enum_name(arithmetic)),
+             .choices = {{"kernel", kernel.name}, {"arithmetic", enum_name(arithmetic)}},
+             .error = [wave, kernel, arithmetic] { return wave_errors(*wave, kernel, arithmetic); },
+             .work =
+                 [wave, chosen = with_kernel(wave->options, kernel, arithmetic)] {
+                     Report report;
+                     normals_from_height(wave->heights, chosen, report);
+                 }});
+    }
+    prepared.finish = [methods, bits, is_quick](Experiment& report) {
+        report.finding = bump_finding(report, methods);
+        report.charts = {wavelength_chart(bits, side, is_quick)};
+    };
+    return prepared;
+}
+
 /// The complete work of a method, as it is timed.
-void convert(const BumpField& field, const BumpMethod& method) {
+Image converted(const BumpField& field, const BumpMethod& method) {
     BumpOptions options = field.options;
     options.kernel = method.kernel;
     options.gaussian_radius = method.gaussian_radius;
@@ -290,44 +274,52 @@ void convert(const BumpField& field, const BumpMethod& method) {
     Report report;
     if (method.destaircased) {
         const Image smooth = destaircase(field.heights, {.wrap = *options.wrap}).heights;
-        normal_map_from_height(smooth, options, {.bits = method.bits}, report);
-    } else {
-        normal_map_from_height(field.heights, options, {.bits = method.bits}, report);
+        return normal_map_from_height(smooth, options, {.bits = method.bits}, report);
     }
+    return normal_map_from_height(field.heights, options, {.bits = method.bits}, report);
 }
 
-Experiment on_recipe(const std::string& id, const FieldRecipe& recipe, int side,
-                     const CostChoice& costs, const RunOptions& options) {
-    const BumpField field = make_bump_field(recipe, side, side);
-    Experiment experiment = of_texels(id, static_cast<double>(side) * side);
-    experiment.ground_truth =
+/// The errors of the stored normals.
+ErrorStats conversion_error(const BumpField& field, const BumpMethod& method) {
+    const NormalMapFormat format{.bits = method.bits};
+    Report report;
+    return map_errors(
+        decode_normal_map(converted(field, method), format.green, format.flat, report),
+        field.normals);
+}
+
+PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
+    const auto field = std::make_shared<const BumpField>(make_bump_field(recipe, side, side));
+    const int bits = recipe.coding == FieldCoding::float32 ? 32 : 16;
+    PreparedExperiment prepared;
+    prepared.report = square_map(side);
+    prepared.report.ground_truth =
         "The normals of the field in closed form, without the noise and rounding of its heights. "
         "Tests verify them by numerical differentiation.";
-    const int bits = recipe.coding == FieldCoding::float32 ? 32 : 16;
-    experiment.input = fmt::format("{} x {} texels, {}; the normal map in {}", side, side,
-                                   recipe.name, depth_name(bits));
-    const std::vector<BumpMethod> methods = methods_for(field, bits);
-    BumpExperimentOptions errors_alone;
-    errors_alone.repeats = {0, 0};
-    const BumpExperiment result = measure_bump(field, methods, errors_alone);
-    std::vector<MeasuredMethod> measured;
-    for (const BumpMeasurement& one : result.measurements) {
-        const std::string kernel = name_of(one.method.kernel, one.method.gaussian_radius);
-        const char* const steps = one.method.destaircased ? "smoothed away" : "as they are";
-        MeasuredMethod method;
-        method.name = fmt::format("{}, {}{}", kernel, enum_name(one.method.arithmetic),
-                                  one.method.destaircased ? ", steps smoothed away" : "");
-        method.choices = {
-            {"kernel", kernel}, {"arithmetic", enum_name(one.method.arithmetic)}, {"steps", steps}};
-        method.error = one.error;
-        method.work = [&field, chosen = one.method] { convert(field, chosen); };
-        measured.push_back(std::move(method));
+    prepared.report.input = fmt::format("{} x {} texels, {}; the normal map in {}", side, side,
+                                        recipe.name, depth_name(bits));
+    const std::vector<BumpMethod> methods = kernel_methods(bits, field->heights.bits() == 8);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const BumpMethod& method = methods[i];
+        const std::string kernel = name_of(method.kernel, method.gaussian_radius);
+        const char* const arithmetic = enum_name(method.arithmetic);
+        prepared.methods.push_back(
+            {.id = method_id(i),
+             .name = fmt::format("{}, {}{}", kernel, arithmetic,
+                                 method.destaircased ? ", steps smoothed away" : ""),
+             .choices = {{"kernel", kernel},
+                         {"arithmetic", arithmetic},
+                         {"steps", method.destaircased ? "smoothed away" : "as they are"}},
+             .error = [field, method] { return conversion_error(*field, method); },
+             .work = [field, method] { converted(*field, method); }});
     }
-    measure_methods(measured, options, costs, experiment);
-    experiment.finding =
-        fmt::format("{} On this map --kernel auto selects {}.", bump_finding(experiment),
-                    name_of(result.choice.kernel, result.choice.gaussian_radius));
-    return experiment;
+    prepared.finish = [field, methods](Experiment& report) {
+        const KernelChoice choice = choose_kernel(field->heights, field->options);
+        report.finding =
+            fmt::format("{} On this map --kernel auto selects {}.", bump_finding(report, methods),
+                        name_of(choice.kernel, choice.gaussian_radius));
+    };
+    return prepared;
 }
 
 /// Heat maps of a short and a wide kernel, whose errors are at short and at long waves.
@@ -347,66 +339,69 @@ void add_heat_maps(const FieldRecipe& recipe, int side, Experiment& experiment) 
 }
 
 struct FieldCase {
-    std::string id;
-    std::string recipe;
+    const char* id;
+    const char* recipe;  ///< FieldRecipe::name
     bool is_quick = false;
     bool has_heat_maps = false;
 };
 
-std::vector<FieldCase> field_cases() {
-    return {{"detailed-8", "detailed, 8 bit", true},
-            {"mixed-8", "mixed, 8 bit", true, true},
-            {"noisy-float", "noise 0.03, float", true},
-            {"smooth-float", "smooth, float"},
-            {"smooth-16", "smooth, 16 bit"},
-            {"smooth-8", "smooth, 8 bit"},
-            {"very-smooth-25-codes", "very smooth, 25 codes of 8 bit"},
-            {"steep-8", "steep, 8 bit"},
-            {"domes-8", "domes, 8 bit"},
-            {"creases-float", "creases, float"}};
-}
+constexpr std::array field_cases = {
+    FieldCase{"detailed-8", "detailed, 8 bit", true},
+    FieldCase{"mixed-8", "mixed, 8 bit", true, true},
+    FieldCase{"noisy-float", "noise 0.03, float", true},
+    FieldCase{"smooth-float", "smooth, float"},
+    FieldCase{"smooth-16", "smooth, 16 bit"},
+    FieldCase{"smooth-8", "smooth, 8 bit"},
+    FieldCase{"very-smooth-25-codes", "very smooth, 25 codes of 8 bit"},
+    FieldCase{"steep-8", "steep, 8 bit"},
+    FieldCase{"domes-8", "domes, 8 bit"},
+    FieldCase{"creases-float", "creases, float"}};
 
-Experiment on_field(const FieldCase& one, const RunOptions& options) {
+PreparedExperiment on_field(const FieldCase& one) {
     constexpr int side = 256;  // The same size as in docs/bump.md.
-    const FieldRecipe& recipe = recipe_named(one.recipe);
-    Experiment experiment =
-        on_recipe("bump/" + one.id, recipe, side,
-                  {.one_thread = true, .all_threads = true, .memory = false}, options);
-    experiment.question = fmt::format(
+    const FieldRecipe& recipe = field_recipe(one.recipe);
+    PreparedExperiment prepared = on_recipe(recipe, side);
+    prepared.report.question = fmt::format(
         "Which kernel is most accurate on such a map ({}), and what does it cost?", one.recipe);
-    if (one.has_heat_maps) add_heat_maps(recipe, side, experiment);
-    return experiment;
+    prepared.costs.memory = false;
+    if (one.has_heat_maps) {
+        prepared.finish = [finding = prepared.finish, recipe](Experiment& report) {
+            finding(report);
+            add_heat_maps(recipe, side, report);
+        };
+    }
+    return prepared;
 }
 
-Experiment on_large_map(const RunOptions& options) {
-    const int side = options.is_quick ? 512 : 2048;
-    Experiment experiment =
-        on_recipe("bump/large", recipe_named("smooth, 16 bit"), side, {}, options);
-    experiment.question =
+PreparedExperiment on_large_map(bool is_quick) {
+    PreparedExperiment prepared = on_recipe(field_recipe("smooth, 16 bit"), is_quick ? 512 : 2048);
+    prepared.report.question =
         "How much time and memory does a large normal map cost, and how much do finer texels help?";
-    experiment.charts.push_back(
-        computed_once(options, "chart", [&] { return resolution_chart(options.is_quick); }));
-    return experiment;
+    prepared.finish = [finding = prepared.finish, is_quick](Experiment& report) {
+        finding(report);
+        report.charts = {resolution_chart(is_quick)};
+    };
+    return prepared;
 }
 
 }  // namespace
 
-std::vector<PlannedExperiment> bump_plan(const RunOptions& options) {
+std::vector<PlannedExperiment> bump_plan(const PlanOptions& options) {
+    const bool is_quick = options.is_quick;
     std::vector<PlannedExperiment> plan;
     for (const int bits : {32, 16, 8}) {
-        plan.push_back({fmt::format("Bump: a wave in {}", depth_name(bits)),
-                        [&options, bits] { return on_wave(bits, options); }});
+        plan.push_back({fmt::format("bump/wave-{}", bits == 32 ? "float" : std::to_string(bits)),
+                        Subject::bump, fmt::format("Bump: a wave in {}", depth_name(bits)),
+                        [bits, is_quick] { return on_wave(bits, is_quick); }});
     }
-    for (const FieldCase& one : field_cases()) {
-        if (options.is_quick && !one.is_quick) continue;
-        plan.push_back({"Bump: " + one.recipe, [&options, one] { return on_field(one, options); }});
+    for (const FieldCase& one : field_cases) {
+        if (is_quick && !one.is_quick) continue;
+        plan.push_back({fmt::format("bump/{}", one.id), Subject::bump,
+                        fmt::format("Bump: {}", one.recipe), [one] { return on_field(one); }});
     }
-    plan.push_back({"Bump: a large map", [&options] { return on_large_map(options); }});
+    plan.push_back({"bump/large", Subject::bump, "Bump: a large map",
+                    [is_quick] { return on_large_map(is_quick); }});
     return plan;
-}
-
-std::vector<Experiment> bump_experiments(const RunOptions& options) {
-    return run_planned(bump_plan(options), options);
 }
 
 }  // namespace relief

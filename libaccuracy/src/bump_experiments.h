@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "experiment_driver.h"
+#include "relief/accuracy/asset.h"
 #include "relief/accuracy/ground_truth.h"
-#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 
@@ -33,7 +33,7 @@ std::string name_of(Kernel kernel, int gaussian_radius);
 double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius);
 
 /// A field from one of the sets of ground_truth.h. \throws InvalidInput if none has that name
-const FieldRecipe& recipe_named(const std::string& name);
+const FieldRecipe& field_recipe(const std::string& name);
 
 /// A height map of one oblique wave of slope 1, with its exact normals.
 struct WaveMap {
@@ -56,15 +56,8 @@ ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmeti
 /// The same surface at several resolutions: waves that tile a square of `side` texels.
 WaveMap surface_at(int side);
 
-/// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel.
-MeasuredMethod measured_method(const BumpMethod& method, const ErrorStats& error);
-
-/// Runs bump_plan().
-std::vector<Experiment> bump_experiments(const RunOptions& options);
-
-/// One wave in floats, 16 and 8 bits with charts over the wavelength; fields as files contain them,
-/// with heat maps for one of them; and a large map for time and memory.
-/// \param options  must outlive the plan
-std::vector<PlannedExperiment> bump_plan(const RunOptions& options);
+/// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel, but
+/// without functions.
+ExperimentMethod described(const BumpMethod& method);
 
 }  // namespace relief

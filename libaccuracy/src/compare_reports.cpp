@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Matches the methods of two runs by experiment and name, and judges their errors, times and
 // memory.
-#include "relief/accuracy/compare_reports.h"
+#include "relief/accuracy/experiment.h"
 
 #include <fmt/format.h>
 
@@ -158,11 +158,6 @@ std::vector<std::string> missing_from(const std::vector<Experiment>& other,
     return names;
 }
 
-void append(std::vector<std::string>& all, std::vector<std::string> more) {
-    all.insert(all.end(), std::make_move_iterator(more.begin()),
-               std::make_move_iterator(more.end()));
-}
-
 bool has_same_input(const Experiment& a, const Experiment& b) {
     return a.input == b.input && a.items == b.items && a.error_unit == b.error_unit;
 }
@@ -197,14 +192,6 @@ constexpr double noise_ranges = 12.0;
 /// Smaller changes are never reported: the position of code and data in memory can change a time as
 /// much.
 constexpr double min_resolution = 1.10;
-
-/// Interpolates the sorted, non-empty list. \param share  0 to 1
-double quantile(const std::vector<double>& sorted, double share) {
-    const double position = share * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(position);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
-}
 
 double ratio_of(const TimedPair& pair) {
     return fastest(pair.after) / fastest(pair.before);
@@ -328,8 +315,10 @@ ReportComparison compare_reports(const std::vector<Experiment>& before,
         }
         for (ErrorChange& change : curve_changes(old_one, *new_one))
             result.errors.push_back(std::move(change));
-        append(result.gone, curves_missing_from(*new_one, old_one));
-        append(result.added, curves_missing_from(old_one, *new_one));
+        for (std::string& name : curves_missing_from(*new_one, old_one))
+            result.gone.push_back(std::move(name));
+        for (std::string& name : curves_missing_from(old_one, *new_one))
+            result.added.push_back(std::move(name));
     }
     for (const bool on_all_threads : {false, true}) {
         const std::vector<TimedPair> kind = of_kind(pairs, on_all_threads);

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "parallel.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "relief/shade/image_compare.h"
 
 namespace relief {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures methods, fits orders, splits the rounds into passes, and runs the experiments of a
-// subject.
+// Runs experiments in passes, lists the experiments of all subjects, and derives figures that
+// several findings contain.
 #include "experiment_driver.h"
 
 #include <fmt/format.h>
@@ -8,41 +8,158 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <span>
 #include <stdexcept>
 
-#include "bake_experiments.h"
-#include "bump_experiments.h"
-#include "normals_experiments.h"
-#include "relief/accuracy/experiment.h"
-#include "relief/accuracy/measure.h"
+#include "measure.h"
+#include "progress_stage.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
-#include "shading_experiments.h"
-#include "stability_experiments.h"
-#include "storage_experiments.h"
-#include "tangents_experiments.h"
+#include "rendered_methods.h"
 
 namespace relief {
+namespace {
 
-void measure_methods(std::span<const MeasuredMethod> methods, const RunOptions& options,
-                     const CostChoice& choice, Experiment& experiment) {
-    std::vector<std::function<void()>> works;
-    for (const MeasuredMethod& method : methods) {
-        if (method.work) works.push_back(method.work);
+/// Leaves out methods, and computes the errors of the others.
+/// \return whether all methods are left
+bool begin(PreparedExperiment& prepared, const RunOptions& options) {
+    const std::size_t all = prepared.methods.size();
+    if (options.selects_method) {
+        std::erase_if(prepared.methods, [&](const ExperimentMethod& method) {
+            return !options.selects_method(method.name);
+        });
     }
-    const std::vector<Cost> costs = measure_costs(works, options, choice);
-    std::size_t timed = 0;
-    for (const MeasuredMethod& method : methods) {
-        Measurement measurement;
-        measurement.method = method.name;
-        measurement.choices = method.choices;
-        measurement.error = nan_if_empty(method.error);
-        if (method.work) measurement.cost = costs[timed++];
-        measurement.cost.stored_bytes = method.stored_bytes;
-        measurement.note = method.note;
-        experiment.measurements.push_back(std::move(measurement));
+    for (const ExperimentMethod& method : prepared.methods) {
+        check_cancelled();
+        const MethodError error = method.error();
+        prepared.report.measurements.push_back({.id = method.id,
+                                                .method = method.name,
+                                                .choices = method.choices,
+                                                .error = nan_if_empty(error.stats),
+                                                .cost = {.stored_bytes = method.stored_bytes},
+                                                .note = method.note + error.note});
     }
-    mark_pareto_optimal(experiment);
+    return prepared.methods.size() == all;
+}
+
+/// Adds interleaved rounds of all methods that have a time.
+/// \param cost  receives the times
+/// \param clock  returns the wall time or the processor time of a work
+void add_rounds(PreparedExperiment& prepared, const Repeats& repeats,
+                std::optional<Timing> Cost::*cost, double (*clock)(const std::function<void()>&)) {
+    std::vector<std::size_t> timed;
+    std::vector<std::size_t> repeats_of_work;
+    for (std::size_t i = 0; i < prepared.methods.size(); ++i) {
+        const std::function<void()>& work = prepared.methods[i].work;
+        if (!prepared.round && !work) continue;
+        timed.push_back(i);
+        if (prepared.round) continue;
+        check_cancelled();
+        work();  // The first run fills caches and is slower.
+        repeats_of_work.push_back(repeats_per_round(work));
+    }
+    const auto seconds_of_round = [&](std::size_t thing) {
+        const ExperimentMethod& method = prepared.methods[timed[thing]];
+        if (prepared.round) return prepared.round(method.id);
+        const std::size_t count = repeats_of_work[thing];
+        const double seconds = clock([&] {
+            for (std::size_t repeat = 0; repeat < count; ++repeat)
+                method.work();
+        });
+        return seconds / static_cast<double>(count);
+    };
+    interleave(timed.size(), repeats, [&](std::size_t thing, bool counted) {
+        check_cancelled();
+        const double seconds = seconds_of_round(thing);
+        if (!counted) return;
+        std::optional<Timing>& timing = prepared.report.measurements[timed[thing]].cost.*cost;
+        if (!timing) timing.emplace();
+        timing->rounds.push_back(seconds);
+    });
+}
+
+/// Adds the rounds of one pass.
+void add_times(PreparedExperiment& prepared, const Repeats& repeats, unsigned threads) {
+    if (prepared.costs.one_thread && prepared.limits_processors) {
+        const SingleProcessor processor;
+        if (processor.is_active())
+            add_rounds(prepared, repeats, &Cost::one_thread, processor_seconds_of);
+    } else if (prepared.costs.one_thread) {
+        const ExecutionScope one_thread({.threads = 1});
+        add_rounds(prepared, repeats, &Cost::one_thread, processor_seconds_of);
+    }
+    const ExecutionScope all_threads({.threads = threads});
+    if (prepared.costs.all_threads) add_rounds(prepared, repeats, &Cost::all_threads, seconds_of);
+}
+
+/// Measures the memory, marks the Pareto-optimal methods, and finishes the report.
+Experiment end(PreparedExperiment& prepared, bool is_whole, const RunOptions& options) {
+    Experiment& report = prepared.report;
+    const ExecutionScope all_threads({.threads = options.threads});
+    for (std::size_t i = 0; i < prepared.methods.size(); ++i) {
+        const std::function<void()>& work = prepared.methods[i].work;
+        if (options.is_timed && prepared.costs.memory && work)
+            report.measurements[i].cost.peak_bytes = peak_bytes_of(work);
+    }
+    mark_pareto_optimal(report);
+    if (is_whole && prepared.finish) prepared.finish(report);
+    return std::move(report);
+}
+
+/// The part of `rounds` that belongs to a pass; the first passes have one more if they cannot be
+/// divided evenly.
+std::size_t share_of(std::size_t rounds, std::size_t pass, std::size_t passes) {
+    return rounds / passes + (pass < rounds % passes ? 1 : 0);
+}
+
+}  // namespace
+
+std::vector<Experiment> run_planned(std::vector<PlannedExperiment> plan,
+                                    const RunOptions& options) {
+    if (options.selects_experiment) {
+        std::erase_if(plan, [&](const PlannedExperiment& planned) {
+            return !options.selects_experiment(planned.id);
+        });
+    }
+    // A pass without rounds would measure nothing.
+    const std::size_t most = options.is_timed ? std::max<std::size_t>(options.passes, 1) : 1;
+    const std::size_t passes = std::clamp<std::size_t>(options.repeats.counted, 1, most);
+    std::vector<PreparedExperiment> prepared(plan.size());
+    std::vector<bool> is_whole(plan.size());
+    std::vector<Experiment> experiments;
+    for (std::size_t pass = 0; pass < passes; ++pass) {
+        for (std::size_t i = 0; i < plan.size(); ++i) {
+            if (options.tell) options.tell({plan[i].title, pass, i, plan.size()});
+            if (pass == 0) {
+                prepared[i] = plan[i].prepare();
+                prepared[i].report.id = plan[i].id;
+                prepared[i].report.subject = plan[i].subject;
+                prepared[i].report.title = plan[i].title;
+                is_whole[i] = begin(prepared[i], options);
+            }
+            Repeats repeats = options.repeats;
+            repeats.counted = share_of(repeats.counted, pass, passes);
+            if (options.is_timed) add_times(prepared[i], repeats, options.threads);
+            if (pass + 1 < passes) continue;
+            experiments.push_back(end(prepared[i], is_whole[i], options));
+            prepared[i] = {};  // Frees the input.
+            if (options.finished) options.finished(experiments.back());
+        }
+    }
+    return experiments;
+}
+
+Experiment measured(PreparedExperiment prepared, const RunOptions& options) {
+    const bool is_whole = begin(prepared, options);
+    if (options.is_timed) add_times(prepared, options.repeats, options.threads);
+    return end(prepared, is_whole, options);
+}
+
+const Measurement& measurement_of(const Experiment& experiment, MethodId method) {
+    for (const Measurement& one : experiment.measurements) {
+        if (one.id == method) return one;
+    }
+    throw std::out_of_range("the experiment has no such method");
 }
 
 const Measurement* most_accurate(const Experiment& experiment) {
@@ -83,85 +200,24 @@ Curve fitted_curve(std::string method, std::vector<CurvePoint> points,
     return curve;
 }
 
-void PassHistory::begin_pass() {
-    ++begun_;
-    id_.clear();
-}
-
-void PassHistory::begin_experiment(const std::string& id) {
-    id_ = id;
-}
-
-std::size_t PassHistory::share_of(std::size_t rounds) const {
-    const std::size_t passes_before = begun_ > 0 ? begun_ - 1 : 0;
-    return rounds / passes_ + (passes_before < rounds % passes_ ? 1 : 0);
-}
-
-std::vector<Timing>& PassHistory::group(const std::string& name, std::size_t methods) {
-    std::vector<Timing>& timings = records_[id_].groups.try_emplace(name, methods).first->second;
-    // The methods of an experiment can change if OpenGL becomes unavailable.
-    if (timings.size() != methods)
-        throw std::runtime_error("an experiment times other methods than in the pass before");
-    return timings;
-}
-
-const std::any& PassHistory::result(const std::string& name,
-                                    const std::function<std::any()>& make) {
-    const auto known = records_[id_].results.find(name);
-    if (known != records_[id_].results.end()) return known->second;
-    // `make` may ask for other results, so the entry is added afterwards.
-    std::any made = make();
-    return records_[id_].results.insert_or_assign(name, std::move(made)).first->second;
-}
-
-std::vector<Experiment> run_in_passes(
-    std::size_t passes, const RunOptions& options,
-    const std::function<std::vector<Experiment>(const RunOptions& options, std::size_t pass)>&
-        run) {
-    RunOptions with_rounds = options;
-    // A pass without rounds would measure nothing.
-    const std::size_t needed =
-        options.is_timed ? std::clamp<std::size_t>(options.repeats.counted, 1, passes) : 1;
-    with_rounds.earlier = std::make_shared<PassHistory>(needed);
-    std::vector<Experiment> experiments;
-    for (std::size_t pass = 0; pass < needed; ++pass) {
-        with_rounds.earlier->begin_pass();
-        experiments = run(with_rounds, pass);
-    }
-    return experiments;
-}
-
-std::vector<Experiment> run_planned(std::span<const PlannedExperiment> plan,
-                                    const RunOptions& options) {
-    std::vector<Experiment> experiments;
-    for (const PlannedExperiment& planned : plan) {
-        if (options.tell) options.tell(planned.title, experiments.size(), plan.size());
-        if (options.earlier) options.earlier->begin_experiment(planned.title);
-        experiments.push_back(planned.run());
-        experiments.back().title = planned.title;
-    }
-    if (options.earlier) options.earlier->begin_experiment({});
-    return experiments;
-}
-
 namespace {
 
 struct SubjectEntry {
     Subject subject;
     std::string_view name;
-    std::vector<Experiment> (*run)(const RunOptions&);
+    std::vector<PlannedExperiment> (*plan)(const PlanOptions&);
     bool is_rendered = false;
 };
 
 /// All subjects, in the order of reports.
 constexpr std::array subject_entries = {
-    SubjectEntry{Subject::normals, "normals", normals_experiments},
-    SubjectEntry{Subject::tangents, "tangents", tangents_experiments, true},
-    SubjectEntry{Subject::bump, "bump", bump_experiments},
-    SubjectEntry{Subject::storage, "storage", storage_experiments},
-    SubjectEntry{Subject::bake, "bake", bake_experiments},
-    SubjectEntry{Subject::shading, "shading", shading_experiments, true},
-    SubjectEntry{Subject::stability, "stability", stability_experiments},
+    SubjectEntry{Subject::normals, "normals", normals_plan},
+    SubjectEntry{Subject::tangents, "tangents", tangents_plan, true},
+    SubjectEntry{Subject::bump, "bump", bump_plan},
+    SubjectEntry{Subject::storage, "storage", storage_plan},
+    SubjectEntry{Subject::bake, "bake", bake_plan},
+    SubjectEntry{Subject::shading, "shading", shading_plan, true},
+    SubjectEntry{Subject::stability, "stability", stability_plan},
 };
 
 const SubjectEntry& entry_of(Subject subject) {
@@ -195,8 +251,16 @@ Subject subject_from(std::string_view word) {
     throw InvalidInput(fmt::format("subject '{}' is not one of {}", word, fmt::join(names, ", ")));
 }
 
-std::vector<Experiment> run_experiments(Subject subject, const RunOptions& options) {
-    return entry_of(subject).run(options);
+std::vector<Experiment> run_experiments(std::span<const Subject> subjects,
+                                        const RunOptions& options) {
+    const PlanOptions plan_options{
+        options.is_quick, SharedInput<GlDevice>([] { return std::make_shared<const GlDevice>(); })};
+    std::vector<PlannedExperiment> plan;
+    for (const Subject subject : subjects) {
+        for (PlannedExperiment& planned : entry_of(subject).plan(plan_options))
+            plan.push_back(std::move(planned));
+    }
+    return run_planned(std::move(plan), options);
 }
 
 }  // namespace relief

@@ -1,35 +1,145 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The common steps of all experiments: measure a list of methods, look up measurements, and run
-/// the experiments of a subject in order.
+/// The form of an experiment (an input, methods and rounds), the driver that runs experiments in
+/// passes, and the list of all experiments.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
-#include "relief/accuracy/measure.h"
 
 namespace relief {
 
-/// A method with its error, which is already known, and the work to time.
-struct MeasuredMethod {
-    std::string name;
-    std::vector<std::pair<std::string, std::string>> choices;
-    ErrorStats error;
-    std::function<void()> work{};  ///< Empty: the method has no time of its own.
-    double stored_bytes = 0.0;
-    std::string note{};
+class GlDevice;  // rendered_methods.h
+
+/// The id for a value of an experiment's own enumeration, or for an index.
+template <typename Value>
+constexpr MethodId method_id(Value value) {
+    return static_cast<MethodId>(value);
+}
+
+/// The index of a method in its experiment's list.
+constexpr std::size_t index_of(MethodId id) {
+    return static_cast<std::size_t>(id);
+}
+
+/// The error of a method.
+struct MethodError {
+    MethodError(const ErrorStats& statistics, std::string text = {})
+        : stats(statistics), note(std::move(text)) {}
+
+    ErrorStats stats;
+    std::string note;  ///< A remark on the results; mostly empty.
 };
 
-/// Times the methods in interleaved rounds, adds their measurements to the experiment, and marks
-/// the efficient ones.
-void measure_methods(std::span<const MeasuredMethod> methods, const RunOptions& options,
-                     const CostChoice& choice, Experiment& experiment);
+/// A method of an experiment. Its functions own or share their input.
+struct ExperimentMethod {
+    MethodId id{};
+    std::string name{};
+    std::vector<std::pair<std::string, std::string>> choices{};
+    /// Computes the error against the ground truth. The driver calls it once.
+    std::function<MethodError()> error{};
+    /// Does the whole job once and frees its result, for times and memory. Empty: the method has
+    /// no time of its own, or PreparedExperiment::round measures it.
+    std::function<void()> work{};
+    double stored_bytes = 0.0;
+    std::string note{};  ///< Before that of the error.
+};
+
+/// An experiment whose input exists.
+struct PreparedExperiment {
+    /// Describes the experiment. The driver adds the subject, the title and the measurements.
+    Experiment report{};
+    std::vector<ExperimentMethod> methods{};
+    CostChoice costs{};
+    /// Runs one round of a method and returns its time. Empty: a round runs the work of the
+    /// method, several times if it is shorter than 4 milliseconds.
+    std::function<double(MethodId method)> round{};
+    /// If true, one thread means all threads on one processor, because threads of an OpenGL driver
+    /// ignore the limit of parallel loops.
+    bool limits_processors = false;
+    /// Adds charts, pictures, notes and the finding. Called once, after the last pass, if no method
+    /// was left out.
+    std::function<void(Experiment& report)> finish{};
+};
+
+/// An experiment that can be run.
+struct PlannedExperiment {
+    std::string id{};  ///< Experiment::id
+    Subject subject = Subject::normals;
+    std::string title{};
+    /// Makes the input and lists the methods. Called once, and not at all if the experiment is
+    /// left out.
+    std::function<PreparedExperiment()> prepare{};
+};
+
+/// Runs experiments in passes. run_experiments() has the details.
+std::vector<Experiment> run_planned(std::vector<PlannedExperiment> plan, const RunOptions& options);
+
+/// Measures one experiment in one pass, and marks the Pareto-optimal methods.
+Experiment measured(PreparedExperiment prepared, const RunOptions& options);
+
+/// A value that several experiments share. The first of them makes it.
+template <typename Value>
+class SharedInput {
+  public:
+    explicit SharedInput(std::function<std::shared_ptr<const Value>()> make)
+        : state_(std::make_shared<State>(State{std::move(make), nullptr})) {}
+
+    [[nodiscard]] std::shared_ptr<const Value> get() const {
+        if (!state_->value) state_->value = state_->make();
+        return state_->value;
+    }
+
+  private:
+    struct State {
+        std::function<std::shared_ptr<const Value>()> make;
+        std::shared_ptr<const Value> value;
+    };
+    std::shared_ptr<State> state_;
+};
+
+/// Options of the experiments of a plan.
+struct PlanOptions {
+    bool is_quick = false;
+    SharedInput<GlDevice> device;
+};
+
+/// Surfaces with several triangulations, with charts over the cell size; a large mesh for time and
+/// memory; and the fans of [Max 1999].
+std::vector<PlannedExperiment> normals_plan(const PlanOptions& options);
+
+/// Tangent methods on textured surfaces and on a large mesh; pairs of bases that differ; and stored
+/// against derived frames in rendered images.
+std::vector<PlannedExperiment> tangents_plan(const PlanOptions& options);
+
+/// One wave in floats, 16 and 8 bits with charts over the wavelength; fields as files contain them,
+/// with heat maps for one of them; and a large map for time and memory.
+std::vector<PlannedExperiment> bump_plan(const PlanOptions& options);
+
+/// Unit normals of maps and tangent frames of vertices in few bits, read and written.
+std::vector<PlannedExperiment> storage_plan(const PlanOptions& options);
+
+/// Fixed numbers of rays per texel, and additional rays only in texels whose first rays differ, in
+/// 8 and 16 bits and in float.
+std::vector<PlannedExperiment> bake_plan(const PlanOptions& options);
+
+/// Interpolation, highlights, Fresnel factors, unit normals, cube maps and antialiasing. Without
+/// OpenGL, those that render measure nothing, and their findings give the reason.
+std::vector<PlannedExperiment> shading_plan(const PlanOptions& options);
+
+/// Inputs that become ever smaller, larger, farther from the origin, narrower or steeper, until the
+/// results of a method are wrong.
+std::vector<PlannedExperiment> stability_plan(const PlanOptions& options);
+
+/// The measurement of a method. \throws std::out_of_range if it was left out
+const Measurement& measurement_of(const Experiment& experiment, MethodId method);
 
 /// The measurement with the least RMS error among those without undefined results, or nullptr.
 const Measurement* most_accurate(const Experiment& experiment);
@@ -44,15 +154,5 @@ std::string arithmetic_finding(const Experiment& experiment, const char* plural)
 /// A curve with the order fitted to its points.
 Curve fitted_curve(std::string method, std::vector<CurvePoint> points,
                    std::optional<double> expected_order);
-
-/// An experiment that can be run.
-struct PlannedExperiment {
-    std::string title;
-    std::function<Experiment()> run;  ///< Returns everything except the title.
-};
-
-/// Runs experiments in order, and calls options.tell() before each. Exceptions pass through.
-std::vector<Experiment> run_planned(std::span<const PlannedExperiment> plan,
-                                    const RunOptions& options);
 
 }  // namespace relief

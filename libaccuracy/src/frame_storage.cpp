@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "experiment_driver.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 #include "tangent_methods.h"
 
 namespace relief {
@@ -96,16 +96,21 @@ std::string FrameCode::rounding_name() const {
     return rounding == FrameRounding::nearest ? "nearest" : "best";
 }
 
-MeasuredMethod FrameCode::measured(const SampleFrames& frames) const {
-    MeasuredMethod method;
-    method.name = fmt::format("{}, {}", name_of(encoding), rounding_name());
-    method.choices = {{"encoding", std::string(name_of(encoding))}, {"rounding", rounding_name()}};
-    const FrameCodeErrors errors = frame_code_errors(frames, encoding, rounding);
-    method.error = errors.both;
-    method.stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding));
-    if (errors.flipped_frames > 0)
-        method.note = fmt::format("The handedness of {} frames changed.", errors.flipped_frames);
-    return method;
+ExperimentMethod FrameCode::method(std::shared_ptr<const SampleFrames> frames) const {
+    return {
+        .name = fmt::format("{}, {}", name_of(encoding), rounding_name()),
+        .choices = {{"encoding", std::string(name_of(encoding))}, {"rounding", rounding_name()}},
+        .error =
+            [code = *this, frames = std::move(frames)] {
+                const FrameCodeErrors errors =
+                    frame_code_errors(*frames, code.encoding, code.rounding);
+                return MethodError(errors.both,
+                                   errors.flipped_frames == 0
+                                       ? ""
+                                       : fmt::format("The handedness of {} frames changed.",
+                                                     errors.flipped_frames));
+            },
+        .stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding))};
 }
 
 std::vector<FrameCode> all_frame_codes() {
@@ -155,78 +160,79 @@ std::string price_of_best(const Experiment& experiment, std::span<const FrameCod
         fmt::join(parts, "; "));
 }
 
-Experiment on_even_frames(std::size_t count) {
-    Experiment experiment;
-    experiment.subject = Subject::storage;
-    experiment.ground_truth =
-        "The frames in double before encoding, which are orthonormal by construction.";
-    experiment.input = fmt::format("{} frames spread evenly over the sphere", count);
-    experiment.error_unit = "degrees";
-    experiment.item = "frame";
-    experiment.items = static_cast<double>(count);
-    return experiment;
+/// All codes on the same frames.
+PreparedExperiment on_even_frames(std::shared_ptr<const SampleFrames> frames) {
+    PreparedExperiment prepared;
+    prepared.report = {
+        .ground_truth =
+            "The frames in double before encoding, which are orthonormal by construction.",
+        .input = fmt::format("{} frames spread evenly over the sphere", frames->normals.size()),
+        .error_unit = "degrees",
+        .item = "frame",
+        .items = static_cast<double>(frames->normals.size())};
+    for (const FrameCode& code : all_frame_codes()) {
+        prepared.methods.push_back(code.method(frames));
+        prepared.methods.back().id = method_id(prepared.methods.size() - 1);
+    }
+    return prepared;
 }
 
-std::size_t count_of(const RunOptions& options) {
-    return options.is_quick ? 20000 : 200000;
+std::shared_ptr<const SampleFrames> sampled_frames(bool is_quick) {
+    return std::make_shared<const SampleFrames>(even_frames(is_quick ? 20000 : 200000));
+}
+
+PreparedExperiment frame_reading_experiment(bool is_quick) {
+    const auto frames = sampled_frames(is_quick);
+    PreparedExperiment prepared = on_even_frames(frames);
+    prepared.report.question =
+        "How many bytes does a tangent frame need, and how long does decoding take?";
+    const std::vector<FrameCode> codes = all_frame_codes();
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        Report ignored;
+        prepared.methods[i].work = [encoding = codes[i].encoding,
+                                    words = encode_frames(frames->float_normals,
+                                                          frames->float_tangents, codes[i].encoding,
+                                                          codes[i].rounding, ignored)] {
+            Report report;
+            decode_frames(words, encoding, report);
+        };
+    }
+    prepared.finish = [](Experiment& report) { report.finding = frame_code_finding(report); };
+    return prepared;
+}
+
+PreparedExperiment frame_writing_experiment(bool is_quick) {
+    const auto frames = sampled_frames(is_quick);
+    PreparedExperiment prepared = on_even_frames(frames);
+    prepared.report.question =
+        "How long does encoding tangent frames take, and does the search for the best codes pay "
+        "off?";
+    const std::vector<FrameCode> codes = all_frame_codes();
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        prepared.methods[i].work = [frames, code = codes[i]] {
+            Report ignored;
+            encode_frames(frames->float_normals, frames->float_tangents, code.encoding,
+                          code.rounding, ignored);
+        };
+    }
+    prepared.finish = [codes](Experiment& report) {
+        report.finding = price_of_best(report, codes);
+    };
+    return prepared;
 }
 
 }  // namespace
 
-Experiment frame_reading_experiment(const RunOptions& options) {
-    const SampleFrames frames = even_frames(count_of(options));
-    Experiment experiment = on_even_frames(frames.normals.size());
-    experiment.id = "storage/frames";
-    experiment.question =
-        "How many bytes does a tangent frame need, and how long does decoding take?";
-    std::vector<MeasuredMethod> measured;
-    for (const FrameCode& code : all_frame_codes()) {
-        Report report;
-        MeasuredMethod method = code.measured(frames);
-        method.work = [encoding = code.encoding,
-                       words = encode_frames(frames.float_normals, frames.float_tangents,
-                                             code.encoding, code.rounding, report)] {
-            Report ignored;
-            decode_frames(words, encoding, ignored);
-        };
-        measured.push_back(std::move(method));
-    }
-    measure_methods(measured, options, {}, experiment);
-    experiment.finding = frame_code_finding(experiment);
-    return experiment;
-}
-
-Experiment frame_writing_experiment(const RunOptions& options) {
-    const SampleFrames frames = even_frames(count_of(options));
-    Experiment experiment = on_even_frames(frames.normals.size());
-    experiment.id = "storage/frames-written";
-    experiment.question =
-        "How long does encoding tangent frames take, and does the search for the best codes pay "
-        "off?";
-    std::vector<MeasuredMethod> measured;
-    const std::vector<FrameCode> codes = all_frame_codes();
-    for (const FrameCode& code : codes) {
-        MeasuredMethod method = code.measured(frames);
-        method.work = [&frames, code] {
-            Report ignored;
-            encode_frames(frames.float_normals, frames.float_tangents, code.encoding, code.rounding,
-                          ignored);
-        };
-        measured.push_back(std::move(method));
-    }
-    measure_methods(measured, options, {}, experiment);
-    experiment.finding = price_of_best(experiment, codes);
-    return experiment;
-}
-
-std::vector<Experiment> storage_experiments(const RunOptions& options) {
-    const std::vector<PlannedExperiment> plan = {
-        {"Normals in few bits", [&] { return normal_reading_experiment(options); }},
-        {"A smooth surface in few bits, written",
-         [&] { return normal_writing_experiment(options); }},
-        {"Tangent frames in few bits", [&] { return frame_reading_experiment(options); }},
-        {"Tangent frames in few bits, written", [&] { return frame_writing_experiment(options); }}};
-    return run_planned(plan, options);
+std::vector<PlannedExperiment> storage_plan(const PlanOptions& options) {
+    const bool is_quick = options.is_quick;
+    return {{"storage/normals", Subject::storage, "Normals in few bits",
+             [is_quick] { return normal_reading_experiment(is_quick); }},
+            {"storage/smooth-surface", Subject::storage, "A smooth surface in few bits, written",
+             normal_writing_experiment},
+            {"storage/frames", Subject::storage, "Tangent frames in few bits",
+             [is_quick] { return frame_reading_experiment(is_quick); }},
+            {"storage/frames-written", Subject::storage, "Tangent frames in few bits, written",
+             [is_quick] { return frame_writing_experiment(is_quick); }}};
 }
 
 }  // namespace relief

@@ -2,7 +2,7 @@
 // Converts a height map, or parts of it, by all methods in interleaved rounds. The stored normals
 // are decoded and compared with the reference in degrees. A time is that of all parts together.
 // Tests: tests/accuracy/measure_bump_test.cpp.
-#include "relief/accuracy/measure_bump.h"
+#include "relief/accuracy/asset.h"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@
 
 #include "parallel.h"
 #include "relief/accuracy/experiment.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {
@@ -111,7 +111,7 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
     reference.reference_max_degrees = best.max_degrees;
     reference.upper_degrees = best.upper_rms_degrees;
     reference.upper_max_degrees = best.upper_max_degrees;
-    reference.words = fmt::format(
+    reference.description = fmt::format(
         "the kernel selected for this map in float64{}, with an expected error of about {:.2g} "
         "degrees itself; the exact normals are unknown",
         destaircased ? " after smoothing its steps" : "", best.rms_degrees);
@@ -312,7 +312,7 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
     options.bump = field.options;
     BumpExperiment experiment;
     experiment.choice = choose_kernel(field.heights, options.bump);
-    experiment.reference.words = "the exact normals of the field";
+    experiment.reference.description = "the exact normals of the field";
     Trial trial;
     trial.bump = options.bump;
     trial.heights.push_back(field.heights);

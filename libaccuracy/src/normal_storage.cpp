@@ -15,9 +15,9 @@
 #include "octahedral_code.h"
 #include "parallel.h"
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {
@@ -294,23 +294,8 @@ ErrorStats patch_errors(const Image& normals, const Image& ground_truth, int blo
 
 namespace {
 
-MeasuredMethod method_of(const NormalCode& code, const ErrorStats& error) {
-    MeasuredMethod method;
-    method.name = code.name;
-    method.choices = code.choices;
-    method.error = error;
-    method.stored_bytes = code.bytes;
-    return method;
-}
-
-Experiment of_texels(const std::string& id, std::size_t texels) {
-    Experiment experiment;
-    experiment.id = id;
-    experiment.subject = Subject::storage;
-    experiment.error_unit = "degrees";
-    experiment.item = "texel";
-    experiment.items = static_cast<double>(texels);
-    return experiment;
+Experiment described(std::size_t texels) {
+    return {.error_unit = "degrees", .item = "texel", .items = static_cast<double>(texels)};
 }
 
 /// "The smallest errors: in 2 bytes 'octahedral 2 x 8 bit, best', 0.32 degrees RMS, 0.66 at most;
@@ -338,7 +323,7 @@ std::size_t index_of(std::span<const NormalCode> codes, NormalCodeId id) {
 /// "8 bits with zero at 128 have an error of 0.18 degrees RMS if they are read so, but of 0.37 ..."
 std::string error_by_decoder(const Experiment& experiment, std::span<const NormalCode> codes) {
     const auto rms_of = [&](NormalCodeId id) {
-        return experiment.measurements.at(index_of(codes, id)).error.rms;
+        return measurement_of(experiment, method_id(index_of(codes, id))).error.rms;
     };
     return fmt::format(
         " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are decoded that "
@@ -369,58 +354,8 @@ Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& co
     return chart;
 }
 
-}  // namespace
-
-Experiment normal_reading_experiment(const RunOptions& options) {
-    const int side = options.is_quick ? 128 : 512;
-    // The upper half, which a map in tangent space can represent.
-    std::vector<glm::dvec3> directions =
-        even_directions(2 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-    directions.resize(directions.size() / 2);
-    const Image normals = image_of_normals(directions, side);
-    const std::vector<NormalCode> codes = normal_codes();
-    Experiment experiment = of_texels("storage/normals", directions.size());
-    experiment.question = "What is the error of a stored normal, by layout and bits?";
-    experiment.ground_truth =
-        "The directions in double, which are unit by construction and evenly distributed.";
-    experiment.input = fmt::format(
-        "{} directions spread evenly over the half sphere above a surface", directions.size());
-    std::vector<MeasuredMethod> measured;
-    for (const NormalCode& code : codes) {
-        const Image stored = code.encode(normals);
-        MeasuredMethod method = method_of(code, map_errors(code.decode(stored), directions));
-        method.work = [stored, decode = code.decode] { decode(stored); };
-        measured.push_back(std::move(method));
-    }
-    measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
-                    experiment);
-    experiment.finding = best_by_size(experiment) + error_by_decoder(experiment, codes);
-    return experiment;
-}
-
-Experiment normal_writing_experiment(const RunOptions& options) {
-    constexpr int side = 256;  // The same size as in docs/normal-maps.md.
-    const std::vector<glm::dvec3> surface = smooth_surface(side);
-    const Image ground_truth = image_of_normals(surface, side);
-    const std::vector<NormalCode> codes = normal_codes();
-    Experiment experiment = of_texels("storage/smooth-surface", surface.size());
-    experiment.question =
-        "How long does encoding a smooth surface take, and does dithering preserve the mean of a "
-        "patch?";
-    experiment.ground_truth =
-        "The normals of the surface in closed form, single and summed over patches. A test "
-        "verifies "
-        "them by numerical differentiation of the heights.";
-    experiment.input = fmt::format("{} x {} texels of waves of 128 texels and more", side, side);
-    std::vector<MeasuredMethod> measured;
-    for (const NormalCode& code : codes) {
-        MeasuredMethod method = method_of(code, map_errors(code.stored(ground_truth), surface));
-        method.work = [&ground_truth, encode = code.encode] { encode(ground_truth); };
-        measured.push_back(std::move(method));
-    }
-    measure_methods(measured, options, {.one_thread = true, .all_threads = true, .memory = false},
-                    experiment);
-    Chart chart = patches_chart(ground_truth, codes);
+/// \param chart  the result of patches_chart()
+std::string patches_finding(const Chart& chart, const std::vector<NormalCode>& codes) {
     const auto points_of = [&](NormalCodeId id) -> const std::vector<CurvePoint>& {
         return chart.curves.at(index_of(codes, id)).points;
     };
@@ -428,13 +363,94 @@ Experiment normal_writing_experiment(const RunOptions& options) {
     static_assert(patch_sides[of_16] == 16);
     const std::vector<CurvePoint>& rounded = points_of(NormalCodeId::xyz_8);
     const std::vector<CurvePoint>& dithered = points_of(NormalCodeId::xyz_8_blue_noise);
-    experiment.finding = fmt::format(
+    return fmt::format(
         "In 8 bits a texel has an error of {:.2g} degrees RMS, and the mean of 16 x 16 texels "
-        "still "
-        "{:.2g}; with blue noise the errors are {:.2g} and {:.2g}.",
+        "still {:.2g}; with blue noise the errors are {:.2g} and {:.2g}.",
         rounded.front().error, rounded[of_16].error, dithered.front().error, dithered[of_16].error);
-    experiment.charts.push_back(std::move(chart));
-    return experiment;
+}
+
+}  // namespace
+
+PreparedExperiment normal_reading_experiment(bool is_quick) {
+    struct Input {
+        std::vector<glm::dvec3> directions;
+        Image normals;
+    };
+    const int side = is_quick ? 128 : 512;
+    // The upper half, which a map in tangent space can represent.
+    std::vector<glm::dvec3> directions =
+        even_directions(2 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    directions.resize(directions.size() / 2);
+    Image normals = image_of_normals(directions, side);
+    const auto input =
+        std::make_shared<const Input>(Input{std::move(directions), std::move(normals)});
+    PreparedExperiment prepared;
+    prepared.report = described(input->directions.size());
+    prepared.report.question = "What is the error of a stored normal, by layout and bits?";
+    prepared.report.ground_truth =
+        "The directions in double, which are unit by construction and evenly distributed.";
+    prepared.report.input =
+        fmt::format("{} directions spread evenly over the half sphere above a surface",
+                    input->directions.size());
+    prepared.costs.memory = false;
+    const std::vector<NormalCode> codes = normal_codes();
+    for (const NormalCode& code : codes) {
+        // The error encodes the normals, and the work decodes them.
+        const auto stored = std::make_shared<Image>();
+        prepared.methods.push_back({.id = method_id(prepared.methods.size()),
+                                    .name = code.name,
+                                    .choices = code.choices,
+                                    .error =
+                                        [input, code, stored] {
+                                            *stored = code.encode(input->normals);
+                                            return map_errors(code.decode(*stored),
+                                                              input->directions);
+                                        },
+                                    .work = [code, stored] { code.decode(*stored); },
+                                    .stored_bytes = code.bytes});
+    }
+    prepared.finish = [codes](Experiment& report) {
+        report.finding = best_by_size(report) + error_by_decoder(report, codes);
+    };
+    return prepared;
+}
+
+PreparedExperiment normal_writing_experiment() {
+    struct Input {
+        std::vector<glm::dvec3> surface;
+        Image normals;
+    };
+    constexpr int side = 256;  // The same size as in docs/normal-maps.md.
+    std::vector<glm::dvec3> surface = smooth_surface(side);
+    Image normals = image_of_normals(surface, side);
+    const auto input = std::make_shared<const Input>(Input{std::move(surface), std::move(normals)});
+    PreparedExperiment prepared;
+    prepared.report = described(input->surface.size());
+    prepared.report.question =
+        "How long does encoding a smooth surface take, and does dithering preserve the mean of a "
+        "patch?";
+    prepared.report.ground_truth =
+        "The normals of the surface in closed form, single and summed over patches. A test "
+        "verifies them by numerical differentiation of the heights.";
+    prepared.report.input =
+        fmt::format("{} x {} texels of waves of 128 texels and more", side, side);
+    prepared.costs.memory = false;
+    const std::vector<NormalCode> codes = normal_codes();
+    for (const NormalCode& code : codes) {
+        prepared.methods.push_back(
+            {.id = method_id(prepared.methods.size()),
+             .name = code.name,
+             .choices = code.choices,
+             .error = [input,
+                       code] { return map_errors(code.stored(input->normals), input->surface); },
+             .work = [input, encode = code.encode] { encode(input->normals); },
+             .stored_bytes = code.bytes});
+    }
+    prepared.finish = [input, codes](Experiment& report) {
+        report.charts = {patches_chart(input->normals, codes)};
+        report.finding = patches_finding(report.charts.front(), codes);
+    };
+    return prepared;
 }
 
 }  // namespace relief

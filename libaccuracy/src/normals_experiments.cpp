@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "experiment_driver.h"
-#include "relief/accuracy/measure.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 #include "report_names.h"
 
 namespace relief {
@@ -170,7 +170,7 @@ Chart cells_chart(const Case& one, bool is_quick) {
 std::string normals_finding(const Experiment& experiment, std::span<const NormalMethod> methods) {
     const auto& all = experiment.measurements;
     const auto weighting_of = [&](const Measurement& one) {
-        return methods[static_cast<std::size_t>(&one - all.data())].weighting;
+        return methods[index_of(one.id)].weighting;
     };
     const Measurement& best = *most_accurate(experiment);
     const auto by_rms = [](const Measurement& a, const Measurement& b) {
@@ -183,121 +183,136 @@ std::string normals_finding(const Experiment& experiment, std::span<const Normal
     return text + " " + arithmetic_finding(experiment, "weightings");
 }
 
-Experiment on_mesh(const std::string& id, const AnalyticMesh& ground_truth,
-                   const std::string& input, const CostChoice& costs, const RunOptions& options) {
-    Experiment experiment;
-    experiment.id = id;
-    experiment.subject = Subject::normals;
-    experiment.ground_truth =
-        "The exact normals of the surface in closed form, at its inner vertices before rounding to "
-        "float. Tests verify them by numerical differentiation of the surface.";
-    experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
-    experiment.error_unit = "degrees";
-    experiment.item = "triangle";
-    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
+/// The weightings in both arithmetics on a mesh. \param input  describes the mesh
+PreparedExperiment on_mesh(AnalyticMesh mesh, const std::string& input) {
+    const auto ground_truth = std::make_shared<const AnalyticMesh>(std::move(mesh));
+    const auto triangles = static_cast<double>(ground_truth->mesh.triangles.size());
     const std::vector<NormalMethod> methods = normal_methods(both_arithmetics);
-    std::vector<MeasuredMethod> measured;
-    for (const NormalMethod& method : methods) {
-        measured.push_back(
-            {.name = method.name(),
-             .choices = method.choices(),
-             .error = normal_errors(method.normals(ground_truth.mesh), ground_truth),
-             .work = [normals = method.normals, &ground_truth] { normals(ground_truth.mesh); }});
+    PreparedExperiment prepared;
+    prepared.report = {
+        .ground_truth =
+            "The exact normals of the surface in closed form, at its inner vertices before "
+            "rounding to float. Tests verify them by numerical differentiation of the surface.",
+        .input = fmt::format("{}: {} triangles", input, triangles),
+        .error_unit = "degrees",
+        .item = "triangle",
+        .items = triangles};
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const auto& normals = methods[i].normals;
+        prepared.methods.push_back(
+            {.id = method_id(i),
+             .name = methods[i].name(),
+             .choices = methods[i].choices(),
+             .error =
+                 [ground_truth, normals] {
+                     return normal_errors(normals(ground_truth->mesh), *ground_truth);
+                 },
+             .work = [ground_truth, normals] { normals(ground_truth->mesh); }});
     }
-    measure_methods(measured, options, costs, experiment);
-    experiment.finding = normals_finding(experiment, methods);
-    return experiment;
+    prepared.finish = [methods](Experiment& report) {
+        report.finding = normals_finding(report, methods);
+    };
+    return prepared;
 }
 
-Experiment on_case(const Case& one, const RunOptions& options) {
-    const AnalyticMesh ground_truth =
-        analytic_mesh(one.surface, one.triangulation, cells_of_normal_tables, tables_seed);
-    Experiment experiment =
-        on_mesh(fmt::format("normals/{}-{}", name_of(one.surface), name_of(one.triangulation)),
-                ground_truth,
+PreparedExperiment on_case(const Case& one, bool is_quick) {
+    PreparedExperiment prepared =
+        on_mesh(analytic_mesh(one.surface, one.triangulation, cells_of_normal_tables, tables_seed),
                 fmt::format("{}, {} x {} cells", name_of(one), cells_of_normal_tables,
-                            cells_of_normal_tables),
-                {.one_thread = true, .all_threads = true, .memory = false}, options);
-    experiment.question = fmt::format(
+                            cells_of_normal_tables));
+    prepared.report.question = fmt::format(
         "Which weighting has the smallest error on this surface ({}), and what does it cost?",
         name_of(one));
-    experiment.charts.push_back(
-        computed_once(options, "chart", [&] { return cells_chart(one, options.is_quick); }));
-    return experiment;
+    prepared.costs.memory = false;
+    prepared.finish = [finding = prepared.finish, one, is_quick](Experiment& report) {
+        finding(report);
+        report.charts = {cells_chart(one, is_quick)};
+    };
+    return prepared;
 }
 
-Experiment normals_on_large_mesh(const RunOptions& options) {
-    const int cells = options.is_quick ? 160 : 512;
-    const AnalyticMesh ground_truth =
-        analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, cells, tables_seed);
-    Experiment experiment =
-        on_mesh("normals/large", ground_truth,
-                fmt::format("torus, jittered, {} x {} cells", cells, cells), {}, options);
-    experiment.question = "How much time and memory do the normals of a large mesh cost?";
-    return experiment;
+PreparedExperiment normals_on_large_mesh(bool is_quick) {
+    const int cells = is_quick ? 160 : 512;
+    PreparedExperiment prepared =
+        on_mesh(analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, cells, tables_seed),
+                fmt::format("torus, jittered, {} x {} cells", cells, cells));
+    prepared.report.question = "How much time and memory do the normals of a large mesh cost?";
+    return prepared;
 }
 
-Experiment on_fans(const RunOptions& options) {
-    const std::uint32_t fans = options.is_quick ? 2000 : 20000;
-    constexpr int usual_valence = 6;
-    Experiment experiment;
-    experiment.id = "normals/fans";
-    experiment.subject = Subject::normals;
-    experiment.question =
-        "What is the error of each weighting at a single vertex, by its number of neighbors?";
-    experiment.ground_truth =
-        "The normal of a random cubic surface at the origin, (0, 0, 1) by construction [Max 1999]. "
-        "A test verifies it by fitting the cubic to its fan and differentiating it numerically.";
-    experiment.input =
-        fmt::format("{} fans of random cubic surfaces, {} neighbors each", fans, usual_valence);
-    experiment.error_unit = "degrees";
-    experiment.item = "fan";
-    experiment.items = fans;
-    Chart chart;
-    chart.id = "neighbours";
-    chart.title = "More neighbors";
-    chart.x_label = "neighbors of the vertex";
-    chart.is_x_log = false;
-    chart.y_label = "RMS error, degrees";
-    const std::vector<NormalMethod> methods = normal_methods(float64_alone);
-    std::vector<MeasuredMethod> measured;
-    for (const NormalMethod& method : methods) {
-        std::vector<CurvePoint> points;
+constexpr int usual_valence = 6;
+
+/// The error over the number of neighbors. \param experiment  has measured the usual number
+Chart neighbors_chart(const Experiment& experiment, const std::vector<NormalMethod>& methods,
+                      std::uint32_t fans) {
+    Chart chart{.id = "neighbours",
+                .title = "More neighbors",
+                .x_label = "neighbors of the vertex",
+                .y_label = "RMS error, degrees",
+                .is_x_log = false};
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        Curve& curve = chart.curves.emplace_back();
+        curve.method = methods[i].name();
         for (int valence = 3; valence <= 9; ++valence) {
-            const ErrorStats errors = fan_errors(method, valence, fans);
-            points.push_back({static_cast<double>(valence), curve_error(errors)});
-            if (valence == usual_valence)
-                measured.push_back(
-                    {.name = method.name(), .choices = method.choices(), .error = errors});
+            const ErrorStats errors = valence == usual_valence
+                                          ? measurement_of(experiment, method_id(i)).error
+                                          : fan_errors(methods[i], valence, fans);
+            curve.points.push_back({static_cast<double>(valence), curve_error(errors)});
         }
-        chart.curves.emplace_back().method = method.name();
-        chart.curves.back().points = std::move(points);
     }
-    measure_methods(measured, options, {}, experiment);
-    experiment.charts.push_back(std::move(chart));
-    const Measurement& best = *most_accurate(experiment);
-    const auto index = static_cast<std::size_t>(&best - experiment.measurements.data());
-    experiment.finding =
-        fmt::format("With {} neighbors {} has the smallest error, {:.3g} degrees RMS.",
-                    usual_valence, methods[index].weighting, best.error.rms);
-    return experiment;
+    return chart;
+}
+
+PreparedExperiment on_fans(bool is_quick) {
+    const std::uint32_t fans = is_quick ? 2000 : 20000;
+    const std::vector<NormalMethod> methods = normal_methods(float64_alone);
+    PreparedExperiment prepared;
+    prepared.report = {
+        .question =
+            "What is the error of each weighting at a single vertex, by its number of neighbors?",
+        .ground_truth =
+            "The normal of a random cubic surface at the origin, (0, 0, 1) by construction [Max "
+            "1999]. A test verifies it by fitting the cubic to its fan and differentiating it "
+            "numerically.",
+        .input =
+            fmt::format("{} fans of random cubic surfaces, {} neighbors each", fans, usual_valence),
+        .error_unit = "degrees",
+        .item = "fan",
+        .items = static_cast<double>(fans)};
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        prepared.methods.push_back({.id = method_id(i),
+                                    .name = methods[i].name(),
+                                    .choices = methods[i].choices(),
+                                    .error = [method = methods[i], fans] {
+                                        return fan_errors(method, usual_valence, fans);
+                                    }});
+    }
+    prepared.finish = [methods, fans](Experiment& report) {
+        report.charts = {neighbors_chart(report, methods, fans)};
+        const Measurement& best = *most_accurate(report);
+        report.finding =
+            fmt::format("With {} neighbors {} has the smallest error, {:.3g} degrees RMS.",
+                        usual_valence, methods[index_of(best.id)].weighting, best.error.rms);
+    };
+    return prepared;
 }
 
 }  // namespace
 
-std::vector<PlannedExperiment> normals_plan(const RunOptions& options) {
+std::vector<PlannedExperiment> normals_plan(const PlanOptions& options) {
+    const bool is_quick = options.is_quick;
     std::vector<PlannedExperiment> plan;
-    for (const Case& one : cases(options.is_quick))
+    for (const Case& one : cases(is_quick)) {
         plan.push_back(
-            {"Normals: " + name_of(one), [&options, one] { return on_case(one, options); }});
-    plan.push_back(
-        {"Normals: a large mesh", [&options] { return normals_on_large_mesh(options); }});
-    plan.push_back({"Normals: single fans", [&options] { return on_fans(options); }});
+            {fmt::format("normals/{}-{}", name_of(one.surface), name_of(one.triangulation)),
+             Subject::normals, "Normals: " + name_of(one),
+             [one, is_quick] { return on_case(one, is_quick); }});
+    }
+    plan.push_back({"normals/large", Subject::normals, "Normals: a large mesh",
+                    [is_quick] { return normals_on_large_mesh(is_quick); }});
+    plan.push_back({"normals/fans", Subject::normals, "Normals: single fans",
+                    [is_quick] { return on_fans(is_quick); }});
     return plan;
-}
-
-std::vector<Experiment> normals_experiments(const RunOptions& options) {
-    return run_planned(normals_plan(options), options);
 }
 
 }  // namespace relief

@@ -14,10 +14,10 @@
 
 #include "experiment_driver.h"
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 
@@ -42,13 +42,5 @@ ErrorStats normal_errors(std::span<const glm::vec3> normals, const AnalyticMesh&
 
 /// The angles at the center vertices of random fans (cubic_fan() with seeds 0 to `fans` - 1).
 ErrorStats fan_errors(const NormalMethod& method, int valence, std::uint32_t fans);
-
-/// Runs normals_plan().
-std::vector<Experiment> normals_experiments(const RunOptions& options);
-
-/// Surfaces with several triangulations, with charts over the cell size; a large mesh for time and
-/// memory; and the fans of [Max 1999].
-/// \param options  must outlive the plan
-std::vector<PlannedExperiment> normals_plan(const RunOptions& options);
 
 }  // namespace relief

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "environment/environment_images.h"
 #include "parallel.h"
-#include "relief/accuracy/measure.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 
@@ -138,13 +138,52 @@ double bytes_of(int side) {
     return 6.0 * 8.0 * side * side * 4.0 / 3.0;
 }
 
+/// Side of the smallest cube map; each method doubles it.
+constexpr int smallest_map_side = 16;
+
+/// The index of the method with a cube map of this side.
+std::size_t method_with(int side) {
+    std::size_t index = 0;
+    for (int smaller = smallest_map_side; smaller < side; smaller *= 2)
+        ++index;
+    return index;
+}
+
+void finish_cube_map_sizes(Experiment& experiment, const Renderings& renderings) {
+    const std::vector<RenderedMethod>& methods = renderings.methods;
+    const auto& measured = experiment.measurements;
+    Curve curve{.method = "cube map"};
+    for (std::size_t i = 0; i < methods.size(); ++i)
+        curve.points.push_back({smallest_map_side * std::exp2(i), measured[i].error.rms});
+    curve.order = fitted_order(curve.points);
+    experiment.charts = {{.id = "size",
+                          .title = "Error by size",
+                          .x_label = "texels along a face",
+                          .y_label = "FLIP",
+                          .curves = {std::move(curve)}}};
+    const std::size_t small = method_with(32);
+    const std::size_t middle = method_with(128);
+    for (const std::size_t i : {small, middle})
+        add_images("The environment in a mirror", renderings, i, 0.5, experiment);
+    experiment.finding = fmt::format(
+        "The mirror has a FLIP error of {:.3f} (RMS) with {} per face, {:.3f} with {} and {:.3f} "
+        "with {}, which need {:.2g}, {:.2g} and {:.2g} MB.",
+        measured[small].error.rms, methods[small].name, measured[middle].error.rms,
+        methods[middle].name, measured.back().error.rms, methods.back().name,
+        methods[small].stored_bytes * 1e-6, methods[middle].stored_bytes * 1e-6,
+        methods.back().stored_bytes * 1e-6);
+    experiment.finding += frame_times({{methods[small].name, measured[small]},
+                                       {methods[middle].name, measured[middle]},
+                                       {methods.back().name, measured.back()}});
+}
+
 }  // namespace
 
-Experiment reflection_experiment(const GlDevice& device, const RunOptions& options) {
+PreparedExperiment reflection_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
     const int rays = 4;
     const int largest = options.is_quick ? 256 : 1024;
-    Experiment experiment = image_experiment("shading/cube-map-size", size);
+    Experiment experiment = image_experiment(size);
     experiment.question = "How large must a cube map be for a mirror?";
     experiment.ground_truth = fmt::format(
         "The formula of the environment in the directions that an exact ball "
@@ -155,9 +194,10 @@ Experiment reflection_experiment(const GlDevice& device, const RunOptions& optio
         "mirror ball, environment with details of 3 degrees, {0} x {0} "
         "pixels, about 0.7 degrees of the environment in each",
         size);
-    if (!device.is_available_for(experiment)) return experiment;
+    const std::shared_ptr<const GlDevice> device = options.device.get();
+    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
     std::vector<RenderedMethod> methods;
-    for (int side = 16; side <= largest; side *= 2) {
+    for (int side = smallest_map_side; side <= largest; side *= 2) {
         methods.push_back({name_of(side),
                            {{"size", fmt::format("{}", side)}},
                            mirror_ball(cube_map_of(waves_and_lights, side), 0.0),
@@ -165,33 +205,8 @@ Experiment reflection_experiment(const GlDevice& device, const RunOptions& optio
                            1,
                            bytes_of(side)});
     }
-    const Image ground_truth = exact_mirror(waves_and_lights, size, rays);
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, methods, ground_truth, options, experiment);
-    Curve curve{.method = "cube map"};
-    for (std::size_t i = 0; i < methods.size(); ++i)
-        curve.points.push_back({16.0 * std::exp2(i), experiment.measurements[i].error.rms});
-    curve.order = fitted_order(curve.points);
-    experiment.charts = {{.id = "size",
-                          .title = "Error by size",
-                          .x_label = "texels along a face",
-                          .y_label = "FLIP",
-                          .curves = {std::move(curve)}}};
-    for (const std::size_t i : {1U, 3U}) {
-        add_images("The environment in a mirror", methods[i], pictures[i], ground_truth, 0.5,
-                   experiment);
-    }
-    const auto& measured = experiment.measurements;
-    experiment.finding = fmt::format(
-        "The mirror has a FLIP error of {:.3f} (RMS) with {} per face, {:.3f} with {} and {:.3f} "
-        "with {}, which need {:.2g}, {:.2g} and {:.2g} MB.",
-        measured[1].error.rms, methods[1].name, measured[3].error.rms, methods[3].name,
-        measured.back().error.rms, methods.back().name, methods[1].stored_bytes * 1e-6,
-        methods[3].stored_bytes * 1e-6, methods.back().stored_bytes * 1e-6);
-    experiment.finding += frame_times({{methods[1].name, measured[1]},
-                                       {methods[3].name, measured[3]},
-                                       {methods.back().name, measured.back()}});
-    return experiment;
+    return prepare_rendering(device, std::move(experiment), std::move(methods),
+                             exact_mirror(waves_and_lights, size, rays), finish_cube_map_sizes);
 }
 
 namespace {
@@ -202,6 +217,9 @@ constexpr int small_map_side = 128;
 /// Image sizes in pixels.
 constexpr int full_ball_size = 192;
 constexpr int quick_ball_size = 64;
+
+/// The methods of Balls.
+enum class GlossyMethod { not_blurred, levels_5, levels_6 };
 
 /// The environments, and the methods for one roughness.
 struct Balls {
@@ -239,41 +257,53 @@ Chart roughness_chart(const GlDevice& device, const Balls& balls, bool is_quick)
     return chart;
 }
 
+std::string glossy_finding(const Experiment& experiment, double roughness) {
+    const auto of = [&](GlossyMethod method) -> const Measurement& {
+        return measurement_of(experiment, method_id(method));
+    };
+    const Measurement& levels_6 = of(GlossyMethod::levels_6);
+    const Measurement& levels_5 = of(GlossyMethod::levels_5);
+    const Measurement& not_blurred = of(GlossyMethod::not_blurred);
+    return fmt::format(
+               "At roughness {}, 6 levels have a FLIP error of {:.4f} (RMS), 5 levels {:.4f}, and "
+               "a mirror without blur {:.3f}.",
+               roughness, levels_6.error.rms, levels_5.error.rms, not_blurred.error.rms) +
+           frame_times(
+               {{"6 levels", levels_6}, {"5 levels", levels_5}, {"not blurred", not_blurred}});
+}
+
 }  // namespace
 
-Experiment glossy_experiment(const GlDevice& device, const RunOptions& options) {
+PreparedExperiment glossy_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? quick_ball_size : full_ball_size;
     constexpr double shown = 0.3;
-    Experiment experiment = image_experiment("shading/glossy-levels", size);
+    Experiment experiment = image_experiment(size);
     experiment.question = "How accurate are rough mirrors with a few blurred mip levels?";
     experiment.ground_truth =
         "The reference shader in double, mean of 1024 facets of GGX for each pixel. Tests "
         "verify it by constant environments, and by linear ones, whose blur has a closed "
         "form.";
     experiment.input = fmt::format("ball of roughness {0}, {1} x {1} pixels", shown, size);
-    if (!device.is_available_for(experiment)) return experiment;
-    const Balls balls;
-    const std::vector<RenderedMethod> methods = balls.methods(shown);
-    const Image ground_truth = computed_once(options, "ground truth", [&] {
-        return supersampled_reference(mirror_ball(balls.finest, shown), size, 1);
-    });
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, methods, ground_truth, options, experiment);
-    experiment.charts = {computed_once(
-        options, "chart", [&] { return roughness_chart(device, balls, options.is_quick); })};
-    for (const std::size_t i : {0U, 2U}) {
-        experiment.pictures.push_back(
-            image_pair("A rough mirror", methods[i].name, pictures[i].picture, ground_truth));
-    }
-    experiment.heat_maps.push_back({"FLIP error", methods[2].name, pictures[2].errors, 0.2});
-    const auto& measured = experiment.measurements;
-    experiment.finding = fmt::format(
-        "At roughness {}, 6 levels have a FLIP error of {:.4f} (RMS), 5 levels {:.4f}, and a "
-        "mirror without blur {:.3f}.",
-        shown, measured[2].error.rms, measured[1].error.rms, measured[0].error.rms);
-    experiment.finding += frame_times(
-        {{"6 levels", measured[2]}, {"5 levels", measured[1]}, {"not blurred", measured[0]}});
-    return experiment;
+    const std::shared_ptr<const GlDevice> device = options.device.get();
+    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
+    const auto balls = std::make_shared<const Balls>();
+    return prepare_rendering(
+        device, std::move(experiment), balls->methods(shown),
+        supersampled_reference(mirror_ball(balls->finest, shown), size, 1),
+        [device = device.get(), balls, is_quick = options.is_quick](Experiment& report,
+                                                                    const Renderings& renderings) {
+            report.charts = {roughness_chart(*device, *balls, is_quick)};
+            for (const GlossyMethod method : {GlossyMethod::not_blurred, GlossyMethod::levels_6}) {
+                const auto i = static_cast<std::size_t>(method);
+                report.pictures.push_back(image_pair("A rough mirror", renderings.methods[i].name,
+                                                     renderings.images[i].picture,
+                                                     renderings.ground_truth));
+            }
+            const auto levels_6 = static_cast<std::size_t>(GlossyMethod::levels_6);
+            report.heat_maps.push_back({"FLIP error", renderings.methods[levels_6].name,
+                                        renderings.images[levels_6].errors, 0.2});
+            report.finding = glossy_finding(report, shown);
+        });
 }
 
 }  // namespace relief

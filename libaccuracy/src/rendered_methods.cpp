@@ -4,62 +4,16 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 #include <string>
-#include <system_error>
 
 #include "error_metrics.h"
-#include "experiment_driver.h"
-#include "relief/accuracy/measure.h"
 #include "relief/mesh/mesh.h"
-#include "relief/shade/context.h"
 #include "relief/shade/reference.h"
 #include "relief/shade/renderer.h"
 
 namespace relief {
-namespace {
-
-/// Sets the affinity of all threads of this process. New threads inherit it.
-bool set_affinity(const ::cpu_set_t& processors) {
-    std::error_code failed;
-    bool is_active = true;
-    // A thread may end meanwhile; ESRCH is therefore not an error.
-    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task", failed)) {
-        const auto thread = static_cast<::pid_t>(std::stoi(entry.path().filename().string()));
-        const bool is_set = ::sched_setaffinity(thread, sizeof processors, &processors) == 0;
-        is_active = is_active && (is_set || errno == ESRCH);
-    }
-    return is_active && !failed;
-}
-
-/// The set that holds only the first of `processors`.
-::cpu_set_t first_of(const ::cpu_set_t& processors) {
-    ::cpu_set_t first;
-    CPU_ZERO(&first);
-    for (int one = 0; one < CPU_SETSIZE; ++one) {
-        if (!CPU_ISSET(one, &processors)) continue;
-        CPU_SET(one, &first);
-        break;
-    }
-    return first;
-}
-
-}  // namespace
-
-SingleProcessor::SingleProcessor() {
-    CPU_ZERO(&before_);
-    if (::sched_getaffinity(0, sizeof before_, &before_) != 0) return;
-    is_active_ = set_affinity(first_of(before_));
-    if (!is_active_) set_affinity(before_);
-}
-
-SingleProcessor::~SingleProcessor() {
-    if (is_active_) set_affinity(before_);
-}
-
 namespace {
 
 FrameSettings settings_of(const RenderedMethod& method, const Image& ground_truth) {
@@ -73,8 +27,7 @@ Image drawn(Renderer& renderer, const RenderedMethod& method) {
     return to_srgb(averaged(to_linear(picture), method.pixels_per_side), 8);
 }
 
-/// A single frame takes less than a time slice of the scheduler (see min_round_seconds in
-/// measure.cpp).
+/// A single frame takes less than a time slice of the scheduler (see repeats_per_round()).
 constexpr std::size_t frames_per_round = 4;
 
 /// Mean seconds of a few frames of one renderer, without reading back.
@@ -83,15 +36,6 @@ double seconds_of_frames(Renderer& renderer, const Camera& camera) {
     const FrameSeries series = time_frames({&only, 1}, camera, {frames_per_round, 0}).front();
     const double milliseconds = std::accumulate(series.draw.begin(), series.draw.end(), 0.0);
     return 1e-3 * milliseconds / static_cast<double>(frames_per_round);
-}
-
-/// Interleaved frame times of all methods, with the driver's threads.
-std::vector<Timing> frame_timings(const std::string& group,
-                                  std::span<const std::unique_ptr<Renderer>> renderers,
-                                  const Camera& camera, const RunOptions& options) {
-    return measure_interleaved_rounds(group, renderers.size(), options, [&](std::size_t i) {
-        return seconds_of_frames(*renderers[i], camera);
-    });
 }
 
 std::string note_of(const RenderedMethod& method, const GlDevice& device) {
@@ -114,48 +58,74 @@ GlDevice::GlDevice(Backend backend) {
     }
 }
 
-bool GlDevice::is_available_for(Experiment& experiment) const {
-    if (!context_)
-        experiment.finding = "Not measured: this needs OpenGL, which is not available: " + absence_;
-    return context_ != nullptr;
+namespace {
+
+/// The state that the methods of an experiment share.
+struct Rendering {
+    std::shared_ptr<const GlDevice> device;  ///< Outlives the renderers.
+    Renderings renderings;
+    std::vector<std::unique_ptr<Renderer>> renderers;  ///< Null until a method is used.
+
+    Renderer& renderer(std::size_t method) {
+        if (!renderers[method]) {
+            const RenderedMethod& rendered = renderings.methods[method];
+            Report report;
+            renderers[method] =
+                std::make_unique<Renderer>(device->context(), rendered.scene,
+                                           settings_of(rendered, renderings.ground_truth), report);
+        }
+        return *renderers[method];
+    }
+
+    /// Renders the image of a method and compares it with the ground truth.
+    ErrorStats error_of(std::size_t method) {
+        Image picture = drawn(renderer(method), renderings.methods[method]);
+        PictureError error = picture_error(renderings.ground_truth, picture);
+        renderings.images[method] = {std::move(picture), std::move(error.map)};
+        return error.figures;
+    }
+};
+
+}  // namespace
+
+PreparedExperiment prepare_rendering(
+    std::shared_ptr<const GlDevice> device, Experiment report, std::vector<RenderedMethod> methods,
+    Image ground_truth,
+    std::function<void(Experiment& report, const Renderings& renderings)> finish) {
+    const auto state = std::make_shared<Rendering>();
+    const std::size_t count = methods.size();
+    state->device = std::move(device);
+    state->renderings = {std::move(methods), std::move(ground_truth), {}};
+    state->renderings.images.resize(count);
+    state->renderers.resize(count);
+    PreparedExperiment prepared;
+    prepared.report = std::move(report);
+    for (std::size_t i = 0; i < count; ++i) {
+        const RenderedMethod& method = state->renderings.methods[i];
+        prepared.methods.push_back({.id = method_id(i),
+                                    .name = method.name,
+                                    .choices = method.choices,
+                                    .error = [state, i] { return state->error_of(i); },
+                                    .stored_bytes = method.stored_bytes,
+                                    .note = note_of(method, *state->device)});
+    }
+    prepared.costs.one_thread = state->device->context().is_software();
+    prepared.limits_processors = true;
+    prepared.round = [state](MethodId id) {
+        const std::size_t i = index_of(id);
+        return seconds_of_frames(state->renderer(i), *state->renderings.methods[i].scene.camera);
+    };
+    if (finish) {
+        prepared.finish = [state, finish = std::move(finish)](Experiment& finished) {
+            finish(finished, state->renderings);
+        };
+    }
+    return prepared;
 }
 
-std::vector<RenderedImage> measure_rendered(const GlDevice& device,
-                                            std::span<const RenderedMethod> methods,
-                                            const Image& ground_truth, const RunOptions& options,
-                                            Experiment& experiment) {
-    std::vector<std::unique_ptr<Renderer>> renderers;
-    for (const RenderedMethod& method : methods) {
-        Report report;
-        renderers.push_back(std::make_unique<Renderer>(device.context(), method.scene,
-                                                       settings_of(method, ground_truth), report));
-    }
-    std::vector<RenderedImage> pictures;
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        Image picture = drawn(*renderers[i], methods[i]);
-        PictureError error = picture_error(ground_truth, picture);
-        experiment.measurements.push_back({.method = methods[i].name,
-                                           .choices = methods[i].choices,
-                                           .error = error.figures,
-                                           .cost = {.stored_bytes = methods[i].stored_bytes},
-                                           .note = note_of(methods[i], device)});
-        pictures.push_back({std::move(picture), std::move(error.map)});
-    }
-    if (!options.is_timed) return pictures;
-    const Camera& camera = *methods.front().scene.camera;
-    std::vector<Timing> one;
-    if (device.context().is_software()) {
-        const SingleProcessor kept;
-        if (kept.is_active()) one = frame_timings("one thread", renderers, camera, options);
-    }
-    const std::vector<Timing> all = frame_timings("all threads", renderers, camera, options);
-    const std::size_t first = experiment.measurements.size() - methods.size();
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        Cost& cost = experiment.measurements[first + i].cost;
-        if (!one.empty()) cost.one_thread = one[i];
-        cost.all_threads = all[i];
-    }
-    return pictures;
+PreparedExperiment not_rendered(Experiment report, const GlDevice& device) {
+    report.finding = "Not measured: this needs OpenGL, which is not available: " + device.absence();
+    return {.report = std::move(report)};
 }
 
 double rendered_error(const GlDevice& device, const RenderedMethod& method,
@@ -170,10 +140,12 @@ PicturePair image_pair(const std::string& title, const std::string& method, cons
     return {title, method, "reference", picture, to_srgb(ground_truth, 8)};
 }
 
-void add_images(const std::string& title, const RenderedMethod& method, const RenderedImage& image,
-                const Image& ground_truth, double brightest, Experiment& experiment) {
-    experiment.pictures.push_back(image_pair(title, method.name, image.picture, ground_truth));
-    experiment.heat_maps.push_back({"FLIP error", method.name, image.errors, brightest});
+void add_images(const std::string& title, const Renderings& renderings, std::size_t method,
+                double brightest, Experiment& experiment) {
+    const std::string& name = renderings.methods[method].name;
+    const RenderedImage& image = renderings.images[method];
+    experiment.pictures.push_back(image_pair(title, name, image.picture, renderings.ground_truth));
+    experiment.heat_maps.push_back({"FLIP error", name, image.errors, brightest});
 }
 
 std::string frame_times(std::initializer_list<NamedMeasurement> methods) {
@@ -186,9 +158,8 @@ std::string frame_times(std::initializer_list<NamedMeasurement> methods) {
     return fmt::format(" Median frame times: {}.", fmt::join(times, ", "));
 }
 
-Experiment image_experiment(const std::string& id, int size) {
+Experiment image_experiment(int size) {
     Experiment experiment;
-    experiment.id = id;
     experiment.error_unit = "FLIP";
     experiment.item = "pixel";
     experiment.items = static_cast<double>(size) * size;

@@ -4,9 +4,8 @@
 /// their errors against a reference image. Also holds the scenes that several experiments share.
 #pragma once
 
-#include <sched.h>
-
 #include <cstddef>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -14,10 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include "experiment_driver.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 
 namespace relief {
@@ -27,11 +27,10 @@ class GlDevice {
   public:
     explicit GlDevice(Backend backend = Backend::automatic);
 
-    /// Returns whether OpenGL is available. If not, sets the experiment's finding to the reason.
-    bool is_available_for(Experiment& experiment) const;
-
     [[nodiscard]] const Context& context() const { return *context_; }
     [[nodiscard]] bool is_available() const { return context_ != nullptr; }
+    /// The reason why OpenGL is not available.
+    [[nodiscard]] const std::string& absence() const { return absence_; }
 
   private:
     std::unique_ptr<Context> context_;
@@ -56,19 +55,30 @@ struct RenderedImage {
     Image errors;   ///< FLIP per pixel.
 };
 
-/// Renders all methods, and adds a measurement of each to the experiment.
+/// The methods of an experiment and what they rendered, by their index.
+struct Renderings {
+    std::vector<RenderedMethod> methods;
+    Image ground_truth;  ///< Three float channels, linear light.
+    std::vector<RenderedImage> images;
+};
+
+/// Prepares an experiment that renders. The ids of its methods are their indices.
 ///
+/// \param report  describes the experiment
 /// \param ground_truth  three float channels, linear light; it determines the size of the images
-/// \return one result per method, in their order
+/// \param finish  as PreparedExperiment::finish; all images exist
 ///
 /// Times are whole frames, from the first command to the last pixel, without reading back and
 /// without the averaging of `pixels_per_side`. The time on all threads uses the threads of the
 /// driver. The time on one thread is measured only with software OpenGL: the same threads on one
 /// processor.
-std::vector<RenderedImage> measure_rendered(const GlDevice& device,
-                                            std::span<const RenderedMethod> methods,
-                                            const Image& ground_truth, const RunOptions& options,
-                                            Experiment& experiment);
+PreparedExperiment prepare_rendering(
+    std::shared_ptr<const GlDevice> device, Experiment report, std::vector<RenderedMethod> methods,
+    Image ground_truth,
+    std::function<void(Experiment& report, const Renderings& renderings)> finish);
+
+/// An experiment without methods, whose finding says why OpenGL is not available.
+PreparedExperiment not_rendered(Experiment report, const GlDevice& device);
 
 /// The RMS error of one method without timing, for a point of a curve.
 double rendered_error(const GlDevice& device, const RenderedMethod& method,
@@ -80,8 +90,8 @@ PicturePair image_pair(const std::string& title, const std::string& method, cons
 
 /// Adds the image of a method beside the reference image, and a heat map of its errors.
 /// \param brightest  the FLIP error that is shown at full brightness
-void add_images(const std::string& title, const RenderedMethod& method, const RenderedImage& image,
-                const Image& ground_truth, double brightest, Experiment& experiment);
+void add_images(const std::string& title, const Renderings& renderings, std::size_t method,
+                double brightest, Experiment& experiment);
 
 /// A measurement with the name that a sentence gives to it.
 struct NamedMeasurement {
@@ -94,7 +104,7 @@ struct NamedMeasurement {
 std::string frame_times(std::initializer_list<NamedMeasurement> methods);
 
 /// An experiment on square images of `size` pixels along each side, with errors in FLIP.
-Experiment image_experiment(const std::string& id, int size);
+Experiment image_experiment(int size);
 
 /// Direction in which the light of lit_scene() travels; not unit length.
 inline constexpr glm::vec3 light_direction_world{-0.5F, -0.8F, -0.6F};
@@ -122,24 +132,6 @@ Material glossy_plastic();
 /// a
 ///         renderer with as many samples does
 Image supersampled_reference(const Scene& scene, int size, int rays_per_side);
-
-/// Keeps all threads of this process on one processor during its lifetime. A software OpenGL driver
-/// starts its threads only once, so this is the only way to time it on one thread. The destructor
-/// restores the affinity that the calling thread had.
-class SingleProcessor {
-  public:
-    SingleProcessor();
-    ~SingleProcessor();
-    SingleProcessor(const SingleProcessor&) = delete;
-    SingleProcessor& operator=(const SingleProcessor&) = delete;
-
-    /// Returns whether the system allowed it; if not, nothing has changed.
-    [[nodiscard]] bool is_active() const { return is_active_; }
-
-  private:
-    ::cpu_set_t before_;
-    bool is_active_ = false;
-};
 
 /// Slices around the circle of the torus; the tube has half as many. With this number the torus
 /// stands for the smooth surface.

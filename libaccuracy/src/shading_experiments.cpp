@@ -8,11 +8,10 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "error_metrics.h"
-#include "experiment_driver.h"
-#include "relief/accuracy/measure.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "rendered_methods.h"
@@ -67,11 +66,9 @@ std::string interpolation_finding(const Experiment& experiment) {
                {{"flat", at(0, coarse)}, {"Gouraud", at(1, coarse)}, {"Phong", at(2, coarse)}});
 }
 
-}  // namespace
-
-Experiment interpolation_experiment(const GlDevice& device, const RunOptions& options) {
+PreparedExperiment interpolation_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    Experiment experiment = image_experiment("shading/interpolation", size);
+    Experiment experiment = image_experiment(size);
     experiment.question =
         "How many triangles make the error of per-face and per-vertex lighting invisible?";
     experiment.ground_truth = fmt::format(
@@ -81,25 +78,21 @@ Experiment interpolation_experiment(const GlDevice& device, const RunOptions& op
         torus_triangles(smooth_torus_slices));
     experiment.input =
         fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size);
-    if (!device.is_available_for(experiment)) return experiment;
-    const Image ground_truth =
-        supersampled_reference(lit_torus(smooth_torus_slices, Interpolation::per_pixel), size, 1);
-    const std::vector<RenderedMethod> methods = interpolation_methods();
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, methods, ground_truth, options, experiment);
-    std::vector<std::string> names;
-    for (const LightingChoice& choice : lighting_choices)
-        names.emplace_back(choice.name);
-    experiment.charts = {torus_chart(experiment, names, lighting_slices)};
-    for (std::size_t i = 1; i < methods.size(); i += lighting_slices.size()) {
-        add_images("Lighting per face, vertex and pixel", methods[i], pictures[i], ground_truth,
-                   0.5, experiment);
-    }
-    experiment.finding = interpolation_finding(experiment);
-    return experiment;
+    const std::shared_ptr<const GlDevice> device = options.device.get();
+    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
+    return prepare_rendering(
+        device, std::move(experiment), interpolation_methods(),
+        supersampled_reference(lit_torus(smooth_torus_slices, Interpolation::per_pixel), size, 1),
+        [](Experiment& report, const Renderings& renderings) {
+            std::vector<std::string> names;
+            for (const LightingChoice& choice : lighting_choices)
+                names.emplace_back(choice.name);
+            report.charts = {torus_chart(report, names, lighting_slices)};
+            for (std::size_t i = 1; i < renderings.methods.size(); i += lighting_slices.size())
+                add_images("Lighting per face, vertex and pixel", renderings, i, 0.5, report);
+            report.finding = interpolation_finding(report);
+        });
 }
-
-namespace {
 
 /// Reflectance of the metal at normal incidence, in all channels.
 constexpr float metal_reflectance = 0.3F;
@@ -111,6 +104,8 @@ struct HighlightChoice {
     SpecularModel specular;
     double exponent_factor;  ///< Relative to the exponent of Blinn-Phong.
 };
+/// The methods of the experiment. GGX, the last one, is not among highlight_choices.
+enum class HighlightMethod { phong, phong_sharp, blinn_phong, blinn_phong_wide, ggx };
 constexpr std::array highlight_choices = {
     HighlightChoice{"Phong, a quarter of Blinn's exponent", "Phong", "a quarter",
                     SpecularModel::phong, 0.25},
@@ -180,12 +175,25 @@ Chart chart_of(const GlDevice& device, int size) {
     return chart;
 }
 
-}  // namespace
+std::string highlight_finding(const Experiment& experiment) {
+    using enum HighlightMethod;
+    const auto of = [&](HighlightMethod method) -> const Measurement& {
+        return measurement_of(experiment, method_id(method));
+    };
+    return fmt::format(
+               "Both lack the long tails of GGX highlights: Blinn-Phong has a FLIP error of {:.3f} "
+               "(RMS), Phong with highlights of the same width {:.3f}. With the exponent of the "
+               "other model, without the factor of 4, the error is {:.3f} for Blinn-Phong and "
+               "{:.3f} for Phong.",
+               of(blinn_phong).error.rms, of(phong).error.rms, of(blinn_phong_wide).error.rms,
+               of(phong_sharp).error.rms) +
+           frame_times({{"Phong", of(phong)}, {"Blinn-Phong", of(blinn_phong)}, {"GGX", of(ggx)}});
+}
 
-Experiment highlight_experiment(const GlDevice& device, const RunOptions& options) {
+PreparedExperiment highlight_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
     constexpr double roughness = 0.4;
-    Experiment experiment = image_experiment("shading/highlights", size);
+    Experiment experiment = image_experiment(size);
     experiment.question =
         "How accurately do Phong and Blinn-Phong highlights approximate those of a rough "
         "metal?";
@@ -197,30 +205,21 @@ Experiment highlight_experiment(const GlDevice& device, const RunOptions& option
         "torus of roughness {0} under two lights, one behind it, {1} x {1} "
         "pixels; exponent {2:.0f}",
         roughness, size, exponent_of(roughness));
-    if (!device.is_available_for(experiment)) return experiment;
-    const Image ground_truth = supersampled_reference(metal(roughness), size, 1);
-    const std::vector<RenderedMethod> methods = highlight_methods(roughness);
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, methods, ground_truth, options, experiment);
-    experiment.charts = {computed_once(
-        options, "chart", [&] { return chart_of(device, options.is_quick ? 96 : size); })};
-    for (const std::size_t i : {0U, 2U}) {
-        add_images("Highlights of a rough metal", methods[i], pictures[i], ground_truth, 0.5,
-                   experiment);
-    }
-    const auto rms = [&](std::size_t i) { return experiment.measurements[i].error.rms; };
-    experiment.finding = fmt::format(
-        "Both lack the long tails of GGX highlights: Blinn-Phong has a FLIP error of {:.3f} (RMS), "
-        "Phong with highlights of the same width {:.3f}. With the exponent of the other model, "
-        "without the factor of 4, the error is {:.3f} for Blinn-Phong and {:.3f} for Phong.",
-        rms(2), rms(0), rms(3), rms(1));
-    experiment.finding += frame_times({{"Phong", experiment.measurements[0]},
-                                       {"Blinn-Phong", experiment.measurements[2]},
-                                       {"GGX", experiment.measurements[4]}});
-    return experiment;
+    const std::shared_ptr<const GlDevice> device = options.device.get();
+    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
+    return prepare_rendering(device, std::move(experiment), highlight_methods(roughness),
+                             supersampled_reference(metal(roughness), size, 1),
+                             [device = device.get(), chart_size = options.is_quick ? 96 : size](
+                                 Experiment& report, const Renderings& renderings) {
+                                 report.charts = {chart_of(*device, chart_size)};
+                                 for (const HighlightMethod method :
+                                      {HighlightMethod::phong, HighlightMethod::blinn_phong}) {
+                                     add_images("Highlights of a rough metal", renderings,
+                                                static_cast<std::size_t>(method), 0.5, report);
+                                 }
+                                 report.finding = highlight_finding(report);
+                             });
 }
-
-namespace {
 
 constexpr int texels = 512;
 
@@ -271,6 +270,14 @@ struct AliasingChoice {
     int samples;
     int pixels_per_side;
 };
+enum class AliasingMethod {
+    averaged,
+    averaged_msaa,
+    averaged_4_pixels,
+    averaged_16_pixels,
+    toksvig,
+    toksvig_4_pixels,
+};
 constexpr std::array aliasing_choices = {
     AliasingChoice{"averaged normals", "as sharp as ever", false, 1, 1},
     AliasingChoice{"averaged normals, MSAA", "as sharp as ever", false, 4, 1},
@@ -278,6 +285,10 @@ constexpr std::array aliasing_choices = {
     AliasingChoice{"averaged normals, 4 x 4 pixels", "as sharp as ever", false, 1, 4},
     AliasingChoice{"Toksvig", "widened", true, 1, 1},
     AliasingChoice{"Toksvig, 2 x 2 pixels", "widened", true, 1, 2}};
+
+const AliasingChoice& choice_of(AliasingMethod method) {
+    return aliasing_choices.at(static_cast<std::size_t>(method));
+}
 
 RenderedMethod method_of(const AliasingChoice& choice, const Image& map, double away) {
     return {choice.name,
@@ -300,13 +311,15 @@ Chart distance_chart(const GlDevice& device, const Image& map, int size, int ray
                 .title = "Error by texels along a pixel",
                 .x_label = "texels along a pixel",
                 .y_label = "FLIP"};
-    for (const std::size_t i : {0U, 2U, 4U})
-        chart.curves.push_back({.method = aliasing_choices.at(i).name});
+    constexpr std::array methods = {AliasingMethod::averaged, AliasingMethod::averaged_4_pixels,
+                                    AliasingMethod::toksvig};
+    for (const AliasingMethod method : methods)
+        chart.curves.push_back({.method = choice_of(method).name});
     for (const double texels_per_pixel : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
         const double distance = distance_for(texels_per_pixel, size);
         const Image ground_truth = supersampled_reference(plane(map, false, distance), size, rays);
         for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-            const RenderedMethod method = method_of(aliasing_choices.at(2 * i), map, distance);
+            const RenderedMethod method = method_of(choice_of(methods.at(i)), map, distance);
             chart.curves[i].points.push_back(
                 {texels_per_pixel, rendered_error(device, method, ground_truth)});
         }
@@ -314,13 +327,27 @@ Chart distance_chart(const GlDevice& device, const Image& map, int size, int ray
     return chart;
 }
 
-}  // namespace
+/// \param shown  texels along a pixel
+std::string aliasing_finding(const Experiment& experiment, double shown) {
+    using enum AliasingMethod;
+    const auto of = [&](AliasingMethod method) -> const Measurement& {
+        return measurement_of(experiment, method_id(method));
+    };
+    return fmt::format(
+               "At {} texels along a pixel, averaged normals alone have a FLIP error of {:.3f} "
+               "(RMS), widened highlights {:.3f}. Rendering 16 pixels for each pixel reduces the "
+               "former to {:.3f}; multisampling, which affects only edges, to {:.3f}.",
+               shown, of(averaged).error.rms, of(toksvig).error.rms,
+               of(averaged_16_pixels).error.rms, of(averaged_msaa).error.rms) +
+           frame_times({{"16 pixels for each", of(averaged_16_pixels)},
+                        {"widened highlights", of(toksvig)}});
+}
 
-Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions& options) {
+PreparedExperiment specular_aliasing_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 96 : 160;
     const int rays = options.is_quick ? 12 : 16;
     constexpr double shown = 8.0;
-    Experiment experiment = image_experiment("shading/specular-antialiasing", size);
+    Experiment experiment = image_experiment(size);
     experiment.question =
         "Which method keeps highlights accurate where many texels of a normal map share a "
         "pixel?";
@@ -332,36 +359,24 @@ Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions
         "shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
         "pixels",
         size, shown);
-    if (!device.is_available_for(experiment)) return experiment;
+    const std::shared_ptr<const GlDevice> device = options.device.get();
+    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
     const Image map = bumpy_normals();
     std::vector<RenderedMethod> methods;
     for (const AliasingChoice& choice : aliasing_choices)
         methods.push_back(method_of(choice, map, distance_for(shown, size)));
-    const Image ground_truth = computed_once(options, "ground truth", [&] {
-        return supersampled_reference(methods.front().scene, size, rays);
-    });
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, methods, ground_truth, options, experiment);
-    experiment.charts = {computed_once(options, "chart", [&] {
-        return distance_chart(device, map, options.is_quick ? size / 2 : size, rays);
-    })};
-    for (const std::size_t i : {0U, 4U}) {
-        add_images("Highlights at a distance", methods[i], pictures[i], ground_truth, 0.5,
-                   experiment);
-    }
-    const auto& measured = experiment.measurements;
-    experiment.finding = fmt::format(
-        "At {} texels along a pixel, averaged normals alone have a FLIP error of {:.3f} (RMS), "
-        "widened highlights {:.3f}. Rendering 16 pixels for each pixel reduces the former to "
-        "{:.3f}; multisampling, which affects only edges, to {:.3f}.",
-        shown, measured[0].error.rms, measured[4].error.rms, measured[3].error.rms,
-        measured[1].error.rms);
-    experiment.finding +=
-        frame_times({{"16 pixels for each", measured[3]}, {"widened highlights", measured[4]}});
-    return experiment;
+    Image ground_truth = supersampled_reference(methods.front().scene, size, rays);
+    return prepare_rendering(
+        device, std::move(experiment), std::move(methods), std::move(ground_truth),
+        [device = device.get(), map, chart_size = options.is_quick ? size / 2 : size, rays](
+            Experiment& report, const Renderings& renderings) {
+            report.charts = {distance_chart(*device, map, chart_size, rays)};
+            for (const AliasingMethod method : {AliasingMethod::averaged, AliasingMethod::toksvig})
+                add_images("Highlights at a distance", renderings, static_cast<std::size_t>(method),
+                           0.5, report);
+            report.finding = aliasing_finding(report, shown);
+        });
 }
-
-namespace {
 
 Scene cube_and_ring() {
     Scene scene = lit_scene(make_torus(0.12F, 192, 48), glossy_plastic());
@@ -374,6 +389,9 @@ Scene cube_and_ring() {
     return scene;
 }
 
+enum class EdgeMethod { one_sample, msaa, four_pixels, four_pixels_msaa, sixteen_pixels };
+
+/// In the order of EdgeMethod.
 std::vector<RenderedMethod> edge_methods() {
     const Scene scene = cube_and_ring();
     const auto choices_of = [](const char* way, const char* samples) {
@@ -387,12 +405,26 @@ std::vector<RenderedMethod> edge_methods() {
             {"4 x 4 pixels", choices_of("pixels", "16"), scene, 1, 4}};
 }
 
-}  // namespace
+std::string edge_finding(const Experiment& experiment) {
+    using enum EdgeMethod;
+    const auto of = [&](EdgeMethod method) -> const Measurement& {
+        return measurement_of(experiment, method_id(method));
+    };
+    return fmt::format(
+               "4x multisampling reduces the FLIP error from {:.4f} (RMS) to {:.4f}; rendering 4 "
+               "pixels for each pixel reduces it to {:.4f}, 16 pixels to {:.4f}.",
+               of(one_sample).error.rms, of(msaa).error.rms, of(four_pixels).error.rms,
+               of(sixteen_pixels).error.rms) +
+           frame_times({{"none", of(one_sample)},
+                        {"4x multisampling", of(msaa)},
+                        {"4 pixels", of(four_pixels)},
+                        {"16 pixels", of(sixteen_pixels)}});
+}
 
-Experiment edge_experiment(const GlDevice& device, const RunOptions& options) {
+PreparedExperiment edge_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 128 : 256;
     const int rays = options.is_quick ? 8 : 16;
-    Experiment experiment = image_experiment("shading/edges", size);
+    Experiment experiment = image_experiment(size);
     experiment.question = "How much does antialiasing of edges cost?";
     experiment.ground_truth = fmt::format(
         "The reference shader in double, mean of {} rays per pixel in linear "
@@ -400,47 +432,43 @@ Experiment edge_experiment(const GlDevice& device, const RunOptions& options) {
         rays * rays);
     experiment.input =
         fmt::format("ring and cube before a dark background, {0} x {0} pixels", size);
-    if (!device.is_available_for(experiment)) return experiment;
-    const std::vector<RenderedMethod> methods = edge_methods();
-    const Image ground_truth = supersampled_reference(methods.front().scene, size, rays);
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, methods, ground_truth, options, experiment);
-    for (const std::size_t i : {0U, 1U}) {
-        add_images("Edges", methods[i], pictures[i], ground_truth, 0.3, experiment);
-    }
-    const auto& measured = experiment.measurements;
-    experiment.finding = fmt::format(
-        "4x multisampling reduces the FLIP error from {:.4f} (RMS) to {:.4f}; rendering 4 pixels "
-        "for each pixel reduces it to {:.4f}, 16 pixels to {:.4f}.",
-        measured[0].error.rms, measured[1].error.rms, measured[2].error.rms, measured[4].error.rms);
-    experiment.finding += frame_times({{"none", measured[0]},
-                                       {"4x multisampling", measured[1]},
-                                       {"4 pixels", measured[2]},
-                                       {"16 pixels", measured[4]}});
-    return experiment;
+    const std::shared_ptr<const GlDevice> device = options.device.get();
+    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
+    std::vector<RenderedMethod> methods = edge_methods();
+    Image ground_truth = supersampled_reference(methods.front().scene, size, rays);
+    return prepare_rendering(
+        device, std::move(experiment), std::move(methods), std::move(ground_truth),
+        [](Experiment& report, const Renderings& renderings) {
+            for (const EdgeMethod method : {EdgeMethod::one_sample, EdgeMethod::msaa})
+                add_images("Edges", renderings, static_cast<std::size_t>(method), 0.3, report);
+            report.finding = edge_finding(report);
+        });
 }
 
-std::vector<Experiment> shading_experiments(const RunOptions& options) {
-    const GlDevice device;
-    const auto drawn = [&](Experiment (*experiment)(const GlDevice&, const RunOptions&)) {
-        return [&device, &options, experiment] { return experiment(device, options); };
+}  // namespace
+
+std::vector<PlannedExperiment> shading_plan(const PlanOptions& options) {
+    const auto planned = [&](const char* id, const char* title,
+                             PreparedExperiment (*prepare)(const PlanOptions&)) {
+        return PlannedExperiment{id, Subject::shading, title,
+                                 [options, prepare] { return prepare(options); }};
     };
-    const std::vector<PlannedExperiment> plan = {
-        {"Flat, Gouraud and Phong shading", drawn(interpolation_experiment)},
-        {"Phong's and Blinn's highlights", drawn(highlight_experiment)},
-        {"Making the interpolated normal unit", [&] { return unit_normal_experiment(options); }},
-        {"Schlick's factor against Fresnel's: glass", [&] { return glass_experiment(options); }},
-        {"Schlick's factor against Fresnel's: a metal", [&] { return metal_experiment(options); }},
-        {"The size of a reflected cube map", drawn(reflection_experiment)},
-        {"Rough mirrors by levels of a cube map", drawn(glossy_experiment)},
-        {"Highlights smaller than a pixel", drawn(specular_aliasing_experiment)},
-        {"Edges by several samples a pixel", drawn(edge_experiment)}};
-    std::vector<Experiment> experiments = run_planned(plan, options);
-    for (Experiment& experiment : experiments) {
-        experiment.subject = Subject::shading;
-        mark_pareto_optimal(experiment);
-    }
-    return experiments;
+    return {
+        planned("shading/interpolation", "Flat, Gouraud and Phong shading",
+                interpolation_experiment),
+        planned("shading/highlights", "Phong's and Blinn's highlights", highlight_experiment),
+        planned("shading/unit-normal", "Making the interpolated normal unit",
+                unit_normal_experiment),
+        planned("shading/fresnel-glass", "Schlick's factor against Fresnel's: glass",
+                glass_experiment),
+        planned("shading/fresnel-metal", "Schlick's factor against Fresnel's: a metal",
+                metal_experiment),
+        planned("shading/cube-map-size", "The size of a reflected cube map", reflection_experiment),
+        planned("shading/glossy-levels", "Rough mirrors by levels of a cube map",
+                glossy_experiment),
+        planned("shading/specular-antialiasing", "Highlights smaller than a pixel",
+                specular_aliasing_experiment),
+        planned("shading/edges", "Edges by several samples a pixel", edge_experiment)};
 }
 
 }  // namespace relief

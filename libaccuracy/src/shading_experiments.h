@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiment_driver.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/image.h"
 #include "relief/shade/scene.h"
@@ -19,22 +20,12 @@
 
 namespace relief {
 
-/// Runs all experiments below. Those that render need OpenGL; without it, they measure nothing and
-/// their findings say so.
-std::vector<Experiment> shading_experiments(const RunOptions& options);
-
-// Formulas, without OpenGL.
-Experiment glass_experiment(const RunOptions& options);
-Experiment metal_experiment(const RunOptions& options);
-Experiment unit_normal_experiment(const RunOptions& options);
-
-// Rendered images.
-Experiment interpolation_experiment(const GlDevice& device, const RunOptions& options);
-Experiment highlight_experiment(const GlDevice& device, const RunOptions& options);
-Experiment reflection_experiment(const GlDevice& device, const RunOptions& options);
-Experiment glossy_experiment(const GlDevice& device, const RunOptions& options);
-Experiment specular_aliasing_experiment(const GlDevice& device, const RunOptions& options);
-Experiment edge_experiment(const GlDevice& device, const RunOptions& options);
+// The experiments of shading_plan() in other files: formulas without OpenGL, and environments.
+PreparedExperiment glass_experiment(const PlanOptions& options);
+PreparedExperiment metal_experiment(const PlanOptions& options);
+PreparedExperiment unit_normal_experiment(const PlanOptions& options);
+PreparedExperiment reflection_experiment(const PlanOptions& options);
+PreparedExperiment glossy_experiment(const PlanOptions& options);
 
 /// One way to compute a formula. It knows its inputs, and writes one result per input.
 struct FormulaMethod {
@@ -45,11 +36,6 @@ struct FormulaMethod {
 
 /// Statistics of the absolute differences. NaN counts as undefined.
 ErrorStats formula_error(const FormulaMethod& method, std::span<const double> ground_truth);
-
-/// Adds a measurement of each method to the experiment; the time is that of all inputs on one
-/// thread.
-void measure_formulas(std::span<const FormulaMethod> methods, std::span<const double> ground_truth,
-                      const RunOptions& options, Experiment& experiment);
 
 /// The methods of fresnel_methods(), in their order.
 enum class FresnelMethod { constant, schlick, schlick_exp2, schlick_82_degrees, table, fresnel };
@@ -94,6 +80,9 @@ class NormalSamples {
   private:
     std::vector<glm::vec3> interpolated_;
 };
+
+/// The methods of unit_normal_methods(), in their order.
+enum class UnitNormalMethod { interpolated, newton_step, float32, float64 };
 
 /// Shading with the interpolated normal as it is; normalized with one Newton step for the inverse
 /// square root from 1; with a square root in float; and in double.

@@ -11,7 +11,6 @@
 #include <memory>
 #include <numbers>
 
-#include "experiment_driver.h"
 #include "reference/shading.h"
 
 namespace relief {
@@ -25,16 +24,37 @@ ErrorStats formula_error(const FormulaMethod& method, std::span<const double> gr
     return error_stats(std::move(results));
 }
 
-void measure_formulas(std::span<const FormulaMethod> methods, std::span<const double> ground_truth,
-                      const RunOptions& options, Experiment& experiment) {
-    std::vector<float> results(ground_truth.size());
-    std::vector<MeasuredMethod> measured;
-    for (const FormulaMethod& method : methods) {
-        measured.push_back({method.name, method.choices, formula_error(method, ground_truth),
-                            [&method, &results] { method.compute(results); }});
+namespace {
+
+/// Methods that are timed on one thread; the time is that of all inputs. The ids are indices.
+/// \param inputs  owns what the methods refer to
+PreparedExperiment formula_experiment(Experiment report, std::shared_ptr<const void> inputs,
+                                      std::vector<FormulaMethod> methods,
+                                      std::vector<double> ground_truth) {
+    struct State {
+        std::shared_ptr<const void> inputs;
+        std::vector<FormulaMethod> methods;
+        std::vector<double> ground_truth;
+        std::vector<float> results;
+    };
+    const auto state = std::make_shared<State>(
+        State{std::move(inputs), std::move(methods), std::move(ground_truth), {}});
+    state->results.resize(state->ground_truth.size());
+    PreparedExperiment prepared;
+    prepared.report = std::move(report);
+    prepared.costs = {.all_threads = false, .memory = false};
+    for (std::size_t i = 0; i < state->methods.size(); ++i) {
+        prepared.methods.push_back(
+            {.id = method_id(i),
+             .name = state->methods[i].name,
+             .choices = state->methods[i].choices,
+             .error = [state, i] { return formula_error(state->methods[i], state->ground_truth); },
+             .work = [state, i] { state->methods[i].compute(state->results); }});
     }
-    measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
+    return prepared;
 }
+
+}  // namespace
 
 namespace {
 
@@ -236,46 +256,45 @@ Experiment described(const Boundary& boundary, std::size_t angles) {
 }
 
 std::string figures(const Experiment& experiment, FresnelMethod method) {
-    const ErrorStats& error = experiment.measurements.at(static_cast<std::size_t>(method)).error;
+    const ErrorStats& error = measurement_of(experiment, method_id(method)).error;
     return fmt::format("{:.2g} (RMS; at most {:.2g})", error.rms, error.max);
 }
 
-Experiment measured(const Boundary& boundary, const RunOptions& options) {
-    const std::vector<float> cosines = cosines_of_angles(4096);
-    Experiment experiment = described(boundary, cosines.size());
-    measure_formulas(fresnel_methods(boundary.index, cosines),
-                     exact_reflectances(boundary.index, cosines), options, experiment);
-    return experiment;
+PreparedExperiment fresnel_experiment(const Boundary& boundary) {
+    const auto cosines = std::make_shared<const std::vector<float>>(cosines_of_angles(4096));
+    return formula_experiment(described(boundary, cosines->size()), cosines,
+                              fresnel_methods(boundary.index, *cosines),
+                              exact_reflectances(boundary.index, *cosines));
 }
 
 }  // namespace
 
-Experiment glass_experiment(const RunOptions& options) {
-    Experiment experiment = measured(boundaries[1], options);
-    experiment.id = "shading/fresnel-glass";
-    const std::vector<float> cosines = cosines_of_angles(901);
-    experiment.charts = {chart_by_incidence(), index_chart(cosines)};
-    experiment.finding = fmt::format(
-        "For glass, Schlick's approximation has an error of {}, the reflectance at normal "
-        "incidence "
-        "{}. The approximation is meant for indices around 1.5: at 2.42 its maximum error is "
-        "{:.2g}, at 3.5 it is {:.2g}.",
-        figures(experiment, FresnelMethod::schlick), figures(experiment, FresnelMethod::constant),
-        schlick_error(2.42, cosines).max, schlick_error(3.5, cosines).max);
-    return experiment;
+PreparedExperiment glass_experiment(const PlanOptions&) {
+    PreparedExperiment prepared = fresnel_experiment(boundaries[1]);
+    prepared.finish = [](Experiment& report) {
+        const std::vector<float> cosines = cosines_of_angles(901);
+        report.charts = {chart_by_incidence(), index_chart(cosines)};
+        report.finding = fmt::format(
+            "For glass, Schlick's approximation has an error of {}, the reflectance at normal "
+            "incidence {}. The approximation is meant for indices around 1.5: at 2.42 its maximum "
+            "error is {:.2g}, at 3.5 it is {:.2g}.",
+            figures(report, FresnelMethod::schlick), figures(report, FresnelMethod::constant),
+            schlick_error(2.42, cosines).max, schlick_error(3.5, cosines).max);
+    };
+    return prepared;
 }
 
-Experiment metal_experiment(const RunOptions& options) {
-    Experiment experiment = measured(boundaries[6], options);
-    experiment.id = "shading/fresnel-metal";
-    experiment.finding = fmt::format(
-        "For iron, Schlick's approximation has an error of {}: metals darken towards grazing "
-        "angles "
-        "before they brighten, which it cannot represent. With a third parameter, which makes it "
-        "exact at 82 degrees, the error is {}.",
-        figures(experiment, FresnelMethod::schlick),
-        figures(experiment, FresnelMethod::schlick_82_degrees));
-    return experiment;
+PreparedExperiment metal_experiment(const PlanOptions&) {
+    PreparedExperiment prepared = fresnel_experiment(boundaries[6]);
+    prepared.finish = [](Experiment& report) {
+        report.finding = fmt::format(
+            "For iron, Schlick's approximation has an error of {}: metals darken towards grazing "
+            "angles before they brighten, which it cannot represent. With a third parameter, which "
+            "makes it exact at 82 degrees, the error is {}.",
+            figures(report, FresnelMethod::schlick),
+            figures(report, FresnelMethod::schlick_82_degrees));
+    };
+    return prepared;
 }
 
 namespace {
@@ -407,31 +426,36 @@ Chart chart_by_turn() {
 
 }  // namespace
 
-Experiment unit_normal_experiment(const RunOptions& options) {
+PreparedExperiment unit_normal_experiment(const PlanOptions&) {
     constexpr double degrees = 30.0;
-    const NormalSamples samples(degrees, 96);
+    const auto samples = std::make_shared<const NormalSamples>(degrees, 96);
     Experiment experiment{
-        .id = "shading/unit-normal",
         .question = "Is it necessary to normalize the interpolated normal?",
         .ground_truth =
             "The same lighting in double, from the normalized normal. Tests verify it by a formula "
             "in angles, and the length in the middle of the triangle by its closed form.",
         .input = fmt::format("{} points on a triangle whose corner normals are {} degrees apart; "
                              "diffuse light and a highlight of shininess 40, light of irradiance 1",
-                             samples.count(), degrees),
+                             samples->count(), degrees),
         .error_unit = "radiance",
         .item = "place",
-        .items = static_cast<double>(samples.count())};
-    measure_formulas(unit_normal_methods(samples), samples.exact_radiances(), options, experiment);
-    experiment.charts = {chart_by_turn()};
-    experiment.finding = fmt::format(
-        "If corner normals are {} degrees apart, shading with the interpolated normal without "
-        "normalization has an RMS error of {:.2g} (at most {:.2g}), while the maximum radiance is "
-        "{:.2g}; one Newton step reduces the RMS error to {:.2g}, a square root to {:.1g}.",
-        degrees, experiment.measurements[0].error.rms, experiment.measurements[0].error.max,
-        samples.brightest(), experiment.measurements[1].error.rms,
-        experiment.measurements[2].error.rms);
-    return experiment;
+        .items = static_cast<double>(samples->count())};
+    PreparedExperiment prepared = formula_experiment(
+        std::move(experiment), samples, unit_normal_methods(*samples), samples->exact_radiances());
+    prepared.finish = [samples, degrees](Experiment& report) {
+        const auto error = [&](UnitNormalMethod method) {
+            return measurement_of(report, method_id(method)).error;
+        };
+        report.charts = {chart_by_turn()};
+        report.finding = fmt::format(
+            "If corner normals are {} degrees apart, shading with the interpolated normal without "
+            "normalization has an RMS error of {:.2g} (at most {:.2g}), while the maximum radiance "
+            "is {:.2g}; one Newton step reduces the RMS error to {:.2g}, a square root to {:.1g}.",
+            degrees, error(UnitNormalMethod::interpolated).rms,
+            error(UnitNormalMethod::interpolated).max, samples->brightest(),
+            error(UnitNormalMethod::newton_step).rms, error(UnitNormalMethod::float32).rms);
+    };
+    return prepared;
 }
 
 }  // namespace relief

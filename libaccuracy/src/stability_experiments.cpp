@@ -7,14 +7,14 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "bump_experiments.h"
 #include "error_metrics.h"
 #include "experiment_driver.h"
 #include "normals_experiments.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 #include "report_names.h"
-#include "stability_inputs.h"
 #include "tangent_methods.h"
 
 namespace relief {
@@ -49,32 +49,34 @@ std::string breaks_of(const Chart& chart) {
 }  // namespace
 
 Sweeps::Sweeps(std::vector<std::string> methods, double bound)
-    : methods_(std::move(methods)), bound_(bound), degrees_(methods_.size()) {}
+    : methods_(std::move(methods)), bound_(bound) {}
 
 void Sweeps::add(const std::string& id, const std::string& title, const std::string& x_label,
-                 int decades, int step, const Errors& errors) {
-    Chart chart{.id = id,
-                .title = title,
-                .x_label = x_label,
-                .y_label = "RMS error, degrees",
-                .bound = bound_};
-    for (std::size_t method = 0; method < methods_.size(); ++method) {
+                 int decades, int step, Errors errors) {
+    charts_.push_back({.id = id,
+                       .title = title,
+                       .x_label = x_label,
+                       .y_label = "RMS error, degrees",
+                       .bound = bound_});
+    values_.push_back({decades, step, std::move(errors)});
+}
+
+ErrorStats Sweeps::measure(std::size_t method) {
+    std::vector<float> all;
+    for (std::size_t i = 0; i < charts_.size(); ++i) {
+        const Values& values = values_[i];
         Curve curve{.method = methods_[method]};
-        for (int decade = 0; decade <= decades; decade += step) {
+        for (int decade = 0; decade <= values.decades; decade += values.step) {
             const double value = std::pow(10.0, decade);
-            const std::vector<float> degrees = errors(method, value);
-            degrees_[method].insert(degrees_[method].end(), degrees.begin(), degrees.end());
+            const std::vector<float> degrees = values.errors(method, value);
+            all.insert(all.end(), degrees.begin(), degrees.end());
             const double error = curve_error(error_stats(degrees));
             curve.points.push_back({value, error});
             if (!curve.breaks_at && !(error <= bound_)) curve.breaks_at = value;
         }
-        chart.curves.push_back(std::move(curve));
+        charts_[i].curves.push_back(std::move(curve));
     }
-    charts_.push_back(std::move(chart));
-}
-
-ErrorStats Sweeps::figures(std::size_t method) const {
-    return error_stats(degrees_[method]);
+    return error_stats(std::move(all));
 }
 
 std::string Sweeps::breaks() const {
@@ -106,41 +108,49 @@ std::vector<std::string> names_of(const std::vector<Method>& methods) {
     return names;
 }
 
-/// Adds a measurement of each method with its errors in all sweeps and its time on one thread, the
-/// charts, and the values at which methods fail.
+/// An experiment whose methods have their errors in all sweeps and their time on one thread. Its
+/// finding gives the values at which methods fail.
 ///
 /// \param methods  in the order of the sweeps
 /// \param input  the input on which methods are timed
+/// \param advice  a sentence for the finding, after a space
 template <typename Input, typename Result>
-void measure_swept(const std::vector<SweptMethod<Input, Result>>& methods, const Sweeps& sweeps,
-                   const Input& input, const RunOptions& options, Experiment& experiment) {
-    std::vector<MeasuredMethod> measured;
+PreparedExperiment swept_experiment(Experiment report,
+                                    const std::vector<SweptMethod<Input, Result>>& methods,
+                                    Sweeps all_sweeps, std::shared_ptr<const Input> input,
+                                    const std::string& advice = {}) {
+    const auto sweeps = std::make_shared<Sweeps>(std::move(all_sweeps));
+    PreparedExperiment prepared;
+    prepared.report = std::move(report);
+    prepared.report.error_unit = "degrees";
+    prepared.costs = {.all_threads = false, .memory = false};
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        const bool is_textbook = methods[i].is_textbook;
-        MeasuredMethod& method = measured.emplace_back();
+        ExperimentMethod& method = prepared.methods.emplace_back();
+        method.id = method_id(i);
         method.name = methods[i].name;
         method.choices = methods[i].choices;
-        method.choices.emplace_back("guarded", is_textbook ? "no" : "yes");
-        method.error = sweeps.figures(i);
-        method.work = [&input, compute = methods[i].compute] { compute(input); };
-        if (is_textbook)
+        method.choices.emplace_back("guarded", methods[i].is_textbook ? "no" : "yes");
+        method.error = [sweeps, i] { return sweeps->measure(i); };
+        method.work = [input, compute = methods[i].compute] { compute(*input); };
+        if (methods[i].is_textbook)
             method.note =
                 "Textbook code without guards, which is not part of relief, for contrast.";
     }
-    experiment.error_unit = "degrees";
-    measure_methods(measured, options, {.all_threads = false, .memory = false}, experiment);
-    experiment.charts = sweeps.charts();
-    experiment.finding = fmt::format("A method fails where its RMS error exceeds {} degree. {}",
-                                     broken_degrees, sweeps.breaks());
+    prepared.finish = [sweeps, advice](Experiment& finished) {
+        finished.charts = sweeps->charts();
+        finished.finding = fmt::format(
+            "A method fails where its RMS error exceeds {} degree. {}{} docs/hard-cases.md lists "
+            "single hard inputs and their outcomes.",
+            broken_degrees, sweeps->breaks(), advice);
+    };
+    return prepared;
 }
 
-/// The same for methods on meshes.
-template <typename Result>
-void measure_on_mesh(const std::vector<SweptMethod<Mesh, Result>>& methods, const Sweeps& sweeps,
-                     const Mesh& mesh, const RunOptions& options, Experiment& experiment) {
-    experiment.item = "triangle";
-    experiment.items = static_cast<double>(mesh.triangles.size());
-    measure_swept(methods, sweeps, mesh, options, experiment);
+/// Sets the unit of work of an experiment on a mesh.
+Experiment on_triangles(Experiment report, const Mesh& mesh) {
+    report.item = "triangle";
+    report.items = static_cast<double>(mesh.triangles.size());
+    return report;
 }
 
 constexpr const char* torus_ground_truth =
@@ -149,13 +159,8 @@ constexpr const char* torus_ground_truth =
 constexpr std::uint32_t torus_seed = 1;
 constexpr std::uint32_t needles_seed = 1;
 
-int torus_cells(const RunOptions& options) {
-    return options.is_quick ? 32 : 64;
-}
-
-AnalyticMesh swept_torus(const RunOptions& options) {
-    return analytic_mesh(AnalyticSurface::torus, Triangulation::regular, torus_cells(options),
-                         torus_seed);
+int torus_cells(bool is_quick) {
+    return is_quick ? 32 : 64;
 }
 
 SweptNormals swept(const NormalMethod& method, bool is_textbook = false) {
@@ -210,68 +215,82 @@ Mesh with_positions(Mesh mesh, const Change& change) {
     return mesh;
 }
 
-}  // namespace
+/// A mesh and the methods that are swept on it.
+struct NormalsInput {
+    AnalyticMesh ground_truth;
+    std::vector<SweptNormals> methods = swept_normal_methods();
 
-Experiment normals_by_scale(const RunOptions& options) {
-    const AnalyticMesh ground_truth = swept_torus(options);
-    const std::vector<SweptNormals> methods = swept_normal_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
-    const auto scaled = [&](bool is_larger) {
-        return [&, is_larger](std::size_t method, double value) {
-            const Mesh mesh =
-                with_positions(ground_truth.mesh, {.scale = is_larger ? value : 1.0 / value});
-            return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
+    /// The errors of a method on a mesh whose first vertices are those of the ground truth.
+    [[nodiscard]] std::vector<float> degrees(std::size_t method, const Mesh& mesh) const {
+        return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
+    }
+};
+
+std::shared_ptr<const NormalsInput> swept_torus(bool is_quick) {
+    return std::make_shared<const NormalsInput>(NormalsInput{analytic_mesh(
+        AnalyticSurface::torus, Triangulation::regular, torus_cells(is_quick), torus_seed)});
+}
+
+PreparedExperiment normals_experiment(Experiment report,
+                                      const std::shared_ptr<const NormalsInput>& input,
+                                      Sweeps sweeps, const std::string& advice = {}) {
+    const Mesh& mesh = input->ground_truth.mesh;
+    return swept_experiment(on_triangles(std::move(report), mesh), input->methods,
+                            std::move(sweeps), std::shared_ptr<const Mesh>(input, &mesh), advice);
+}
+
+PreparedExperiment normals_by_scale(bool is_quick) {
+    const auto input = swept_torus(is_quick);
+    Sweeps sweeps(names_of(input->methods), broken_degrees);
+    const auto scaled = [input](bool is_larger) {
+        return [input, is_larger](std::size_t method, double value) {
+            return input->degrees(method,
+                                  with_positions(input->ground_truth.mesh,
+                                                 {.scale = is_larger ? value : 1.0 / value}));
         };
     };
     sweeps.add("smaller", "Smaller", "times smaller than radius 1", 30, 2, scaled(false));
     sweeps.add("larger", "Larger", "times larger than radius 1", 30, 2, scaled(true));
-    Experiment experiment{
-        .id = "stability/normals-scale",
-        .question = "At which scales of a mesh are its normals accurate?",
-        .ground_truth = torus_ground_truth,
-        .input =
-            fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; the errors are "
-                        "those of all together, the times those at scale 1",
-                        ground_truth.mesh.triangles.size())};
-    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
-    return experiment;
+    return normals_experiment(
+        {.question = "At which scales of a mesh are its normals accurate?",
+         .ground_truth = torus_ground_truth,
+         .input =
+             fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; the errors are "
+                         "those of all together, the times those at scale 1",
+                         input->ground_truth.mesh.triangles.size())},
+        input, std::move(sweeps));
 }
 
-Experiment normals_by_offset(const RunOptions& options) {
-    const AnalyticMesh ground_truth = swept_torus(options);
-    const std::vector<SweptNormals> methods = swept_normal_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+PreparedExperiment normals_by_offset(bool is_quick) {
+    const auto input = swept_torus(is_quick);
+    Sweeps sweeps(names_of(input->methods), broken_degrees);
     sweeps.add("offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
-               [&](std::size_t method, double value) {
-                   const Mesh mesh = with_positions(ground_truth.mesh, {.offset = value});
-                   return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
+               [input](std::size_t method, double value) {
+                   return input->degrees(
+                       method, with_positions(input->ground_truth.mesh, {.offset = value}));
                });
-    Experiment experiment{
-        .id = "stability/normals-offset",
-        .question = "At which distances of a mesh from the origin are its normals accurate?",
-        .ground_truth = torus_ground_truth,
-        .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; the errors are "
-                             "those of all together, the times those at the origin",
-                             ground_truth.mesh.triangles.size())};
-    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
-    experiment.finding +=
+    return normals_experiment(
+        {.question = "At which distances of a mesh from the origin are its normals accurate?",
+         .ground_truth = torus_ground_truth,
+         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; the errors are "
+                              "those of all together, the times those at the origin",
+                              input->ground_truth.mesh.triangles.size())},
+        input, std::move(sweeps),
         " float64 is exact for the given positions: its error is that of rounding the positions to "
-        "float, which no method can undo. Move meshes to the origin before storing them.";
-    return experiment;
+        "float, which no method can undo. Move meshes to the origin before storing them.");
 }
 
-Experiment normals_of_needles(const RunOptions& options) {
-    const std::size_t count = options.is_quick ? 1000 : 4000;
-    const std::vector<SweptNormals> methods = swept_normal_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+PreparedExperiment normals_of_needles(bool is_quick) {
+    const std::size_t count = is_quick ? 1000 : 4000;
+    const auto methods = std::make_shared<const std::vector<SweptNormals>>(swept_normal_methods());
+    Sweeps sweeps(names_of(*methods), broken_degrees);
     sweeps.add("width", "Narrower", "length over width", 12, 1,
-               [&](std::size_t method, double value) {
+               [methods, count](std::size_t method, double value) {
                    const Needles needles = make_needles(count, 1.0 / value, needles_seed);
-                   return normal_degrees(methods[method].compute(needles.mesh), needles.normals);
+                   return normal_degrees((*methods)[method].compute(needles.mesh), needles.normals);
                });
-    const Needles wide = make_needles(count, 1.0, needles_seed);
-    Experiment experiment{
-        .id = "stability/normals-needles",
+    const auto wide = std::make_shared<const Mesh>(make_needles(count, 1.0, needles_seed).mesh);
+    Experiment report{
         .question = "At which widths of a triangle is its normal accurate?",
         .ground_truth =
             "The cross product of the float corners in double; two of them are so near to the "
@@ -280,40 +299,34 @@ Experiment normals_of_needles(const RunOptions& options) {
             fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; the "
                         "errors are those of all together, the times those at width 1",
                         count)};
-    measure_on_mesh(methods, sweeps, wide.mesh, options, experiment);
-    return experiment;
+    return swept_experiment(on_triangles(std::move(report), *wide), *methods, std::move(sweeps),
+                            wide);
 }
 
-Experiment normals_beside_hard_triangles(const RunOptions& options) {
-    const AnalyticMesh ground_truth = swept_torus(options);
-    const std::vector<SweptNormals> methods = swept_normal_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+PreparedExperiment normals_beside_hard_triangles(bool is_quick) {
+    const auto input = swept_torus(is_quick);
+    Sweeps sweeps(names_of(input->methods), broken_degrees);
     for (const HardTriangleName& one : hard_triangle_names) {
         sweeps.add(one.id, one.title, "number of hard triangles", 3, 1,
-                   [&](std::size_t method, double count) {
-                       const Mesh mesh = with_hard_triangles(ground_truth.mesh, one.kind,
-                                                             static_cast<std::size_t>(count));
-                       return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
+                   [input, kind = one.kind](std::size_t method, double count) {
+                       return input->degrees(method,
+                                             with_hard_triangles(input->ground_truth.mesh, kind,
+                                                                 static_cast<std::size_t>(count)));
                    });
     }
-    Experiment experiment{
-        .id = "stability/normals-hard-triangles",
-        .question =
-            "With how many triangles of the hard-case catalogue are the normals around them "
-            "accurate?",
-        .ground_truth =
-            fmt::format("{} The added triangles have no area, no position or two sides, and are "
-                        "therefore not part of the surface.",
-                        torus_ground_truth),
-        .input = fmt::format("torus of {} triangles with 1 to 1000 added hard triangles of five "
-                             "kinds; the errors are those of all together, the times those without "
-                             "them",
-                             ground_truth.mesh.triangles.size())};
-    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
-    return experiment;
+    return normals_experiment(
+        {.question = "With how many triangles of the hard-case catalogue are the normals around "
+                     "them accurate?",
+         .ground_truth =
+             fmt::format("{} The added triangles have no area, no position or two sides, and are "
+                         "therefore not part of the surface.",
+                         torus_ground_truth),
+         .input = fmt::format("torus of {} triangles with 1 to 1000 added hard triangles of five "
+                              "kinds; the errors are those of all together, the times those "
+                              "without them",
+                              input->ground_truth.mesh.triangles.size())},
+        input, std::move(sweeps));
 }
-
-namespace {
 
 /// The methods with stored tangents, and textbook code.
 std::vector<SweptTangents> swept_tangent_methods() {
@@ -329,11 +342,6 @@ std::vector<SweptTangents> swept_tangent_methods() {
 constexpr const char* textured_torus_ground_truth =
     "The exact tangents of the textured torus in closed form, which do not depend on scale and "
     "position. Tests verify them by numerical differentiation of the surface.";
-
-TexturedMesh textured_torus(const RunOptions& options) {
-    return textured_mesh(AnalyticSurface::torus, Triangulation::regular, TextureLayout::upright,
-                         torus_cells(options), 1);
-}
 
 /// The errors of a method on a mesh with changed positions and texture coordinates.
 std::vector<float> tangent_degrees(const SweptTangents& method, const TexturedMesh& ground_truth,
@@ -354,65 +362,81 @@ std::vector<float> tangent_degrees(const SweptTangents& method, const TexturedMe
     return degrees;
 }
 
-}  // namespace
+/// A textured mesh and the methods that are swept on it.
+struct TangentsInput {
+    TexturedMesh ground_truth;
+    std::vector<SweptTangents> methods = swept_tangent_methods();
 
-Experiment tangents_by_scale(const RunOptions& options) {
-    const TexturedMesh ground_truth = textured_torus(options);
-    const std::vector<SweptTangents> methods = swept_tangent_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+    [[nodiscard]] std::vector<float> degrees(std::size_t method, const Change& positions,
+                                             const Change& texcoords) const {
+        return tangent_degrees(methods[method], ground_truth, positions, texcoords);
+    }
+};
+
+std::shared_ptr<const TangentsInput> textured_torus(bool is_quick) {
+    return std::make_shared<const TangentsInput>(
+        TangentsInput{textured_mesh(AnalyticSurface::torus, Triangulation::regular,
+                                    TextureLayout::upright, torus_cells(is_quick), 1)});
+}
+
+PreparedExperiment tangents_experiment(Experiment report,
+                                       const std::shared_ptr<const TangentsInput>& input,
+                                       Sweeps sweeps) {
+    const Mesh& mesh = input->ground_truth.mesh;
+    return swept_experiment(on_triangles(std::move(report), mesh), input->methods,
+                            std::move(sweeps), std::shared_ptr<const Mesh>(input, &mesh));
+}
+
+PreparedExperiment tangents_by_scale(bool is_quick) {
+    const auto input = textured_torus(is_quick);
+    Sweeps sweeps(names_of(input->methods), broken_degrees);
     const auto add = [&](const char* id, const char* title, const char* label, bool is_image,
                          bool is_larger) {
-        sweeps.add(id, title, label, 30, 2, [&, is_image, is_larger](std::size_t i, double value) {
-            const Change change{.scale = is_larger ? value : 1.0 / value};
-            return is_image ? tangent_degrees(methods[i], ground_truth, {}, change)
-                            : tangent_degrees(methods[i], ground_truth, change, {});
-        });
+        sweeps.add(id, title, label, 30, 2,
+                   [input, is_image, is_larger](std::size_t method, double value) {
+                       const Change change{.scale = is_larger ? value : 1.0 / value};
+                       return is_image ? input->degrees(method, {}, change)
+                                       : input->degrees(method, change, {});
+                   });
     };
     add("smaller", "Smaller meshes", "times smaller than radius 1", false, false);
     add("larger", "Larger meshes", "times larger than radius 1", false, true);
     add("smaller-image", "Smaller texture coordinates", "times smaller than one image", true,
         false);
     add("larger-image", "Larger texture coordinates", "times larger than one image", true, true);
-    Experiment experiment{
-        .id = "stability/tangents-scale",
-        .question = "At which scales of a mesh and its texture coordinates are tangents accurate?",
-        .ground_truth = textured_torus_ground_truth,
-        .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
-                             "31 scales each from 1e-30 to 1e30; the errors are those of all "
-                             "together, the times those at scale 1",
-                             ground_truth.mesh.triangles.size())};
-    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
-    return experiment;
+    return tangents_experiment(
+        {.question = "At which scales of a mesh and its texture coordinates are tangents accurate?",
+         .ground_truth = textured_torus_ground_truth,
+         .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
+                              "31 scales each from 1e-30 to 1e30; the errors are those of all "
+                              "together, the times those at scale 1",
+                              input->ground_truth.mesh.triangles.size())},
+        input, std::move(sweeps));
 }
 
-Experiment tangents_by_offset(const RunOptions& options) {
-    const TexturedMesh ground_truth = textured_torus(options);
-    const std::vector<SweptTangents> methods = swept_tangent_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
+PreparedExperiment tangents_by_offset(bool is_quick) {
+    const auto input = textured_torus(is_quick);
+    Sweeps sweeps(names_of(input->methods), broken_degrees);
     sweeps.add("offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
-               [&](std::size_t i, double value) {
-                   return tangent_degrees(methods[i], ground_truth, {.offset = value}, {});
+               [input](std::size_t method, double value) {
+                   return input->degrees(method, {.offset = value}, {});
                });
     sweeps.add("offset-image", "Texture coordinates farther away",
-               "distance along each axis, in images", 8, 1, [&](std::size_t i, double value) {
-                   return tangent_degrees(methods[i], ground_truth, {}, {.offset = value});
+               "distance along each axis, in images", 8, 1,
+               [input](std::size_t method, double value) {
+                   return input->degrees(method, {}, {.offset = value});
                });
-    Experiment experiment{
-        .id = "stability/tangents-offset",
-        .question =
-            "At which distances of a mesh and its texture coordinates from the origin are "
-            "tangents accurate?",
-        .ground_truth = textured_torus_ground_truth,
-        .input =
-            fmt::format("torus of {} triangles, its positions and its texture coordinates at "
-                        "9 distances each from 1 to 1e8; the errors are those of all together, "
-                        "the times those at the origin",
-                        ground_truth.mesh.triangles.size())};
-    measure_on_mesh(methods, sweeps, ground_truth.mesh, options, experiment);
-    return experiment;
+    return tangents_experiment(
+        {.question = "At which distances of a mesh and its texture coordinates from the origin are "
+                     "tangents accurate?",
+         .ground_truth = textured_torus_ground_truth,
+         .input =
+             fmt::format("torus of {} triangles, its positions and its texture coordinates at "
+                         "9 distances each from 1 to 1e8; the errors are those of all together, "
+                         "the times those at the origin",
+                         input->ground_truth.mesh.triangles.size())},
+        input, std::move(sweeps));
 }
-
-namespace {
 
 constexpr double swept_wavelength = 32.0;
 
@@ -445,8 +469,8 @@ std::vector<SweptSlopes> swept_slope_methods() {
     return methods;
 }
 
-int map_side(const RunOptions& options) {
-    return (options.is_quick ? 64 : 192) + 2 * wave_margin;
+int map_side(bool is_quick) {
+    return (is_quick ? 64 : 192) + 2 * wave_margin;
 }
 
 std::vector<float> slope_degrees(const SweptSlopes& method, const WaveMap& wave) {
@@ -468,82 +492,88 @@ WaveMap higher(WaveMap wave, double by) {
     return wave;
 }
 
-/// The same as measure_swept() on a wave.
-void measure_on_wave(const std::vector<SweptSlopes>& methods, const Sweeps& sweeps,
-                     const WaveMap& wave, const RunOptions& options, Experiment& experiment) {
-    experiment.item = "texel";
-    experiment.items = static_cast<double>(wave.normals.size());
-    measure_swept(methods, sweeps, wave, options, experiment);
+/// A wave and the methods that are swept on it.
+struct SlopesInput {
+    WaveMap wave;
+    std::vector<SweptSlopes> methods = swept_slope_methods();
+};
+
+std::shared_ptr<const SlopesInput> swept_wave(bool is_quick) {
+    return std::make_shared<const SlopesInput>(
+        SlopesInput{oblique_wave(map_side(is_quick), swept_wavelength, 32)});
+}
+
+PreparedExperiment slopes_experiment(Experiment report,
+                                     const std::shared_ptr<const SlopesInput>& input, Sweeps sweeps,
+                                     const std::string& advice = {}) {
+    report.item = "texel";
+    report.items = static_cast<double>(input->wave.normals.size());
+    return swept_experiment(std::move(report), input->methods, std::move(sweeps),
+                            std::shared_ptr<const WaveMap>(input, &input->wave), advice);
+}
+
+PreparedExperiment bump_by_steepness(bool is_quick) {
+    const auto input = swept_wave(is_quick);
+    Sweeps sweeps(names_of(input->methods), broken_degrees);
+    sweeps.add("steeper", "Steeper", "slope", 30, 2, [input](std::size_t method, double value) {
+        return slope_degrees(input->methods[method], steeper(input->wave, value));
+    });
+    sweeps.add("flatter", "Flatter", "1 / slope", 30, 2, [input](std::size_t method, double value) {
+        return slope_degrees(input->methods[method], steeper(input->wave, 1.0 / value));
+    });
+    return slopes_experiment(
+        {.question = "At which slopes of a height map are its normals accurate?",
+         .ground_truth =
+             "The slopes of the wave in closed form, multiplied by the same factor. Tests verify "
+             "them by numerical differentiation.",
+         .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
+                              "to 1e30; the errors are those of all together, the times those at "
+                              "slope 1",
+                              map_side(is_quick), swept_wavelength)},
+        input, std::move(sweeps));
+}
+
+PreparedExperiment bump_by_offset(bool is_quick) {
+    const auto input = swept_wave(is_quick);
+    Sweeps sweeps(names_of(input->methods), broken_degrees);
+    sweeps.add("offset", "Higher", "height above zero, texels", 8, 1,
+               [input](std::size_t method, double value) {
+                   return slope_degrees(input->methods[method], higher(input->wave, value));
+               });
+    return slopes_experiment(
+        {.question = "At which distances of the heights from zero are their normals accurate?",
+         .ground_truth =
+             "The slopes of the wave in closed form, which do not depend on an added constant. "
+             "Tests verify them by numerical differentiation.",
+         .input =
+             fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
+                         "heights from 1 to 1e8; the errors are those of all together, the times "
+                         "those at 0",
+                         map_side(is_quick), swept_wavelength)},
+        input, std::move(sweeps),
+        " The error of float64 is that of rounding these heights to float, which no method can "
+        "undo: store heights relative to a zero within their range.");
 }
 
 }  // namespace
 
-Experiment bump_by_steepness(const RunOptions& options) {
-    const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
-    const std::vector<SweptSlopes> methods = swept_slope_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
-    sweeps.add("steeper", "Steeper", "slope", 30, 2, [&](std::size_t method, double value) {
-        return slope_degrees(methods[method], steeper(wave, value));
-    });
-    sweeps.add("flatter", "Flatter", "1 / slope", 30, 2, [&](std::size_t method, double value) {
-        return slope_degrees(methods[method], steeper(wave, 1.0 / value));
-    });
-    Experiment experiment{
-        .id = "stability/bump-steepness",
-        .question = "At which slopes of a height map are its normals accurate?",
-        .ground_truth =
-            "The slopes of the wave in closed form, multiplied by the same factor. Tests verify "
-            "them by numerical differentiation.",
-        .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
-                             "to 1e30; the errors are those of all together, the times those at "
-                             "slope 1",
-                             map_side(options), swept_wavelength)};
-    measure_on_wave(methods, sweeps, wave, options, experiment);
-    return experiment;
-}
-
-Experiment bump_by_offset(const RunOptions& options) {
-    const WaveMap wave = oblique_wave(map_side(options), swept_wavelength, 32);
-    const std::vector<SweptSlopes> methods = swept_slope_methods();
-    Sweeps sweeps(names_of(methods), broken_degrees);
-    sweeps.add("offset", "Higher", "height above zero, texels", 8, 1,
-               [&](std::size_t method, double value) {
-                   return slope_degrees(methods[method], higher(wave, value));
-               });
-    Experiment experiment{
-        .id = "stability/bump-offset",
-        .question = "At which distances of the heights from zero are their normals accurate?",
-        .ground_truth =
-            "The slopes of the wave in closed form, which do not depend on an added constant. "
-            "Tests verify them by numerical differentiation.",
-        .input =
-            fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
-                        "heights from 1 to 1e8; the errors are those of all together, the times "
-                        "those at 0",
-                        map_side(options), swept_wavelength)};
-    measure_on_wave(methods, sweeps, wave, options, experiment);
-    experiment.finding +=
-        " The error of float64 is that of rounding these heights to float, which no method can "
-        "undo: store heights relative to a zero within their range.";
-    return experiment;
-}
-
-std::vector<Experiment> stability_experiments(const RunOptions& options) {
-    const std::vector<PlannedExperiment> plan = {
-        {"Normals: scale", [&] { return normals_by_scale(options); }},
-        {"Normals: distance from the origin", [&] { return normals_by_offset(options); }},
-        {"Normals: needles", [&] { return normals_of_needles(options); }},
-        {"Normals: hard triangles", [&] { return normals_beside_hard_triangles(options); }},
-        {"Tangents: scale", [&] { return tangents_by_scale(options); }},
-        {"Tangents: distance from the origin", [&] { return tangents_by_offset(options); }},
-        {"Bump: steepness", [&] { return bump_by_steepness(options); }},
-        {"Bump: height above zero", [&] { return bump_by_offset(options); }}};
-    std::vector<Experiment> experiments = run_planned(plan, options);
-    for (Experiment& experiment : experiments) {
-        experiment.subject = Subject::stability;
-        experiment.finding += " docs/hard-cases.md lists single hard inputs and their outcomes.";
-    }
-    return experiments;
+std::vector<PlannedExperiment> stability_plan(const PlanOptions& options) {
+    const auto planned = [is_quick = options.is_quick](const char* id, const char* title,
+                                                       PreparedExperiment (*prepare)(bool)) {
+        return PlannedExperiment{id, Subject::stability, title,
+                                 [is_quick, prepare] { return prepare(is_quick); }};
+    };
+    return {
+        planned("stability/normals-scale", "Normals: scale", normals_by_scale),
+        planned("stability/normals-offset", "Normals: distance from the origin", normals_by_offset),
+        planned("stability/normals-needles", "Normals: needles", normals_of_needles),
+        planned("stability/normals-hard-triangles", "Normals: hard triangles",
+                normals_beside_hard_triangles),
+        planned("stability/tangents-scale", "Tangents: scale", tangents_by_scale),
+        planned("stability/tangents-offset", "Tangents: distance from the origin",
+                tangents_by_offset),
+        planned("stability/bump-steepness", "Bump: steepness", bump_by_steepness),
+        planned("stability/bump-offset", "Bump: height above zero", bump_by_offset)};
 }
 
 }  // namespace relief

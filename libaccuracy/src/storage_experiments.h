@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,9 +14,9 @@
 
 #include "experiment_driver.h"
 #include "relief/accuracy/experiment.h"
-#include "relief/mesh/error_stats.h"
-#include "relief/mesh/frame_encoding.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 
@@ -100,26 +101,19 @@ struct FrameCode {
     FrameRounding rounding = FrameRounding::nearest;
 
     [[nodiscard]] std::string rounding_name() const;
-    /// Name, choices, bytes, and errors on these frames, without work to time.
-    [[nodiscard]] MeasuredMethod measured(const SampleFrames& frames) const;
+    /// The method without work to time.
+    [[nodiscard]] ExperimentMethod method(std::shared_ptr<const SampleFrames> frames) const;
 };
 
 /// Every encoding with both rounding modes.
 std::vector<FrameCode> all_frame_codes();
 
-/// Runs the four experiments below.
-std::vector<Experiment> storage_experiments(const RunOptions& options);
+// The experiments of storage_plan() with maps.
 
 /// Unit normals in maps and vertex buffers: their errors, and the time of decoding.
-Experiment normal_reading_experiment(const RunOptions& options);
+PreparedExperiment normal_reading_experiment(bool is_quick);
 
 /// A smooth surface: the time of encoding, and the effect of dithering on the mean of a patch.
-Experiment normal_writing_experiment(const RunOptions& options);
-
-/// Tangent frames in vertex buffers: their errors, and the time of decoding.
-Experiment frame_reading_experiment(const RunOptions& options);
-
-/// Tangent frames in vertex buffers: the time of encoding.
-Experiment frame_writing_experiment(const RunOptions& options);
+PreparedExperiment normal_writing_experiment();
 
 }  // namespace relief

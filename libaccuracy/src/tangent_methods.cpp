@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 #include "report_names.h"
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 

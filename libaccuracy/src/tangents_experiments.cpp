@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures tangent methods by the normal that a tilted texel stands for in each basis, compared
 // with the frames of the surface in closed form.
-#include "tangents_experiments.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include "experiment_driver.h"
 #include "relief/accuracy/ground_truth.h"
-#include "relief/accuracy/measure.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
@@ -92,10 +90,10 @@ std::string frames_finding(const Experiment& experiment) {
     constexpr std::size_t middle = 1;
     constexpr std::size_t fine = 2;
     const auto stored = [&](std::size_t slices) -> const Measurement& {
-        return experiment.measurements.at(slices);
+        return measurement_of(experiment, method_id(slices));
     };
     const auto derived = [&](std::size_t slices) -> const Measurement& {
-        return experiment.measurements.at(rendered_slices.size() + slices);
+        return measurement_of(experiment, method_id(rendered_slices.size() + slices));
     };
     return fmt::format(
                "With {} triangles the images have a FLIP error of {:.3f} (RMS) with stored frames "
@@ -111,12 +109,11 @@ std::string frames_finding(const Experiment& experiment) {
                 {"no normal map", experiment.measurements.back()}});
 }
 
-}  // namespace
-
-Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& options) {
+/// Compares stored frames with frames that shaders derive; only in rendered images do derived
+/// frames cost time.
+PreparedExperiment rendered_frames_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    Experiment experiment = image_experiment("tangents/drawn", size);
-    experiment.subject = Subject::tangents;
+    Experiment experiment = image_experiment(size);
     experiment.question =
         "Which tangent frames cost less in rendering: stored ones, or ones that shaders "
         "derive?";
@@ -125,26 +122,21 @@ Experiment rendered_frames_experiment(const GlDevice& device, const RunOptions& 
         "one ray through the center of each pixel. Tests verify that shader by closed forms.",
         torus_triangles(smooth_torus_slices));
     experiment.input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size);
-    if (!device.is_available_for(experiment)) return experiment;
-    const Image ground_truth =
-        supersampled_reference(bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1);
-    const std::vector<RenderedMethod> all = frame_methods();
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, all, ground_truth, options, experiment);
-    std::vector<std::string> names;
-    for (const FrameChoice& choice : frame_choices)
-        names.emplace_back(choice.frames);
-    experiment.charts = {torus_chart(experiment, names, rendered_slices)};
-    for (std::size_t i = 0; i < all.size(); i += rendered_slices.size()) {
-        add_images("A normal map on few triangles", all[i], pictures[i], ground_truth, 0.5,
-                   experiment);
-    }
-    mark_pareto_optimal(experiment);
-    experiment.finding = frames_finding(experiment);
-    return experiment;
+    const std::shared_ptr<const GlDevice> device = options.device.get();
+    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
+    return prepare_rendering(
+        device, std::move(experiment), frame_methods(),
+        supersampled_reference(bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1),
+        [](Experiment& report, const Renderings& renderings) {
+            std::vector<std::string> names;
+            for (const FrameChoice& choice : frame_choices)
+                names.emplace_back(choice.frames);
+            report.charts = {torus_chart(report, names, rendered_slices)};
+            for (std::size_t i = 0; i < renderings.methods.size(); i += rendered_slices.size())
+                add_images("A normal map on few triangles", renderings, i, 0.5, report);
+            report.finding = frames_finding(report);
+        });
 }
-
-namespace {
 
 constexpr int cells_of_tangent_tables = 64;  ///< The same number as in docs/tangents.md.
 constexpr const char* ground_truth_text =
@@ -175,36 +167,45 @@ double stored_bytes_of(const TangentFrameMethod& method) {
     return method.tangents ? 28.0 : 12.0;
 }
 
-MeasuredMethod exact_frames(const TexturedMesh& ground_truth) {
-    MeasuredMethod method;
-    method.name = "surface's own";
-    method.choices = {{"frames", "surface's own"}, {"shader", "as interpolated"}};
-    method.error =
-        texel_errors(ground_truth, exact_tangents(ground_truth), ShaderBasis::as_interpolated);
-    method.stored_bytes = 28.0;
-    method.note =
-        "Not a method: the exact frames at the vertices. The error that remains is that of "
-        "interpolation.";
-    return method;
+/// The id of the exact frames, which are listed before compared_tangent_methods().
+constexpr std::size_t exact_frames_index = 0;
+
+ExperimentMethod exact_frames(const std::shared_ptr<const TexturedMesh>& ground_truth) {
+    return {.id = method_id(exact_frames_index),
+            .name = "surface's own",
+            .choices = {{"frames", "surface's own"}, {"shader", "as interpolated"}},
+            .error =
+                [ground_truth] {
+                    return texel_errors(*ground_truth, exact_tangents(*ground_truth),
+                                        ShaderBasis::as_interpolated);
+                },
+            .stored_bytes = 28.0,
+            .note =
+                "Not a method: the exact frames at the vertices. The error that remains is "
+                "that of interpolation."};
 }
 
-std::vector<MeasuredMethod> measured_on(const TexturedMesh& ground_truth) {
-    std::vector<MeasuredMethod> measured = {exact_frames(ground_truth)};
+std::vector<ExperimentMethod> methods_on(const std::shared_ptr<const TexturedMesh>& ground_truth) {
+    std::vector<ExperimentMethod> all = {exact_frames(ground_truth)};
     for (const TangentFrameMethod& method : compared_tangent_methods()) {
-        MeasuredMethod one;
+        ExperimentMethod& one = all.emplace_back();
+        one.id = method_id(all.size() - 1);
         one.name = method.name;
         one.choices = choices_of(method);
-        one.error = texel_errors(ground_truth, method.tangents_of(ground_truth.mesh), method.basis);
+        one.error = [ground_truth, method] {
+            return texel_errors(*ground_truth, method.tangents_of(ground_truth->mesh),
+                                method.basis);
+        };
         one.stored_bytes = stored_bytes_of(method);
-        if (method.tangents)
-            one.work = [tangents = method.tangents, &ground_truth] { tangents(ground_truth.mesh); };
-        else
+        if (method.tangents) {
+            one.work = [ground_truth, tangents = method.tangents] { tangents(ground_truth->mesh); };
+        } else {
             one.note =
                 "No work for the mesh: shaders derive the frame of each pixel. tangents/drawn "
                 "measures the time of that.";
-        measured.push_back(std::move(one));
+        }
     }
-    return measured;
+    return all;
 }
 
 /// The expected exponent of the error over the number of cells. The error of a single triangle is
@@ -260,13 +261,12 @@ Chart bevels_chart() {
 }
 
 /// "Of the stored frames, mikktspace has the smallest error, ... degrees RMS (...)."
-/// \param experiment  has the measurement of the exact frames first, then those of the methods
 std::string tangents_finding(const Experiment& experiment) {
     const Measurement* best = nullptr;
     const Measurement* derived = nullptr;
     const std::vector<TangentFrameMethod> methods = compared_tangent_methods();
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        const Measurement& one = experiment.measurements[i + 1];
+        const Measurement& one = measurement_of(experiment, method_id(exact_frames_index + 1 + i));
         if (methods[i].basis == ShaderBasis::derived) derived = &one;
         if (methods[i].basis != ShaderBasis::as_interpolated) continue;
         if (best == nullptr || one.error.rms < best->error.rms) best = &one;
@@ -274,114 +274,114 @@ std::string tangents_finding(const Experiment& experiment) {
     return fmt::format(
         "Of the stored frames, {} has the smallest error, {:.3g} degrees RMS (the exact frames of "
         "the surface: {:.3g}); frames derived in the shader have an error of {:.3g}.",
-        best->method, best->error.rms, experiment.measurements.front().error.rms,
-        derived->error.rms);
+        best->method, best->error.rms,
+        measurement_of(experiment, method_id(exact_frames_index)).error.rms, derived->error.rms);
 }
 
-Experiment on_mesh(const std::string& id, const std::string& input,
-                   const TexturedMesh& ground_truth, const CostChoice& costs,
-                   const RunOptions& options) {
-    Experiment experiment;
-    experiment.id = id;
-    experiment.subject = Subject::tangents;
-    experiment.ground_truth = ground_truth_text;
-    experiment.input = fmt::format("{}: {} triangles", input, ground_truth.mesh.triangles.size());
-    experiment.error_unit = "degrees";
-    experiment.item = "triangle";
-    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
-    measure_methods(measured_on(ground_truth), options, costs, experiment);
-    experiment.finding = tangents_finding(experiment);
-    return experiment;
+Experiment described(const TexturedMesh& ground_truth) {
+    return {.error_unit = "degrees",
+            .item = "triangle",
+            .items = static_cast<double>(ground_truth.mesh.triangles.size())};
 }
 
-Experiment on_case(const TexturedCase& one, const RunOptions& options) {
-    const TexturedMesh ground_truth = one.mesh(cells_of_tangent_tables);
+/// All methods on a mesh. \param input  describes the mesh
+PreparedExperiment on_mesh(TexturedMesh mesh, const std::string& input) {
+    const auto ground_truth = std::make_shared<const TexturedMesh>(std::move(mesh));
+    PreparedExperiment prepared;
+    prepared.report = described(*ground_truth);
+    prepared.report.ground_truth = ground_truth_text;
+    prepared.report.input =
+        fmt::format("{}: {} triangles", input, ground_truth->mesh.triangles.size());
+    prepared.methods = methods_on(ground_truth);
+    prepared.finish = [](Experiment& report) { report.finding = tangents_finding(report); };
+    return prepared;
+}
+
+PreparedExperiment on_case(const TexturedCase& one, bool is_quick) {
     const std::string input = one.triangulation
                                   ? fmt::format("{}, {} x {} cells", one.name,
                                                 cells_of_tangent_tables, cells_of_tangent_tables)
                                   : one.name;
-    Experiment experiment =
-        on_mesh("tangents/" + one.id, input, ground_truth,
-                {.one_thread = true, .all_threads = true, .memory = false}, options);
-    experiment.question = fmt::format(
+    PreparedExperiment prepared = on_mesh(one.mesh(cells_of_tangent_tables), input);
+    prepared.report.question = fmt::format(
         "What is the error of the normal of a texel tilted by 30 degrees, by frame method ({})?",
         one.name);
-    experiment.charts.push_back(computed_once(options, "chart", [&] {
-        return one.triangulation ? cells_chart(one, options.is_quick) : bevels_chart();
-    }));
-    return experiment;
+    prepared.costs.memory = false;
+    prepared.finish = [one, is_quick](Experiment& report) {
+        report.finding = tangents_finding(report);
+        report.charts = {one.triangulation ? cells_chart(one, is_quick) : bevels_chart()};
+    };
+    return prepared;
 }
 
-Experiment tangents_on_large_mesh(const RunOptions& options) {
-    const int cells = options.is_quick ? 128 : 400;
-    const TexturedMesh ground_truth = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
-                                                    TextureLayout::upright, cells, 1);
-    Experiment experiment =
-        on_mesh("tangents/large", fmt::format("torus, jittered, {} x {} cells", cells, cells),
-                ground_truth, {}, options);
-    experiment.question = "How much time and memory do the tangents of a large mesh cost?";
-    return experiment;
+PreparedExperiment tangents_on_large_mesh(bool is_quick) {
+    const int cells = is_quick ? 128 : 400;
+    PreparedExperiment prepared =
+        on_mesh(textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
+                              TextureLayout::upright, cells, 1),
+                fmt::format("torus, jittered, {} x {} cells", cells, cells));
+    prepared.report.question = "How much time and memory do the tangents of a large mesh cost?";
+    return prepared;
 }
 
-Experiment mismatches(const RunOptions& options) {
-    const TexturedMesh ground_truth =
-        textured_mesh(AnalyticSurface::torus, Triangulation::jittered, TextureLayout::upright,
-                      options.is_quick ? 32 : cells_of_tangent_tables, 1);
-    Experiment experiment;
-    experiment.id = "tangents/mismatch";
-    experiment.subject = Subject::tangents;
-    experiment.question =
-        "What is the error of a map that is baked in one basis and read in another?";
-    experiment.ground_truth =
-        "The normal that was baked. Reading it in the same basis restores it exactly.";
-    experiment.input =
-        fmt::format("normals tilted by 30 degrees on a jittered torus of {} triangles",
-                    ground_truth.mesh.triangles.size());
-    experiment.error_unit = "degrees";
-    experiment.item = "triangle";
-    experiment.items = static_cast<double>(ground_truth.mesh.triangles.size());
-    std::vector<MeasuredMethod> measured;
-    for (const TangentFrameMethod& baker : compared_tangent_methods()) {
-        for (const TangentFrameMethod& reader : compared_tangent_methods()) {
-            measured.push_back(
-                {.name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
-                 .choices = {{"baked in", baker.name}, {"read in", reader.name}},
-                 .error = mismatch_errors(ground_truth, baker, reader)});
-        }
-    }
-    measure_methods(measured, options, {}, experiment);
+std::string mismatch_finding(const Experiment& experiment) {
     const auto by_rms = [](const Measurement& a, const Measurement& b) {
         return a.error.rms < b.error.rms;
     };
     const auto& all = experiment.measurements;
     const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
-    experiment.finding = fmt::format(
+    return fmt::format(
         "A map that is read in the basis of its bake is exact to {:.1g} degrees. The worst pair "
-        "has "
-        "an error of {:.3g} degrees RMS, {:.3g} at most: {}.",
+        "has an error of {:.3g} degrees RMS, {:.3g} at most: {}.",
         most_accurate(experiment)->error.rms, worst.error.rms, worst.error.max, worst.method);
-    return experiment;
+}
+
+PreparedExperiment mismatches(bool is_quick) {
+    const auto ground_truth = std::make_shared<const TexturedMesh>(
+        textured_mesh(AnalyticSurface::torus, Triangulation::jittered, TextureLayout::upright,
+                      is_quick ? 32 : cells_of_tangent_tables, 1));
+    PreparedExperiment prepared;
+    prepared.report = described(*ground_truth);
+    prepared.report.question =
+        "What is the error of a map that is baked in one basis and read in another?";
+    prepared.report.ground_truth =
+        "The normal that was baked. Reading it in the same basis restores it exactly.";
+    prepared.report.input =
+        fmt::format("normals tilted by 30 degrees on a jittered torus of {} triangles",
+                    ground_truth->mesh.triangles.size());
+    for (const TangentFrameMethod& baker : compared_tangent_methods()) {
+        for (const TangentFrameMethod& reader : compared_tangent_methods()) {
+            prepared.methods.push_back(
+                {.id = method_id(prepared.methods.size()),
+                 .name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
+                 .choices = {{"baked in", baker.name}, {"read in", reader.name}},
+                 .error = [ground_truth, baker, reader] {
+                     return mismatch_errors(*ground_truth, baker, reader);
+                 }});
+        }
+    }
+    prepared.finish = [](Experiment& report) { report.finding = mismatch_finding(report); };
+    return prepared;
 }
 
 }  // namespace
 
-std::vector<PlannedExperiment> tangents_plan(const RunOptions& options) {
+std::vector<PlannedExperiment> tangents_plan(const PlanOptions& options) {
+    const bool is_quick = options.is_quick;
     std::vector<PlannedExperiment> plan;
     for (const TexturedCase& one : textured_cases()) {
-        if (options.is_quick && !one.is_quick) continue;
-        plan.push_back(
-            {"Tangents: " + one.name, [&options, one] { return on_case(one, options); }});
+        if (is_quick && !one.is_quick) continue;
+        plan.push_back({"tangents/" + one.id, Subject::tangents, "Tangents: " + one.name,
+                        [one, is_quick] { return on_case(one, is_quick); }});
     }
-    plan.push_back(
-        {"Tangents: a large mesh", [&options] { return tangents_on_large_mesh(options); }});
-    plan.push_back({"Tangents: bases that differ", [&options] { return mismatches(options); }});
-    plan.push_back({"Tangents: frames stored and derived, drawn",
-                    [&options] { return rendered_frames_experiment(GlDevice(), options); }});
+    plan.push_back({"tangents/large", Subject::tangents, "Tangents: a large mesh",
+                    [is_quick] { return tangents_on_large_mesh(is_quick); }});
+    plan.push_back({"tangents/mismatch", Subject::tangents, "Tangents: bases that differ",
+                    [is_quick] { return mismatches(is_quick); }});
+    plan.push_back({"tangents/drawn", Subject::tangents,
+                    "Tangents: frames stored and derived, drawn",
+                    [options] { return rendered_frames_experiment(options); }});
     return plan;
-}
-
-std::vector<Experiment> tangents_experiments(const RunOptions& options) {
-    return run_planned(tangents_plan(options), options);
 }
 
 }  // namespace relief

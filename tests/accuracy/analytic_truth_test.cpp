@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 #include "report_names.h"
 
 namespace relief {

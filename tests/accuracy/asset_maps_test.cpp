@@ -15,8 +15,8 @@
 #include "experiment_driver.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "storage_experiments.h"
 #include "support/shapes.h"
 
@@ -55,7 +55,7 @@ TEST(AssetHeights, AreThoseOfTheBumpExperiment) {
     const BumpExperiment same = measure_bump(sample_of(field.heights), std::span(&method, 1), how);
     EXPECT_EQ(found(own, "sobel3, float32, 8 bit").error, same.measurements[0].error);
     // Smooth waves in floats: the kernel of the highest order, in double, is the reference.
-    EXPECT_THAT(own.recommendation.words, HasSubstr("central7, float64, 32 bit: "));
+    EXPECT_THAT(own.recommendation.description, HasSubstr("central7, float64, 32 bit: "));
     EXPECT_THAT(own.command(), HasSubstr("relief-bake bump map.png OUT.exr --strength "));
     EXPECT_THAT(own.command(), HasSubstr(" --kernel central7 --precision float64 --wrap repeat"));
     EXPECT_THAT(own.experiment.ground_truth, HasSubstr("the exact normals are unknown"));
@@ -85,9 +85,9 @@ TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     // Methods are within half a degree of the reference, but the reference has a larger error.
     EXPECT_LT(most_accurate(own.experiment)->error.rms, 0.5);
     EXPECT_EQ(own.recommendation.method, std::nullopt);
-    EXPECT_THAT(own.recommendation.words,
+    EXPECT_THAT(own.recommendation.description,
                 HasSubstr("no method is within 0.5 degrees: the smallest error "));
-    EXPECT_THAT(own.recommendation.words, HasSubstr(" (the map itself "));
+    EXPECT_THAT(own.recommendation.description, HasSubstr(" (the map itself "));
 }
 
 TEST(AssetHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
@@ -95,7 +95,7 @@ TEST(AssetHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
     AssetOptions options = untimed_map();
     options.request.max_error = 5.0;
     const AssetExperiment own = measure_asset_heights(field.heights, field.options, options);
-    ASSERT_TRUE(own.recommendation.method.has_value()) << own.recommendation.words;
+    ASSERT_TRUE(own.recommendation.method.has_value()) << own.recommendation.description;
     const Measurement& taken = own.experiment.measurements[*own.recommendation.method];
     EXPECT_EQ(taken.cost.stored_bytes, 3.0);
     EXPECT_THAT(taken.method, HasSubstr("float32, 8 bit"));
@@ -202,7 +202,7 @@ TEST(AssetNormalMaps, AreComparedWithWhatTheFileHolds) {
     // Rounding to codes of 2 / 255: errors of up to half a code, evenly distributed on two axes.
     const double rounding = 180.0 / std::numbers::pi / 127.5 / std::sqrt(6.0);
     EXPECT_NEAR(own.experiment.reference_error.value(), rounding, 1e-12);
-    EXPECT_THAT(own.recommendation.words,
+    EXPECT_THAT(own.recommendation.description,
                 HasSubstr("as it is: 0.183 degrees RMS expected (the rounding of the file itself "
                           "0.183, this method adds 0) at 3 bytes"));
 }
@@ -240,7 +240,7 @@ TEST(AssetNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
     EXPECT_NEAR(lost.max, 2.0 * below, 0.02);
     for (const char* whole : {"xyz 16 bit", "octahedral 2 x 16 bit", "xyz float"})
         EXPECT_LT(found(own, whole).error.max, 0.01) << whole;
-    EXPECT_THAT(own.recommendation.words, Not(HasSubstr("xy 16 bit")));
+    EXPECT_THAT(own.recommendation.description, Not(HasSubstr("xy 16 bit")));
 }
 
 TEST(BumpWords, AreThoseOfTheTools) {

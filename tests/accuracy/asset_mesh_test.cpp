@@ -117,17 +117,17 @@ Mesh capped_cylinder(int sides, int rings) {
 
 TEST(AssetNormals, SayWhereNoMethodWasJudged) {
     const AssetExperiment smooth = normals_of(capped_cylinder(32, 16));
-    EXPECT_THAT(smooth.recommendation.words, HasSubstr("of the vertices are not judged"));
-    EXPECT_THAT(smooth.recommendation.words,
+    EXPECT_THAT(smooth.recommendation.description, HasSubstr("of the vertices are not judged"));
+    EXPECT_THAT(smooth.recommendation.description,
                 HasSubstr("(if the mesh has hard edges, try --crease 40)"));
     EXPECT_THAT(smooth.experiment.finding, HasSubstr("of the vertices are not judged"));
     AssetMeshOptions how;
     how.crease_angle = glm::radians(40.0);
-    EXPECT_THAT(normals_of(capped_cylinder(32, 16), how).recommendation.words,
+    EXPECT_THAT(normals_of(capped_cylinder(32, 16), how).recommendation.description,
                 Not(HasSubstr("try --crease")));
     const AnalyticMesh whole =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 48, 1);
-    EXPECT_THAT(normals_of(whole.mesh).recommendation.words, Not(HasSubstr("not judged")));
+    EXPECT_THAT(normals_of(whole.mesh).recommendation.description, Not(HasSubstr("not judged")));
 }
 
 TEST(AssetNormals, SayWhichMethodsTheReferenceCannotTellApart) {
@@ -147,8 +147,8 @@ TEST(AssetNormals, SayWhichMethodsTheReferenceCannotTellApart) {
         EXPECT_NEAR(one.expected.value().total(), std::hypot(reference, one.error.rms), 1e-12);
     }
     ASSERT_GT(alike, 0U);
-    EXPECT_THAT(own.recommendation.words, HasSubstr("; not told apart from "));
-    EXPECT_THAT(own.recommendation.words,
+    EXPECT_THAT(own.recommendation.description, HasSubstr("; not told apart from "));
+    EXPECT_THAT(own.recommendation.description,
                 HasSubstr(" degrees RMS expected (the fitted surface itself "));
 }
 
@@ -160,7 +160,7 @@ TEST(AssetNormals, AreThoseThatTheToolComputes) {
 TEST(AssetNormals, RecommendNothingWhereThereIsNoSurface) {
     const AssetExperiment own = normals_of(test::cube());
     EXPECT_EQ(own.recommendation.method, std::nullopt);
-    EXPECT_THAT(own.recommendation.words, HasSubstr("too coarse"));
+    EXPECT_THAT(own.recommendation.description, HasSubstr("too coarse"));
     EXPECT_TRUE(own.command().empty());
 }
 
@@ -169,7 +169,7 @@ TEST(CreaseRule, AreTheOnesToldOrThoseOfTheFile) {
     const CreaseRule by_normals = crease_rule(mesh, std::nullopt);
     EXPECT_NEAR(by_normals.edges.crease_angle.value(), glm::radians(45.0), 1e-9);
     EXPECT_EQ(
-        by_normals.words,
+        by_normals.description,
         "edges sharper than 45 degrees are hard, which agrees with the stored normals at 100% of "
         "the edges");
     EXPECT_EQ(by_normals.option, " --crease 45");
@@ -182,7 +182,7 @@ TEST(CreaseRule, AreTheOnesToldOrThoseOfTheFile) {
     EXPECT_EQ(crease_rule(mesh, glm::radians(30.0)).option,
               " --crease 30 --ignore-smoothing-groups");
     mesh = test::sphere(8, 6);
-    EXPECT_EQ(crease_rule(mesh, std::nullopt).words, "no edge is hard");
+    EXPECT_EQ(crease_rule(mesh, std::nullopt).description, "no edge is hard");
     mesh.normals.clear();
     EXPECT_FALSE(crease_rule(mesh, std::nullopt).has_any());
 }
@@ -250,7 +250,7 @@ TEST(AssetMesh, IsTimedAndRecommendedByTime) {
     const AssetExperiment own = measure_asset_mesh(ground_truth.mesh, {}, options).front();
     EXPECT_THAT(found(own, "max").cost.one_thread.value().rounds, SizeIs(3));
     EXPECT_EQ(own.recommendation.method, std::nullopt);
-    EXPECT_THAT(own.recommendation.words, HasSubstr("no method is within 1e-06 degrees"));
+    EXPECT_THAT(own.recommendation.description, HasSubstr("no method is within 1e-06 degrees"));
 }
 
 TEST(AssetMesh, EndsWhenThatIsWished) {

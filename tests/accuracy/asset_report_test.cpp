@@ -42,7 +42,7 @@ TEST(Recommended, IsTheKnee) {
     const Recommendation found = recommended(usual(), {});
     EXPECT_EQ(found.method, 2U);
     EXPECT_EQ(found.next, 3U);
-    EXPECT_EQ(found.words,
+    EXPECT_EQ(found.description,
               "good: 0.05 degrees RMS at 41.0 ms; the next more accurate (best) takes 3 times as "
               "long for 0.01 degrees less");
 }
@@ -56,7 +56,7 @@ TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
     EXPECT_EQ(second_for(0.079).method, 1U);
     EXPECT_EQ(second_for(0.081).method, 0U);
     EXPECT_EQ(second_for(0.079).next, std::nullopt);
-    EXPECT_THAT(second_for(0.079).words, HasSubstr("no other method is more accurate"));
+    EXPECT_THAT(second_for(0.079).description, HasSubstr("no other method is more accurate"));
 }
 
 TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
@@ -74,7 +74,7 @@ TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeAboutAsLong) {
     rule.request.max_error = 0.5;
     EXPECT_EQ(
         recommended(experiment_of({measured("a", 0.5, 0.0100), measured("b", 0.4, 0.0101)}), rule)
-            .words,
+            .description,
         "a: 0.5 degrees RMS at 10.0 ms; the next more accurate (b) takes about as long for 0.1 "
         "degrees less");
 }
@@ -98,7 +98,7 @@ TEST(Recommended, KeepsWithinAnError) {
     rule.request.max_error = 0.01;
     const Recommendation none = recommended(usual(), rule);
     EXPECT_EQ(none.method, std::nullopt);
-    EXPECT_EQ(none.words,
+    EXPECT_EQ(none.description,
               "no method is within 0.01 degrees: the smallest error is 0.12, with best");
 }
 
@@ -109,12 +109,12 @@ TEST(Recommended, KeepsWithinATime) {
     rule.request.max_seconds = 0.03;
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
     rule.request.max_seconds = 0.001;
-    EXPECT_EQ(recommended(usual(), rule).words,
+    EXPECT_EQ(recommended(usual(), rule).description,
               "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
     rule.request.max_seconds = 0.1;
     rule.request.max_error = 0.045;
     EXPECT_EQ(
-        recommended(usual(), rule).words,
+        recommended(usual(), rule).description,
         "no method is within 0.045 degrees and 100 ms: the fastest with that error takes 123 ms, "
         "with best");
 }
@@ -128,7 +128,7 @@ TEST(Recommended, LeavesOutWhatCannotBeTaken) {
     experiment.measurements[3].error.undefined = 1;
     EXPECT_EQ(recommended(experiment, rule).method, 0U);
     EXPECT_EQ(recommended(experiment_of({}), {}).method, std::nullopt);
-    EXPECT_EQ(recommended(experiment_of({}), {}).words, "nothing could be measured");
+    EXPECT_EQ(recommended(experiment_of({}), {}).description, "nothing could be measured");
 }
 
 TEST(Recommended, GoesByBytesWhereThoseAreDear) {
@@ -141,7 +141,7 @@ TEST(Recommended, GoesByBytesWhereThoseAreDear) {
     rule.cost = CostKind::bytes;
     rule.request.max_seconds = 1e-9;  // Has no effect on bytes.
     const Recommendation found = recommended(experiment, rule);
-    EXPECT_EQ(found.words,
+    EXPECT_EQ(found.description,
               "good: 0.05 degrees RMS at 8 bytes; the next more accurate (best) takes 28 bytes for "
               "0.01 degrees less");
 }
@@ -155,7 +155,7 @@ TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
     rule.request.max_error = 0.131;
     Recommendation found = recommended(experiment, rule);
     EXPECT_EQ(found.method, 2U);
-    EXPECT_EQ(found.words,
+    EXPECT_EQ(found.description,
               "good: 0.13 degrees RMS expected (the map itself 0.12, this method adds 0.05) at "
               "41.0 ms; the next more accurate (best) takes 3 times as long for 0.01 degrees less");
     rule.request.max_error = 0.128;
@@ -165,7 +165,7 @@ TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
     found = recommended(experiment, rule);
     EXPECT_EQ(found.method, std::nullopt);
     EXPECT_EQ(
-        found.words,
+        found.description,
         "no method is within 0.125 degrees: the smallest error is 0.126, with best (the map itself "
         "0.12)");
     // As an invisible error, it reduces the value of the accurate methods.
@@ -198,7 +198,7 @@ TEST(Recommended, WithoutTimesAndBoundsIsTheMostAccurate) {
     for (Measurement& one : experiment.measurements)
         one.cost = {};
     EXPECT_EQ(recommended(experiment, {}).method, 3U);
-    EXPECT_EQ(recommended(experiment, {}).words,
+    EXPECT_EQ(recommended(experiment, {}).description,
               "best: 0.04 degrees RMS; no other method is more accurate");
 }
 

@@ -11,9 +11,9 @@
 #include "error_metrics.h"
 #include "error_tables/bumpy_reference.h"
 #include "experiment_checks.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/normals.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {
@@ -105,17 +105,17 @@ TEST(BakeTruth, OfManyRaysIsThatOfTheFormula) {
     EXPECT_LT(rms_of(one, all, &test::TexelReference::mesh_middle), 0.1);
     EXPECT_GT(rms_of(one, all, &test::TexelReference::mesh), 0.3);
     // The experiments use such a bake with 256 rays over all texels, including the poles.
-    const std::vector<BakeSampling> ways = {{1}};
-    const std::vector<BakeWayResult> found = bake.measured(ways, test::quick_untimed());
+    const BakeMeasurement found =
+        measure_bake(bake.reference(), {1}, std::vector<NormalMapFormat>{{.bits = 32}});
     const double between = rms_between(one, many);
-    EXPECT_NEAR(found[0].trial.errors[2].rms, between, 0.1 * between);
+    EXPECT_NEAR(found.errors.front().rms, between, 0.1 * between);
     // A map with negated x is detected.
     EXPECT_GT(rms_of(many, all, &test::TexelReference::mesh, -1.0), 20.0);
 }
 
 /// The experiments, run once per process.
 const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = bake_experiments(test::quick_untimed());
+    static const std::vector<Experiment> all = test::run_quick(Subject::bake);
     return all;
 }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "experiment_checks.h"
-#include "relief/accuracy/measure_bump.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/report.h"
 
 namespace relief::test {
@@ -189,8 +189,8 @@ TEST(NamedKernels, AreAllThereAndGoByOneNameEach) {
     EXPECT_EQ(names.size(), 13U);
     EXPECT_EQ(kernels.size(), 10U);
     EXPECT_EQ(name_of(Kernel::gaussian, 7), "gaussian 7");
-    EXPECT_STREQ(recipe_named("domes of 44, 8 bit").name, "domes of 44, 8 bit");
-    EXPECT_THROW(recipe_named("no such field"), InvalidInput);
+    EXPECT_STREQ(field_recipe("domes of 44, 8 bit").name, "domes of 44, 8 bit");
+    EXPECT_THROW(field_recipe("no such field"), InvalidInput);
 }
 
 /// The height of surface_at() in long double: the waves of the coarsest map, scaled along all axes.
@@ -247,7 +247,7 @@ using testing::HasSubstr;
 
 /// The experiments, run once per process.
 const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = bump_experiments(quick_untimed());
+    static const std::vector<Experiment> all = run_quick(Subject::bump);
     return all;
 }
 

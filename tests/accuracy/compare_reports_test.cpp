@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Comparisons of two runs: of equal runs no change is reported, and changes are found. Times are
 // written down or drawn at random from fixed seeds, never measured.
-#include "relief/accuracy/compare_reports.h"
+#include "relief/accuracy/experiment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,11 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiment_driver.h"
@@ -22,6 +24,20 @@ inline RunOptions quick_untimed() {
     options.is_quick = true;
     options.is_timed = false;
     return options;
+}
+
+/// Runs one experiment by its id, whose first part is the subject.
+inline Experiment run_one(const std::string& id, RunOptions options = quick_untimed()) {
+    options.selects_experiment = [&](const std::string& one) { return one == id; };
+    const std::array subjects = {subject_from(id.substr(0, id.find('/')))};
+    std::vector<Experiment> all = run_experiments(subjects, options);
+    if (all.size() != 1) throw std::runtime_error("no experiment " + id);
+    return std::move(all.front());
+}
+
+/// Runs the experiments of one subject.
+inline std::vector<Experiment> run_quick(Subject subject) {
+    return run_experiments(std::array{subject}, quick_untimed());
 }
 
 /// The experiment with a title.

@@ -1,64 +1,150 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver of experiments: measured methods, planned experiments, passes and subjects.
+// The driver of experiments: measured methods, filters, passes and subjects.
 #include "experiment_driver.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "relief/accuracy/experiment.h"
-#include "relief/accuracy/measure.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
 namespace {
 
-MeasuredMethod method_of(const std::string& name, double rms, std::function<void()> work) {
-    MeasuredMethod method;
+using testing::ElementsAre;
+using testing::SizeIs;
+
+ExperimentMethod method_of(MethodId id, const std::string& name, double rms,
+                           std::function<void()> work) {
+    ExperimentMethod method;
+    method.id = id;
     method.name = name;
     method.choices = {{"kind", name}};
-    method.error.count = 1;
-    method.error.rms = rms;
+    method.error = [rms] {
+        ErrorStats error;
+        error.count = 1;
+        error.rms = rms;
+        return error;
+    };
     method.work = std::move(work);
     method.stored_bytes = 4.0;
     return method;
 }
 
-TEST(MeasureMethods, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
+constexpr CostChoice one_thread_alone{.one_thread = true, .all_threads = false, .memory = false};
+
+RunOptions rounds(std::size_t counted, std::size_t warm_up = 0) {
     RunOptions options;
-    options.repeats = {3, 0};
+    options.repeats = {counted, warm_up};
+    return options;
+}
+
+RunOptions untimed() {
+    RunOptions options;
+    options.is_timed = false;
+    return options;
+}
+
+enum class Fruit { apple, none, pear };
+
+TEST(Measured, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
     std::size_t first = 0;
     std::size_t last = 0;
-    const std::vector<MeasuredMethod> methods = {method_of("first", 1.0, [&] { ++first; }),
-                                                 method_of("none", 0.5, {}),
-                                                 method_of("last", 2.0, [&] { ++last; })};
-    Experiment experiment;
-    measure_methods(methods, options, {.one_thread = true, .all_threads = false, .memory = false},
-                    experiment);
+    PreparedExperiment prepared{.costs = one_thread_alone};
+    prepared.methods = {method_of(method_id(Fruit::apple), "first", 1.0, [&] { ++first; }),
+                        method_of(method_id(Fruit::none), "none", 0.5, {}),
+                        method_of(method_id(Fruit::pear), "last", 2.0, [&] { ++last; })};
+    const Experiment experiment = measured(prepared, rounds(3));
     ASSERT_EQ(experiment.measurements.size(), 3U);
     EXPECT_GT(first, 0U);
     EXPECT_GT(last, 0U);
-    EXPECT_EQ(experiment.measurements[0].cost.one_thread.value().rounds.size(), 3U);
-    EXPECT_FALSE(experiment.measurements[1].cost.one_thread);
-    EXPECT_TRUE(experiment.measurements[2].cost.one_thread);
-    EXPECT_EQ(experiment.measurements[1].cost.stored_bytes, 4.0);
-    EXPECT_TRUE(std::isnan(median_seconds(experiment.measurements[1])));
-    EXPECT_FALSE(experiment.measurements[1].is_pareto_optimal);  // It has no time.
-    EXPECT_TRUE(experiment.measurements[0].is_pareto_optimal);
-    EXPECT_EQ(experiment.measurements[2].choices, methods[2].choices);
+    const auto of = [&](Fruit fruit) { return measurement_of(experiment, method_id(fruit)); };
+    EXPECT_EQ(of(Fruit::apple).cost.one_thread.value().rounds.size(), 3U);
+    EXPECT_FALSE(of(Fruit::none).cost.one_thread);
+    EXPECT_TRUE(of(Fruit::pear).cost.one_thread);
+    EXPECT_FALSE(of(Fruit::pear).cost.all_threads);
+    EXPECT_FALSE(of(Fruit::pear).cost.peak_bytes);
+    EXPECT_EQ(of(Fruit::none).cost.stored_bytes, 4.0);
+    EXPECT_TRUE(std::isnan(median_seconds(of(Fruit::none))));
+    EXPECT_FALSE(of(Fruit::none).is_pareto_optimal);  // It has no time.
+    EXPECT_TRUE(of(Fruit::apple).is_pareto_optimal);
+    EXPECT_EQ(of(Fruit::pear).choices, prepared.methods[2].choices);
+    EXPECT_EQ(of(Fruit::pear).error.rms, 2.0);
 }
 
-TEST(MeasureMethods, RunsNothingWhereNothingIsTimed) {
-    RunOptions options;
-    options.is_timed = false;
-    const std::vector<MeasuredMethod> methods = {method_of("one", 1.0, [] { FAIL(); })};
-    Experiment experiment;
-    measure_methods(methods, options, {}, experiment);
-    EXPECT_FALSE(experiment.measurements[0].cost.one_thread);
+TEST(Measured, RunsNothingWhereNothingIsTimed) {
+    PreparedExperiment prepared;
+    prepared.methods = {method_of({}, "one", 1.0, [] { FAIL(); })};
+    const Experiment experiment = measured(prepared, untimed());
+    EXPECT_EQ(experiment.measurements[0].cost, Cost{.stored_bytes = 4.0});
     EXPECT_FALSE(experiment.measurements[0].is_pareto_optimal);
+}
+
+TEST(Measured, InterleavesAndCountsTheRequestedRounds) {
+    std::string calls;
+    const auto slow = [&](char name) {
+        return [&calls, name] {
+            calls += name;
+            const std::clock_t begin = std::clock();
+            while (std::clock() - begin < 5 * CLOCKS_PER_SEC / 1000) {
+            }
+        };
+    };
+    PreparedExperiment prepared{.costs = one_thread_alone};
+    prepared.methods = {method_of(method_id(0), "a", 1.0, slow('a')),
+                        method_of(method_id(1), "b", 1.0, slow('b'))};
+    const Experiment experiment = measured(prepared, rounds(3, 1));
+    EXPECT_THAT(experiment.measurements[0].cost.one_thread.value().rounds, SizeIs(3));
+    // Allow for the difference of two clocks.
+    EXPECT_GE(median_seconds(experiment.measurements[1]), 4.9e-3);
+    // Each work runs once to warm up and once to estimate its time; then one round is not counted.
+    EXPECT_EQ(calls,
+              "aabb"
+              "ab"
+              "ababab");
+}
+
+TEST(Measured, RepeatsShortWorkWithinARound) {
+    std::size_t calls = 0;
+    PreparedExperiment prepared{.costs = one_thread_alone};
+    prepared.methods = {method_of({}, "short", 1.0, [&] { ++calls; })};
+    const Experiment experiment = measured(prepared, rounds(2, 1));
+    EXPECT_GT(calls, 2U + 3U * 10U);                              // More than ten per round.
+    EXPECT_LT(median_seconds(experiment.measurements[0]), 1e-3);  // The time of one call.
+}
+
+TEST(Measured, OneThreadHasTheTimeOfTheProcessor) {
+    PreparedExperiment prepared{.costs = {.memory = false}};
+    prepared.methods = {method_of(
+        {}, "waiting", 1.0, [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); })};
+    const Cost cost = measured(prepared, rounds(3, 1)).measurements[0].cost;
+    EXPECT_LT(cost.one_thread.value().spread().p10, 10e-3);
+    EXPECT_GT(cost.one_thread.value().spread().p10, 0.0);
+    EXPECT_GE(cost.all_threads.value().spread().p10, 20e-3);
+}
+
+TEST(Measured, AddsTheNoteOfTheErrorAndFinishes) {
+    PreparedExperiment prepared;
+    prepared.methods = {method_of({}, "one", 1.0, {})};
+    prepared.methods[0].error = [] { return MethodError({}, "A note."); };
+    prepared.finish = [](Experiment& report) {
+        report.finding = report.measurements.front().note + " And a finding.";
+    };
+    EXPECT_EQ(measured(prepared, untimed()).finding, "A note. And a finding.");
+}
+
+TEST(MeasurementOf, RefusesMethodsThatWereLeftOut) {
+    EXPECT_THROW(static_cast<void>(measurement_of(Experiment{}, method_id(Fruit::pear))),
+                 std::out_of_range);
 }
 
 TEST(Truest, HasTheLeastErrorOfThoseThatAreDefined) {
@@ -96,74 +182,96 @@ TEST(FittedCurve, HasTheSlopeOfItsPoints) {
     EXPECT_EQ(curve.points.size(), 3U);
 }
 
-PlannedExperiment planned(const std::string& name) {
-    return {"Title of " + name, [name] {
-                Experiment experiment;
-                experiment.id = name;
-                return experiment;
+/// An experiment whose rounds have the times that `seconds` returns.
+PlannedExperiment planned(const std::string& id, std::size_t methods,
+                          const std::function<double()>& seconds) {
+    return {id, Subject::bump, "Title of " + id, [methods, seconds] {
+                PreparedExperiment prepared{.costs = one_thread_alone};
+                for (std::size_t i = 0; i < methods; ++i)
+                    prepared.methods.push_back(method_of(
+                        method_id(i), std::string(1, static_cast<char>('a' + i)), 1.0, {}));
+                prepared.round = [seconds](MethodId) { return seconds(); };
+                return prepared;
             }};
 }
 
-TEST(RunPlanned, TellsOfEachBeforeItAndGivesItsTitle) {
+PlannedExperiment planned(const std::string& id) {
+    return planned(id, 1, [] { return 1.0; });
+}
+
+TEST(RunPlanned, TellsOfEachBeforeItAndNamesIt) {
     std::vector<std::string> told;
-    RunOptions options;
-    options.tell = [&](const std::string& title, std::size_t done, std::size_t total) {
-        told.push_back(title + " " + std::to_string(done) + "/" + std::to_string(total));
+    RunOptions options = rounds(2);
+    options.passes = 2;
+    options.tell = [&](const RunProgress& progress) {
+        told.push_back(fmt::format("{} {} {}/{}", progress.title, progress.pass, progress.done,
+                                   progress.total));
     };
-    const std::vector<PlannedExperiment> plan = {planned("a"), planned("b")};
-    const std::vector<Experiment> found = run_planned(plan, options);
-    EXPECT_THAT(told, testing::ElementsAre("Title of a 0/2", "Title of b 1/2"));
+    options.finished = [&](Experiment& experiment) { told.push_back(experiment.id); };
+    const std::vector<Experiment> found = run_planned({planned("a"), planned("b")}, options);
+    EXPECT_THAT(told, ElementsAre("Title of a 0 0/2", "Title of b 0 1/2", "Title of a 1 0/2", "a",
+                                  "Title of b 1 1/2", "b"));
     ASSERT_EQ(found.size(), 2U);
     EXPECT_EQ(found[0].id, "a");
     EXPECT_EQ(found[1].title, "Title of b");
+    EXPECT_EQ(found[1].subject, Subject::bump);
 }
 
 TEST(RunPlanned, EndsWhereTheTellerThrows) {
-    RunOptions options;
-    options.tell = [](const std::string&, std::size_t done, std::size_t) {
-        if (done == 1) throw std::runtime_error("enough");
+    RunOptions options = untimed();
+    options.tell = [](const RunProgress& progress) {
+        if (progress.done == 1) throw std::runtime_error("enough");
     };
     std::size_t runs = 0;
-    const PlannedExperiment counted{"x", [&] { return ++runs, Experiment{}; }};
-    const std::vector<PlannedExperiment> plan = {counted, counted};
-    EXPECT_THROW(run_planned(plan, options), std::runtime_error);
+    const PlannedExperiment counted{"x", Subject::bump, "x",
+                                    [&] { return ++runs, PreparedExperiment{}; }};
+    EXPECT_THROW(run_planned({counted, counted}, options), std::runtime_error);
     EXPECT_EQ(runs, 1U);
 }
 
-using testing::ElementsAre;
-using testing::SizeIs;
-
-RunOptions counted_rounds(std::size_t counted) {
-    RunOptions options;
-    options.repeats = {counted, 0};
-    return options;
-}
-
-/// An experiment whose rounds have the times that `seconds` returns.
-Experiment timed_by(const RunOptions& options, std::size_t methods,
-                    const std::function<double(std::size_t)>& seconds,
-                    const std::string& group = "rounds") {
-    Experiment experiment;
-    for (const Timing& timing : measure_interleaved_rounds(group, methods, options, seconds)) {
-        experiment.measurements.emplace_back().cost.one_thread = timing;
-    }
-    return experiment;
+TEST(RunPlanned, DoesNotRunWhatIsLeftOut) {
+    std::string calls;
+    PlannedExperiment taken = planned("taken");
+    taken.prepare = [&] {
+        PreparedExperiment prepared{.costs = one_thread_alone};
+        for (const char name : {'a', 'b'}) {
+            ExperimentMethod method = method_of(method_id(name - 'a'), std::string(1, name), 1.0,
+                                                [&calls, name] { calls += name; });
+            method.error = [&calls, name] {
+                calls += static_cast<char>(name - 'a' + 'A');
+                return ErrorStats{};
+            };
+            prepared.methods.push_back(std::move(method));
+        }
+        prepared.finish = [&](Experiment&) { calls += "finished"; };
+        return prepared;
+    };
+    PlannedExperiment left_out = planned("left out");
+    left_out.prepare = []() -> PreparedExperiment { throw std::runtime_error("prepared"); };
+    RunOptions options = rounds(1);
+    options.selects_experiment = [](const std::string& id) { return id == "taken"; };
+    options.selects_method = [](const std::string& method) { return method == "b"; };
+    const std::vector<Experiment> found = run_planned({left_out, taken}, options);
+    ASSERT_THAT(found, SizeIs(1));
+    ASSERT_THAT(found[0].measurements, SizeIs(1));
+    EXPECT_EQ(found[0].measurements[0].method, "b");
+    EXPECT_EQ(found[0].measurements[0].id, method_id(1));
+    EXPECT_TRUE(found[0].measurements[0].cost.one_thread);
+    EXPECT_EQ(calls.substr(0, 2), "Bb");
+    EXPECT_EQ(calls.find_first_not_of("Bb"), std::string::npos) << "neither a nor the finding";
 }
 
 const std::vector<double>& rounds_of(const Experiment& experiment, std::size_t method) {
-    return experiment.measurements.at(method).cost.one_thread->rounds;
+    return experiment.measurements.at(method).cost.one_thread.value().rounds;
 }
 
 TEST(Passes, ShareTheRoundsAndTheLastOneHasAll) {
-    std::vector<std::size_t> passes;
     double clock = 0.0;
+    const auto next = [&] { return ++clock; };
+    RunOptions options = rounds(7);
+    options.passes = 3;
     const std::vector<Experiment> found =
-        run_in_passes(3, counted_rounds(7), [&](const RunOptions& options, std::size_t pass) {
-            passes.push_back(pass);
-            const auto next = [&](std::size_t) { return ++clock; };
-            return std::vector{timed_by(options, 2, next), timed_by(options, 1, next, "others")};
-        });
-    EXPECT_THAT(passes, ElementsAre(0, 1, 2));
+        run_planned({planned("two", 2, next), planned("one", 1, next)}, options);
     // 7 rounds are divided into 3, 2 and 2. In each pass, both methods of the first experiment
     // alternate, then the single method of the second one follows.
     EXPECT_THAT(rounds_of(found[0], 0), ElementsAre(1, 3, 5, 10, 12, 16, 18));
@@ -172,118 +280,76 @@ TEST(Passes, ShareTheRoundsAndTheLastOneHasAll) {
 }
 
 TEST(Passes, ABusyMomentIsInOneOfThem) {
-    // All of pass 1 is twice as slow for one experiment; its medians stay those of the other
-    // passes.
+    // All of pass 1 is twice as slow; the medians stay those of the other passes.
+    std::size_t pass = 0;
+    RunOptions options = rounds(9);
+    options.passes = 3;
+    options.tell = [&](const RunProgress& progress) { pass = progress.pass; };
     const std::vector<Experiment> found =
-        run_in_passes(3, counted_rounds(9), [](const RunOptions& options, std::size_t pass) {
-            return std::vector{
-                timed_by(options, 2, [&](std::size_t) { return pass == 1 ? 2.0 : 1.0; })};
-        });
+        run_planned({planned("two", 2, [&] { return pass == 1 ? 2.0 : 1.0; })}, options);
     EXPECT_EQ(found[0].measurements[0].cost.one_thread->spread().median, 1.0);
     EXPECT_EQ(found[0].measurements[0].cost.one_thread->spread().p90, 2.0);
 }
 
 TEST(Passes, AreNoMoreThanThereIsToDo) {
     std::size_t runs = 0;
-    const auto count = [&](const RunOptions&, std::size_t) {
-        ++runs;
-        return std::vector<Experiment>();
-    };
-    run_in_passes(5, counted_rounds(3), count);
+    RunOptions options = rounds(3);
+    options.passes = 5;
+    options.tell = [&](const RunProgress&) { ++runs; };
+    run_planned({planned("a")}, options);
     EXPECT_EQ(runs, 3U);
-    RunOptions untimed = counted_rounds(9);
-    untimed.is_timed = false;
-    run_in_passes(5, untimed, count);
+    options.is_timed = false;
+    run_planned({planned("a")}, options);
     EXPECT_EQ(runs, 4U);
 }
 
-TEST(Passes, MeasuredWorkHasItsRoundsOfAllPasses) {
-    std::size_t calls = 0;
-    const std::vector<std::function<void()>> works = {[&] { ++calls; }};
-    const std::vector<Experiment> found =
-        run_in_passes(2, counted_rounds(4), [&](const RunOptions& options, std::size_t) {
-            Experiment experiment;
-            experiment.measurements.emplace_back().cost = measure_costs(works, options).front();
-            return std::vector{experiment};
-        });
-    const Cost& cost = found[0].measurements[0].cost;
-    EXPECT_THAT(cost.one_thread.value().rounds, SizeIs(4));
-    EXPECT_THAT(cost.all_threads.value().rounds, SizeIs(4));
-    EXPECT_GT(calls, 0U);
+TEST(Passes, PrepareComputeErrorsAndFinishOnce) {
+    std::string calls;
+    PlannedExperiment plan = planned("a");
+    plan.prepare = [&] {
+        calls += "prepare ";
+        PreparedExperiment prepared{.costs = {.memory = false}};
+        prepared.methods = {method_of({}, "one", 1.0, [] {})};
+        prepared.methods[0].error = [&] {
+            calls += "error ";
+            return ErrorStats{};
+        };
+        prepared.finish = [&](Experiment& report) {
+            calls += "finish";
+            EXPECT_THAT(report.measurements[0].cost.all_threads.value().rounds, SizeIs(4));
+        };
+        return prepared;
+    };
+    RunOptions options = rounds(4);
+    options.passes = 2;
+    const std::vector<Experiment> found = run_planned({plan}, options);
+    EXPECT_EQ(calls, "prepare error finish");
+    EXPECT_THAT(rounds_of(found[0], 0), SizeIs(4));
 }
 
-TEST(Passes, WhatIsTheSameInAllIsMadeOnce) {
+TEST(SharedInput, IsMadeOnceByTheFirstThatNeedsIt) {
     int made = 0;
-    const auto references_of = [&](const RunOptions& options) {
-        const int first = computed_once(options, "first", [&] { return ++made; });
-        const std::string second =
-            computed_once(options, "second", [&] { return std::to_string(++made); });
-        return std::to_string(first) + second;
-    };
-    std::string all;
-    run_in_passes(3, counted_rounds(3), [&](const RunOptions& options, std::size_t) {
-        all += references_of(options) + " ";
-        return std::vector<Experiment>();
-    });
-    EXPECT_EQ(all, "12 12 12 ");
-    EXPECT_EQ(references_of({}), "34") << "without passes, each time";
+    const SharedInput<int> shared([&] { return std::make_shared<const int>(++made); });
+    const SharedInput<int> copy = shared;
+    EXPECT_EQ(made, 0);
+    EXPECT_EQ(*copy.get(), 1);
+    EXPECT_EQ(shared.get(), copy.get());
+    EXPECT_EQ(made, 1);
 }
 
-TEST(Passes, FindRoundsAndResultsByNameInAnyOrder) {
-    double clock = 0.0;
-    std::string all;
-    const std::vector<Experiment> found =
-        run_in_passes(2, counted_rounds(2), [&](const RunOptions& options, std::size_t pass) {
-            std::vector<std::string> names = {"a", "b"};
-            if (pass == 1) std::swap(names[0], names[1]);
-            std::vector<Experiment> experiments;
-            for (const std::string& name : names) {
-                all += computed_once(options, name, [&] { return name; });
-                experiments.push_back(timed_by(
-                    options, 1, [&](std::size_t) { return ++clock; }, name));
-            }
-            return experiments;
-        });
-    EXPECT_EQ(all, "abba");
-    EXPECT_THAT(rounds_of(found[0], 0), ElementsAre(2, 3));  // b
-    EXPECT_THAT(rounds_of(found[1], 0), ElementsAre(1, 4));  // a
-}
-
-TEST(Passes, OfOtherMethodsAreRefused) {
-    const auto timed_methods = [](const RunOptions& options, std::size_t pass) {
-        return std::vector{timed_by(options, 2 + pass, [](std::size_t) { return 1.0; })};
-    };
-    EXPECT_THROW(run_in_passes(2, counted_rounds(4), timed_methods), std::runtime_error);
-}
-
-TEST(Passes, FindTheRoundsOfAPlannedExperimentInAnyOrder) {
-    const auto planned_with = [](const RunOptions& options, const std::string& title,
-                                 std::size_t methods, double seconds) {
-        return PlannedExperiment{
-            title,
-            [=] { return timed_by(options, methods, [=](std::size_t) { return seconds; }); }};
-    };
-    const std::vector<Experiment> last =
-        run_in_passes(2, counted_rounds(4), [&](const RunOptions& options, std::size_t pass) {
-            std::vector<PlannedExperiment> plan = {planned_with(options, "one", 1, 1.0),
-                                                   planned_with(options, "two", 2, 2.0)};
-            if (pass == 1) std::swap(plan[0], plan[1]);
-            return run_planned(plan, options);
-        });
-    EXPECT_EQ(last[0].title, "two");
-    EXPECT_THAT(rounds_of(last[0], 1), ElementsAre(2.0, 2.0, 2.0, 2.0));
-    EXPECT_THAT(rounds_of(last[1], 0), ElementsAre(1.0, 1.0, 1.0, 1.0));
-}
-
-TEST(Passes, EndWithWhatAnExperimentThrows) {
-    std::size_t runs = 0;
-    EXPECT_THROW(run_in_passes(3, counted_rounds(9),
-                               [&](const RunOptions&, std::size_t) -> std::vector<Experiment> {
-                                   ++runs;
-                                   throw std::runtime_error("no");
-                               }),
-                 std::runtime_error);
-    EXPECT_EQ(runs, 1U);
+TEST(Subjects, HaveTheExperimentsOfTheirName) {
+    for (const Subject subject : subjects_with_experiments()) {
+        std::size_t all = 0;
+        RunOptions options = untimed();
+        options.is_quick = true;
+        options.selects_experiment = [&](const std::string& id) {
+            EXPECT_TRUE(id.starts_with(std::string(name_of(subject)) + "/")) << id;
+            ++all;
+            return false;
+        };
+        EXPECT_TRUE(run_experiments(std::array{subject}, options).empty());
+        EXPECT_GE(all, 2U) << name_of(subject);
+    }
 }
 
 TEST(Subjects, HaveWordsThatLeadBackToThem) {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "random.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

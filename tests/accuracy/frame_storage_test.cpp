@@ -74,11 +74,11 @@ TEST(FrameErrors, CountHandsThatAreLost) {
 }
 
 TEST(FrameExperiments, AreWhole) {
-    expect_whole(storage_experiments(quick_untimed()), Subject::storage);
+    expect_whole(run_quick(Subject::storage), Subject::storage);
 }
 
 TEST(FrameExperiments, ErrorsAreThoseOfTheEncodings) {
-    const Experiment experiment = frame_reading_experiment(quick_untimed());
+    const Experiment experiment = run_one("storage/frames");
     ASSERT_EQ(experiment.measurements.size(), 2 * all_frame_encodings.size() - 1);
     for (const Measurement& one : experiment.measurements) {
         SCOPED_TRACE(one.method);
@@ -107,7 +107,7 @@ TEST(FrameExperiments, ErrorsAreThoseOfTheEncodings) {
 }
 
 TEST(FrameExperiments, WritingSaysWhatTheBestCodesBring) {
-    const Experiment experiment = frame_writing_experiment(quick_untimed());
+    const Experiment experiment = run_one("storage/frames-written");
     EXPECT_THAT(
         experiment.finding,
         HasSubstr("changes the error in 4 bytes, degrees RMS: octahedral8 0.44 to 0.35; quat"));

@@ -9,10 +9,10 @@
 #include <numbers>
 
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "relief/accuracy/asset.h"
 #include "relief/accuracy/ground_truth.h"
-#include "relief/accuracy/measure_bump.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
@@ -285,7 +285,7 @@ TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
     EXPECT_TRUE(experiment.reference.method->destaircased);
     EXPECT_EQ(experiment.reference.method->arithmetic, Arithmetic::float64);
     EXPECT_GT(experiment.reference.reference_degrees, 0.01);
-    EXPECT_THAT(experiment.reference.words, HasSubstr("after smoothing its steps"));
+    EXPECT_THAT(experiment.reference.description, HasSubstr("after smoothing its steps"));
     // The result is more accurate than the choice for the unchanged map.
     BumpOptions plain = field.options;
     plain.kernel = experiment.choice.kernel;

@@ -1,78 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interleaved rounds, thread limits and memory. No test depends on a measured time.
-#include "relief/accuracy/measure.h"
+// Clocks, repeats and memory.
+#include "measure.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <ctime>
 #include <thread>
+#include <vector>
 
 namespace relief {
 namespace {
 
-using testing::SizeIs;
-
-RunOptions rounds(std::size_t counted) {
-    RunOptions options;
-    options.repeats = {counted, 1};
-    return options;
-}
-
-TEST(MeasureCosts, TakesTurnsAndCountsTheRoundsAskedFor) {
-    std::string calls;
-    const auto slow = [&](char name) {
-        return [&calls, name] {
-            calls += name;
-            const std::clock_t begin = std::clock();
-            while (std::clock() - begin < 5 * CLOCKS_PER_SEC / 1000) {
-            }
-        };
-    };
-    const std::vector<std::function<void()>> works = {slow('a'), slow('b')};
-    const std::vector<Cost> costs = measure_costs(
-        works, rounds(3), {.one_thread = true, .all_threads = false, .memory = false});
-    ASSERT_THAT(costs, SizeIs(2));
-    EXPECT_THAT(costs[0].one_thread.value().rounds, SizeIs(3));
-    // Allow for the difference of two clocks.
-    EXPECT_GE(costs[1].one_thread.value().spread().median, 4.9e-3);
-    EXPECT_FALSE(costs[0].all_threads);
-    EXPECT_FALSE(costs[0].peak_bytes);
-    // Each work runs once to warm up and once to estimate its time; then one round is not counted.
-    EXPECT_EQ(calls,
-              "aabb"
-              "ab"
-              "ababab");
-}
-
-TEST(MeasureCosts, RepeatsShortWorkWithinARound) {
+TEST(RepeatsPerRound, MakeARoundLongEnoughToMeasure) {
     std::size_t calls = 0;
-    const std::vector<std::function<void()>> works = {[&] { ++calls; }};
-    const std::vector<Cost> costs = measure_costs(
-        works, rounds(2), {.one_thread = true, .all_threads = false, .memory = false});
-    EXPECT_GT(calls, 2U + 3U * 10U);     // More than ten per round,
-    EXPECT_LE(calls, 2U + 3U * 40000U);  // and no more than a working clock can demand.
-    EXPECT_LT(costs[0].one_thread.value().spread().p10, 1e-3);  // The time of one call.
+    const std::size_t repeats = repeats_per_round([&] { ++calls; });
+    EXPECT_EQ(calls, 1U);
+    EXPECT_GT(repeats, 10U);
+    EXPECT_LE(repeats, 40000U) << "no more than a working clock can demand";
+    EXPECT_EQ(repeats_per_round([] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }),
+              1U);
 }
 
-TEST(MeasureCosts, OneThreadsTimeIsThatOfTheProcessor) {
+TEST(ProcessorSeconds, ExcludeTimeOfWaiting) {
     // Waiting costs no processor time, just as time that other programs use.
-    const std::vector<std::function<void()>> works = {
-        [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }};
-    const std::vector<Cost> costs =
-        measure_costs(works, rounds(3), {.one_thread = true, .all_threads = true, .memory = false});
-    EXPECT_LT(costs[0].one_thread.value().spread().p10, 10e-3);
-    EXPECT_GT(costs[0].one_thread.value().spread().p10, 0.0);
-    EXPECT_GE(costs[0].all_threads.value().spread().p10, 20e-3);
-}
-
-TEST(MeasureCosts, WithoutTimesMeasuresNothing) {
-    RunOptions options;
-    options.is_timed = false;
-    const std::vector<std::function<void()>> works = {[] { FAIL(); }};
-    const std::vector<Cost> costs = measure_costs(works, options);
-    EXPECT_EQ(costs, std::vector<Cost>(1));
+    const double waiting =
+        processor_seconds_of([] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
+    EXPECT_GT(waiting, 0.0);
+    EXPECT_LT(waiting, 10e-3);
+    const double working = processor_seconds_of([] {
+        const std::clock_t begin = std::clock();
+        while (std::clock() - begin < 5 * CLOCKS_PER_SEC / 1000) {
+        }
+    });
+    EXPECT_GE(working, 4.9e-3);  // Allow for the difference of two clocks.
 }
 
 TEST(PeakBytes, AreWhatWorkHoldsAtTheMost) {

@@ -14,10 +14,10 @@
 #include "error_metrics.h"
 #include "experiment_checks.h"
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::test {
 namespace {
@@ -260,7 +260,7 @@ TEST(NormalCodes, BytesAreThoseOfTheCodes) {
 }
 
 TEST(NormalCodeExperiments, HaveTheErrorsOfThePage) {
-    const Experiment surface = normal_writing_experiment(quick_untimed());
+    const Experiment surface = run_one("storage/smooth-surface");
     const Chart& chart = surface.charts.front();
     EXPECT_NEAR(curve_of(chart, "xyz 8 bit").points[0].error, 0.18230, 5e-6);
     EXPECT_NEAR(curve_of(chart, "xyz 8 bit").points[2].error, 0.06117, 5e-6);
@@ -274,7 +274,7 @@ TEST(NormalCodeExperiments, HaveTheErrorsOfThePage) {
 }
 
 TEST(NormalCodeExperiments, SayWhatIsNearestInSoManyBytes) {
-    const Experiment sphere = normal_reading_experiment(quick_untimed());
+    const Experiment sphere = run_one("storage/normals");
     EXPECT_EQ(sphere.measurements.size(), normal_codes().size());
     EXPECT_THAT(sphere.finding, HasSubstr("in 2 bytes 'octahedral 2 x 8 bit, best', 0.3"));
     EXPECT_THAT(sphere.finding, HasSubstr("in 4 bytes 'octahedral 2 x 16 bit, best', 0.001"));

@@ -100,7 +100,7 @@ using testing::HasSubstr;
 
 /// The experiments, run once per process.
 const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = normals_experiments(quick_untimed());
+    static const std::vector<Experiment> all = run_quick(Subject::normals);
     return all;
 }
 

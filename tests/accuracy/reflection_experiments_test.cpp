@@ -80,9 +80,8 @@ TEST(RoughMirror, OfASlopeIsFlatterAsTheClosedFormSays) {
 }
 
 TEST(CubeMapSize, LargerMapsErrLessUntilTexelsAreFinerThanPixels) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
-    const Experiment experiment = reflection_experiment(device, test::quick_untimed());
+    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = test::run_one("shading/cube-map-size");
     ASSERT_EQ(experiment.measurements.size(), 5U);
     const std::vector<CurvePoint>& by_size = experiment.charts.front().curves.front().points;
     ASSERT_EQ(by_size.size(), 5U);
@@ -140,9 +139,8 @@ double sum_of_errors(const Curve& curve) {
 }
 
 TEST(GlossyLevels, MoreOfThemErrLessAndEachIsRightWhereItLies) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
-    const Experiment experiment = glossy_experiment(device, test::quick_untimed());
+    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = test::run_one("shading/glossy-levels");
     ASSERT_EQ(experiment.measurements.size(), 3U);
     const double sharp = test::measurement_of(experiment, "not blurred").error.rms;
     for (const char* levels : {"5 levels, 128 texels", "6 levels, 256 texels"})

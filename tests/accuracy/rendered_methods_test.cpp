@@ -7,10 +7,12 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numbers>
 #include <thread>
 
 #include "experiment_checks.h"
+#include "measure.h"
 #include "relief/mesh/mesh.h"
 #include "shading_experiments.h"
 #include "support/gl_environment.h"
@@ -19,22 +21,31 @@ namespace relief {
 namespace {
 
 constexpr int drawn_size = 64;
-const RunOptions untimed_drawing = test::quick_untimed();
 
 Scene ball() {
     return lit_scene(make_sphere(), glossy_plastic());
 }
 
+Experiment render(const std::shared_ptr<const GlDevice>& device,
+                  std::vector<RenderedMethod> methods, int rays_per_side,
+                  const RunOptions& options = test::quick_untimed()) {
+    return measured(
+        prepare_rendering(device, {}, std::move(methods),
+                          supersampled_reference(ball(), drawn_size, rays_per_side), {}),
+        options);
+}
+
 TEST(RenderedMethods, FindALampThatIsTurnedRound) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    const auto device = std::make_shared<const GlDevice>();
+    if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
     Scene broken = ball();
     broken.directional_lights.front().direction_world *= -1.0F;
     const std::vector<RenderedMethod> methods = {{"right", {}, ball()}, {"broken", {}, broken}};
-    Experiment experiment;
-    const std::vector<RenderedImage> pictures =
-        measure_rendered(device, methods, supersampled_reference(ball(), drawn_size, 1),
-                         untimed_drawing, experiment);
+    std::vector<RenderedImage> pictures;
+    const Experiment experiment = measured(
+        prepare_rendering(device, {}, methods, supersampled_reference(ball(), drawn_size, 1),
+                          [&](Experiment&, const Renderings& all) { pictures = all.images; }),
+        test::quick_untimed());
     ASSERT_EQ(experiment.measurements.size(), 2U);
     EXPECT_LT(experiment.measurements[0].error.rms, 0.01);
     EXPECT_GT(experiment.measurements[0].error.psnr.value(), 45.0);
@@ -42,18 +53,16 @@ TEST(RenderedMethods, FindALampThatIsTurnedRound) {
     EXPECT_FALSE(experiment.measurements[0].cost.all_threads);
     EXPECT_EQ(pictures[0].picture.channels, 3);
     EXPECT_EQ(pictures[0].errors.width, drawn_size);
-    EXPECT_NE(experiment.measurements[0].note.find(device.context().renderer_name()),
+    EXPECT_NE(experiment.measurements[0].note.find(device->context().renderer_name()),
               std::string::npos);
 }
 
 TEST(RenderedMethods, AverageWhatTheyDrawMoreOf) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    const auto device = std::make_shared<const GlDevice>();
+    if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<RenderedMethod> methods = {
         {"1", {}, ball()}, {"2 x 2", {}, ball(), 1, 2}, {"4 x 4", {}, ball(), 1, 4}};
-    Experiment experiment;
-    measure_rendered(device, methods, supersampled_reference(ball(), drawn_size, 8),
-                     untimed_drawing, experiment);
+    const Experiment experiment = render(device, methods, 8);
     for (const std::size_t i : {1U, 2U}) {
         EXPECT_GT(experiment.measurements[i].error.psnr.value(),
                   experiment.measurements[i - 1].error.psnr.value() + 3.0);
@@ -61,14 +70,12 @@ TEST(RenderedMethods, AverageWhatTheyDrawMoreOf) {
 }
 
 TEST(RenderedMethods, AreTimedInTurnsInSeconds) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    const auto device = std::make_shared<const GlDevice>();
+    if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<RenderedMethod> methods = {{"one", {}, ball()}, {"other", {}, ball()}};
-    Experiment experiment;
     RunOptions options;
     options.repeats = {.counted = 3, .warm_up = 1};
-    measure_rendered(device, methods, supersampled_reference(ball(), drawn_size, 1), options,
-                     experiment);
+    const Experiment experiment = render(device, methods, 1, options);
     for (const Measurement& one : experiment.measurements) {
         ASSERT_TRUE(one.cost.all_threads);
         EXPECT_EQ(one.cost.all_threads->rounds.size(), 3U);
@@ -77,7 +84,7 @@ TEST(RenderedMethods, AreTimedInTurnsInSeconds) {
         // The threads of a software driver can be kept on one processor if the system allows it.
         const SingleProcessor kept;
         ASSERT_EQ(one.cost.one_thread.has_value(),
-                  kept.is_active() && device.context().is_software());
+                  kept.is_active() && device->context().is_software());
         if (!one.cost.one_thread) continue;
         EXPECT_EQ(one.cost.one_thread->rounds.size(), 3U);
     }
@@ -95,9 +102,15 @@ TEST(RenderedMethods, SayTheirTimesOnlyWhereAllWereTimed) {
 
 TEST(RenderedMethods, SayInWordsThatThereIsNoOpenGL) {
     const test::ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", "libnone.so");
-    const GlDevice device(Backend::osmesa);
-    ASSERT_FALSE(device.is_available());
-    const Experiment experiment = edge_experiment(device, untimed_drawing);
+    const PlanOptions plan_options{true, SharedInput<GlDevice>([] {
+                                       return std::make_shared<const GlDevice>(Backend::osmesa);
+                                   })};
+    ASSERT_FALSE(plan_options.device.get()->is_available());
+    RunOptions options = test::quick_untimed();
+    options.selects_experiment = [](const std::string& id) { return id == "shading/edges"; };
+    const std::vector<Experiment> all = run_planned(shading_plan(plan_options), options);
+    ASSERT_EQ(all.size(), 1U);
+    const Experiment& experiment = all.front();
     EXPECT_TRUE(experiment.measurements.empty());
     EXPECT_EQ(experiment.id, "shading/edges");
     EXPECT_NE(experiment.finding.find("needs OpenGL"), std::string::npos) << experiment.finding;

@@ -4,35 +4,29 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "experiment_checks.h"
 #include "experiment_driver.h"
 
 namespace relief {
 namespace {
 
-const RunOptions untimed = test::quick_untimed();
-
 class RenderedExperiment : public ::testing::Test {
   protected:
-    static void SetUpTestSuite() { device_ = std::make_unique<GlDevice>(); }
-    static void TearDownTestSuite() { device_.reset(); }
+    static void SetUpTestSuite() { is_available_ = GlDevice().is_available(); }
     void SetUp() override {
-        if (!device_->is_available()) GTEST_SKIP() << "no OpenGL";
+        if (!is_available_) GTEST_SKIP() << "no OpenGL";
     }
-    [[nodiscard]] static const GlDevice& device() { return *device_; }
 
     static double rms(const Experiment& experiment, const std::string& method) {
         return test::measurement_of(experiment, method).error.rms;
     }
 
   private:
-    inline static std::unique_ptr<GlDevice> device_;  ///< One for all tests of the suite.
+    inline static bool is_available_ = false;
 };
 
 TEST_F(RenderedExperiment, OnInterpolationRanksPhongGouraudFlat) {
-    const Experiment experiment = interpolation_experiment(device(), untimed);
+    const Experiment experiment = test::run_one("shading/interpolation");
     ASSERT_EQ(experiment.measurements.size(), 15U);
     EXPECT_LT(rms(experiment, "Phong, 2304 triangles"), rms(experiment, "Gouraud, 2304 triangles"));
     EXPECT_LT(rms(experiment, "Gouraud, 2304 triangles"), rms(experiment, "flat, 2304 triangles"));
@@ -48,7 +42,7 @@ TEST_F(RenderedExperiment, OnInterpolationRanksPhongGouraudFlat) {
 }
 
 TEST_F(RenderedExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
-    const Experiment experiment = highlight_experiment(device(), untimed);
+    const Experiment experiment = test::run_one("shading/highlights");
     EXPECT_LT(rms(experiment, "GGX"), 0.01);
     EXPECT_LT(rms(experiment, "Blinn-Phong"), rms(experiment, "Blinn-Phong, Phong's exponent"));
     EXPECT_LT(rms(experiment, "Phong, a quarter of Blinn's exponent"),
@@ -56,13 +50,13 @@ TEST_F(RenderedExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
 }
 
 TEST_F(RenderedExperiment, OnEdgesRanksSamples) {
-    const Experiment experiment = edge_experiment(device(), untimed);
+    const Experiment experiment = test::run_one("shading/edges");
     EXPECT_LT(rms(experiment, "MSAA, 4 samples"), 0.6 * rms(experiment, "1 sample"));
     EXPECT_LT(rms(experiment, "4 x 4 pixels"), 0.6 * rms(experiment, "2 x 2 pixels"));
 }
 
 TEST_F(RenderedExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
-    const Experiment experiment = specular_aliasing_experiment(device(), untimed);
+    const Experiment experiment = test::run_one("shading/specular-antialiasing");
     ASSERT_EQ(experiment.measurements.size(), 6U);
     EXPECT_LT(rms(experiment, "Toksvig"), 0.5 * rms(experiment, "averaged normals"));
     EXPECT_LT(rms(experiment, "Toksvig, 2 x 2 pixels"), rms(experiment, "Toksvig"));
@@ -87,7 +81,7 @@ TEST_F(RenderedExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
 
 TEST(ShadingExperiments, AreWhole) {
     if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
-    const std::vector<Experiment> all = shading_experiments(untimed);
+    const std::vector<Experiment> all = test::run_quick(Subject::shading);
     EXPECT_EQ(all.size(), 9U);
     test::expect_whole(all, Subject::shading);
     for (const Experiment& one : all) {

@@ -79,13 +79,12 @@ TEST(FormulaError, SeesAWrongFormula) {
 }
 
 TEST(FresnelExperiments, RankTheFormulas) {
-    const RunOptions options = test::quick_untimed();
-    const Experiment glass = glass_experiment(options);
+    const Experiment glass = test::run_one("shading/fresnel-glass");
     EXPECT_LT(test::measurement_of(glass, "Schlick").error.rms,
               0.1 * test::measurement_of(glass, "constant").error.rms);
     EXPECT_LT(test::measurement_of(glass, "Fresnel, float32").error.rms, 1e-6);
     EXPECT_NE(glass.finding.find("0.013 (RMS; at most 0.036)"), std::string::npos) << glass.finding;
-    const Experiment metal = metal_experiment(options);
+    const Experiment metal = test::run_one("shading/fresnel-metal");
     EXPECT_GT(test::measurement_of(metal, "Schlick").error.max,
               3.0 * test::measurement_of(metal, "Schlick, right at 82 degrees").error.max);
     EXPECT_FALSE(glass.measurements.front().cost.one_thread);
@@ -107,7 +106,7 @@ TEST(NormalSamples, AreShortestInTheMiddle) {
 }
 
 TEST(UnitNormalMethods, ErrByTheSquareAndTheFourthPowerOfTheAngle) {
-    const Experiment experiment = unit_normal_experiment(test::quick_untimed());
+    const Experiment experiment = test::run_one("shading/unit-normal");
     const std::vector<Curve>& curves = experiment.charts.front().curves;
     ASSERT_EQ(curves.size(), 4U);
     EXPECT_NEAR(curves[0].order.value(), curves[0].expected_order.value(), 0.15);

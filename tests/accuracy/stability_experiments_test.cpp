@@ -18,6 +18,9 @@ TEST(Sweeps, FindWhereEachMethodBreaks) {
         if (method == 1) return std::vector<float>{static_cast<float>(1e-3 * value)};
         return std::vector<float>{0.0F, value > 50.0 ? NAN : 0.5F};
     });
+    EXPECT_EQ(sweeps.measure(0).count, 8U);
+    sweeps.measure(1);
+    EXPECT_EQ(sweeps.measure(2).undefined, 3U);
     ASSERT_EQ(sweeps.charts().size(), 1U);
     const std::vector<Curve>& curves = sweeps.charts().front().curves;
     ASSERT_EQ(curves[0].points.size(), 4U);
@@ -30,14 +33,14 @@ TEST(Sweeps, FindWhereEachMethodBreaks) {
     EXPECT_EQ(sweeps.breaks(),
               "Larger (size): lost fails from 100 on, growing fails from 1e+04 on, all others are "
               "within the limit.");
-    EXPECT_EQ(sweeps.figures(0).count, 8U);
-    EXPECT_EQ(sweeps.figures(2).undefined, 3U);
 }
 
 TEST(Sweeps, SayThatAllAreWithinTheLimitOrNone) {
     Sweeps sweeps({"a", "b"}, 1.0);
     sweeps.add("x", "Good", "x", 1, 1, [](std::size_t, double) { return std::vector{0.5F}; });
     sweeps.add("y", "Bad", "y", 1, 1, [](std::size_t, double) { return std::vector{5.0F}; });
+    sweeps.measure(0);
+    sweeps.measure(1);
     EXPECT_EQ(sweeps.breaks(),
               "Good (x): all are within the limit. Bad (y): a and b fail from 1 on, none is within "
               "the limit everywhere.");
@@ -48,7 +51,7 @@ bool is_plain(const std::string& method) {
 }
 
 TEST(NormalsByScale, HoldByReliefAndBreakByPlainCode) {
-    const Experiment experiment = normals_by_scale(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/normals-scale");
     ASSERT_EQ(experiment.charts.size(), 2U);
     for (const Chart& chart : experiment.charts) {
         for (const Curve& curve : chart.curves) {
@@ -66,7 +69,7 @@ TEST(NormalsByScale, HoldByReliefAndBreakByPlainCode) {
 }
 
 TEST(NormalsByOffset, BreakWhenPositionsAreRounded) {
-    const Experiment experiment = normals_by_offset(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/normals-offset");
     const Chart& chart = experiment.charts.front();
     const Curve& exact = test::curve_of(chart, "angle, float64");
     const Curve& plain = test::curve_of(chart, "plain angle, float32");
@@ -80,7 +83,7 @@ TEST(NormalsByOffset, BreakWhenPositionsAreRounded) {
 }
 
 TEST(NormalsOfNeedles, HoldInDoubleAndBreakInFloat) {
-    const Experiment experiment = normals_of_needles(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/normals-needles");
     const Chart& chart = experiment.charts.front();
     for (const Curve& curve : chart.curves) {
         SCOPED_TRACE(curve.method);
@@ -97,7 +100,7 @@ TEST(NormalsOfNeedles, HoldInDoubleAndBreakInFloat) {
 }
 
 TEST(TangentsByScale, HoldByReliefAndBreakByPlainCode) {
-    const Experiment experiment = tangents_by_scale(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/tangents-scale");
     ASSERT_EQ(experiment.charts.size(), 4U);
     for (const Chart& chart : experiment.charts) {
         for (const Curve& curve : chart.curves) {
@@ -111,7 +114,7 @@ TEST(TangentsByScale, HoldByReliefAndBreakByPlainCode) {
 }
 
 TEST(TangentsByOffset, BreakWhenCoordinatesAreRounded) {
-    const Experiment experiment = tangents_by_offset(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/tangents-offset");
     ASSERT_EQ(experiment.charts.size(), 2U);
     for (const Chart& chart : experiment.charts) {
         const Curve& curve = test::curve_of(chart, "mikktspace");
@@ -122,7 +125,7 @@ TEST(TangentsByOffset, BreakWhenCoordinatesAreRounded) {
 }
 
 TEST(BumpBySteepness, HoldsByReliefAndBreaksByPlainCode) {
-    const Experiment experiment = bump_by_steepness(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/bump-steepness");
     ASSERT_EQ(experiment.charts.size(), 2U);
     for (const Chart& chart : experiment.charts) {
         for (const Curve& curve : chart.curves) {
@@ -141,7 +144,7 @@ TEST(BumpBySteepness, HoldsByReliefAndBreaksByPlainCode) {
 }
 
 TEST(BumpByOffset, BreaksWhenHeightsAreRounded) {
-    const Experiment experiment = bump_by_offset(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/bump-offset");
     for (const Curve& curve : experiment.charts.front().curves) {
         SCOPED_TRACE(curve.method);
         // Floats are 2^-24 of the height apart: half a texel at 1e7, 0.06 at 1e6.
@@ -153,7 +156,7 @@ TEST(BumpByOffset, BreaksWhenHeightsAreRounded) {
 }
 
 TEST(StabilityExperiments, AreWholeButForWhatPlainCodeLoses) {
-    std::vector<Experiment> all = stability_experiments(test::quick_untimed());
+    std::vector<Experiment> all = test::run_quick(Subject::stability);
     for (Experiment& experiment : all) {
         EXPECT_NE(experiment.finding.find("docs/hard-cases.md"), std::string::npos);
         std::erase_if(experiment.measurements,

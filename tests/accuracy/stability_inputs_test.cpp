@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hard triangles, needles and textbook code against exact results.
-#include "stability_inputs.h"
+#include "stability_experiments.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@
 
 #include "bump_experiments.h"
 #include "experiment_checks.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
+#include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 #include "stability_experiments.h"
 
@@ -58,7 +58,7 @@ TEST(HardTriangles, AreWhatTheirNamesSay) {
 }
 
 TEST(NormalsBesideHardTriangles, HoldByReliefAndBreakByPlainCode) {
-    const Experiment experiment = normals_beside_hard_triangles(test::quick_untimed());
+    const Experiment experiment = test::run_one("stability/normals-hard-triangles");
     ASSERT_EQ(experiment.charts.size(), hard_triangle_names.size());
     for (const Chart& chart : experiment.charts) {
         for (const Curve& curve : chart.curves) {

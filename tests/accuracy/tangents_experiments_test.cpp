@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Results of the experiments on tangents: the figures of docs/tangents.md, and the expected orders.
-#include "tangents_experiments.h"
+#include "rendered_methods.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 /// The experiments, run once per process.
 const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = tangents_experiments(quick_untimed());
+    static const std::vector<Experiment> all = run_quick(Subject::tangents);
     return all;
 }
 
@@ -88,9 +88,8 @@ TEST(TangentsExperiments, MapsComeBackFromTheirOwnBasisAlone) {
 }
 
 TEST(RenderedFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
-    const Experiment experiment = rendered_frames_experiment(device, quick_untimed());
+    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
+    const Experiment experiment = run_one("tangents/drawn");
     const auto rms = [&](const char* method) {
         return measurement_of(experiment, method).error.rms;
     };
@@ -108,12 +107,11 @@ TEST(RenderedFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
 }
 
 TEST(RenderedFrames, TakeTimeOfAllThreads) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
+    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     RunOptions options = quick_untimed();
     options.is_timed = true;
     options.repeats = {3, 0};
-    for (const Measurement& one : rendered_frames_experiment(device, options).measurements) {
+    for (const Measurement& one : run_one("tangents/drawn", options).measurements) {
         SCOPED_TRACE(one.method);
         ASSERT_TRUE(one.cost.all_threads);
         EXPECT_EQ(one.cost.all_threads->rounds.size(), 3U);

@@ -142,7 +142,7 @@ struct Page {
 std::vector<Page> help_pages(const Workplace& workplace) {
     std::vector<Page> pages;
     for (const std::string& command : commands_with_help(workplace)) {
-        const std::string name = command + " --help";
+        const std::string name = command + " --help all";
         pages.push_back({name, examples_of(workplace.run(name).out)});
     }
     return pages;

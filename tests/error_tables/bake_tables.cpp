@@ -8,12 +8,12 @@
 #include "error_tables/bumpy_reference.h"
 #include "error_tables/error_tables.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normals.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::test {
 namespace {
@@ -29,9 +29,9 @@ struct Baked {
 Baked baked(const BumpySphere& high, const Mesh& low, int samples, bool is_auto) {
     Baked result{make_image(sampled_map_side, sampled_map_side, 3, 32, ColorSpace::data)};
     BakeOptions options;
-    options.width = options.height = sampled_map_side;
-    options.samples = samples;
-    if (is_auto) options.sample_angle = glm::radians(2.0);
+    options.map.width = options.map.height = sampled_map_side;
+    options.map.samples = samples;
+    if (is_auto) options.map.sample_angle = glm::radians(2.0);
     Report report;
     const std::span<float> all = result.normals.as<float>();
     const BakeResult done = bake_normals(
@@ -160,7 +160,7 @@ struct Kept {
 };
 
 Kept kept(const Mesh& low, BakeOptions options) {
-    options.width = options.height = direction_map_side;
+    options.map.width = options.map.height = direction_map_side;
     options.space = VectorSpace::object;
     options.offset = 0.2;
     options.max_distance = 0.1;
@@ -202,8 +202,7 @@ std::string direction_row(const std::string& name, const BakeOptions& options) {
 std::string direction_tables() {
     std::string text =
         "\nHow much of the high face no texel holds, and how far along the face a place is moved "
-        "at "
-        "most, in units of its height above the low face\n\n" +
+        "at\nmost, in units of its height above the low face\n\n" +
         table_header(
             {"not held, face of 2 triangles", "moved", "not held, face of 128 triangles", "moved"});
     text += direction_row("`--rays averaged` (default)", {});
@@ -236,8 +235,8 @@ Image baked(int padding) {
     std::fill(high.normals.begin(), high.normals.end(), slant);
     Image map = make_image(padded_map_side, padded_map_side, 3, 32, ColorSpace::data);
     BakeOptions options;
-    options.width = options.height = padded_map_side;
-    options.padding = padding;
+    options.map.width = options.map.height = padded_map_side;
+    options.map.padding = padding;
     options.space = VectorSpace::object;
     Report report;
     bake_normals(
@@ -294,8 +293,7 @@ std::string padding_tables() {
 std::vector<PageSection> bake_tables() {
     const auto section = [](const char* name, const std::string& text) {
         return PageSection{
-            fmt::format("<!-- tables of {}: written by relief-bake-errors-page -->\n", name),
-            text + "\n"};
+            fmt::format("<!-- tables of {}: written by relief-documents -->\n", name), text + "\n"};
     };
     return {section("samples", sample_tables()), section("directions", direction_tables()),
             section("padding", padding_tables())};

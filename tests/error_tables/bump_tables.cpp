@@ -10,7 +10,7 @@
 
 #include "bump_experiments.h"
 #include "error_tables/error_tables.h"
-#include "relief/accuracy/measure_bump.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/height_map.h"
 
 namespace relief::test {
@@ -74,7 +74,7 @@ std::string error_table(const std::vector<std::string>& fields) {
     std::vector<std::vector<double>> columns;
     std::vector<Best> chosen;
     for (const std::string& name : fields) {
-        const BumpField field = make_bump_field(recipe_named(name), field_side, field_side);
+        const BumpField field = make_bump_field(field_recipe(name), field_side, field_side);
         std::vector<double> column;
         for (const NamedKernel& named : named_kernels())
             column.push_back(rms_error(field, named.kernel, named.radius));
@@ -102,8 +102,7 @@ std::string error_table(const std::vector<std::string>& fields) {
 }
 
 PageSection section(const char* name, const std::string& text) {
-    return {fmt::format("<!-- tables of {}: written by relief-bump-errors-page -->\n", name),
-            text + "\n"};
+    return {fmt::format("<!-- tables of {}: written by relief-documents -->\n", name), text + "\n"};
 }
 
 }  // namespace
@@ -164,7 +163,7 @@ PageSection step_tables() {
 PageSection depth_tables() {
     constexpr std::array arithmetics = {Arithmetic::float32, Arithmetic::float64};
     constexpr std::array depths = {8, 16, 32};
-    const BumpField field = make_bump_field(recipe_named("smooth, float"), field_side, field_side);
+    const BumpField field = make_bump_field(field_recipe("smooth, float"), field_side, field_side);
     BumpExperimentOptions options;
     options.repeats = {0, 0};
     std::string text = "\n";

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -20,8 +19,9 @@ struct Place {
 };
 
 Place place_in(const std::string& page, const std::string& begin) {
+    if (begin.empty()) return {0, page.size()};
     const std::size_t line = page.find(begin);
-    const std::size_t end = line == std::string::npos ? line : page.find(tables_end, line);
+    const std::size_t end = line == std::string::npos ? line : page.find("<!-- end of ", line);
     if (end == std::string::npos) throw std::runtime_error("has no place for " + begin);
     const std::size_t first = line + begin.size();
     return {first, end - first};
@@ -64,29 +64,17 @@ std::string section_in(const std::string& page, const std::string& begin) {
 }
 
 std::string contents_of_page(const std::string& path) {
-    std::ifstream in(path);
-    if (!in) throw std::runtime_error("cannot be read");
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw std::runtime_error(path + ": cannot be read");
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-int write_sections(int argc, const char* const* argv,
-                   const std::function<std::vector<PageSection>()>& measure) {
-    if (!is_one_path(argc, argv)) {
-        std::cerr << "usage: " << argv[0] << " PAGE\n";
-        return 2;
+std::string with_sections(std::string page, const std::vector<PageSection>& sections) {
+    for (const PageSection& section : sections) {
+        const Place place = place_in(page, section.begin);
+        page.replace(place.first, place.size, section.text);
     }
-    try {
-        std::string page = contents_of_page(argv[1]);
-        for (const PageSection& section : measure()) {
-            const Place place = place_in(page, section.begin);
-            page.replace(place.first, place.size, section.text);
-        }
-        std::ofstream(argv[1]) << page;
-    } catch (const std::runtime_error& error) {
-        std::cerr << argv[0] << ": error: " << argv[1] << ": " << error.what() << "\n";
-        return 1;
-    }
-    return 0;
+    return page;
 }
 
 }  // namespace relief::test

@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Tables of errors in the pages of docs/: a program measures and writes them, and a test compares
-/// the page with a new measurement. The tables hold no times; programs in bench/ measure those.
+/// Tables of errors in the pages of docs/, and the sections of a page. The tables hold no times;
+/// programs in bench/ measure those. tests/docs/generated_documents.h has the list of pages.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace relief::test {
 
-/// The text between the line `begin` of a page and the next line that equals `tables_end`.
+/// The text between the line `begin` of a page and the next comment `<!-- end of ... -->`.
 struct PageSection {
-    std::string begin;  ///< The whole line, with its line break.
+    std::string begin;  ///< The whole line, with its line break. Empty: the section is the page.
     std::string text;
 };
-
-inline constexpr const char* tables_end = "<!-- end of tables -->\n";
 
 // The sections of each page. The text is Markdown, and the same on every machine and for every
 // compiler.
@@ -49,15 +46,8 @@ std::string table_row(const std::string& name, const std::vector<double>& ranks,
 /// The present text of a section. \throws std::runtime_error if the page has no such section
 std::string section_in(const std::string& page, const std::string& begin);
 
-/// Returns whether the arguments of a program are one path. An option such as --help is not a path.
-inline bool is_one_path(int argc, const char* const* argv) {
-    return argc == 2 && argv[1][0] != '-' && argv[1][0] != '\0';
-}
-
-/// The main function of a program whose argument is a page: replaces the sections by measured ones.
-/// Errors go to standard error. \return the exit status
-int write_sections(int argc, const char* const* argv,
-                   const std::function<std::vector<PageSection>()>& measure);
+/// Returns the page with other texts of sections. \throws std::runtime_error as section_in()
+std::string with_sections(std::string page, const std::vector<PageSection>& sections);
 
 /// The contents of a text file. \throws std::runtime_error if it cannot be read
 std::string contents_of_page(const std::string& path);

@@ -249,8 +249,7 @@ std::string mip_row(double rms_slope) {
 std::string mip_tables() {
     std::string text =
         "\nAll of a map in one texel: the variance of its slopes along each axis, and the "
-        "roughness "
-        "that makes up for it on a surface of 0.3\n\n" +
+        "roughness\nthat makes up for it on a surface of 0.3\n\n" +
         table_header({"mean length", "true variance", "from the length", "by Toksvig",
                       "true roughness", "from the length"});
     for (const double slope : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6})
@@ -260,9 +259,8 @@ std::string mip_tables() {
 
 std::vector<PageSection> normal_map_tables() {
     const auto section = [](const std::string& name, const std::string& text) {
-        return PageSection{
-            fmt::format("<!-- {}: written by relief-normal-map-errors-page -->\n", name),
-            text + "\n"};
+        return PageSection{fmt::format("<!-- {}: written by relief-documents -->\n", name),
+                           text + "\n"};
     };
     return {section("blending", blend_tables()), section("resizing", resize_tables()),
             section("storage", storage_tables()), section("mips", mip_tables())};

@@ -71,7 +71,7 @@ std::vector<PageSection> normal_tables() {
         surface_table("Folded: points moved by up to 0.6 cells, some triangles turned over",
                       Triangulation::folded) +
         fan_table();
-    return {{"<!-- tables: written by relief-normal-errors-page -->\n", text + "\n"}};
+    return {{"<!-- tables: written by relief-documents -->\n", text + "\n"}};
 }
 
 }  // namespace relief::test

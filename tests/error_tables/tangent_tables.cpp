@@ -10,7 +10,7 @@
 
 #include "error_tables/error_tables.h"
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/frame_encoding.h"
+#include "relief/mesh/frames.h"
 #include "storage_experiments.h"
 #include "support/random_frames.h"
 #include "tangent_methods.h"
@@ -159,7 +159,7 @@ std::string encoding_tables() {
     const ReferenceFrames random = random_frames(count);
     const SampleFrames reference = sample_frames(random.normals, random.tangents);
     std::string text =
-        "\n100,000 random frames: mean / largest error in degrees of the normal, the tangent, and "
+        "\n100,000 random frames: mean / largest error in degrees of the normal, the tangent, and\n"
         "the normal of a texel tilted by 30 degrees\n\n" +
         table_header({"rounding", "bytes", "normal", "tangent", "tilted texel", "hands lost"});
     const auto mean_and_max = [](const ErrorStats& errors) {
@@ -184,7 +184,7 @@ std::string encoding_tables() {
 }
 
 std::string begin_of(const char* name) {
-    return fmt::format("<!-- tables of {}: written by relief-tangent-errors-page -->\n", name);
+    return fmt::format("<!-- tables of {}: written by relief-documents -->\n", name);
 }
 
 }  // namespace

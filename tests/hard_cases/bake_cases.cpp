@@ -12,10 +12,10 @@
 
 #include "hard_cases/hard_cases.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "relief/mesh/texel_coverage.h"
 #include "support/peak_memory.h"
 
@@ -43,7 +43,7 @@ struct HardBake {
 /// \param options  the function sets their layers
 HardBake baked(const std::vector<Mesh>& high, const Mesh& low, BakeOptions options) {
     HardBake map;
-    options.layers.heights = true;
+    options.map.layers.heights = true;
     map.result = bake_normals(
         high, low, options,
         [&](const BakedRows& rows) {
@@ -58,9 +58,9 @@ HardBake baked(const std::vector<Mesh>& high, const Mesh& low, BakeOptions optio
 /// Bakes a map of 16 x 16 texels.
 HardBake baked(const std::vector<Mesh>& high, const Mesh& low, int padding = 0) {
     BakeOptions options;
-    options.width = bake_side;
-    options.height = bake_side;
-    options.padding = padding;
+    options.map.width = bake_side;
+    options.map.height = bake_side;
+    options.map.padding = padding;
     return baked(high, low, options);
 }
 
@@ -84,7 +84,7 @@ std::string not_all(const HardBake& map, const glm::dvec3& normal, double height
 
 /// Returns the error message of a bake of this high mesh onto a square, or "taken" if it succeeds.
 std::string refusal_of(const Mesh& high, BakeOptions options = {}) {
-    options.width = options.height = bake_side;
+    options.map.width = options.map.height = bake_side;
     try {
         baked({high}, make_quad(), options);
     } catch (const BakeMismatch& mismatch) {
@@ -319,10 +319,10 @@ HardCase short_rays_case() {
                   high.texcoords.clear();
                   high.tangents.clear();
                   BakeOptions options;
-                  options.width = options.height = bake_side;
+                  options.map.width = options.map.height = bake_side;
                   options.max_distance = 1.5;
                   options.offset = 0.25;
-                  options.measures_missed = true;
+                  options.map.measures_missed = true;
                   const HardBake map = baked({high}, make_quad(), options);
                   const ClippedRays& clipped = map.result.clipped_outside;
                   if (clipped.texels != bake_texels || std::abs(clipped.longest - 0.5) > 1e-6)
@@ -429,7 +429,7 @@ HardCase model_size_case() {
                           1e-3F * small.positions[i] + glm::vec3(0.0625F, 0.0625F, 0.01F);
                   }
                   BakeOptions options;
-                  options.width = options.height = bake_side;
+                  options.map.width = options.map.height = bake_side;
                   options.allow_size_mismatch = true;
                   const std::string problem =
                       not_all(baked({large}, make_quad(), options), flat_normal, 0.0);
@@ -508,14 +508,14 @@ HardCase outside_case() {
           [] {
               const Mesh low = with_texcoords(make_quad(), 1.0F, {1, 1});
               BakeOptions options;
-              options.width = options.height = bake_side;
+              options.map.width = options.map.height = bake_side;
               const auto count = [&] {
                   return baked({make_quad()}, low, options).result.texels_baked;
               };
               const std::size_t left_out = count();
-              options.placement.repeat = true;
+              options.map.placement.repeat = true;
               const std::size_t repeated = count();
-              options.placement = {{1, 1}, false};
+              options.map.placement = {{1, 1}, false};
               return says(left_out == 0 && repeated == bake_texels && count() == bake_texels);
           }},
          {"tiles", "reported: 2 triangles outside of the map and of all UDIM tiles", [] {
@@ -576,8 +576,8 @@ HardCase map_size_case() {
             {{"bake", "flat within 0.001 degrees, no texel missed", [] {
                   for (const auto& [width, height] : {std::pair(1, 1), {3, 17}, {16384, 64}}) {
                       BakeOptions options;
-                      options.width = width;
-                      options.height = height;
+                      options.map.width = width;
+                      options.map.height = height;
                       const HardBake map = baked({make_quad()}, make_quad(), options);
                       const std::string problem = not_all(map, flat_normal, 0.0);
                       if (!problem.empty()) return problem;
@@ -596,9 +596,9 @@ HardCase memory_case() {
                   const double before = test::peak_megabytes();
                   const Mesh low = with_texcoords(make_quad(), 0.125F, glm::vec2(0.5F));
                   BakeOptions options;
-                  options.width = 8192;
-                  options.height = 512;
-                  options.samples = 16;
+                  options.map.width = 8192;
+                  options.map.height = 512;
+                  options.map.samples = 16;
                   Report report;
                   const std::vector<Mesh> high = {make_quad()};
                   const BakeResult result = bake_normals(

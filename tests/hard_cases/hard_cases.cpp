@@ -24,11 +24,12 @@ namespace {
 
 constexpr const char* introduction = R"(# Hard cases
 
-Each hard input has one defined outcome. relief repairs, drops and clamps nothing silently: the report counts every fallback. Directions are
-always unit vectors. The same input gives the same bits for any order of triangles and any number of threads.
-A test runs every line of both tables (`tests/hard_cases/`); `relief-hard-cases-page` writes this page from the same table.
-*Orthonormal* tangents are unit vectors, perpendicular to their normals within 1e-6, and their w is 1 or -1 and equal at all corners of a
-triangle. For tangents, rows without texture coordinates get those of a projection from above.
+Each hard input has one defined outcome. relief repairs, drops and clamps nothing silently: the report counts every
+fallback. Directions are always unit vectors. The same input gives the same bits for any order of triangles and any
+number of threads. A test runs every line of both tables (`tests/hard_cases/`); `relief-documents` writes this page
+from the same table. *Orthonormal* tangents are unit vectors, perpendicular to their normals within 1e-6, and their w
+is 1 or -1 and equal at all corners of a triangle. For tangents, rows without texture coordinates get those of a
+projection from above.
 
 `relief-mesh check` uses the terms of the first table.
 ```sh
@@ -37,15 +38,15 @@ relief-mesh check data/vase.obj data/scenes/knot.glb --strict --json
 ```
 )";
 
-std::string words() {
+std::string terms() {
     std::string text =
-        "## Words\n"
+        "## Terms\n"
         "A *problem* makes a step use a fallback, or makes its result depend on more than the "
-        "surface: `--strict` exits with 3. A *note* also occurs in models without "
-        "problems.\nVertices at equal positions count as one for triangles, edges and fans. An "
-        "edge is identified by its first triangle.\nA triangle without texture gradient is only a "
-        "note in a model that needs no tangents: it has no normal or bump map and no stored "
-        "tangents. With `--for-baking` it is a problem, and so is overlapping texture.\n\n"
+        "surface: `--strict` exits\nwith 3. A *note* also occurs in models without problems. "
+        "Vertices at equal positions count as one for triangles,\nedges and fans. An edge is "
+        "identified by its first triangle. A triangle without texture gradient is only a note\nin "
+        "a model that needs no tangents: it has no normal or bump map and no stored tangents. With "
+        "`--for-baking` it\nis a problem, and so is overlapping texture.\n\n"
         "| term | | consequence |\n|---|---|---|\n";
     for (const MeshConditionInfo& condition : mesh_conditions()) {
         text += fmt::format("| {} | {} | {} |\n", condition.word,
@@ -80,7 +81,7 @@ std::string cases() {
 }  // namespace
 
 std::string hard_cases_page() {
-    return fmt::format("{}\n{}\n{}", introduction, words(), cases());
+    return fmt::format("{}\n{}\n{}", introduction, terms(), cases());
 }
 
 }  // namespace relief::test

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every row of the catalogue, the page written from it, and the invariants of tangents on
+// Every row of the catalogue, and the invariants of tangents on
 // thousands of random meshes in which many things are wrong at once.
 #include <gtest/gtest.h>
 
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <random>
@@ -18,7 +17,6 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "support/invariants.h"
-#include "support/shared_data.h"
 
 namespace relief::test {
 namespace {
@@ -59,13 +57,6 @@ TEST(HardCasesTable, HasARowForEveryWordOfCheck) {
     for (const MeshConditionInfo& condition : mesh_conditions())
         EXPECT_NE(all.find("x " + std::string(condition.word) + ","), std::string::npos)
             << condition.word;
-}
-
-TEST(HardCasesPage, SaysWhatTheTableDoes) {
-    std::ifstream file(source_directory() / "docs/hard-cases.md", std::ios::binary);
-    const std::string page{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    EXPECT_EQ(page, hard_cases_page())
-        << "regenerate it: build/release/bin/relief-hard-cases-page docs/hard-cases.md";
 }
 
 /// Random values. The standard distributions differ between libraries, so the class has its own.

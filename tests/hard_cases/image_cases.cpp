@@ -15,7 +15,6 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/height_map.h"
-#include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"

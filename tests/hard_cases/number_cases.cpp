@@ -8,7 +8,7 @@
 
 #include "hard_cases/hard_cases.h"
 #include "hard_cases/mesh_case.h"
-#include "relief/mesh/frame_encoding.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "support/hard_meshes.h"

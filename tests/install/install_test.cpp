@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <regex>
 #include <set>
@@ -119,6 +120,22 @@ TEST_F(Installed, NormalsAndTangentsFollowTheWave) {
     EXPECT_EQ(tangent[3], 1.0);
 }
 
+TEST_F(Installed, PythonFindsImagesAndTools) {
+    const std::filesystem::path modules = tree() / "lib/python3/dist-packages";
+    if (!std::filesystem::exists(modules / "relief"))
+        GTEST_SKIP() << "The Python module is not built.";
+    std::ofstream(*folder / "use.py")
+        << "import numpy, relief\n"
+           "relief.write_image('a.exr', numpy.full((2, 3), 0.25, 'float32'))  # by OpenImageIO\n"
+           "print('mean', relief.read_image('a.exr')[0].mean())\n"
+           "print('tool', relief.run('relief-bake', '--version').split()[-1], "
+           "relief.__version__)\n";
+    const std::string line = "PYTHONPATH='" + modules.string() + "' /usr/bin/python3 use.py";
+    const ProgramResult result = run_clean(line, folder->path());
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.out, "mean 0.25\ntool " RELIEF_VERSION " " RELIEF_VERSION "\n");
+}
+
 TEST_F(Installed, TheHeightMapBecomesItsSlope) {
     const std::string output = output_of("height_map_to_normal_map");
     // (-1, 0, 2) / sqrt(5) as codes: 255 (n + 1) / 2, rounded up at the half.
@@ -201,12 +218,46 @@ TEST_F(Installed, HeadersAndShadersAreInTheTree) {
 
 // A project adds the sources with the mesh component as a shared library. One file is compiled;
 // building all takes minutes.
+TEST(Packages, HaveTheirFilesOnly) {
+    const TemporaryDirectory folder;
+    std::map<std::string, std::set<std::string>> files;
+    for (const std::string component : {"tools", "development", "python"}) {
+        const std::filesystem::path prefix = folder / component;
+        expect_success("cmake --install '" + build_folder + "' --component " + component +
+                           " --prefix '" + prefix.string() + "'",
+                       folder.path());
+        if (!exists(prefix)) continue;  // The Python module is not built everywhere.
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(prefix)) {
+            if (entry.is_regular_file())
+                files[component].insert(entry.path().lexically_relative(prefix).string());
+        }
+    }
+    for (const char* file :
+         {"bin/relief-accuracy", "bin/relief-bake", "bin/relief-mesh", "bin/relief-view",
+          "lib/relief/relief-image-decoder", "lib/relief/relief_image.so",
+          "share/bash-completion/completions/relief-mesh", "share/man/man1/relief-mesh-decimate.1",
+          "share/relief/data/vase.obj", "share/relief/shaders/phong.glsl"})
+        EXPECT_TRUE(files["tools"].contains(file)) << file;
+    for (const char* file :
+         {"include/relief/version.h", "include/relief/mesh/normals.h", "lib/librelief_mesh.a",
+          "lib/cmake/relief/relief-config.cmake", "lib/pkgconfig/relief-mesh.pc"})
+        EXPECT_TRUE(files["development"].contains(file)) << file;
+    for (const std::string& file : files["tools"])
+        EXPECT_FALSE(file.ends_with(".a") || file.ends_with(".h") || file.ends_with(".cpp"))
+            << file;
+    for (const std::string& file : files["python"])
+        EXPECT_TRUE(file.starts_with("lib/python3/dist-packages/relief/")) << file;
+    for (const std::string& file : files["development"])
+        EXPECT_FALSE(file.starts_with("bin/") || file.starts_with("share/")) << file;
+}
+
 TEST(AddedFolder, GivesTheMeshComponentAlone) {
     const TemporaryDirectory folder;
     std::filesystem::create_directory(folder / "engine");
     std::ofstream(folder / "engine/CMakeLists.txt")
         << "cmake_minimum_required(VERSION 3.25)\nproject(engine LANGUAGES C CXX)\n"
         << "set(BUILD_SHARED_LIBS ON)\nset(RELIEF_COMPONENTS mesh)\nset(RELIEF_PCH OFF)\n"
+        << "set(RELIEF_UNITY OFF)\n"
         << "add_subdirectory(" << source_directory().string() << " relief)\n"
         << "add_executable(engine " << source_directory().string()
         << "/examples/normals_and_tangents.cpp)\n"
@@ -247,6 +298,64 @@ TEST(SharedMesh, ExportsWhatPublicHeadersDeclare) {
         folder.path());
     EXPECT_EQ(numbers_after(run_clean("./engine", folder.path()).out, "vertices"),
               std::vector<double>{33 * 33});
+}
+
+// All components as shared libraries, of the objects of the static ones: each finds what it needs
+// in the exports of the others.
+TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
+    struct Component {
+        std::string name, folder, libraries;
+    };
+    const std::vector<Component> components = {
+        {"mesh", "libmesh", ""},
+        {"topology", "libmesh", "-lrelief_mesh $(pkg-config --libs openmesh)"},
+        {"files", "libmesh",
+         "-lrelief_mesh $(pkg-config --libs tinyobjloader libdeflate libisal libturbojpeg draco) "
+         "-lmeshoptimizer"},
+        {"bake", "libmesh", "-lrelief_mesh -lembree3"},
+        {"shade", "libshade", "-lrelief_files -lrelief_mesh"},
+        {"reference", "libshade/src/reference",
+         "-lrelief_shade -lrelief_bake -lrelief_files -lrelief_mesh -lembree3"},
+        {"accuracy", "libaccuracy",
+         "-lrelief_reference -lrelief_shade -lrelief_bake -lrelief_files -lrelief_topology "
+         "-lrelief_mesh -lembree3"},
+    };
+    const TemporaryDirectory folder;
+    for (const Component& component : components) {
+        const std::string library = "librelief_" + component.name;
+        expect_success(
+            "'" + compiler +
+                "' -shared -Wl,--no-undefined '-Wl,-rpath,$ORIGIN' -Wl,--whole-archive '" +
+                build_folder + "/" + component.folder + "/" + library +
+                ".a' -Wl,--no-whole-archive -o " + library + ".so -L. " + component.libraries +
+                " -lfmt -ltbb",
+            folder.path());
+        if (HasFailure()) return;
+        const std::string foreign =
+            run_clean("nm -DC --defined-only " + library +
+                          ".so | cut -c20- | grep -vE '^((typeinfo|typeinfo name|vtable|guard "
+                          "variable) for )?relief::|std::'",
+                      folder.path())
+                .out;
+        EXPECT_EQ(foreign, "") << component.name;
+    }
+    const std::string source = source_directory().string();
+    expect_success("'" + compiler + "' -std=c++20 -I '" + source + "/libmesh/include' -I '" +
+                       source + "/libshade/include' '" + source +
+                       "/examples/explain_effects.cpp' -o explain -L. -lrelief_shade "
+                       "-lrelief_files -lrelief_mesh -Wl,-rpath,.",
+                   folder.path());
+    EXPECT_THAT(run_clean("./explain", folder.path()).out, HasSubstr("off normal map: "));
+}
+
+// A program may link its own copy of glad with another table of functions.
+TEST(StaticShade, DefinesNoNamesOfGlad) {
+    const std::string symbols = run_clean("nm --defined-only --extern-only '" + build_folder +
+                                              "/libshade/librelief_shade.a'",
+                                          source_directory())
+                                    .out;
+    EXPECT_THAT(symbols, HasSubstr(" T relief_gladLoadGLContext\n"));
+    EXPECT_THAT(symbols, testing::Not(HasSubstr(" glad")));
 }
 
 TEST(Interface, IsTheCommittedOne) {

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::test {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gl/api.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief {
 

@@ -13,7 +13,7 @@
 
 #include "gl/api.h"
 #include "gl/program.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief {
 void PrintTo(Backend backend,

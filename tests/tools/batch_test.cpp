@@ -28,7 +28,9 @@ Batch six_files() {
     batch.work = [](std::size_t index) {
         if (index == 0) std::this_thread::sleep_for(std::chrono::milliseconds(30));
         if (index == 3) throw InvalidInput("no good");
-        return FileOutcome{"line " + std::to_string(index), {}, {{"index", index}}};
+        FileOutcome outcome{"line " + std::to_string(index), {}, {}};
+        outcome.summary.add_json({{"index", index}});
+        return outcome;
     };
     return batch;
 }

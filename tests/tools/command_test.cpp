@@ -33,7 +33,7 @@ TEST(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
     const Workplace workplace;
     const std::vector<WrongUsage> rows = {
         {"relief-mesh",
-         "relief-mesh: error: a command is missing: process or decimate or subdivide or "
+         "relief-mesh: error: a command is missing: process or decimate or lods or subdivide or "
          "info or check or compare or conformance (see "
          "relief-mesh --help)"},
         {"relief-mesh proces a b",
@@ -90,6 +90,23 @@ TEST(AllToolsAlike, FailWhenTheirResultCannotBePrinted) {
     const ProgramResult result = workplace.run("relief-mesh info square.obj > /dev/full");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.error, "relief-mesh: error: standard output: cannot be written\n");
+}
+
+TEST(AllToolsAlike, ReturnTheirCodeWhenTheErrorCannotBePrinted) {
+    const Workplace workplace;
+    workplace.write("bad.obj", "f 1 2 3\n");
+    EXPECT_EQ(workplace.run("relief-mesh info bad.obj 2>&-").exit_code, 1);
+    EXPECT_EQ(workplace.run("relief-mesh info bad.obj >&- 2>&-").exit_code, 1);
+    EXPECT_EQ(workplace.run("relief-mesh info bad.obj 2> /dev/full").exit_code, 1);
+}
+
+TEST(AllToolsAlike, EscapeControlCharactersOfModels) {
+    const Workplace workplace;
+    workplace.write("a.obj", "o x\x1B[2J\x07y\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const ProgramResult result = workplace.run("relief-mesh info a.obj");
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.out, testing::HasSubstr("x\\x1b[2J\\x07y"));
+    EXPECT_THAT(result.out, testing::Not(testing::HasSubstr("\x1B")));
 }
 
 TEST(Command, NamesTheFileInComplaintsAboutItsContents) {

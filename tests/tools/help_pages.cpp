@@ -26,7 +26,7 @@ std::vector<std::string> commands_with_help(const Workplace& workplace) {
     for (const std::string tool :
          {"relief-accuracy", "relief-bake", "relief-mesh", "relief-view"}) {
         commands.push_back(tool);
-        const std::string page = workplace.run(tool + " --help").out;
+        const std::string page = workplace.run(tool + " --help all").out;
         for (const std::string& line : section_of(page, "Commands:")) {
             if (line.size() > 2 && std::isalpha(static_cast<unsigned char>(line[2])) != 0)
                 commands.push_back(tool + " " + line.substr(2, line.find(' ', 2) - 2));

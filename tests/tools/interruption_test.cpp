@@ -84,13 +84,13 @@ TEST(Interruption, AFileThatGetsTooLargeIsAnErrorLikeAFullDisc) {
     }
 }
 
-TEST(Interruption, AReaderThatWentAwayIsAnErrorInWords) {
+TEST(Interruption, AReaderThatWentAwayEndsTheToolQuietly) {
     const Workplace place;
     place.write_square("square.obj");
     // The pipe has no reader when the tool writes to it.
     const ProgramResult result =
         place.run("(sleep 0.2; relief-mesh check square.obj; echo $? > out/code) | true");
-    EXPECT_THAT(result.error, testing::HasSubstr("standard output: cannot be written"));
+    EXPECT_EQ(result.error, "");
     EXPECT_EQ(place.read("out/code"), "1\n");
 }
 

@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "relief/mesh/limits.h"
+
 namespace relief::tools {
 namespace {
 
@@ -118,6 +120,26 @@ TEST(OptionValues, AreNeededAndTakenOnce) {
 TEST(OptionValues, OfARepeatableOptionComeInOrder) {
     EXPECT_THAT(Parsed({"--list", "b", "--list", "a", "--number", "1"}).list,
                 ElementsAre("b", "a"));
+}
+
+TEST(LimitOptions, SetTheLimitsOfTheProcess) {
+    const auto given = [](const std::string& name, const std::string& value) {
+        CLI::App app;
+        add_limit_options(app);
+        return refusal_by([&] { app.parse(std::vector<std::string>{value, name}); });
+    };
+    EXPECT_EQ(given("--max-memory", "1.5G"), "accepted");
+    EXPECT_EQ(input_limits().memory, 3ULL << 29);
+    EXPECT_EQ(given("--max-memory", "600M"), "accepted");
+    EXPECT_EQ(input_limits().memory, 600ULL << 20);
+    EXPECT_EQ(given("--max-pixels", "1e6"), "accepted");
+    EXPECT_EQ(input_limits().pixels, 1'000'000U);
+    EXPECT_EQ(input_limits().memory, 600ULL << 20);
+    EXPECT_EQ(given("--max-memory", "600"), "--max-memory 600: no amount of memory");
+    EXPECT_EQ(given("--max-memory", "-1G"), "--max-memory -1G: not between 0 and 1000000");
+    EXPECT_EQ(given("--max-memory", "0G"), "--max-memory 0G: less than a byte");
+    EXPECT_EQ(given("--max-pixels", "0"), "--max-pixels 0: not between 1 and 1000000000000");
+    set_input_limits({});
 }
 
 }  // namespace

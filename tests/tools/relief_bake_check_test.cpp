@@ -37,7 +37,7 @@ TEST(MapCheckCommand, ReportsASoundMap) {
                           ": 256 x 256, 3 channels, 8 bit: sound\ncontent   tangent-space "
                           "normals\nlengths   mean 1.000, RMS deviation from 1: 0.003, 100.0 % "
                           "within 0.1\ngreen     up, from the slopes (correlation +1.00"));
-    EXPECT_THAT(result.out, HasSubstr("see       docs/map-check.md explains all findings\n"));
+    EXPECT_THAT(result.out, HasSubstr("details   docs/map-check.md describes each condition\n"));
 }
 
 TEST(MapCheckCommand, StrictFailsOnProblems) {

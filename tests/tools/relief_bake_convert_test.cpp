@@ -7,10 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/statistics.h"
 #include "support/images.h"
 #include "support/shared_data.h"
 #include "tools/refusal.h"

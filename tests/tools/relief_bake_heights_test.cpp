@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/statistics.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 

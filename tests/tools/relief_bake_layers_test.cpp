@@ -11,9 +11,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/statistics.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
 

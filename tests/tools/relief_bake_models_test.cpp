@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs relief-bake mesh with models that do not fit, and with parts that are paired by name.
 #include "mesh_bake.h"
-#include "relief/mesh/bake_matching.h"
+#include "relief/mesh/bake_check.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

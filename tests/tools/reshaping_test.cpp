@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands `relief-mesh decimate` and `subdivide`.
+// The commands `relief-mesh decimate`, `lods` and `subdivide`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/topology.h"
 #include "support/shared_data.h"
 #include "tools/read_files.h"
 #include "tools/refusal.h"
@@ -101,7 +106,12 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
     EXPECT_EQ(read_document(workplace / "out/a.glb").mesh({0, 0}).triangles.size(), 1000U);
     const json report = json::parse(workplace.read("out/a.json"));
     EXPECT_EQ(report["tool"], "relief-mesh decimate");
-    EXPECT_EQ(report["options"], json({{"triangles", 1000}, {"normals", "keep"}}));
+    EXPECT_EQ(report["options"],
+              json({{"triangles", 1000},
+                    {"keep_borders", false},
+                    {"keep_seams", false},
+                    {"weights", {{"texcoords", 1.0}, {"normals", 0.0}, {"colors", 0.01}}},
+                    {"normals", "keep"}}));
     EXPECT_EQ(report["triangles_read"], 5760);
     EXPECT_EQ(report["triangles_written"], 1000);
 
@@ -129,6 +139,141 @@ TEST(DecimateCommand, NoGapOpensBetweenMaterials) {
     EXPECT_EQ(left, places_near_the_border(document.mesh({0, 1})));
     EXPECT_GT(left.size(), 2U);
     EXPECT_LT(left.size(), 25U) << "thinned out";
+}
+
+/// Writes a roof over the unit square with `rows` rows of triangles on each side: the height is
+/// x / 2 up to the ridge at x = 1, and falls behind it.
+void write_roof(const Workplace& workplace, const std::string& name, int rows) {
+    std::string text;
+    for (int column = 0; column <= 2; ++column) {
+        for (int row = 0; row <= rows; ++row)
+            text += "v " + std::to_string(column) + " " + std::to_string(double(row) / rows) + " " +
+                    (column == 1 ? "0.5" : "0") + "\n";
+    }
+    for (int column = 0; column < 2; ++column) {
+        for (int row = 1; row <= rows; ++row) {
+            const int at = column * (rows + 1) + row;
+            const int next = at + rows + 1;
+            text += "f " + std::to_string(at) + " " + std::to_string(next) + " " +
+                    std::to_string(next + 1) + " " + std::to_string(at + 1) + "\n";
+        }
+    }
+    workplace.write(name, text);
+}
+
+TEST(DecimateCommand, TheDistanceAndTheAngleAreMeasuredInBothDirections) {
+    const Workplace workplace;
+    write_roof(workplace, "roof.obj", 10);
+    // Four triangles describe the roof exactly.
+    ASSERT_EQ(
+        workplace.run("relief-mesh decimate roof.obj out/a.ply --triangles 4 --report out/a.json")
+            .exit_code,
+        0);
+    json report = json::parse(workplace.read("out/a.json"));
+    EXPECT_EQ(report["triangles_written"], 4);
+    for (const char* direction : {"of_input", "of_output"}) {
+        EXPECT_LT(report["distance"][direction]["max"], 1e-6) << direction;
+        EXPECT_LT(report["distance"][direction]["max_degrees"], 1e-3) << direction;
+    }
+    EXPECT_TRUE(report["milliseconds"].contains("measure"));
+    // Two triangles leave one side. The distance of the other one grows from 0 at the ridge to its
+    // width, which is sqrt(1.25), and its normal differs by 53.13 degrees.
+    ProgramResult result =
+        workplace.run("relief-mesh decimate roof.obj out/b.ply --triangles 2 --report out/b.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    report = json::parse(workplace.read("out/b.json"));
+    ASSERT_EQ(report["triangles_written"], 2);
+    const json of_input = report["distance"]["of_input"];
+    EXPECT_NEAR(of_input["max"], std::sqrt(1.25), 1e-3);
+    EXPECT_NEAR(of_input["mean"], std::sqrt(1.25) / 4.0, 3e-3);
+    EXPECT_NEAR(of_input["rms"], std::sqrt(1.25 / 6.0), 5e-3);
+    EXPECT_NEAR(of_input["mean_degrees"], 53.13 / 2.0, 0.2);
+    EXPECT_LT(report["distance"]["of_output"]["max"], 1e-6);
+    EXPECT_THAT(result.out, HasSubstr("distance  of IN from OUT: mean "));
+    EXPECT_THAT(result.out, HasSubstr("          of OUT from IN: mean "));
+    EXPECT_THAT(result.out, HasSubstr("angle     between normals of IN and OUT: mean "));
+    // Without a report there is nothing to measure for.
+    result = workplace.run("relief-mesh decimate roof.obj out/c.ply --triangles 2 --quiet");
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(workplace.read("out/b.ply"), workplace.read("out/c.ply"));
+}
+
+TEST(DecimateCommand, TheMeasuredDistanceIsWithinMaxError) {
+    const Workplace workplace;
+    write_sheet(workplace, "sheet.obj", 24);
+    ASSERT_EQ(workplace
+                  .run("relief-mesh decimate sheet.obj out/a.ply --max-error 0.02 --report "
+                       "out/a.json")
+                  .exit_code,
+              0);
+    const json report = json::parse(workplace.read("out/a.json"));
+    EXPECT_LT(report["triangles_written"], 600);
+    for (const char* direction : {"of_input", "of_output"}) {
+        EXPECT_LE(report["distance"][direction]["max"], 0.02001) << direction;
+        EXPECT_GT(report["distance"][direction]["max"], 0.005) << direction;
+    }
+}
+
+TEST(DecimateCommand, BordersSeamsAndAnglesAreKeptOnRequest) {
+    const Workplace workplace;
+    write_sheet(workplace, "sheet.obj", 24);
+    ASSERT_EQ(workplace.run("relief-mesh process sheet.obj out/sheet.glb").exit_code, 0);
+    const auto decimated = [&](const std::string& options) {
+        const ProgramResult result = workplace.run(
+            "relief-mesh decimate out/sheet.glb out/low.glb --report out/low.json " + options);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return json::parse(workplace.read("out/low.json"));
+    };
+    const auto border_vertices = [&] {
+        std::set<std::tuple<float, float, float>> places;
+        for (const int primitive : {0, 1}) {
+            const GltfDocument document = read_document(workplace / "out/low.glb");
+            for (const glm::vec3& p :
+                 document.mesh({0, static_cast<std::size_t>(primitive)}).positions) {
+                if (std::abs(p.x) > 0.9999F || std::abs(p.y) > 0.9999F)
+                    places.emplace(p.x, p.y, p.z);
+            }
+        }
+        return places.size();
+    };
+    const auto seam_vertices = [&] {
+        return places_near_the_border(read_document(workplace / "out/low.glb").mesh({0, 0})).size();
+    };
+    decimated("--ratio 0.3");
+    EXPECT_LT(border_vertices(), 90U);
+    EXPECT_LT(seam_vertices(), 25U);
+    json report = decimated("--ratio 0.3 --keep-borders");
+    EXPECT_EQ(border_vertices(), 96U);
+    EXPECT_EQ(report["options"]["keep_borders"], true);
+    report = decimated("--ratio 0.3 --keep-seams");
+    EXPECT_EQ(seam_vertices(), 25U);
+    EXPECT_EQ(report["options"]["keep_seams"], true);
+
+    const json free = decimated("--triangles 20");
+    const json bounded = decimated("--triangles 20 --max-normal-error 10");
+    EXPECT_EQ(bounded["options"]["max_normal_error"], 10.0);
+    EXPECT_GT(bounded["triangles_written"], 40);
+    EXPECT_LT(bounded["distance"]["of_output"]["mean_degrees"],
+              free["distance"]["of_output"]["mean_degrees"]);
+}
+
+TEST(DecimateCommand, WeightsChangeWhatCounts) {
+    const Workplace workplace;
+    const auto result = [&](const std::string& options) {
+        EXPECT_EQ(workplace
+                      .run("relief-mesh decimate data/vase.obj out/low.ply --ratio 0.3 --report "
+                           "out/low.json " +
+                           options)
+                      .exit_code,
+                  0);
+        return json::parse(workplace.read("out/low.json"));
+    };
+    const json plain = result("");
+    const json shape_only = result("--weights texcoords=0,normals=0");
+    EXPECT_EQ(shape_only["options"]["weights"],
+              json({{"texcoords", 0.0}, {"normals", 0.0}, {"colors", 0.01}}));
+    // Without the texture, only the shape counts, so it is nearer.
+    EXPECT_LT(shape_only["distance"]["of_input"]["rms"], plain["distance"]["of_input"]["rms"]);
 }
 
 TEST(DecimateCommand, ARiggedModelKeepsItsRigOnTheVerticesThatStay) {
@@ -197,6 +342,21 @@ TEST(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
           "--ratio 1.5: not between 0 and 1"},
          {"relief-mesh decimate square.obj out/old.glb --max-error -1", 2,
           "--max-error -1: not at least 0"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --max-normal-error 0", 2,
+          "--max-normal-error 0: not between 0.001 and 180 degrees"},
+         {"relief-mesh decimate square.obj out/old.glb --max-normal-error 20", 2,
+          "no limit is given (give --triangles N, --ratio R or --max-error E)"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights normals", 2,
+          "--weights normals: 'normals': not NAME=WEIGHT (for example normals=0.1,colors=0.01)"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights shine=1", 2,
+          "--weights shine=1: 'shine=1': not one of texcoords, normals, colors"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights colors=-1", 2,
+          "--weights colors=-1: 'colors=-1': not at least 0"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights colors=1,colors=2", 2,
+          "--weights colors=1,colors=2: colors is given twice"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --normals angle --weights "
+          "normals=1",
+          2, "--weights normals: has no effect with --normals angle, which replaces them"},
          {"relief-mesh decimate missing.obj out/old.glb --ratio 0.5", 1, "missing.obj: "},
          {"relief-mesh decimate flat.obj out/old.glb --ratio 0.5", 1,
           "flat.obj: none of its triangles has an area"},
@@ -206,6 +366,96 @@ TEST(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
           "--levels 0: not between 1 and 12"},
          {"relief-mesh subdivide square.obj out/new.stl", 2,
           "out/new.stl: .stl is not a format that can be written"}});
+}
+
+TEST(LodsCommand, WritesLevelsAndTheSizesAtWhichTheyTakeOver) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(
+        "relief-mesh lods data/vase.obj out/lods.gltf --triangles 2000,500 --error 2px --names "
+        "--report out/lods.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("LOD1: 2000 triangles, largest distance "));
+    const json root = json::parse(workplace.read("out/lods.gltf"));
+    EXPECT_EQ(root["extensionsUsed"], json::array({"MSFT_lod"}));
+    EXPECT_FALSE(root.contains("extensionsRequired"));
+    ASSERT_EQ(root["nodes"].size(), 3U);
+    EXPECT_EQ(root["nodes"][0]["extensions"]["MSFT_lod"]["ids"], json::array({1, 2}));
+    EXPECT_EQ(root["scenes"][0]["nodes"], json::array({0})) << "lower levels are in no scene";
+    for (std::size_t i = 0; i < 3; ++i) {
+        const json& node = root["nodes"][i];
+        EXPECT_EQ(node["name"], "vase_LOD" + std::to_string(i));
+        EXPECT_EQ(node["mesh"], i);
+        const json& primitive = root["meshes"][i]["primitives"][0];
+        EXPECT_EQ(primitive["material"], 0);
+        EXPECT_TRUE(
+            root["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()].contains(
+                "min"));
+    }
+    const GltfDocument document = read_document(workplace / "out/lods.gltf");
+    const Mesh input = document.mesh({0, 0});
+    EXPECT_EQ(input.triangles.size(), 5760U);
+    std::set<std::pair<float, float>> texcoords;
+    for (const glm::vec2& uv : input.texcoords)
+        texcoords.emplace(uv.x, uv.y);
+    const json report = json::parse(workplace.read("out/lods.json"));
+    const json& coverages = root["nodes"][0]["extras"]["MSFT_screencoverage"];
+    ASSERT_EQ(coverages.size(), 3U);
+    EXPECT_EQ(coverages[2], 0.0);
+    const Bounds bounds = bounds_of(input);
+    const double diameter = glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
+    double before = 1.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Mesh level = document.mesh({i + 1, 0});
+        EXPECT_EQ(level.triangles.size(), i == 0 ? 2000U : 500U);
+        for (const glm::vec2& uv : level.texcoords)
+            ASSERT_TRUE(texcoords.contains({uv.x, uv.y})) << "one map serves all levels";
+        const json& reported = report["levels"][i];
+        EXPECT_EQ(reported["triangles"], level.triangles.size());
+        const SurfaceDistance distance = surface_distance(input, level);
+        const double largest = std::max(distance.from_a.max, distance.from_b.max);
+        const double pixels = 2.0 * diameter / largest;
+        EXPECT_NEAR(reported["pixels"].get<double>(), pixels, 1e-6 * pixels);
+        const double area = std::numbers::pi / 4.0 * pixels * pixels;
+        const double coverage = coverages[i].get<double>();
+        EXPECT_NEAR(coverage, area / (1920.0 * 1080.0), 1e-6);
+        EXPECT_LT(coverage, before);
+        before = coverage;
+    }
+}
+
+TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
+    const Workplace workplace;
+    ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj out/vase.gltf").exit_code, 0);
+    json root = json::parse(workplace.read("out/vase.gltf"));
+    root["nodes"][0]["children"] = json::array({1});
+    root["nodes"][0]["translation"] = {1, 2, 3};
+    root["nodes"].push_back({{"name", "handle"}});
+    workplace.write("out/vase.gltf", root.dump());
+    ASSERT_EQ(
+        workplace.run("relief-mesh lods out/vase.gltf out/lods.gltf --levels 1 --names").exit_code,
+        0);
+    root = json::parse(workplace.read("out/lods.gltf"));
+    ASSERT_EQ(root["nodes"].size(), 4U);
+    EXPECT_EQ(root["nodes"][0]["children"], json::array({1, 2}));
+    EXPECT_FALSE(root["nodes"][0].contains("mesh"));
+    EXPECT_EQ(root["nodes"][2]["name"], "vase_LOD0");
+    EXPECT_EQ(root["nodes"][2]["extensions"]["MSFT_lod"]["ids"], json::array({3}));
+    EXPECT_FALSE(root["nodes"][2].contains("translation"));
+    EXPECT_EQ(root["nodes"][3]["name"], "vase_LOD1");
+    EXPECT_EQ(read_document(workplace / "out/lods.gltf").view().primitives.size(), 1U);
+    const auto again = workplace.run("relief-mesh lods out/lods.gltf out/again.glb");
+    EXPECT_EQ(again.exit_code, 1);
+    EXPECT_THAT(again.error, testing::HasSubstr("already has levels of detail"));
+    workplace.write("old.glb", "old");
+    expect_refusals(workplace, "relief-mesh", "old.glb",
+                    {{"relief-mesh lods data/vase.obj out/old.ply", 2,
+                      "out/old.ply: cannot store levels of detail (write a .glb or .gltf)"},
+                     {"relief-mesh lods data/vase.obj out/old.glb --levels 2 --triangles 5", 2,
+                      "--levels and --triangles contradict each other (give one of them)"},
+                     {"relief-mesh lods data/vase.obj out/old.glb --triangles 500,500", 2,
+                      "--triangles: 500 is not less than 500 (give the finest level first)"},
+                     {"relief-mesh lods data/vase.obj out/old.glb --error 0", 2,
+                      "--error 0: not between 0.001 and 1000 pixels"}});
 }
 
 }  // namespace

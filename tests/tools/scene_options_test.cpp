@@ -72,6 +72,23 @@ TEST(SceneOptions, AMapReplacesTheDiffuseColourOfEveryMaterial) {
     EXPECT_TRUE(scene.materials[0].diffuse_texture);
 }
 
+TEST(SceneOptions, TransmissionComesWithTheReflectivityOfGlass) {
+    ViewOptions options;
+    options.transmission = 0.75F;
+    options.refractive_index = 1.5F;
+    Material material;
+    set_reflection(material, options);
+    EXPECT_EQ(material.transmission, 0.75F);
+    EXPECT_EQ(material.refractive_index, 1.5F);
+    EXPECT_EQ(material.reflectivity, glm::vec3(0.04F));
+
+    Material mirror;
+    mirror.reflectivity = glm::vec3(0.5F);
+    set_reflection(mirror, options);
+    EXPECT_EQ(mirror.transmission, 0.75F);
+    EXPECT_EQ(mirror.reflectivity, glm::vec3(0.5F)) << "its own";
+}
+
 TEST(SceneOptions, DefaultLightsShineFromTheViewersSideWhereverTheCameraIs) {
     const Workplace workplace;
     workplace.write_square("square.obj");

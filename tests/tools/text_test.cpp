@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of summaries and lists of findings.
-#include "common/text.h"
+// Summaries as text and JSON, and lists of findings.
+#include "common/summary.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/command.h"
@@ -43,6 +44,26 @@ TEST(SummaryText, RoundsTimesToWhatMatters) {
 TEST(SummaryText, ExtensionsAreLowerCase) {
     EXPECT_EQ(extension_of("a/b.STL"), ".stl");
     EXPECT_EQ(extension_of("a.b/c"), "");
+}
+
+TEST(Summary, RendersTextAndJsonFromOneList) {
+    Summary part;
+    part.add("error", "2 degrees", {{"degrees", 2}});
+    Summary summary;
+    summary.add("read", Summary::Lines{"a.obj: 3 triangles", "b.obj: 4 triangles"},
+                {{"triangles", {3, 4}}});
+    summary.add("omitted", "", {{"omitted", 0}});
+    summary.add_part("check", part);
+    summary.add_lines(part);
+    summary.add_json({{"complete", true}});
+    testing::internal::CaptureStdout();
+    summary.print();
+    std::fflush(stdout);
+    EXPECT_EQ(testing::internal::GetCapturedStdout(),
+              "read      a.obj: 3 triangles\n          b.obj: 4 triangles\n"
+              "error     2 degrees\nerror     2 degrees\n");
+    EXPECT_EQ(summary.json().dump(),
+              R"({"triangles":[3,4],"omitted":0,"check":{"degrees":2},"complete":true})");
 }
 
 Report report_of(const std::string& kind) {

@@ -2,19 +2,28 @@
 // Every error, also of CLI11, becomes one line on stderr and an exit code.
 #include "common/command.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
+#include <system_error>
+#include <utility>
 
+#include "common/help.h"
+#include "common/text.h"
 #include "file_replacement.h"
 #include "near_names.h"
 #include "relief/mesh/execution.h"
+#include "relief/mesh/limits.h"
 #include "relief/version.h"
 
 namespace relief::tools {
@@ -27,6 +36,16 @@ struct Console {
 };
 Console console;
 
+/// True if the tool is the whole process, rather than a call in a test.
+bool owns_process = false;
+
+// The shadow memory of sanitizers exceeds any limit.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
+
 /// Replaces the streams for its lifetime.
 class ConsoleScope {
   public:
@@ -37,95 +56,6 @@ class ConsoleScope {
 
   private:
     Console before_;
-};
-
-constexpr std::size_t page_columns = 100;
-constexpr std::size_t text_column = 30;
-
-/// Returns a name with the text wrapped beside it.
-std::string help_entry(const std::string& name, const std::string& text) {
-    std::string page = "  " + name;
-    std::size_t column = page.size();
-    if (column + 2 > text_column) {
-        page += '\n';
-        column = 0;
-    }
-    std::istringstream words(text);
-    bool line_start = true;
-    for (std::string word; words >> word;) {
-        if (!line_start && column + 1 + word.size() > page_columns) {
-            page += '\n';
-            column = 0;
-            line_start = true;
-        }
-        if (line_start) {
-            page.append(text_column - column, ' ');
-            column = text_column;
-        } else {
-            page += ' ';
-            ++column;
-        }
-        page += word;
-        column += word.size();
-        line_start = false;
-    }
-    return page + '\n';
-}
-
-std::string help_usage(const CLI::App& app) {
-    std::string text = "\nUsage: ";
-    if (app.get_parent() != nullptr) text += app.get_parent()->get_name() + " ";
-    text += app.get_name();
-    if (!app.get_subcommands({}).empty()) return text + " COMMAND ...\n";
-    for (const CLI::Option* option : app.get_options()) {
-        if (option->get_positional()) text += " " + option->get_name(true, false);
-    }
-    return text + " [OPTIONS]\n";
-}
-
-std::string help_commands(const CLI::App& app) {
-    if (app.get_subcommands({}).empty()) return "";
-    std::string page = "\nCommands:\n";
-    for (const CLI::App* command : app.get_subcommands({}))
-        page += help_entry(command->get_name(), command->get_description());
-    return page + fmt::format("\n{} COMMAND --help describes a command.\n", app.get_name());
-}
-
-std::string help_arguments(const CLI::App& app) {
-    std::string page;
-    for (const CLI::Option* option : app.get_options()) {
-        if (option->get_positional())
-            page += help_entry(option->get_name(true, false), option->get_description());
-    }
-    return page.empty() ? "" : "\nArguments:\n" + page;
-}
-
-/// Returns the options of a group, or an empty text.
-std::string help_options(const CLI::App& app, const std::string& title, const std::string& group) {
-    std::string page;
-    for (const CLI::Option* option : app.get_options()) {
-        if (option->get_group() != group || option->get_positional()) continue;
-        const bool takes_value = option->get_expected_max() > 0;
-        const std::string value = takes_value ? " " + option->get_type_name() : "";
-        page += help_entry(option->get_name(false, true) + value, option->get_description());
-    }
-    return page.empty() ? "" : fmt::format("\n{}:\n{}", title, page);
-}
-
-/// The layout of help pages, at most 100 columns wide.
-class HelpFormat : public CLI::FormatterBase {
-  public:
-    std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
-        const std::string general = "Options";  // CLI11's group of options without a group.
-        std::string page = app->get_description() + "\n" + help_usage(*app);
-        page += help_commands(*app) + help_arguments(*app);
-        for (const std::string& group : app->get_groups()) {
-            if (group != general && !group.empty()) page += help_options(*app, group, group);
-        }
-        page += help_options(*app, "General", general);
-        if (!app->get_footer().empty()) page += "\n" + app->get_footer() + "\n";
-        return page;
-    }
 };
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -148,12 +78,6 @@ std::vector<std::string> command_names(const CLI::App& app) {
 const CLI::App& parsed_command(const CLI::App& root) {
     const std::vector<CLI::App*> parsed = root.get_subcommands();
     return parsed.empty() ? root : *parsed.front();
-}
-
-/// "relief-mesh process"
-std::string full_name(const CLI::App& app) {
-    const CLI::App* parent = app.get_parent();
-    return parent == nullptr ? app.get_name() : parent->get_name() + " " + app.get_name();
 }
 
 /// Returns the error of an unknown option or command, or an excess file.
@@ -189,12 +113,32 @@ UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
     return UsageError(what);
 }
 
+/// Prints to err(). A message that cannot be printed is lost; the exit code still tells the result.
+template <typename... Arguments>
+void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), err()));
+}
+
+/// Returns a message without control characters. Lines after the first one, as in the messages of
+/// shader compilers, are indented, so that they cannot look like messages of their own.
+std::string printable_lines(std::string_view text) {
+    std::string result;
+    while (true) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        result += printable(line);
+        if (line.size() == text.size()) return result;
+        text.remove_prefix(line.size() + 1);
+        result += text.empty() ? "\n" : "\n  ";
+    }
+}
+
 /// Prints "relief-mesh: error: TEXT" with the name of the tool, without the command.
 void print_message(const CLI::App& app, const std::string& severity, const std::string& text) {
     const CLI::App* parent = app.get_parent();
     std::fflush(out());
-    fmt::print(err(), "{}: {}: {}\n", parent == nullptr ? app.get_name() : parent->get_name(),
-               severity, text);
+    tell("{}: {}: {}\n", parent == nullptr ? app.get_name() : parent->get_name(), severity,
+         printable_lines(text));
 }
 
 void print_error(const CLI::App& root, const std::string& text) {
@@ -230,11 +174,58 @@ int parse_and_run(CLI::App& root, const std::vector<Command>& commands,
     for (const Command& command : commands) {
         if (!command.app->parsed()) continue;
         const ExitCode code = command.run();
-        if (std::fflush(out()) != 0 || std::ferror(out()) != 0)
+        if (std::fflush(out()) != 0 || std::ferror(out()) != 0) {
+            // A reader that closes its pipe, such as head, needs no message.
+            if (errno == EPIPE) return static_cast<int>(ExitCode::failed);
             throw FileError("standard output", "cannot be written");
+        }
         return static_cast<int>(code);
     }
     throw UsageError("a command is missing");
+}
+
+constexpr const char* json_help = "--help-json";
+
+/// A tool with its commands and options.
+struct BuiltTool {
+    explicit BuiltTool(const Tool& tool)
+        : root(std::make_unique<CLI::App>(tool.sentence, tool.name)) {
+        use_help_pages(*root);
+        root->set_version_flag("--version", tool.name + " " + version(),
+                               "Print the version and exit.");
+        root->set_help_flag("-h,--help", "Print this help and exit.");
+        for (const auto& add : tool.commands)
+            commands.push_back(add(*root));
+        if (!root->get_subcommands({}).empty()) root->require_subcommand(1);
+        root->add_flag(
+            json_help,
+            [](std::int64_t) {
+                throw UsageError(std::string(json_help) + ": excludes all other arguments");
+            },
+            "Print the commands and options as JSON and exit.");
+    }
+
+    std::unique_ptr<CLI::App> root;
+    std::vector<Command> commands;
+};
+
+/// Returns whether the arguments contain "--help all", and removes its second word.
+bool take_help_all(std::vector<std::string>& arguments) {
+    for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
+        if ((arguments[i] != "--help" && arguments[i] != "-h") || arguments[i + 1] != "all")
+            continue;
+        arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return true;
+    }
+    return false;
+}
+
+/// Opens standard descriptors that are closed, so that no output file gets their number. Writing to
+/// them fails, as to a closed descriptor.
+void occupy_standard_descriptors() {
+    for (int descriptor = 0; descriptor < 3; ++descriptor) {
+        if (::fcntl(descriptor, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
+    }
 }
 
 /// Signals that end the process remove temporary files first. SIGPIPE and SIGXFSZ are ignored, so
@@ -290,6 +281,13 @@ double Stages::milliseconds(std::string_view name) const {
     return sum;
 }
 
+double Stages::milliseconds() const {
+    double sum = 0;
+    for (const Stage& stage : finished_)
+        sum += stage.milliseconds;
+    return sum;
+}
+
 std::size_t Stages::index_of(const std::string& name) {
     const auto known = std::find_if(finished_.begin(), finished_.end(),
                                     [&](const Stage& stage) { return stage.name == name; });
@@ -306,20 +304,20 @@ void Stages::show_progress(const std::string& name, double part, const std::stri
     const int percent = static_cast<int>(part * 100);
     if (!show_ || percent == shown_percent_) return;
     shown_percent_ = percent;
-    fmt::print(err(), "\r\033[K{} {} %{}{} ...", name, percent, more.empty() ? "" : ", ", more);
+    tell("\r\033[K{} {} %{}{} ...", name, percent, more.empty() ? "" : ", ", more);
     std::fflush(err());
 }
 
 void Stages::clear_progress() const {
     if (!show_) return;
-    fmt::print(err(), "\r\033[K");
+    tell("\r\033[K");
     std::fflush(err());
 }
 
 Stages::Running::Running(Stages& stages, const std::string& name, const std::string& shown)
     : stages_(stages), index_(stages.index_of(name)) {
     if (stages.show_) {
-        fmt::print(err(), "\r\033[K{} ...", shown);
+        tell("\r\033[K{} ...", shown);
         std::fflush(err());
     }
 }
@@ -329,14 +327,15 @@ Stages::Running::~Running() {
     stages_.clear_progress();
 }
 
-CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence) {
-    CLI::App& app = *tool.add_subcommand(name, sentence);
-    app.formatter(std::make_shared<HelpFormat>());
-    return app;
+void limit_process_memory(std::uint64_t bytes) {
+    rlimit limit{};
+    if (!owns_process || is_sanitized || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+    limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
+    ::setrlimit(RLIMIT_DATA, &limit);
 }
 
-void set_examples(CLI::App& app, const std::vector<std::string>& commands) {
-    app.footer(fmt::format("Examples:\n  {}", fmt::join(commands, "\n  ")));
+CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence) {
+    return *tool.add_subcommand(name, sentence);
 }
 
 std::string command_name(const CLI::App& app) {
@@ -364,32 +363,41 @@ void complain(const CLI::App& app, const std::string& text) {
 }
 
 int run_tool(const Tool& tool, int argc, const char* const* argv) {
+    owns_process = true;
+    occupy_standard_descriptors();
     handle_signals();
     return run_tool(tool, std::vector<std::string>(argv + 1, argv + argc), stdout, stderr);
 }
 
-int run_tool(const Tool& tool, const std::vector<std::string>& arguments, std::FILE* out,
+int run_tool(const Tool& tool, const std::vector<std::string>& given, std::FILE* out,
              std::FILE* err) {
     const ConsoleScope streams(out, err);
     set_thread_limit(0);
-    CLI::App root(tool.sentence, tool.name);
-    root.formatter(std::make_shared<HelpFormat>());
-    root.set_version_flag("--version", tool.name + " " + version(), "Print the version and exit.");
-    root.set_help_flag("-h,--help", "Print this help and exit.");
-    std::vector<Command> commands;
-    for (const auto& add : tool.commands)
-        commands.push_back(add(root));
-    if (!root.get_subcommands({}).empty()) root.require_subcommand(1);
-
+    set_input_limits({});
+    const BuiltTool built(tool);
+    CLI::App& root = *built.root;
     try {
-        return parse_and_run(root, commands, arguments);
+        if (given == std::vector<std::string>{json_help}) {
+            fmt::print(out, "{}\n", describe(root).dump(2));
+            return static_cast<int>(ExitCode::done);
+        }
+        std::vector<std::string> arguments = given;
+        if (take_help_all(arguments)) show_advanced_options(root);
+        return parse_and_run(root, built.commands, arguments);
     } catch (const UsageError& error) {
         return report(root, error);
     } catch (const std::bad_alloc&) {
         return report_failure(root, "out of memory");
+    } catch (const std::system_error& error) {
+        if (error.code() == std::errc::broken_pipe) return static_cast<int>(ExitCode::failed);
+        return report_failure(root, error.what());
     } catch (const std::exception& error) {
         return report_failure(root, error.what());
     }
+}
+
+nlohmann::ordered_json describe(const Tool& tool) {
+    return describe(*BuiltTool(tool).root);
 }
 
 std::string version() {

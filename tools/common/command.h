@@ -7,6 +7,7 @@
 /// Tests: tests/tools/command_test.cpp.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -19,7 +20,7 @@
 #include <vector>
 
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 // <CLI/CLI.hpp> is a large header, so only few files include it.
 namespace CLI {
@@ -105,6 +106,8 @@ class Stages {
 
     [[nodiscard]] const std::vector<Stage>& finished() const { return finished_; }
     [[nodiscard]] double milliseconds(std::string_view name) const;
+    /// Returns the sum of all steps.
+    [[nodiscard]] double milliseconds() const;
 
   private:
     /// Adds the time of a step at the end of its scope, also after an exception.
@@ -142,8 +145,11 @@ struct Tool {
     std::vector<std::function<Command(CLI::App&)>> commands;
 };
 
-/// Adds a subcommand with relief's help layout: one sentence, usage, arguments, grouped options,
-/// examples.
+/// Limits the data of this process, if a tool is all that it runs. Allocations beyond the limit
+/// fail.
+void limit_process_memory(std::uint64_t bytes);
+
+/// Adds a subcommand, described by one sentence.
 CLI::App& add_subcommand(CLI::App& tool, const std::string& name, const std::string& sentence);
 
 /// Adds a subcommand whose options live as long as the tool.
@@ -160,6 +166,10 @@ Command add_command(CLI::App& tool, const std::string& name, const std::string& 
 
 /// Sets the examples at the end of the help page. A test runs each of them.
 void set_examples(CLI::App& app, const std::vector<std::string>& commands);
+
+/// Names the options of a long help page that most users need. The page lists the others, the
+/// advanced ones, only for `--help all`. Without this call, all options are on the page.
+void set_common_options(CLI::App& app, const std::vector<std::string>& names);
 
 /// "process"
 std::string command_name(const CLI::App& app);

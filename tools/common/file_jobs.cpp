@@ -15,7 +15,7 @@
 #include <set>
 
 #include "common/command.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "parallel.h"
 
 namespace relief::tools {
@@ -242,20 +242,19 @@ class OutcomePrinter {
     std::size_t printed_ = 0;
 };
 
-nlohmann::ordered_json file_json(const Job& job, const Outcome& outcome) {
-    nlohmann::ordered_json json = {{"input", job.input.string()}, {"output", job.output.string()}};
+Json file_json(const Job& job, const Outcome& outcome) {
+    Json json = {{"input", job.input.string()}, {"output", job.output.string()}};
     if (outcome.done)
-        json.update(outcome.done->json);
+        json.update(outcome.done->summary.json());
     else
         json["error"] = outcome.error;
     return json;
 }
 
-nlohmann::ordered_json report_json(const Batch& batch, const std::vector<Outcome>& outcomes,
-                                   std::size_t failed) {
-    nlohmann::ordered_json json = batch.head;
+Json report_json(const Batch& batch, const std::vector<Outcome>& outcomes, std::size_t failed) {
+    Json json = batch.head;
     json["failed"] = failed;
-    json["files"] = nlohmann::ordered_json::array();
+    json["files"] = Json::array();
     for (std::size_t i = 0; i < outcomes.size(); ++i)
         json["files"].push_back(file_json(batch.jobs[i], outcomes[i]));
     return json;

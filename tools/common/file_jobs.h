@@ -13,7 +13,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,7 +20,7 @@
 
 #include "common/command.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 
 namespace relief::tools {
 
@@ -73,7 +72,7 @@ JobList jobs_of(
 struct FileOutcome {
     std::string line;  ///< The line for stdout, without newline.
     Findings findings;
-    nlohmann::ordered_json json;  ///< The entry in the report, besides "input" and "output".
+    Summary summary;  ///< Its JSON is the entry in the report, besides "input" and "output".
 };
 
 struct Batch {
@@ -82,7 +81,7 @@ struct Batch {
     std::function<FileOutcome(std::size_t index)> work;
     /// Runs the jobs one after another, because two could write the same file.
     bool one_by_one = false;
-    nlohmann::ordered_json head;  ///< The head of the report: tool, version, options.
+    Json head;  ///< The head of the report: tool, version, options.
 };
 
 /// Runs all jobs in parallel, one per thread. Prints the line or the error of each job in the given

@@ -167,6 +167,13 @@ std::vector<std::string> write_model(const std::filesystem::path& file, const Mo
     return {};
 }
 
+void add_omitted(Summary& summary, const std::vector<std::string>& omitted,
+                 const std::filesystem::path& file) {
+    const std::string text =
+        fmt::format("{} (cannot be stored in {})", fmt::join(omitted, ", "), extension_of(file));
+    summary.add("omitted", omitted.empty() ? "" : text, {{"left_behind", omitted}});
+}
+
 // Models for maps.
 
 MapModel read_map_model(const std::filesystem::path& file, ModelSpace space, Report& report) {

@@ -12,6 +12,7 @@
 
 #include "common/file_jobs.h"
 #include "common/options.h"
+#include "common/summary.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/report.h"
 
@@ -58,6 +59,10 @@ JobList model_jobs_of(const FileWords& words, std::optional<ModelFormat> format)
 std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
                                      const std::filesystem::path& input, bool has_tangents,
                                      Report& report);
+
+/// Adds the result of write_model() to a summary.
+void add_omitted(Summary& summary, const std::vector<std::string>& omitted,
+                 const std::filesystem::path& file);
 
 // Models for maps.
 

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/help.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/limits.h"
 
 namespace relief::tools {
 namespace {
@@ -51,7 +53,7 @@ AddedOption add(CLI::App& app, const std::string& name, const std::string& value
     option->type_name(value_name);
     option->expected(1);
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    return AddedOption(*option);
+    return {app, *option};
 }
 
 }  // namespace
@@ -126,6 +128,11 @@ AddedOption AddedOption::takes(int min, int max) const {
     return *this;
 }
 
+AddedOption AddedOption::words(const std::vector<std::string>& words) const {
+    set_words(*app_, *option_, words);
+    return *this;
+}
+
 AddedOption add_value(CLI::App& app, const std::string& name, const std::string& value_name,
                       const std::string& description, const Take& take) {
     return add(app, name, value_name, description, take, false);
@@ -138,8 +145,8 @@ AddedOption add_repeatable(CLI::App& app, const std::string& name, const std::st
 
 AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
                        const std::string& description) {
-    return AddedOption(*app.add_flag(
-        name, [&target](std::int64_t) { target = true; }, description));
+    return {app, *app.add_flag(
+                     name, [&target](std::int64_t) { target = true; }, description)};
 }
 
 AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
@@ -156,7 +163,55 @@ AddedOption add_files(CLI::App& app, const std::string& name,
     CLI::Option* option = app.add_option(name, callback, description);
     option->expected(-1);
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    return AddedOption(*option);
+    return {app, *option};
+}
+
+namespace {
+
+/// Parses "600M": bytes with the unit K, M, G or T, which are powers of 1024.
+std::uint64_t parse_bytes(const std::string& subject, const std::string& text) {
+    constexpr std::string_view units = "KMGT";
+    const std::size_t unit = text.empty() ? units.npos : units.find(text.back());
+    if (unit == units.npos) {
+        throw UsageError(subject + ": no amount of memory",
+                         "give a number with the unit K, M, G or T: 600M");
+    }
+    const double bytes =
+        parse_number(subject, std::string_view(text).substr(0, text.size() - 1), {0.0, 1e6, ""}) *
+        std::pow(1024.0, static_cast<double>(unit + 1));
+    if (bytes < 1.0) throw UsageError(subject + ": less than a byte");
+    return static_cast<std::uint64_t>(bytes);
+}
+
+}  // namespace
+
+void add_limit_options(CLI::App& app) {
+    add_value(app, "--max-memory", "SIZE",
+              "Use at most this much memory: 600M, 4G. Larger images and models are refused before "
+              "they are read. Default: 3/4 of the machine's memory for one image or array.",
+              [](const std::string& subject, const std::string& text) {
+                  InputLimits limits = input_limits();
+                  limits.memory = parse_bytes(subject, text);
+                  set_input_limits(limits);
+                  limit_process_memory(limits.memory);
+              });
+    add_value(app, "--max-pixels", "N",
+              "Refuse images of more than N texels. Default: as many as fit into the memory; no "
+              "limit for images that are read by rows.",
+              [](const std::string& subject, const std::string& text) {
+                  InputLimits limits = input_limits();
+                  limits.pixels =
+                      static_cast<std::uint64_t>(parse_number(subject, text, {1.0, 1e12, ""}));
+                  set_input_limits(limits);
+              });
+    app.add_flag(
+        "--allow-outside",
+        [](std::int64_t) {
+            InputLimits limits = input_limits();
+            limits.outside_files = true;
+            set_input_limits(limits);
+        },
+        "Read buffers, materials and images that a model names outside of its folder, too.");
 }
 
 void add_general_options(CLI::App& app, GeneralOptions& options) {
@@ -167,6 +222,7 @@ void add_general_options(CLI::App& app, GeneralOptions& options) {
                   options.threads =
                       static_cast<unsigned>(parse_integer(subject, text, 1, max_threads));
               });
+    add_limit_options(app);
     add_switch(app, "--quiet", options.quiet, "Print only warnings and errors.");
 }
 

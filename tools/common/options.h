@@ -89,15 +89,18 @@ std::string name_of(Enum wanted, const Choices<Enum>& choices) {
 /// An added option, for further settings.
 class AddedOption {
   public:
-    explicit AddedOption(CLI::Option& option) : option_(&option) {}
+    AddedOption(CLI::App& app, CLI::Option& option) : app_(&app), option_(&option) {}
 
     /// Sets the heading in the help page.
     AddedOption group(const std::string& heading) const;
     AddedOption required() const;
     /// Sets the number of values.
     AddedOption takes(int min, int max) const;
+    /// Sets the words that the option accepts, for completions.
+    AddedOption words(const std::vector<std::string>& words) const;
 
   private:
+    CLI::App* app_;
     CLI::Option* option_;
 };
 
@@ -159,21 +162,22 @@ AddedOption add_choice(CLI::App& app, const std::string& name, Target& target,
     std::vector<std::string_view> names;
     for (const auto& choice : choices)
         names.push_back(choice.first);
-    // A long list of words is part of the description instead of the value name.
+    // Help pages state a long list of words beside the description instead of in the value name.
     constexpr std::size_t max_list_length = 48;
-    std::string value_name = fmt::format("{}", fmt::join(names, "|"));
-    std::string details = description;
-    if (value_name.size() > max_list_length) {
-        details = fmt::format("One of {}. {}", fmt::join(names, ", "), description);
-        value_name = "WORD";
-    }
-    return add_value(app, name, value_name, details,
+    const std::string list = fmt::format("{}", fmt::join(names, "|"));
+    const std::string value_name = list.size() > max_list_length ? "WORD" : list;
+    return add_value(app, name, value_name, description,
                      [&target, choices](const std::string& subject, const std::string& text) {
                          target = parse_choice(subject, text, choices);
-                     });
+                     })
+        .words({names.begin(), names.end()});
 }
 
-/// --threads and --quiet.
+/// Adds --max-memory, --max-pixels and --allow-outside, which set the limits of this process at
+/// once.
+void add_limit_options(CLI::App& app);
+
+/// --threads, the limits of add_limit_options(), and --quiet.
 struct GeneralOptions {
     bool quiet = false;
     unsigned threads = 0;  ///< 0: all of the machine.

@@ -59,13 +59,6 @@ std::string durations(const std::vector<Stage>& stages) {
     return text + duration(sum) + " in all";
 }
 
-nlohmann::ordered_json durations_json(const std::vector<Stage>& stages) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    for (const Stage& stage : stages)
-        json[stage.name] = stage.milliseconds;
-    return json;
-}
-
 std::string file_and_size(const std::filesystem::path& file) {
     return fmt::format("{}: {}", file.string(), byte_size(std::filesystem::file_size(file)));
 }
@@ -91,8 +84,20 @@ std::string quoted(const std::filesystem::path& file) {
     return result + "'";
 }
 
+std::string printable(std::string_view text) {
+    std::string result;
+    for (const char letter : text) {
+        const auto code = static_cast<unsigned char>(letter);
+        if (code < 0x20 || code == 0x7F)
+            result += fmt::format("\\x{:02x}", code);
+        else
+            result += letter;
+    }
+    return result;
+}
+
 void print_entry(const std::string& label, const std::string& text) {
-    fmt::print(out(), "{:<10}{}\n", label, text);
+    fmt::print(out(), "{:<10}{}\n", label, printable(text));
 }
 
 void print_entry(const std::string& label, const std::vector<std::string>& lines) {
@@ -129,6 +134,10 @@ std::vector<std::string> Findings::lines(std::size_t limit) const {
     return lines;
 }
 
+std::string Findings::count_text() const {
+    return findings_.empty() ? "no findings" : counted(findings_.size(), "finding");
+}
+
 nlohmann::ordered_json Findings::json() const {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const auto& [where, finding] : findings_) {
@@ -140,23 +149,6 @@ nlohmann::ordered_json Findings::json() const {
                         {"outcome", finding.outcome}});
     }
     return list;
-}
-
-void print_verdicts(const Verdicts& verdicts) {
-    if (verdicts.all() < 2) return;
-    print_entry("verdict", fmt::format("{}: {} sound, {} with problems, {} unreadable",
-                                       counted(verdicts.all(), "file"), verdicts.sound,
-                                       verdicts.with_problems, verdicts.unreadable));
-}
-
-ExitCode exit_code_for(const CLI::App& app, const Verdicts& verdicts, bool strict) {
-    const bool has_problems = strict && verdicts.with_problems > 0;
-    if (has_problems) {
-        warn(app, fmt::format("{} with problems (exit code 3, because of --strict)",
-                              counted(verdicts.with_problems, "file")));
-    }
-    if (verdicts.unreadable > 0) return ExitCode::failed;
-    return has_problems ? ExitCode::fell_back : ExitCode::done;
 }
 
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict) {
@@ -178,6 +170,7 @@ void check(const ReportOptions& options, const std::vector<std::filesystem::path
                                          options.file->string()));
     }
     require_folder_of(*options.file);
+    const FileReplacement can_be_made(*options.file);  // Throws if not; removed at once.
 }
 
 bool found_fault(const CLI::App& app, const ReportOptions& options,

@@ -17,6 +17,8 @@
 
 namespace relief::tools {
 
+using Json = nlohmann::ordered_json;
+
 /// "1 triangle", "4510 triangles". `plural` is for irregular plurals.
 std::string counted(std::size_t count, const std::string& thing, const std::string& plural = "");
 
@@ -28,13 +30,16 @@ std::string duration(double milliseconds);
 
 /// "read 34 ms, write 20 ms, 54 ms in all"
 std::string durations(const std::vector<Stage>& stages);
-nlohmann::ordered_json durations_json(const std::vector<Stage>& stages);
 
 /// "out/vase.glb: 1.2 MB"
 std::string file_and_size(const std::filesystem::path& file);
 
 /// Returns the extension in lower case with its dot.
 std::string extension_of(const std::filesystem::path& file);
+
+/// Returns text without control characters, which could change the terminal or imitate other lines:
+/// each one becomes "\x1b" and the like.
+std::string printable(std::string_view text);
 
 /// Returns a file name as typed in a shell, with quotes if necessary.
 std::string quoted(const std::filesystem::path& file);
@@ -62,6 +67,8 @@ class Findings {
     void add(const std::string& where, const Report& report);
 
     [[nodiscard]] bool empty() const { return findings_.empty(); }
+    /// "no findings", "3 findings"
+    [[nodiscard]] std::string count_text() const;
     [[nodiscard]] const std::vector<PlacedFinding>& all() const { return findings_; }
 
     /// Returns at most `limit` lines and the number of further findings.
@@ -74,22 +81,6 @@ class Findings {
     std::vector<PlacedFinding> findings_;
 };
 
-/// The number of checked files by verdict.
-struct Verdicts {
-    std::size_t sound = 0;
-    std::size_t with_problems = 0;
-    std::size_t unreadable = 0;
-
-    [[nodiscard]] std::size_t all() const { return sound + with_problems + unreadable; }
-};
-
-/// Prints the numbers if there are several files.
-void print_verdicts(const Verdicts& verdicts);
-
-/// Prints a warning if --strict was given and files have problems.
-/// \return failed if a file is unreadable; else fell_back after the warning; else done
-ExitCode exit_code_for(const CLI::App& app, const Verdicts& verdicts, bool strict);
-
 struct ReportOptions {
     std::optional<std::filesystem::path> file;
     bool strict = false;
@@ -99,8 +90,8 @@ struct ReportOptions {
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict = "");
 
 /// Checks the report file before the work begins.
-/// \throws UsageError if the report would overwrite one of the files, FileError if its folder does
-/// not exist
+/// \throws UsageError if the report would overwrite one of the files, FileError if it cannot be
+/// written
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files);
 
 /// Prints a warning if --strict was given and there are findings. \return whether it did

@@ -4,7 +4,6 @@
 // Tests: tests/tools/accuracy_compare_test.cpp.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,13 +18,11 @@
 #include "common/command.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "relief/accuracy/compare_reports.h"
-#include "relief/mesh/timing.h"
+#include "relief/accuracy/experiment.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Two reports and their comparison.
 struct ComparedReports {

@@ -4,7 +4,6 @@
 // Tests: tests/tools/accuracy_own_test.cpp.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -377,8 +376,8 @@ std::vector<std::string> findings_of(const std::vector<AssetExperiment>& experim
 AssetOptions asset_options(const AssetCommandOptions& options, Stages& stages) {
     AssetOptions own;
     own.run = run_options(options.how);
-    own.run.tell = [&stages](const std::string& title, std::size_t, std::size_t) {
-        stages.show_progress(title, 0.0);
+    own.run.tell = [&stages](const RunProgress& progress) {
+        stages.show_progress(progress.title, 0.0);
     };
     own.command = command_for(options);
     own.request.max_error = options.max_error;

@@ -9,14 +9,13 @@
 #include <set>
 
 #include "common/command.h"
+#include "common/text.h"
 #include "file_bytes.h"
 #include "json_cursor.h"
 #include "relief/accuracy/experiment.h"
 
 namespace relief::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const Machine& machine) {
     return {{"processor", machine.processor},
@@ -342,6 +341,8 @@ Json json_of(const AccuracyReport& report, bool has_files) {
 
 AccuracyReport read_report(const std::filesystem::path& file) {
     const std::string text = read_file(file);
+    constexpr std::size_t max_depth = 64;
+    about(file, [&] { require_json_depth(text, max_depth); });
     nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
     if (json.is_discarded()) {
         throw failure(file, "is not JSON",

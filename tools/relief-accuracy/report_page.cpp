@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // `relief-accuracy report REPORT` writes the HTML page of an existing report from its JSON. The
-// page is built from page/page.html: tables, then the sections of subjects and experiments. The
-// tooltips of the script use the text of the tables. The base64 encoding is that of [RFC 4648].
+// page is built from page/page.html: tables, then the sections of subjects and experiments. plots.h
+// draws the plots. The base64 encoding is that of [RFC 4648].
 // Tests: tests/tools/accuracy_page/report_html_test.cpp, tests/tools/accuracy_report_test.cpp.
 #include "report_page.h"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cassert>
 #include <cctype>
@@ -27,6 +26,8 @@
 #include "common/options.h"
 #include "common/text.h"
 #include "file_bytes.h"
+#include "plot_parts.h"
+#include "plots.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/report.h"
 
@@ -135,18 +136,20 @@ std::string bytes_text(std::optional<double> bytes) {
     return byte_size(static_cast<std::uintmax_t>(std::llround(*bytes)));
 }
 
+std::string_view report_part(std::string_view name) {
+    const std::vector<ReportPart>& parts = report_parts();
+    const auto part = std::find_if(parts.begin(), parts.end(),
+                                   [&](const ReportPart& one) { return one.name == name; });
+    assert(part != parts.end());
+    return part->text;
+}
+
 // The page.
 
 namespace {
 
 using nlohmann::ordered_json;
-
-/// Returns the number at a path, "/error/rms", if there is one.
-std::optional<double> number_at(const ordered_json& json, const std::string& path) {
-    const ordered_json::json_pointer pointer(path);
-    if (!json.contains(pointer) || !json.at(pointer).is_number()) return std::nullopt;
-    return json.at(pointer).get<double>();
-}
+using plots::number_at;
 
 /// Returns a median time with the 10th and the 90th percentile.
 std::string timing_cell(const ordered_json& measurement, const std::string& path) {
@@ -242,6 +245,45 @@ std::string caption_text(const ordered_json& measurements, const std::string& co
     return words + html_escaped(common_note);
 }
 
+/// Returns the text of HTML without tags.
+std::string without_tags(const std::string& html) {
+    std::string text;
+    bool is_tag = false;
+    for (const char letter : html) {
+        is_tag = is_tag || letter == '<';
+        if (!is_tag) text += letter;
+        is_tag = is_tag && letter != '>';
+    }
+    return text;
+}
+
+/// Returns the tooltips of methods: the name, and a line for each value of the table.
+std::vector<std::string> method_tips(const ordered_json& experiment) {
+    const ordered_json& measurements = experiment.at("measurements");
+    const std::string unit = experiment.value("error_unit", "");
+    const std::string common = common_note(measurements);
+    const double items = number_at(experiment, "/items").value_or(0.0);
+    std::vector<std::string> tips;
+    for (const ordered_json& one : measurements) {
+        std::string tip = one.value("method", "");
+        for (const HtmlColumn& column : columns_of(measurements)) {
+            const std::string text = without_tags(column.cell(one));
+            const bool is_error = column.path.starts_with("/error/") &&
+                                  column.path != "/error/psnr" && column.path != "/error/undefined";
+            if (text != none)
+                tip += fmt::format("\n{}: {}{}", column.head, text, is_error ? " " + unit : "");
+        }
+        const std::optional<double> seconds = number_at(one, "/cost/one_thread/median");
+        if (items > 0.0 && seconds)
+            tip += fmt::format("\nper {}: {}, one thread", experiment.value("item", ""),
+                               plots::tick_text(*seconds / items, "seconds"));
+        const std::string note = one.value("note", "");
+        if (common.empty() && !note.empty()) tip += "\nnote: " + note;
+        tips.push_back(tip);
+    }
+    return tips;
+}
+
 std::string method_cell(const ordered_json& measurement, bool has_note) {
     std::string cell = html_escaped(measurement.value("method", ""));
     if (measurement.value("efficient", false))
@@ -285,6 +327,24 @@ std::set<double> all_x(const ordered_json& chart) {
             all.insert(point.at(0).get<double>());
     }
     return all;
+}
+
+/// Returns the tooltips of a chart's points, curve by curve.
+std::vector<std::string> point_tips(const ordered_json& chart) {
+    std::vector<std::string> tips;
+    for (const ordered_json& curve : chart.at("curves")) {
+        const std::optional<double> order = number_at(curve, "/order");
+        for (const ordered_json& point : curve.at("points")) {
+            const double x = point.at(0).get<double>();
+            std::string tip = fmt::format("{}\n{}: {}\n{}: {}", curve.value("method", ""),
+                                          chart.value("x_label", ""), number_text(x),
+                                          chart.value("y_label", ""), curve_cell(curve, x));
+            if (number_at(curve, "/breaks_at") == x) tip += "\nhere: breaks";
+            if (order) tip += fmt::format("\nslope: {:.2f}", *order);
+            tips.push_back(tip);
+        }
+    }
+    return tips;
 }
 
 /// A row per method with errors, times and memory. Columns without values are omitted.
@@ -416,13 +476,12 @@ std::string scrolled(const std::string& name, const std::string& table) {
 
 std::string charts_html(const ordered_json& experiment) {
     std::string html;
-    const ordered_json charts = experiment.value("charts", ordered_json::array());
-    for (std::size_t i = 0; i < charts.size(); ++i) {
-        const std::string title = text_of(charts[i], "title");
+    for (const ordered_json& chart : experiment.value("charts", ordered_json::array())) {
+        const std::string title = text_of(chart, "title");
         html += fmt::format(
-            "<figure class=\"chart\" data-chart=\"{}\">\n<figcaption><h4>{}</h4></figcaption>\n"
+            "<figure class=\"chart\">\n<figcaption><h4>{}</h4></figcaption>\n{}"
             "<details open><summary>Numbers of this chart</summary>\n{}</details></figure>\n",
-            i, title, scrolled(title, chart_table(charts[i])));
+            title, chart_plot(chart, point_tips(chart)), scrolled(title, chart_table(chart)));
     }
     return html;
 }
@@ -494,6 +553,7 @@ std::string experiment_html(const ordered_json& experiment, std::size_t index,
             entry("Command", command_html(experiment)) + "</dl>\n";
     if (!experiment.at("measurements").empty())
         html +=
+            scatter_figure(experiment, method_tips(experiment)) +
             scrolled("Methods of " + text_of(experiment, "title"), measurements_table(experiment));
     return html + charts_html(experiment) + heat_maps_html(experiment, folder) +
            pairs_html(experiment, folder) + "</details></article>\n";
@@ -573,15 +633,6 @@ std::string experiments_html(const ordered_json& report, const std::filesystem::
     return html;
 }
 
-/// Returns the joined files with an ending, ".css".
-std::string joined_parts(std::string_view ending) {
-    std::string text;
-    for (const ReportPart& part : report_parts()) {
-        if (part.name.ends_with(ending)) text += part.text;
-    }
-    return text;
-}
-
 /// Returns the template with each {{name}} replaced. Inserted text is not searched again.
 std::string filled(std::string_view page, const std::map<std::string, std::string>& places) {
     std::string text;
@@ -618,12 +669,28 @@ ExitCode run(const ReportCommandOptions& options) {
 
 }  // namespace
 
+MethodTable method_table(const ordered_json& experiment) {
+    const ordered_json& measurements = experiment.at("measurements");
+    const std::vector<HtmlColumn> columns = columns_of(measurements);
+    MethodTable table;
+    for (const HtmlColumn& one : columns)
+        table.columns.push_back(one.head);
+    for (const ordered_json& measurement : measurements) {
+        std::vector<std::string>& row = table.rows.emplace_back();
+        for (const HtmlColumn& one : columns) {
+            const std::string cell = one.cell(measurement);
+            row.push_back(cell.substr(0, cell.find(" <small>")));
+        }
+    }
+    return table;
+}
+
 std::string report_html(const ordered_json& report, const std::filesystem::path& folder) {
     // Invalid UTF-8 in names is replaced, as in the JSON report itself.
     const std::string data = report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-    return filled(joined_parts("page.html"),
-                  {{"style", joined_parts(".css")},
-                   {"script", joined_parts(".js")},
+    return filled(report_part("page.html"),
+                  {{"style", fmt::format("{}{}", report_part("plot.css"), report_part("page.css"))},
+                   {"script", std::string(report_part("page.js"))},
                    {"command", html_escaped(report.value("command", ""))},
                    {"machine", machine_html(report)},
                    {"contents", contents_html(report)},

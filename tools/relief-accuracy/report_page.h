@@ -2,8 +2,9 @@
 /// \file
 /// A report as one HTML page with all numbers, pictures, style and script, which loads nothing.
 ///
-/// Tables, text and pictures are HTML. The script (page/*.js) adds plots, sorting and filters, so
-/// that the page can be read and printed without it. The page contains the JSON report.
+/// Tables, text, plots and pictures are HTML and SVG. The script (page/page.js) adds tooltips,
+/// sorting and filters, so that the page can be read and printed without it. The page contains the
+/// JSON report.
 /// Tests: tests/tools/accuracy_page/report_html_test.cpp, and report_page_test.py in a browser.
 #pragma once
 
@@ -44,6 +45,13 @@ std::string bytes_text(std::optional<double> bytes);
 
 // The page.
 
+/// The table of an experiment's methods as texts, without ranges of times and notes.
+struct MethodTable {
+    std::vector<std::string> columns;
+    std::vector<std::vector<std::string>> rows;  ///< One for each measurement.
+};
+MethodTable method_table(const nlohmann::ordered_json& experiment);
+
 /// Returns the page of a report, given as the JSON of accuracy.json. Pictures without file (null)
 /// become a note.
 /// \param folder  the folder of the picture files
@@ -57,5 +65,8 @@ struct ReportPart {
 };
 /// All files of page/, sorted by name. cmake/embed_files.cmake generates this function.
 const std::vector<ReportPart>& report_parts();
+
+/// Returns the text of a file of page/: "plot.css".
+std::string_view report_part(std::string_view name);
 
 }  // namespace relief::tools

@@ -22,9 +22,8 @@
 #include "common/text.h"
 #include "parallel.h"
 #include "relief/accuracy/experiment.h"
-#include "relief/accuracy/measure.h"
 #include "relief/mesh/execution.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief::tools {
 
@@ -277,32 +276,28 @@ std::string command_for(const std::string& subjects, const RunCommandOptions& op
 }
 
 /// Runs all subjects. The last pass prints each table as soon as it is complete.
-std::vector<Experiment> run_pass(const std::vector<Subject>& subjects,
-                                 const RunCommandOptions& options, RunOptions run, std::size_t pass,
-                                 Stages& stages) {
-    const std::size_t passes = options.pass_count();
-    const bool prints = prints_tables(options.how) && pass + 1 == passes;
-    std::vector<Experiment> all;
-    for (std::size_t i = 0; i < subjects.size(); ++i) {
-        const std::string subject(name_of(subjects[i]));
-        run.tell = [&](const std::string& title, std::size_t done, std::size_t total) {
-            const auto parts = static_cast<double>(passes * subjects.size());
-            const double within = static_cast<double>(done) / static_cast<double>(total);
-            const double part = (static_cast<double>(pass * subjects.size() + i) + within) / parts;
-            stages.show_progress(fmt::format("pass {} of {}, {}, {} of {} ({}):", pass + 1, passes,
-                                             subject, done + 1, total, title),
-                                 part);
-        };
-        std::vector<Experiment> found = run_experiments(subjects[i], run);
+std::vector<Experiment> run_subjects(const std::vector<Subject>& subjects,
+                                     const RunCommandOptions& options, Stages& stages) {
+    RunOptions run = run_options(options.how);
+    run.passes = options.pass_count();
+    run.tell = [&](const RunProgress& progress) {
+        const auto all = static_cast<double>(run.passes * progress.total);
+        const std::size_t done = progress.pass * progress.total + progress.done;
+        stages.show_progress(
+            fmt::format("pass {} of {}, {} of {} ({}):", progress.pass + 1, run.passes,
+                        progress.done + 1, progress.total, progress.title),
+            static_cast<double>(done) / all);
+    };
+    run.finished = [&](Experiment& experiment) {
+        experiment.command = command_for(std::string(name_of(experiment.subject)), options);
+        if (!prints_tables(options.how)) return;
         stages.clear_progress();
-        for (Experiment& experiment : found) {
-            experiment.command = command_for(subject, options);
-            if (prints) fmt::print(out(), "{}\n", table_of(experiment));
-            all.push_back(std::move(experiment));
-        }
+        fmt::print(out(), "{}\n", table_of(experiment));
         std::fflush(out());
-    }
-    return all;
+    };
+    std::vector<Experiment> experiments = run_experiments(subjects, run);
+    stages.clear_progress();
+    return experiments;
 }
 
 void check(const RunCommandOptions& options) {
@@ -323,10 +318,7 @@ ExitCode run(const RunCommandOptions& options) {
     prepare(options.how);
     Stages stages(options.how.general.quiet);
     AccuracyReport report;
-    report.experiments = run_in_passes(options.pass_count(), run_options(options.how),
-                                       [&](const RunOptions& run, std::size_t pass) {
-                                           return run_pass(subjects, options, run, pass, stages);
-                                       });
+    report.experiments = run_subjects(subjects, options, stages);
     report.settings.passes = options.pass_count();
     report.command = command_for(fmt::format("{}", fmt::join(options.words, " ")), options);
     const bool draws = std::any_of(subjects.begin(), subjects.end(), uses_opengl);

@@ -10,14 +10,13 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "commands.h"
 #include "common/options.h"
-#include "common/text.h"
-#include "relief/accuracy/measure_bump.h"
+#include "common/summary.h"
+#include "relief/accuracy/asset.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
@@ -89,24 +88,22 @@ struct BumpConversion {
 /// \throws FileError, UsageError
 BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& stages);
 
-/// "gaussian 4", or the plain name of the kernel.
-std::string kernel_name(const BumpMethod& method);
-
-/// "gaussian 4 in float32, 16 bit"
-std::string to_string(const BumpMethod& method);
-
-void print_summary(const Job& job, const BumpRequest& request, const BumpConversion& conversion,
-                   const Stages& stages);
-
-/// The summary in one line, for a conversion of several files.
-std::string line_of(const Job& job, const BumpConversion& conversion, const Stages& stages);
-
-/// The summary for --report, without the file names.
-nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stages& stages);
-
 // The conversion.
 
 namespace {
+
+/// "gaussian 4", or the plain name of the kernel.
+std::string kernel_name(const BumpMethod& method) {
+    const std::string name = enum_name(method.kernel);
+    return method.kernel == Kernel::gaussian ? fmt::format("{} {}", name, method.gaussian_radius)
+                                             : name;
+}
+
+/// "gaussian 4 in float32, 16 bit"
+std::string method_text(const BumpMethod& method) {
+    return fmt::format("{} in {}, {} bit{}", kernel_name(method), enum_name(method.arithmetic),
+                       method.bits, method.destaircased ? ", steps smoothed" : "");
+}
 
 /// The bit depths that --max-error can choose from.
 std::vector<int> available_depths(const BumpRequest& request, const Job& job) {
@@ -167,7 +164,7 @@ std::string limit_message(const BumpAccuracyRequest& request, const BumpExperime
                           ErrorKind kind) {
     const BumpMeasurement* best = most_accurate(experiment, kind);
     const ExpectedError error = expected_error(experiment.reference, *best, kind);
-    const std::string method = to_string(best->method);
+    const std::string method = method_text(best->method);
     const char* const kind_name = kind == ErrorKind::rms ? "RMS" : "maximum";
     const bool steps_remain = !request.destaircase && experiment.reference.method->destaircased;
     const char* const hint = steps_remain ? " (--destaircase reduces it)" : "";
@@ -356,7 +353,7 @@ BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& 
     return conversion;
 }
 
-// The summary as text, as a line and as JSON.
+// The summary.
 
 namespace {
 
@@ -451,45 +448,12 @@ std::string expectation_text(const KernelChoice& choice) {
                        choice.is_range() ? range_reason : "");
 }
 
-void print_accuracy(const BumpAccuracy& accuracy) {
-    // With a limit, the kernel is not chosen for its accuracy alone.
-    if (accuracy.choice && !accuracy.selected) {
-        print_entry("because", accuracy.choice->reason);
-        print_entry("expected", expectation_text(*accuracy.choice));
-    }
-    if (accuracy.step > 0.0) {
-        print_entry("steps", fmt::format("smoothed: steps of 1/{:.0f}; heights moved by at most "
-                                         "half a step",
-                                         1.0 / accuracy.step));
-    }
-    if (accuracy.selected) {
-        const BumpMeasurement& selected = *accuracy.selected;
-        const ExpectedError error = expected_error(accuracy.experiment->reference, selected);
-        print_entry("selected", fmt::format("{}: {:.3g} degrees RMS expected",
-                                            to_string(selected.method), error.total()));
-        print_entry("", fmt::format("{:.3g} from the map itself, {:.3g} added by this conversion "
-                                    "({:.3g} at most), {:.0f} MPixel/s",
-                                    error.map, error.added, selected.error.max,
-                                    selected.megapixels_per_second));
-    }
-    if (!accuracy.experiment) return;
-    const BumpExperiment& experiment = *accuracy.experiment;
-    print_entry(
-        "errors",
-        fmt::format("measured on {} of the map, against {}",
-                    experiment.is_whole ? "all" : fmt::format("{} texels", experiment.texels),
-                    experiment.reference.words));
-    if (!accuracy.selected) print_entry("", comparison_table(experiment));
-}
-
-nlohmann::ordered_json measurement_json(const BumpMeasurement& measurement,
-                                        const BumpReference& reference) {
+Json measurement_json(const BumpMeasurement& measurement, const BumpReference& reference) {
     const BumpMethod& method = measurement.method;
     const ExpectedError expected = expected_error(reference, measurement);
     return {{"kernel", enum_name(method.kernel)},
-            {"kernel_radius", method.kernel == Kernel::gaussian
-                                  ? nlohmann::ordered_json(method.gaussian_radius)
-                                  : nullptr},
+            {"kernel_radius",
+             method.kernel == Kernel::gaussian ? Json(method.gaussian_radius) : Json()},
             {"precision", enum_name(method.arithmetic)},
             {"bits", method.bits},
             {"destaircased", method.destaircased},
@@ -511,7 +475,7 @@ nlohmann::ordered_json measurement_json(const BumpMeasurement& measurement,
             {"efficient", measurement.is_pareto_optimal}};
 }
 
-nlohmann::ordered_json grain_json(const KernelChoice& choice) {
+Json grain_json(const KernelChoice& choice) {
     if (!choice.otherwise) return nullptr;
     const KernelPrediction& best = choice.otherwise->best;
     return {{"taken_for", choice.noise > 0.0 ? "noise" : "detail"},
@@ -523,105 +487,109 @@ nlohmann::ordered_json grain_json(const KernelChoice& choice) {
               {"best_expected_degrees", best.rms_degrees}}}};
 }
 
-void add_accuracy(const BumpAccuracy& accuracy, nlohmann::ordered_json& json) {
-    if (accuracy.choice && !accuracy.selected) {
-        json["kernel_reason"] = accuracy.choice->reason;
-        json["expected_degrees"] = accuracy.choice->rms_degrees;
-        json["expected_degrees_upper"] = accuracy.choice->upper_rms_degrees;
-        json["grain"] = grain_json(*accuracy.choice);
-    }
-    json["destaircased_step"] = accuracy.step > 0.0 ? nlohmann::ordered_json(accuracy.step)
-                                                    : nlohmann::ordered_json(nullptr);
+void add_kernel_choice(Summary& summary, const KernelChoice& choice) {
+    summary.add("because", choice.reason, {{"kernel_reason", choice.reason}});
+    summary.add("expected", expectation_text(choice),
+                {{"expected_degrees", choice.rms_degrees},
+                 {"expected_degrees_upper", choice.upper_rms_degrees},
+                 {"grain", grain_json(choice)}});
+}
+
+void add_selected(Summary& summary, const BumpMeasurement& selected,
+                  const BumpReference& reference) {
+    const ExpectedError error = expected_error(reference, selected);
+    summary.add(
+        "selected",
+        {fmt::format("{}: {:.3g} degrees RMS expected", method_text(selected.method),
+                     error.total()),
+         fmt::format("{:.3g} from the map itself, {:.3g} added by this conversion "
+                     "({:.3g} at most), {:.0f} MPixel/s",
+                     error.map, error.added, selected.error.max, selected.megapixels_per_second)},
+        {{"kept", measurement_json(selected, reference)}});
+}
+
+void add_experiment(Summary& summary, const BumpExperiment& experiment, bool has_table) {
+    const BumpReference& reference = experiment.reference;
+    summary.add(
+        "errors",
+        fmt::format("measured on {} of the map, against {}",
+                    experiment.is_whole ? "all" : fmt::format("{} texels", experiment.texels),
+                    reference.description),
+        {{"reference",
+          {{"what", reference.description},
+           {"own_degrees", reference.reference_degrees},
+           {"texels", experiment.texels},
+           {"whole", experiment.is_whole}}}});
+    summary.add("", has_table ? comparison_table(experiment) : Summary::Lines{},
+                {{"comparison", json_list(experiment.measurements, [&](const auto& measurement) {
+                      return measurement_json(measurement, reference);
+                  })}});
+}
+
+void add_accuracy(Summary& summary, const BumpAccuracy& accuracy) {
+    // With a limit, the kernel is not chosen for its accuracy alone.
+    if (accuracy.choice && !accuracy.selected) add_kernel_choice(summary, *accuracy.choice);
+    const bool has_steps = accuracy.step > 0.0;
+    summary.add("steps",
+                has_steps ? fmt::format("smoothed: steps of 1/{:.0f}; heights moved by at most "
+                                        "half a step",
+                                        1.0 / accuracy.step)
+                          : "",
+                {{"destaircased_step", has_steps ? Json(accuracy.step) : Json()}});
     if (!accuracy.experiment) return;
     const BumpExperiment& experiment = *accuracy.experiment;
-    json["reference"] = {{"what", experiment.reference.words},
-                         {"own_degrees", experiment.reference.reference_degrees},
-                         {"texels", experiment.texels},
-                         {"whole", experiment.is_whole}};
-    if (accuracy.selected)
-        json["kept"] = measurement_json(*accuracy.selected, experiment.reference);
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const BumpMeasurement& measurement : experiment.measurements)
-        all.push_back(measurement_json(measurement, experiment.reference));
-    json["comparison"] = all;
+    if (accuracy.selected) add_selected(summary, *accuracy.selected, experiment.reference);
+    add_experiment(summary, experiment, !accuracy.selected);
 }
 
-}  // namespace
-
-std::string kernel_name(const BumpMethod& method) {
-    const std::string name = enum_name(method.kernel);
-    return method.kernel == Kernel::gaussian ? fmt::format("{} {}", name, method.gaussian_radius)
-                                             : name;
-}
-
-std::string to_string(const BumpMethod& method) {
-    return fmt::format("{} in {}, {} bit{}", kernel_name(method), enum_name(method.arithmetic),
-                       method.bits, method.destaircased ? ", steps smoothed" : "");
-}
-
-void print_summary(const Job& job, const BumpRequest& request, const BumpConversion& conversion,
+Summary summary_of(const Job& job, const BumpRequest& request, const BumpConversion& conversion,
                    const Stages& stages) {
-    print_entry("read", input_text(job, conversion));
-    print_entry("slopes",
-                fmt::format("{}, {}, {}", kernel_text(conversion.bump),
-                            depth_text(request, conversion.bump), border_text(conversion)));
-    print_accuracy(conversion.accuracy);
-    print_entry("format", format_text(conversion.format));
-    print_entry("findings", conversion.findings.empty() ? std::vector<std::string>{"none"}
-                                                        : conversion.findings.lines());
-    print_entry("time", fmt::format("{} ({:.0f} MPixel/s without file access)",
-                                    durations(stages.finished()),
-                                    megapixels_per_second(conversion, stages)));
-    print_entry("wrote", file_and_size(job.output));
-}
-
-std::string line_of(const Job& job, const BumpConversion& conversion, const Stages& stages) {
-    double sum = 0;
-    for (const Stage& stage : stages.finished())
-        sum += stage.milliseconds;
-    return fmt::format("{}: {} x {}, {}, {}, {}", job.output.string(), conversion.input.width,
-                       conversion.input.height, kernel_text(conversion.bump),
-                       conversion.findings.empty()
-                           ? "no findings"
-                           : counted(conversion.findings.all().size(), "finding"),
-                       duration(sum));
-}
-
-nlohmann::ordered_json results_json(const BumpConversion& conversion, const Stages& stages) {
     const BumpOptions& bump = conversion.bump;
     const NormalMapFormat& format = conversion.format.normals;
     const bool has_radius = bump.kernel == Kernel::gaussian;
     const bool has_moments = conversion.format.content == BumpContent::slope_moments;
-    nlohmann::ordered_json seams = nullptr;
+    Json seams;
     if (conversion.tiling) seams = {conversion.tiling->seam_x, conversion.tiling->seam_y};
-    nlohmann::ordered_json json = {
-        {"width", conversion.input.width},
-        {"height", conversion.input.height},
-        {"by_rows", conversion.is_streamed},
-        {"transparent", conversion.transparent},
-        {"kernel", enum_name(*bump.kernel)},
-        {"kernel_radius", has_radius ? nlohmann::ordered_json(bump.gaussian_radius) : nullptr},
-        {"strength", bump.strength},
-        {"texel_size", {bump.texel.x, bump.texel.y}},
-        {"wrap", name_of(*bump.wrap)},
-        {"seams", seams},
-        {"content", has_moments ? "slope moments" : "normals"},
-        {"xy_only", conversion.format.xy_only},
-        {"alpha", enum_name(conversion.format.alpha)},
-        {"bits", format.bits},
-        {"green", enum_name(format.green)},
-        {"zero_code", enum_name(format.flat)},
-        {"dither", enum_name(format.dither)},
-        {"findings", conversion.findings.json()},
-        {"milliseconds", durations_json(stages.finished())},
-        {"megapixels_per_second", megapixels_per_second(conversion, stages)}};
-    add_accuracy(conversion.accuracy, json);
-    return json;
+    Summary summary;
+    summary.add("read", input_text(job, conversion),
+                {{"width", conversion.input.width},
+                 {"height", conversion.input.height},
+                 {"by_rows", conversion.is_streamed},
+                 {"transparent", conversion.transparent}});
+    summary.add("slopes",
+                fmt::format("{}, {}, {}", kernel_text(bump), depth_text(request, bump),
+                            border_text(conversion)),
+                {{"kernel", enum_name(*bump.kernel)},
+                 {"kernel_radius", has_radius ? Json(bump.gaussian_radius) : Json()},
+                 {"strength", bump.strength},
+                 {"texel_size", {bump.texel.x, bump.texel.y}},
+                 {"wrap", name_of(*bump.wrap)},
+                 {"seams", std::move(seams)}});
+    add_accuracy(summary, conversion.accuracy);
+    summary.add("format", format_text(conversion.format),
+                {{"content", has_moments ? "slope moments" : "normals"},
+                 {"xy_only", conversion.format.xy_only},
+                 {"alpha", enum_name(conversion.format.alpha)},
+                 {"bits", format.bits},
+                 {"green", enum_name(format.green)},
+                 {"zero_code", enum_name(format.flat)},
+                 {"dither", enum_name(format.dither)}});
+    summary.add_findings(conversion.findings);
+    const double rate = megapixels_per_second(conversion, stages);
+    summary.add_times(stages, fmt::format(" ({:.0f} MPixel/s without file access)", rate));
+    summary.add("wrote", file_and_size(job.output), {{"megapixels_per_second", rate}});
+    return summary;
+}
+
+/// The summary in one line, for a conversion of several files.
+std::string line_of(const Job& job, const BumpConversion& conversion, const Stages& stages) {
+    return fmt::format("{}: {} x {}, {}, {}, {}", job.output.string(), conversion.input.width,
+                       conversion.input.height, kernel_text(conversion.bump),
+                       conversion.findings.count_text(), duration(stages.milliseconds()));
 }
 
 // The options.
-
-namespace {
+// The options.
 
 /// Parses "W" or "WxH".
 glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
@@ -765,11 +733,10 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& requ
         file_format_of(request, job.output);
         refuse_to_replace(job.input, "height map", job);
     };
-    work.work = [&](const Job& job, Stages& stages, bool prints_summary) -> FileOutcome {
+    work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
         const BumpConversion conversion = convert_bump(job, request, stages);
-        if (prints_summary) print_summary(job, request, conversion, stages);
         return {line_of(job, conversion, stages), conversion.findings,
-                results_json(conversion, stages)};
+                summary_of(job, request, conversion, stages)};
     };
     return run_map_jobs(app, files, work);
 }
@@ -839,6 +806,9 @@ Command add_bump_command(CLI::App& tool) {
     add_map_output_options(app, options->request.output);
     add_report_options(app, options->files.report);
     add_general_options(app, options->files.general);
+    set_common_options(app, {"--channel", "--strength", "--height", "--texel-size", "--wrap",
+                             "--kernel", "--max-error", "--compare", "--output", "--green",
+                             "--bits", "--dither", "--report", "--strict"});
     set_examples(
         app,
         {"relief-bake bump data/bricks-height.png out/bricks-normal.png --strength 12",

@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "mesh_accuracy.h"
 #include "mesh_maps.h"
 #include "mesh_models.h"
@@ -176,36 +175,9 @@ std::vector<std::string> finding_lines(const CheckedMap& map, Severity severity)
     return lines;
 }
 
-void print_text(const CheckedMap& map) {
-    const NormalMapCheck& check = map.check;
-    print_entry("file",
-                fmt::format("{}: {} x {}, {}, {} bit: {}", map.file.string(), map.width, map.height,
-                            counted(static_cast<std::size_t>(map.channels), "channel"), map.bits,
-                            map.is_sound() ? "sound" : "has problems"));
-    print_entry("content", describe(check.content));
-    if (map.has_directions()) {
-        print_entry("lengths", describe(check.lengths));
-        if (check.curve != StoredCurve::none)
-            print_entry("decoded", describe(check.lengths_uncurved));
-    }
-    if (map.has_green()) print_entry("green", describe(check.green));
-    if (map.has_directions()) {
-        if (map.bits != 32) {
-            print_entry("zero", check.flat == FlatCode::middle
-                                    ? "a code (128 of 255)"
-                                    : "between two codes (127.5 of 255), as in glTF");
-        }
-        print_entry("tiles", describe(check.tiling));
-    }
-    print_entry("bits", describe_bits(check.bits));
-    print_entry("problems", finding_lines(map, Severity::problem));
-    print_entry("notes", finding_lines(map, Severity::note));
-    print_entry("time", fmt::format("{} ({:.0f} MPixel/s without file access)",
-                                    duration(map.milliseconds), map.megapixels_per_second()));
-}
-
-nlohmann::ordered_json findings_json(const CheckedMap& map, Severity severity) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+/// The findings of one severity.
+Json findings_json(const CheckedMap& map, Severity severity) {
+    Json list = Json::array();
     for (const MapConditionCount& found : map.check.found) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (info.severity != severity) continue;
@@ -219,8 +191,8 @@ nlohmann::ordered_json findings_json(const CheckedMap& map, Severity severity) {
     return list;
 }
 
-nlohmann::ordered_json lengths_json(const VectorLengths& lengths) {
-    nlohmann::ordered_json within = nlohmann::ordered_json::object();
+Json lengths_json(const VectorLengths& lengths) {
+    Json within = Json::object();
     for (std::size_t i = 0; i < lengths.within.size(); ++i)
         within[fmt::format("{:g}", VectorLengths::bounds[i])] = lengths.within[i];
     return {{"mean", lengths.mean},
@@ -228,7 +200,7 @@ nlohmann::ordered_json lengths_json(const VectorLengths& lengths) {
             {"within", std::move(within)}};
 }
 
-nlohmann::ordered_json green_json(const CheckedMap& map) {
+Json green_json(const CheckedMap& map) {
     if (!map.has_green()) return nullptr;
     const GreenEvidence& green = map.check.green;
     return {{"is", green.green ? enum_name(*green.green) : "unknown"},
@@ -238,9 +210,14 @@ nlohmann::ordered_json green_json(const CheckedMap& map) {
             {"scale", green.scale}};
 }
 
-nlohmann::ordered_json json_of(const CheckedMap& map) {
-    if (!map.error.empty())
-        return {{"file", map.file.string()}, {"sound", false}, {"error", map.error}};
+/// The text of a file that cannot be read is the error message.
+Summary summary_of(const CheckedMap& map) {
+    Summary summary;
+    summary.add_json({{"file", map.file.string()}, {"sound", map.is_sound()}});
+    if (!map.error.empty()) {
+        summary.add_json({{"error", map.error}});
+        return summary;
+    }
     const Choices<MapContent> contents = {{"tangent-space", MapContent::tangent_normals},
                                           {"object-space", MapContent::object_normals},
                                           {"xy", MapContent::xy_normals},
@@ -250,28 +227,47 @@ nlohmann::ordered_json json_of(const CheckedMap& map) {
                                          {"srgb-encoded", StoredCurve::srgb_encoded},
                                          {"srgb-decoded", StoredCurve::srgb_decoded}};
     const NormalMapCheck& check = map.check;
-    return {{"file", map.file.string()},
-            {"sound", map.is_sound()},
-            {"width", map.width},
-            {"height", map.height},
-            {"channels", map.channels},
-            {"bits", map.bits},
-            {"content", name_of(check.content, contents)},
-            {"curve", name_of(check.curve, curves)},
-            {"color_tag", map.color_tag},
-            {"lengths", lengths_json(check.lengths)},
-            {"lengths_uncurved", lengths_json(check.lengths_uncurved)},
-            {"green", green_json(map)},
-            {"zero_code", enum_name(check.flat)},
-            {"seams", {check.tiling.seam_x, check.tiling.seam_y}},
-            {"bits_used", check.bits},
-            {"alpha_correlation", check.alpha_correlation
-                                      ? nlohmann::ordered_json(*check.alpha_correlation)
-                                      : nlohmann::ordered_json()},
-            {"trouble", findings_json(map, Severity::problem)},
-            {"remarks", findings_json(map, Severity::note)},
-            {"milliseconds", map.milliseconds},
-            {"megapixels_per_second", map.megapixels_per_second()}};
+    const bool is_curved = check.curve != StoredCurve::none;
+    const auto if_normals = [&](const std::string& text) {
+        return map.has_directions() ? text : "";
+    };
+    summary.add("file",
+                fmt::format("{}: {} x {}, {}, {} bit: {}", map.file.string(), map.width, map.height,
+                            counted(static_cast<std::size_t>(map.channels), "channel"), map.bits,
+                            map.is_sound() ? "sound" : "has problems"),
+                {{"width", map.width},
+                 {"height", map.height},
+                 {"channels", map.channels},
+                 {"bits", map.bits}});
+    summary.add("content", describe(check.content),
+                {{"content", name_of(check.content, contents)},
+                 {"curve", name_of(check.curve, curves)},
+                 {"color_tag", map.color_tag}});
+    summary.add("lengths", if_normals(describe(check.lengths)),
+                {{"lengths", lengths_json(check.lengths)}});
+    summary.add("decoded", if_normals(is_curved ? describe(check.lengths_uncurved) : ""),
+                {{"lengths_uncurved", lengths_json(check.lengths_uncurved)}});
+    summary.add("green", map.has_green() ? describe(check.green) : "",
+                {{"green", green_json(map)}});
+    const char* const zero = map.bits == 32 ? ""
+                             : check.flat == FlatCode::middle
+                                 ? "a code (128 of 255)"
+                                 : "between two codes (127.5 of 255), as in glTF";
+    summary.add("zero", if_normals(zero), {{"zero_code", enum_name(check.flat)}});
+    summary.add("tiles", if_normals(describe(check.tiling)),
+                {{"seams", {check.tiling.seam_x, check.tiling.seam_y}}});
+    summary.add("bits", describe_bits(check.bits), {{"bits_used", check.bits}});
+    summary.add_json({{"alpha_correlation", or_null(check.alpha_correlation)}});
+    summary.add("problems", finding_lines(map, Severity::problem),
+                {{"trouble", findings_json(map, Severity::problem)}});
+    summary.add("notes", finding_lines(map, Severity::note),
+                {{"remarks", findings_json(map, Severity::note)}});
+    summary.add("time",
+                fmt::format("{} ({:.0f} MPixel/s without file access)", duration(map.milliseconds),
+                            map.megapixels_per_second()),
+                {{"milliseconds", map.milliseconds},
+                 {"megapixels_per_second", map.megapixels_per_second()}});
+    return summary;
 }
 
 // The check of a map against its models: the bake is repeated in memory.
@@ -403,8 +399,8 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
         stages.run("read", [&] { return read_bake_models(settled.bake, result.findings); });
     BakeOptions options = bake_options_of(settled.bake);
     options.output_from_mesh = output_axes(settled.bake, models.world_from_low);
-    options.details = models.textures.details();
-    if (models.cage) options.cage = &*models.cage;
+    options.materials = models.textures.materials();
+    options.cage = models.cage;
     const MapPlan plan = plan_of(settled, models, metadata);
     Report report;
     about(request.bake.low, [&] {
@@ -419,25 +415,22 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
     return result;
 }
 
-void print_text(const SurfaceCheck& check) {
+Summary summary_of(const SurfaceCheck& check) {
     const char* const source = check.of_file.empty()         ? "the file has no record of its bake"
                                : check.of_file == check.used ? "from the file"
                                                              : "from the command line and the file";
-    print_entry("baked", {fmt::format("{} ({})", to_string(check.used), source),
-                          fmt::format("rays from {:.4g} outside to {:.4g} inside",
-                                      check.distances.offset, check.distances.max_distance)});
-    print_verified(check.map);
-    if (!check.findings.empty()) print_entry("findings", check.findings.lines());
-}
-
-nlohmann::ordered_json json_of(const SurfaceCheck& check) {
-    nlohmann::ordered_json json = {{"baked", to_string(check.used)},
-                                   {"file_says", to_string(check.of_file)},
-                                   {"offset", check.distances.offset},
-                                   {"max_distance", check.distances.max_distance}};
-    json.update(verified_json(check.map));
-    json["findings"] = check.findings.json();
-    return json;
+    Summary summary;
+    summary.add("baked",
+                {fmt::format("{} ({})", to_string(check.used), source),
+                 fmt::format("rays from {:.4g} outside to {:.4g} inside", check.distances.offset,
+                             check.distances.max_distance)},
+                {{"baked", to_string(check.used)},
+                 {"file_says", to_string(check.of_file)},
+                 {"offset", check.distances.offset},
+                 {"max_distance", check.distances.max_distance}});
+    summary.add_part("", summary_of(check.map));
+    summary.add_findings(check.findings, "");
+    return summary;
 }
 
 // The command.
@@ -459,45 +452,32 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
     const bool prints_text = !options.json && !options.general.quiet;
     Stages stages(options.general.quiet);
     Verdicts verdicts;
-    nlohmann::ordered_json files = nlohmann::ordered_json::array();
+    Json files = Json::array();
     for (const std::filesystem::path& file : options.files) {
         const CheckedMap map = stages.run("check", "check " + file.string(),
                                           [&] { return check_map(file, options.green); });
-        std::optional<SurfaceCheck> surface;
+        Summary summary = summary_of(map);
+        bool is_sound = map.is_sound();
         if (options.surface.is_wanted() && map.error.empty()) {
             SurfaceCheckRequest request = options.surface;
             request.verify.map = file;
             request.verify.input.green = options.green;
-            surface = check_surface(app, request, stages);
+            const SurfaceCheck surface = check_surface(app, request, stages);
+            is_sound = is_sound && surface.map.problems.empty();
+            summary.add_part("surface", summary_of(surface));
         }
-        if (!map.error.empty())
-            ++verdicts.unreadable;
-        else if (map.is_sound() && (!surface || surface->map.problems.empty()))
-            ++verdicts.sound;
-        else
-            ++verdicts.with_problems;
-        if (!map.error.empty())
-            complain(app, map.error);
-        else if (prints_text)
-            print_text(map);
-        if (prints_text && surface) print_text(*surface);
-        if (options.json) files.push_back(json_of(map));
-        if (options.json && surface) files.back()["surface"] = json_of(*surface);
+        ++(!map.error.empty() ? verdicts.unreadable
+           : is_sound         ? verdicts.sound
+                              : verdicts.with_problems);
+        if (!map.error.empty()) complain(app, map.error);
+        if (prints_text) summary.print();
+        files.push_back(summary.json());
     }
-    if (prints_text) {
-        print_verdicts(verdicts);
-        if (verdicts.all() > verdicts.unreadable)
-            print_entry("see", fmt::format("{} explains all findings", documentation));
-    }
-    if (options.json) {
-        print_json({{"tool", "relief-bake check"},
-                    {"version", version()},
-                    {"sound", verdicts.sound},
-                    {"with_trouble", verdicts.with_problems},
-                    {"unreadable", verdicts.unreadable},
-                    {"words", documentation},
-                    {"files", std::move(files)}});
-    }
+    const Summary all = summary_of("relief-bake check", verdicts, documentation, std::move(files));
+    if (options.json)
+        print_json(all.json());
+    else if (prints_text)
+        all.print();
     return exit_code_for(app, verdicts, options.strict);
 }
 

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/execution.h"
 
 namespace relief::tools {
@@ -48,11 +48,12 @@ bool are_large(const std::vector<Job>& jobs) {
 
 ExitCode run_one(const CLI::App& app, const MapFiles& files, const MapWork& work, const Job& job) {
     Stages stages(files.general.quiet);
-    const FileOutcome outcome = work.work(job, stages, !files.general.quiet);
-    nlohmann::ordered_json report = work.head;
+    const FileOutcome outcome = work.work(job, stages);
+    if (!files.general.quiet) outcome.summary.print();
+    Json report = work.head;
     report["input"] = job.input.string();
     report["output"] = job.output.string();
-    report.update(outcome.json);
+    report.update(outcome.summary.json());
     return finish(app, files.report, job.input, outcome.findings, report);
 }
 
@@ -64,7 +65,7 @@ ExitCode run_all(const CLI::App& app, const MapFiles& files, const MapWork& work
     batch.one_by_one = are_large(list.jobs);
     batch.work = [&](std::size_t index) {
         Stages stages(true);
-        return work.work(list.jobs[index], stages, false);
+        return work.work(list.jobs[index], stages);
     };
     return run_batch(app, batch, files.report, files.general);
 }

@@ -14,7 +14,7 @@
 #include "common/command.h"
 #include "common/file_jobs.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 
@@ -40,21 +40,11 @@ struct MapFiles {
 
 /// The conversion of a single map.
 struct MapWork {
-    nlohmann::ordered_json head;  ///< The first entries of the report: tool, version.
+    Json head;  ///< The first entries of the report: tool, version.
     /// Throws UsageError if the command line alone shows that the conversion is impossible.
     std::function<void(const Job& job)> check;
-    /// Converts a map, and prints a summary if asked to.
-    std::function<FileOutcome(const Job& job, Stages& stages, bool prints_summary)> work;
+    std::function<FileOutcome(const Job& job, Stages& stages)> work;
 };
-
-/// Describes a finished conversion by its print_summary(), line_of() and results_json().
-template <typename Conversion>
-FileOutcome outcome_of(const Job& job, const Conversion& conversion, const Stages& stages,
-                       bool prints_summary) {
-    if (prints_summary) print_summary(job, conversion, stages);
-    return {line_of(job, conversion, stages), conversion.findings,
-            results_json(conversion, stages)};
-}
 
 /// Adds the file arguments.
 /// \param input    what an input file is: "normal map"; its plural adds an s

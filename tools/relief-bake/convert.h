@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <glm/vec2.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -118,13 +117,5 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
 /// All files that the output may consist of, with as many mip levels as the largest map has.
 std::vector<std::filesystem::path> output_files(const std::filesystem::path& output,
                                                 const MipOptions& mips);
-
-void print_summary(const Job& job, const MapConversion& conversion, const Stages& stages);
-
-/// The summary in one line, for a conversion of several files.
-std::string line_of(const Job& job, const MapConversion& conversion, const Stages& stages);
-
-/// The summary for --report, without the file names.
-nlohmann::ordered_json results_json(const MapConversion& conversion, const Stages& stages);
 
 }  // namespace relief::tools

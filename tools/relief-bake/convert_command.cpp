@@ -6,10 +6,9 @@
 
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "convert.h"
 
 namespace relief::tools {
@@ -44,76 +43,57 @@ std::vector<std::string> level_lines(const MapConversion& conversion) {
     return lines;
 }
 
-nlohmann::ordered_json lengths_json(const std::optional<LengthRange>& lengths) {
-    if (!lengths) return nullptr;
-    return {{"least", lengths->least}, {"mean", lengths->mean}, {"greatest", lengths->greatest}};
-}
-
-nlohmann::ordered_json levels_json(const MapConversion& conversion) {
-    nlohmann::ordered_json levels = nlohmann::ordered_json::array();
-    for (const WrittenLevel& level : conversion.levels) {
-        nlohmann::ordered_json entry = {{"file", level.file.string()},
-                                        {"width", level.width},
-                                        {"height", level.height},
-                                        {"mean_length", level.mean_length},
-                                        {"least_length", level.min_length}};
-        if (level.roughness_file) {
-            entry["roughness_file"] = level.roughness_file->string();
-            entry["mean_roughness"] = *level.mean_roughness;
-        }
-        levels.push_back(std::move(entry));
+Json json_of(const WrittenLevel& level) {
+    Json json = {{"file", level.file.string()},
+                 {"width", level.width},
+                 {"height", level.height},
+                 {"mean_length", level.mean_length},
+                 {"least_length", level.min_length}};
+    if (level.roughness_file) {
+        json["roughness_file"] = level.roughness_file->string();
+        json["mean_roughness"] = *level.mean_roughness;
     }
-    return levels;
+    return json;
 }
 
-}  // namespace
-
-void print_summary(const Job& job, const MapConversion& conversion, const Stages& stages) {
-    print_entry("read",
+Summary summary_of(const Job& job, const MapConversion& conversion, const Stages& stages) {
+    const WrittenLevel& largest = conversion.levels.front();
+    const NormalMapFormat& format = conversion.format;
+    Json lengths;
+    if (conversion.lengths) {
+        lengths = {{"least", conversion.lengths->least},
+                   {"mean", conversion.lengths->mean},
+                   {"greatest", conversion.lengths->greatest}};
+    }
+    Summary summary;
+    summary.add_json({{"width", largest.width}, {"height", largest.height}});
+    summary.add("read",
                 fmt::format("{}: {} x {}, {}, {} bit, {}", job.input.string(), conversion.width,
                             conversion.height,
                             counted(static_cast<std::size_t>(conversion.channels), "channel"),
-                            conversion.bits_read, conversion.input_text));
-    print_entry("steps", conversion.steps);
-    print_entry("format", format_text(conversion));
-    print_entry("findings", conversion.findings.empty() ? std::vector<std::string>{"none"}
-                                                        : conversion.findings.lines());
-    print_entry("time", durations(stages.finished()));
-    print_entry("wrote", level_lines(conversion));
+                            conversion.bits_read, conversion.input_text),
+                {{"input_size", {conversion.width, conversion.height}},
+                 {"input_lengths", std::move(lengths)}});
+    summary.add("steps", conversion.steps, {{"done", conversion.steps}});
+    summary.add("format", format_text(conversion),
+                {{"bits", format.bits},
+                 {"green", conversion.green ? Json(enum_name(*conversion.green)) : Json()},
+                 {"zero_code", enum_name(format.flat)},
+                 {"dither", enum_name(format.dither)}});
+    summary.add_findings(conversion.findings);
+    summary.add_times(stages);
+    summary.add("wrote", level_lines(conversion),
+                {{"levels", json_list(conversion.levels, json_of)}});
+    return summary;
 }
 
 std::string line_of(const Job& job, const MapConversion& conversion, const Stages& stages) {
-    double sum = 0;
-    for (const Stage& stage : stages.finished())
-        sum += stage.milliseconds;
-    return fmt::format("{}: {} x {}, {}, {}", job.output.string(), conversion.levels.front().width,
-                       conversion.levels.front().height,
-                       conversion.findings.empty()
-                           ? "no findings"
-                           : counted(conversion.findings.all().size(), "finding"),
-                       duration(sum));
-}
-
-nlohmann::ordered_json results_json(const MapConversion& conversion, const Stages& stages) {
-    nlohmann::ordered_json green = nullptr;
-    if (conversion.green) green = enum_name(*conversion.green);
-    return {{"width", conversion.levels.front().width},
-            {"height", conversion.levels.front().height},
-            {"input_size", {conversion.width, conversion.height}},
-            {"done", conversion.steps},
-            {"input_lengths", lengths_json(conversion.lengths)},
-            {"bits", conversion.format.bits},
-            {"green", green},
-            {"zero_code", enum_name(conversion.format.flat)},
-            {"dither", enum_name(conversion.format.dither)},
-            {"levels", levels_json(conversion)},
-            {"findings", conversion.findings.json()},
-            {"milliseconds", durations_json(stages.finished())}};
+    const WrittenLevel& largest = conversion.levels.front();
+    return fmt::format("{}: {} x {}, {}, {}", job.output.string(), largest.width, largest.height,
+                       conversion.findings.count_text(), duration(stages.milliseconds()));
 }
 
 // The options.
-
-namespace {
 
 /// Parses "x,-y,z".
 AxisMapping parse_axes(const std::string& subject, const std::string& text) {
@@ -381,8 +361,10 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& r
         write_options_of(request.output, job.output);
         check_files(job, request, inputs);
     };
-    work.work = [&](const Job& job, Stages& stages, bool prints_summary) -> FileOutcome {
-        return outcome_of(job, convert_map(job, request, stages), stages, prints_summary);
+    work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
+        const MapConversion conversion = convert_map(job, request, stages);
+        return {line_of(job, conversion, stages), conversion.findings,
+                summary_of(job, conversion, stages)};
     };
     return run_map_jobs(app, files, work);
 }
@@ -437,6 +419,9 @@ Command add_convert_command(CLI::App& tool) {
     add_map_output_options(app, request.output, true);
     add_report_options(app, options->files.report);
     add_general_options(app, options->files.general);
+    set_common_options(app, {"--input-green", "--flip", "--resize", "--strength", "--detail",
+                             "--to-object", "--to-tangent", "--mips", "--roughness-from-variance",
+                             "--output", "--green", "--bits", "--dither", "--report", "--strict"});
     set_examples(app, {"relief-bake bump data/bricks-height.png out/bricks.png",
                        "relief-bake convert out/bricks.png out/bricks-dx.png --flip green",
                        "relief-bake convert out/bricks.png out/bricks8.png --bits 8 --dither "

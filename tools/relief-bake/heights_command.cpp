@@ -8,12 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "common/normal_map_input.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map_check.h"
@@ -221,68 +220,59 @@ std::string inverse_command(const Job& job, const HeightsConversion& conversion)
                        conversion.green == Green::down ? " --green down" : "");
 }
 
-void print_summary(const Job& job, const HeightsConversion& conversion, const Stages& stages) {
+Summary summary_of(const Job& job, const HeightsConversion& conversion, const Stages& stages) {
     const IntegratedHeights& result = conversion.result;
-    print_entry("read",
+    const IntegrationOptions& integration = conversion.integration;
+    Summary summary;
+    summary.add("read",
                 fmt::format("{}: {} x {}, {}, {} bit, {}", job.input.string(), conversion.width,
                             conversion.height,
                             counted(static_cast<std::size_t>(conversion.channels), "channel"),
-                            conversion.bits_read, conversion.input_text));
-    if (conversion.green_by_slopes)
-        print_entry("green", std::string(enum_name(conversion.green)) + ", from the slopes");
-    print_entry("slopes", fmt::format("{:.4g} (RMS), mean {:.3g} and {:.3g}{}, {}, {} at the "
-                                      "border",
-                                      result.rms_slope, result.mean_slope.x, result.mean_slope.y,
-                                      conversion.integration.level ? " (removed)" : "",
-                                      enum_name(conversion.integration.kernel),
-                                      name_of(conversion.integration.wrap)));
-    print_entry("residual",
+                            conversion.bits_read, conversion.input_text),
+                {{"width", conversion.width}, {"height", conversion.height}});
+    const std::string green = enum_name(conversion.green);
+    summary.add("green", conversion.green_by_slopes ? green + ", from the slopes" : "",
+                {{"green", green}, {"green_by_slopes", conversion.green_by_slopes}});
+    summary.add("slopes",
+                fmt::format("{:.4g} (RMS), mean {:.3g} and {:.3g}{}, {}, {} at the border",
+                            result.rms_slope, result.mean_slope.x, result.mean_slope.y,
+                            integration.level ? " (removed)" : "", enum_name(integration.kernel),
+                            name_of(integration.wrap)),
+                {{"kernel", enum_name(integration.kernel)},
+                 {"wrap", name_of(integration.wrap)},
+                 {"steepest", integration.max_slope},
+                 {"level", integration.level},
+                 {"rms_slope", result.rms_slope},
+                 {"mean_slope", {result.mean_slope.x, result.mean_slope.y}}});
+    summary.add("residual",
                 fmt::format("slopes of {:.3g} (RMS) that no height field has: {:.3g} degrees, "
                             "{:.3g} at most{}",
                             result.residual_slope, result.residual.rms, result.residual.max,
-                            result.rounds > 1 ? fmt::format(" ({} rounds)", result.rounds) : ""));
-    print_entry("heights", fmt::format("0 to {:.6g} texels", result.highest));
-    print_entry("format", storage_text(conversion));
-    print_entry("inverse", inverse_command(job, conversion));
-    print_entry("findings", conversion.findings.empty() ? std::vector<std::string>{"none"}
-                                                        : conversion.findings.lines());
-    print_entry("time", durations(stages.finished()));
-    print_entry("wrote", file_and_size(job.output));
+                            result.rounds > 1 ? fmt::format(" ({} rounds)", result.rounds) : ""),
+                {{"residual_slope", result.residual_slope},
+                 {"residual_degrees",
+                  {{"rms", result.residual.rms},
+                   {"mean", result.residual.mean},
+                   {"max", result.residual.max}}},
+                 {"rounds", result.rounds}});
+    summary.add("heights", fmt::format("0 to {:.6g} texels", result.highest),
+                {{"highest", result.highest}});
+    summary.add("format", storage_text(conversion),
+                {{"bits", conversion.bits},
+                 {"strength", conversion.strength},
+                 {"step_degrees", rounding_degrees(conversion)}});
+    summary.add("inverse", inverse_command(job, conversion));
+    summary.add_findings(conversion.findings);
+    summary.add_times(stages);
+    summary.add("wrote", file_and_size(job.output));
+    return summary;
 }
 
 std::string line_of(const Job& job, const HeightsConversion& conversion, const Stages& stages) {
-    double sum = 0.0;
-    for (const Stage& stage : stages.finished())
-        sum += stage.milliseconds;
     return fmt::format("{}: {} x {}, strength {:.6g}, residual {:.3g} degrees, {}",
                        job.output.string(), conversion.width, conversion.height,
-                       conversion.strength, conversion.result.residual.rms, duration(sum));
-}
-
-nlohmann::ordered_json results_json(const HeightsConversion& conversion, const Stages& stages) {
-    const IntegratedHeights& result = conversion.result;
-    return {{"width", conversion.width},
-            {"height", conversion.height},
-            {"green", enum_name(conversion.green)},
-            {"green_by_slopes", conversion.green_by_slopes},
-            {"kernel", enum_name(conversion.integration.kernel)},
-            {"wrap", name_of(conversion.integration.wrap)},
-            {"steepest", conversion.integration.max_slope},
-            {"bits", conversion.bits},
-            {"strength", conversion.strength},
-            {"highest", result.highest},
-            {"level", conversion.integration.level},
-            {"rms_slope", result.rms_slope},
-            {"mean_slope", {result.mean_slope.x, result.mean_slope.y}},
-            {"residual_slope", result.residual_slope},
-            {"residual_degrees",
-             {{"rms", result.residual.rms},
-              {"mean", result.residual.mean},
-              {"max", result.residual.max}}},
-            {"rounds", result.rounds},
-            {"step_degrees", rounding_degrees(conversion)},
-            {"findings", conversion.findings.json()},
-            {"milliseconds", durations_json(stages.finished())}};
+                       conversion.strength, conversion.result.residual.rms,
+                       duration(stages.milliseconds()));
 }
 
 ExitCode run(const CLI::App& app, const MapFiles& files, const HeightsRequest& request) {
@@ -292,8 +282,10 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const HeightsRequest& r
         bits_of(request, job.output);
         refuse_to_replace(job.input, "normal map", job);
     };
-    work.work = [&](const Job& job, Stages& stages, bool prints_summary) -> FileOutcome {
-        return outcome_of(job, convert_heights(job, request, stages), stages, prints_summary);
+    work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
+        const HeightsConversion conversion = convert_heights(job, request, stages);
+        return {line_of(job, conversion, stages), conversion.findings,
+                summary_of(job, conversion, stages)};
     };
     return run_map_jobs(app, files, work);
 }

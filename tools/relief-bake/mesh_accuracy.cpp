@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the errors of samples and bits on a map and selects the fewest within a limit; and
-// compares a finished map with the models that it was baked from: errors by cause, an error map,
-// and the convention that explains the map if it is not the assumed one. Tests:
-// tests/tools/relief_bake_accuracy_test.cpp, relief_bake_check_test.cpp.
+// Binds --compare and --max-error to the measurement of bakes; and compares a finished map with the
+// models that it was baked from: errors by cause, an error map, and the convention that explains
+// the map if it is not the assumed one.
+// Tests: tests/tools/relief_bake_accuracy_test.cpp, relief_bake_check_test.cpp.
 
 #include "mesh_accuracy.h"
 
@@ -12,29 +12,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "common/text.h"
+#include "common/summary.h"
 #include "mesh_maps.h"
-#include "relief/accuracy/experiment.h"
 #include "relief/mesh/bake_check.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 
 // Samples and bits.
 
 namespace {
-
-constexpr std::size_t texels_for_limit = std::size_t{1} << 17;
-constexpr std::size_t texels_for_table = std::size_t{1} << 16;
-constexpr std::size_t texels_for_finest = std::size_t{1} << 14;
-constexpr std::size_t rounds = 3;
-constexpr int max_samples = 256;  // Of --samples.
-constexpr int finest_reference = 1024;
 
 /// The bit depths that the file can store and the options leave open, in ascending order.
 std::vector<int> available_depths(const MeshBakeRequest& request) {
@@ -46,210 +37,49 @@ std::vector<int> available_depths(const MeshBakeRequest& request) {
     return depths;
 }
 
-/// Searches for the fewest samples and bits within the limit. Depths that only other file formats
-/// store are measured too, for the remedy if there is none.
-class SampleSearch {
-  public:
-    SampleSearch(const MeshBakeRequest& request, const NormalMapFormat& format)
-        : request_(request), bound_(request.bound), available_(available_depths(request)) {
-        for (const int bits : {8, 16, 32}) {
-            formats_.push_back(format);
-            formats_.back().bits = bits;
-        }
-        // Other depths are not measured.
-        std::erase_if(available_, [](int bits) { return bits != 8 && bits != 16 && bits != 32; });
-    }
-
-    /// Measures one number of samples in all formats, and adds those of the file to the result.
-    /// \return whether a method is within the limit
-    bool try_samples(const BakeBenchmark& trials, const SampleChoice& samples,
-                     MeshAccuracy& result) {
-        for (MeasuredBake& bake : measure(trials, samples)) {
-            const bool available = is_available(bake);
-            if (available && !result.selected && bound_.allows(bake.error)) result.selected = bake;
-            if (available) result.measured.push_back(bake);
-            all_.push_back(std::move(bake));
-        }
-        return result.selected.has_value();
-    }
-
-    /// Discards the measurements, which are of other texels than the next ones.
-    void restart() { all_.clear(); }
-
-    /// Returns whether rounding alone exceeds the limit in all formats of the file.
-    [[nodiscard]] bool is_bound_by_rounding() const {
-        return std::ranges::all_of(all_, [&](const MeasuredBake& bake) {
-            return !is_available(bake) || bound_.error(bake.rounding) > *bound_.degrees;
-        });
-    }
-
-    /// Throws the error that no method is within the limit.
-    /// \param has_all_samples  whether 256 samples were measured
-    [[noreturn]] void fail(bool has_all_samples) const {
-        const MeasuredBake* best = nullptr;
-        const MeasuredBake* other_format = nullptr;  // Within the limit in another file format.
-        for (const MeasuredBake& bake : all_) {
-            if (is_available(bake)) {
-                if (best == nullptr || error(bake) < error(*best)) best = &bake;
-            } else if (bound_.allows(bake.error) &&
-                       (other_format == nullptr || bake.format.bits < other_format->format.bits)) {
-                other_format = &bake;
-            }
-        }
-        const double rounding = bound_.error(best->rounding);
-        const double sampling = bound_.error(best->sampling);
-        std::string parts =
-            rounding >= sampling
-                ? fmt::format("rounding to {} bits alone causes {:.3g}, sampling {:.3g}",
-                              best->format.bits, rounding, sampling)
-                : fmt::format("sampling alone causes {:.3g}, rounding to {} bits {:.3g}", sampling,
-                              best->format.bits, rounding);
-        if (!has_all_samples) parts += "; 256 samples cannot be measured on a map of this size";
-        throw InvalidInput(fmt::format(
-            "no choice of samples and bits is within {}: the minimum is {:.3g}, with {}; {} ({})",
-            to_string(bound_), error(*best), to_string(*best), parts, remedy(other_format)));
-    }
-
-  private:
-    std::vector<MeasuredBake> measure(const BakeBenchmark& trials, const SampleChoice& samples) {
-        const std::optional<double> angle = angle_of(request_, samples);
-        const BakeMeasurement trial = trials.measure({samples.count, angle}, formats_);
-        std::vector<MeasuredBake> measured;
-        for (std::size_t i = 0; i < formats_.size(); ++i) {
-            measured.push_back({samples, angle, formats_[i], trial.errors[i], trial.quantization[i],
-                                trial.sampling, trial.rays,
-                                trial.cast_seconds + trial.code_seconds[i], false});
-        }
-        // The error of no texels would be within any limit.
-        if (measured.front().error.count == 0)
-            throw InvalidInput(
-                "no measured texel has a normal from the high model: no error can be measured");
-        return measured;
-    }
-
-    [[nodiscard]] bool is_available(const MeasuredBake& bake) const {
-        return std::ranges::find(available_, bake.format.bits) != available_.end();
-    }
-    [[nodiscard]] double error(const MeasuredBake& bake) const { return bound_.error(bake.error); }
-
-    [[nodiscard]] std::string remedy(const MeasuredBake* other_format) const {
-        if (other_format == nullptr) return "allow a larger error";
-        const int bits = other_format->format.bits;
-        const std::vector<int> depths = depths_of(request_.output);
+/// Explains that no samples and bits are within the limit, and what to change.
+std::string message_of(const NoBakeWithinLimit& none, const MeshBakeRequest& request) {
+    const ErrorBound& bound = request.bound;
+    const MeasuredBake& best = none.smallest;
+    const double rounding = bound.error(best.quantization);
+    const double sampling = bound.error(best.sampling_error);
+    std::string parts =
+        rounding >= sampling
+            ? fmt::format("rounding to {} bits alone causes {:.3g}, sampling {:.3g}",
+                          best.format.bits, rounding, sampling)
+            : fmt::format("sampling alone causes {:.3g}, rounding to {} bits {:.3g}", sampling,
+                          best.format.bits, rounding);
+    if (!none.has_all_samples) parts += "; 256 samples cannot be measured on a map of this size";
+    std::string remedy = "allow a larger error";
+    if (none.other_bits) {
+        const int bits = none.other_bits->format.bits;
+        const std::vector<int> depths = depths_of(request.output);
         const bool is_supported = std::ranges::find(depths, bits) != depths.end();
-        const std::string change = is_supported ? fmt::format("give --bits {}", bits)
-                                   : bits == 32 ? "write .exr or .tif"
-                                                : "write .png or .tif";
-        return fmt::format("{} bits are within the limit, with {:.3g}: {}", bits,
-                           error(*other_format), change);
+        remedy = fmt::format("{} bits are within the limit, with {:.3g}: {}", bits,
+                             bound.error(none.other_bits->error),
+                             is_supported ? fmt::format("give --bits {}", bits)
+                             : bits == 32 ? "write .exr or .tif"
+                                          : "write .png or .tif");
     }
-
-    const MeshBakeRequest& request_;
-    const ErrorBound& bound_;
-    std::vector<int> available_;
-    std::vector<NormalMapFormat> formats_;
-    std::vector<MeasuredBake> all_;
-};
-
-/// The number of texels to measure: all of them for a limit of the maximum.
-std::size_t texels_for(const MeshBakeRequest& request, const BakeMapOptions& map,
-                       std::size_t usual) {
-    const bool needs_all = request.bound.kind == ErrorKind::max;
-    return needs_all ? static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height)
-                     : usual;
-}
-
-void describe(const BakeBenchmark& trials, MeshAccuracy& result) {
-    result.texels = trials.texels();
-    result.is_whole = trials.is_whole();
-    result.reference_samples = trials.reference_samples();
-    result.reference_rays += trials.reference_rays();
-}
-
-/// Selects samples and bits within the limit.
-void select_within_limit(const Baker& baker, const BakeMapOptions& map, MeshBakeRequest& request,
-                         NormalMapFormat& format, MeshAccuracy& result) {
-    SampleSearch search(request, format);
-    const bool is_given = request.samples.is_given;
-    const bool needs_finest = is_given && request.samples.count == max_samples;
-    const bool has_finest = std::max(map.width, map.height) * 32 <= TexelRasterizer::largest_side;
-    if (needs_finest && !has_finest)
-        throw InvalidInput(
-            "the error of 256 samples can be measured only for maps of at most 2048 texels along a "
-            "side");
-    if (!needs_finest) {
-        const BakeBenchmark trials(baker, map, texels_for(request, map, texels_for_limit));
-        describe(trials, result);
-        if (is_given) {
-            if (!search.try_samples(trials, request.samples, result)) search.fail(true);
-        } else {
-            for (const int count : {1, 4, 16, 64}) {
-                if (search.try_samples(trials, {count, false, false}, result)) break;
-                // More samples do not help; only the message needs them.
-                if (has_finest && search.is_bound_by_rounding()) break;
-            }
-        }
-    }
-    if (!result.selected) {
-        if (!has_finest) search.fail(false);
-        const BakeBenchmark trials(baker, map, texels_for(request, map, texels_for_finest),
-                                   finest_reference);
-        describe(trials, result);
-        search.restart();
-        if (!search.try_samples(trials, {max_samples, false, is_given}, result)) {
-            // All methods are measured on the same texels, to find the minimum.
-            MeshAccuracy unused;
-            if (!is_given) {
-                for (const int count : {1, 4, 16, 64})
-                    search.try_samples(trials, {count, false, false}, unused);
-            }
-            search.fail(true);
-        }
-    }
-    request.samples = result.selected->samples;
-    format = result.selected->format;
-}
-
-/// Measures all methods in all bit depths, including those of other file formats.
-void compare_methods(const BakeBenchmark& trials, const NormalMapFormat& format,
-                     MeshAccuracy& result) {
-    const std::span<const BakeSampling> ways = default_bake_samplings();
-    const std::vector<NormalMapFormat> formats = default_map_formats(format);
-    const std::vector<TimedBakeMeasurement> timed =
-        measure_interleaved(trials, ways, formats, {rounds, 0});
-    if (timed.front().trial.errors.front().count == 0)
-        throw InvalidInput("no texel has a normal from the high model: no error can be measured");
-    std::vector<MethodCost> prices;
-    for (std::size_t way = 0; way < ways.size(); ++way) {
-        const BakeMeasurement& trial = timed[way].trial;
-        const SampleChoice samples{ways[way].samples, ways[way].sample_degrees.has_value(), false};
-        for (std::size_t f = 0; f < formats.size(); ++f) {
-            result.measured.push_back({samples, ways[way].sample_degrees, formats[f],
-                                       trial.errors[f], trial.quantization[f], trial.sampling,
-                                       trial.rays, time_statistics(timed[way].seconds[f]).median,
-                                       false});
-            prices.push_back({result.measured.back().error.rms, result.measured.back().seconds});
-        }
-    }
-    const std::vector<bool> marks = pareto_optimal(prices);
-    for (std::size_t i = 0; i < marks.size(); ++i)
-        result.measured[i].is_pareto_optimal = marks[i];
+    return fmt::format(
+        "no choice of samples and bits is within {}: the minimum is {:.3g}, with {}; {} ({})",
+        to_string(bound), bound.error(best.error), to_string(best), parts, remedy);
 }
 
 }  // namespace
 
 std::string to_string(const MeasuredBake& bake) {
     const std::string samples =
-        bake.samples.is_auto
-            ? fmt::format("auto samples at {:g} degrees", bake.sample_angle.value_or(0.0))
-            : counted(static_cast<std::size_t>(bake.samples.count), "sample");
+        bake.sampling.sample_degrees
+            ? fmt::format("auto samples at {:g} degrees", *bake.sampling.sample_degrees)
+            : counted(static_cast<std::size_t>(bake.sampling.samples), "sample");
     return fmt::format("{}, {} bit{}", samples, bake.format.bits,
                        bake.format.dither == Dither::none ? "" : ", dithered");
 }
 
 void check_accuracy(const MeshBakeRequest& request) {
     check(request.bound);
-    if (!request.needs_trials()) return;
+    if (!request.measures_errors()) return;
     if (request.compare && request.bound.degrees)
         throw UsageError("--compare, --max-error: contradict each other");
     const std::string option = request.compare ? "--compare" : "--max-error";
@@ -259,17 +89,24 @@ void check_accuracy(const MeshBakeRequest& request) {
         throw UsageError(option + ": needs a single map, not <material> or <UDIM>");
 }
 
-MeshAccuracy select_accuracy(const Baker& baker, const BakeMapOptions& map,
-                             MeshBakeRequest& request, NormalMapFormat& format) {
-    MeshAccuracy result;
-    if (request.compare) {
-        const BakeBenchmark trials(baker, map, texels_for(request, map, texels_for_table));
-        describe(trials, result);
-        compare_methods(trials, format, result);
-    } else {
-        select_within_limit(baker, map, request, format, result);
+BakeComparison measure_errors(const Baker& baker, const BakeMapOptions& map,
+                              MeshBakeRequest& request, NormalMapFormat& format) {
+    if (request.compare) return compare_bakes(baker, map, format);
+    BakeSearch search;
+    search.max_degrees = request.bound.degrees.value_or(0.0);
+    search.kind = request.bound.kind.value_or(ErrorKind::rms);
+    search.format = format;
+    search.bits = available_depths(request);
+    if (request.samples.is_given)
+        search.sampling = {request.samples.count, angle_of(request, request.samples)};
+    try {
+        BakeComparison result = select_bake(baker, map, search);
+        if (!request.samples.is_given) request.samples.count = result.selected->sampling.samples;
+        format = result.selected->format;
+        return result;
+    } catch (const NoBakeWithinLimit& none) {
+        throw InvalidInput(message_of(none, request));
     }
-    return result;
 }
 
 // Finished maps, for `relief-bake mesh --verify` and `relief-bake check --high`.
@@ -459,7 +296,7 @@ void add_problems(VerifiedMap& map, const MeshBakeRequest& bake, const BakeModel
     constexpr double max_other_degrees = 1.0;
     const BakeCheck& check = map.check;
     const ErrorBound& bound = map.request.bound;
-    const double other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).rms;
+    const double other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).error.rms;
     if (check.convention.is_explained) {
         map.problems.push_back(describe(check.convention));
         map.remedies = convention_remedies(map.request.map, bake.low, check.convention);
@@ -495,7 +332,7 @@ std::vector<std::string> stage_lines(const BakeCheck& check) {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < bake_stage_count; ++i) {
         lines.push_back(fmt::format("{:<12} {:>6.1f} %  {:>8.3g} degrees RMS  {}", stage_names[i],
-                                    100.0 * check.stages[i].share, check.stages[i].rms,
+                                    100.0 * check.stages[i].share, check.stages[i].error.rms,
                                     descriptions[i]));
     }
     return lines;
@@ -531,7 +368,7 @@ std::vector<std::string> verdict_lines(const VerifiedMap& map) {
     return lines;
 }
 
-nlohmann::ordered_json summary_json(const ErrorStats& summary) {
+Json summary_json(const ErrorStats& summary) {
     return {{"rms", summary.rms},
             {"mean", summary.mean},
             {"p99", summary.p99},
@@ -539,16 +376,22 @@ nlohmann::ordered_json summary_json(const ErrorStats& summary) {
             {"texels", summary.count}};
 }
 
-nlohmann::ordered_json convention_json(const ConventionFit& fit) {
-    std::vector<std::string> parts;
-    for (const ConventionPart part : fit.changes)
-        parts.emplace_back(describe(fit.convention, part).name);
+Json convention_json(const ConventionFit& fit) {
     return {{"searched", fit.was_searched},
             {"explained", fit.is_explained},
-            {"differs_in", parts},
+            {"differs_in",
+             json_list(fit.changes,
+                       [&](ConventionPart part) { return describe(fit.convention, part).name; })},
             {"told_degrees", fit.given_degrees},
             {"found_degrees", fit.found_degrees},
             {"tried", fit.tried}};
+}
+
+Json worst_json(const WorstTexel& texel) {
+    return {{"x", texel.x},
+            {"y", texel.y},
+            {"degrees", texel.degrees},
+            {"torn", texel.is_discontinuous}};
 }
 
 }  // namespace
@@ -593,54 +436,42 @@ std::string to_string(const ErrorStats& summary) {
                        summary.rms, summary.mean, summary.p99, summary.max);
 }
 
-void print_verified(const VerifiedMap& map) {
+Summary summary_of(const VerifiedMap& map) {
     const BakeCheck& check = map.check;
-    print_entry(
+    Json stages = Json::object();
+    for (std::size_t i = 0; i < bake_stage_count; ++i)
+        stages[stage_names[i]] = {{"share", check.stages[i].share},
+                                  {"rms", check.stages[i].error.rms}};
+    Summary summary;
+    summary.add(
         "error",
         {to_string(check.error) +
              fmt::format(", from the mean over each texel ({} samples)", check.reference_samples),
-         to_string(check.center) + ", from the normal at its center", texel_text(check)});
-    print_entry("stages", stage_lines(check));
-    if (check.error.max > 0.0) print_entry("worst", worst_text(check));
-    print_entry("verdict", verdict_lines(map));
+         to_string(check.center) + ", from the normal at its center", texel_text(check)},
+        {{"error", summary_json(check.error)},
+         {"centre", summary_json(check.center)},
+         {"remade", summary_json(check.rebaked)},
+         {"reference_samples", check.reference_samples},
+         {"torn", check.discontinuous},
+         {"missed", check.missed},
+         {"frameless", check.frameless}});
+    summary.add("stages", stage_lines(check), {{"stages", std::move(stages)}});
+    summary.add("worst", check.error.max > 0.0 ? worst_text(check) : "",
+                {{"worst", json_list(check.worst, worst_json)}});
+    summary.add("verdict", verdict_lines(map),
+                {{"convention", convention_json(check.convention)},
+                 {"trouble", map.problems},
+                 {"remedies", map.remedies}});
     if (map.request.error_map) {
-        print_entry("errors", fmt::format("{} ({:g} degrees is brightest)",
-                                          file_and_size(*map.request.error_map), map.brightest));
+        const std::filesystem::path& file = *map.request.error_map;
+        summary.add(
+            "errors",
+            fmt::format("{} ({:g} degrees is brightest)", file_and_size(file), map.brightest),
+            {{"error_map", {{"file", file.string()}, {"brightest", map.brightest}}}});
     }
-    print_entry("checked", fmt::format("{} rays, {}", check.rays, duration(map.milliseconds)));
-}
-
-nlohmann::ordered_json verified_json(const VerifiedMap& map) {
-    const BakeCheck& check = map.check;
-    nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < bake_stage_count; ++i)
-        stages[stage_names[i]] = {{"share", check.stages[i].share}, {"rms", check.stages[i].rms}};
-    nlohmann::ordered_json worst = nlohmann::ordered_json::array();
-    for (const WorstTexel& texel : check.worst) {
-        worst.push_back({{"x", texel.x},
-                         {"y", texel.y},
-                         {"degrees", texel.degrees},
-                         {"torn", texel.is_discontinuous}});
-    }
-    nlohmann::ordered_json json = {{"error", summary_json(check.error)},
-                                   {"centre", summary_json(check.center)},
-                                   {"remade", summary_json(check.rebaked)},
-                                   {"reference_samples", check.reference_samples},
-                                   {"torn", check.discontinuous},
-                                   {"missed", check.missed},
-                                   {"frameless", check.frameless},
-                                   {"stages", stages},
-                                   {"worst", worst},
-                                   {"convention", convention_json(check.convention)},
-                                   {"trouble", map.problems},
-                                   {"remedies", map.remedies},
-                                   {"rays", check.rays},
-                                   {"milliseconds", map.milliseconds}};
-    if (map.request.error_map) {
-        json["error_map"] = {{"file", map.request.error_map->string()},
-                             {"brightest", map.brightest}};
-    }
-    return json;
+    summary.add("checked", fmt::format("{} rays, {}", check.rays, duration(map.milliseconds)),
+                {{"rays", check.rays}, {"milliseconds", map.milliseconds}});
+    return summary;
 }
 
 }  // namespace relief::tools

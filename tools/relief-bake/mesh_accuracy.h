@@ -6,13 +6,14 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/normal_map_input.h"
+#include "common/summary.h"
 #include "mesh_models.h"
+#include "relief/accuracy/bake_accuracy.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bake_check.h"
 
@@ -20,46 +21,18 @@ namespace relief::tools {
 
 // Samples and bits by measured errors.
 
-/// The measured error of one method, on a part of the map.
-struct MeasuredBake {
-    SampleChoice samples;
-    std::optional<double> sample_angle;  ///< In degrees, with `auto`.
-    NormalMapFormat format;
-    ErrorStats error;
-    ErrorStats rounding;  ///< The error of the format alone.
-    ErrorStats sampling;  ///< The error of the samples alone.
-    std::size_t rays = 0;
-    double seconds = 0.0;  ///< Of the rays; with --compare the median, including the encoding.
-    bool is_pareto_optimal =
-        false;  ///< With --compare: no other method is faster and more accurate.
-};
-
 /// "4 samples, 16 bit", "auto samples at 2 degrees, 8 bit, dithered"
 std::string to_string(const MeasuredBake& bake);
-
-struct MeshAccuracy {
-    /// --max-error: in the order tried, up to the selected one. --compare: all.
-    std::vector<MeasuredBake> measured;
-    std::optional<MeasuredBake> selected;  ///< With --max-error.
-    std::size_t texels = 0;                ///< Of the measured part.
-    bool is_whole = true;
-    int reference_samples = 0;
-    std::size_t reference_rays = 0;
-};
 
 /// \throws UsageError if options contradict each other, or have no effect
 void check_accuracy(const MeshBakeRequest& request);
 
-/// Measures errors; with --max-error also sets the samples of the request and the format.
-///
-/// Samples increase from 1 to 256, unless they are given. For each count, all bit depths of the
-/// file format are measured, which costs no rays. The first count with a depth within the limit is
-/// selected, with the smallest such depth. 256 samples are compared with a reference of 1024, on an
-/// eighth of the texels; if the map is too large for that, the maximum is 64.
-/// \throws InvalidInput if no method is within the limit, with the smallest error, its larger part,
-///         and the depth that another file format would need
-MeshAccuracy select_accuracy(const Baker& baker, const BakeMapOptions& map,
-                             MeshBakeRequest& request, NormalMapFormat& format);
+/// Measures errors as --compare or --max-error request. The latter sets the samples of the request
+/// and the format.
+/// \throws InvalidInput if no samples and bits are within the limit, with the smallest error, its
+///         larger part, and the bits that another file format would need
+BakeComparison measure_errors(const Baker& baker, const BakeMapOptions& map,
+                              MeshBakeRequest& request, NormalMapFormat& format);
 
 // Verification: a finished map is compared with its models.
 
@@ -88,7 +61,6 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
 /// "RMS 0.131 degrees, mean 0.12, 99 of 100 within 0.3, 2.1 at most"
 std::string to_string(const ErrorStats& summary);
 
-void print_verified(const VerifiedMap& map);
-nlohmann::ordered_json verified_json(const VerifiedMap& map);
+Summary summary_of(const VerifiedMap& map);
 
 }  // namespace relief::tools

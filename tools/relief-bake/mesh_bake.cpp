@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes maps from files to files: reads the models, plans the maps, bakes them one after another,
-// and then renames the finished files; and the summary of `relief-bake mesh` as text and as JSON.
+// and then renames the finished files; and the summary of `relief-bake mesh`.
 // Tests: tests/tools/relief_bake_mesh_test.cpp, relief_bake_accuracy_test.cpp.
 
 #include "mesh_bake.h"
@@ -10,12 +10,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "mesh_preview.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 namespace {
@@ -159,14 +158,14 @@ void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& p
 
 void draw_preview(MeshPreview& preview, const MeshBakeRequest& request, const MeshBake& bake,
                   BakeModels models) {
-    const bool is_tangent = request.space == VectorSpace::tangent;
-    const bool has_object_axes = request.space == VectorSpace::object && models.world_from_low;
+    const bool is_tangent = request.bake.space == VectorSpace::tangent;
+    const bool has_object_axes = request.bake.space == VectorSpace::object && models.world_from_low;
     std::vector<PreviewMap> maps;
     for (const BakedMap& map : bake.maps) {
         const bool is_tile = map.plan.tile != glm::ivec2(0);
         maps.push_back({.file = map.plan.output,
                         .triangles = map.plan.triangles,
-                        .repeats = is_tile || request.bake.placement.repeat});
+                        .repeats = is_tile || request.bake.map.placement.repeat});
     }
     preview.draw(
         request.preview,
@@ -219,9 +218,9 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
     BakeOptions options = bake_options_of(request);
     options.map_count = plans.maps.size();
     options.output_from_mesh = output_axes(request, models.world_from_low);
-    options.layers.position_from_mesh[3] = glm::dvec4(models.origin, 1.0);
-    options.details = models.textures.details();
-    if (models.cage) options.cage = &*models.cage;
+    options.map.layers.position_from_mesh[3] = glm::dvec4(models.origin, 1.0);
+    options.materials = models.textures.materials();
+    options.cage = models.cage;
     std::optional<Baker> baker;
     stages.run("bake", [&] {
         Report report;
@@ -232,14 +231,14 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
     });
     bake.fit = baker->fit();
     MeshBakeRequest settled = request;  // With the selected samples.
-    if (request.needs_trials()) {
+    if (request.measures_errors()) {
         stages.run("choose", [&] {
-            bake.accuracy = select_accuracy(*baker, map_options(options, plans.maps.front()),
-                                            settled, bake.format);
+            bake.accuracy = measure_errors(*baker, map_options(options, plans.maps.front()),
+                                           settled, bake.format);
         });
         const BakeOptions selected = bake_options_of(settled);
-        options.samples = selected.samples;
-        options.sample_angle = selected.sample_angle;
+        options.map.samples = selected.map.samples;
+        options.map.sample_angle = selected.map.sample_angle;
     }
     stages.run("bake",
                [&] { bake_all(settled, *baker, models, std::move(plans), options, stages, bake); });
@@ -297,8 +296,8 @@ std::string ray_text(const MeshBakeRequest& request, const BakeResult& result) {
 }
 
 std::string space_text(const MeshBakeRequest& request, const MeshBake& bake) {
-    if (request.space == VectorSpace::object) return "object space";
-    if (request.space == VectorSpace::world) return "world space";
+    if (request.bake.space == VectorSpace::object) return "object space";
+    if (request.bake.space == VectorSpace::world) return "world space";
     return bake.has_file_tangents ? "tangent space, with the model's tangents"
                                   : "tangent space, with MikkTSpace tangents";
 }
@@ -348,23 +347,23 @@ std::vector<std::string> map_lines(const MeshBakeRequest& request, const MeshBak
     return lines;
 }
 
-void print_missed(const MeshBakeRequest& request, const MeshBake& bake) {
+std::vector<std::string> all_missed_lines(const MeshBakeRequest& request, const MeshBake& bake) {
     std::vector<std::string> lines;
     for (const BakedMap& map : bake.maps) {
         for (const std::string& line : missed_lines(request, map.result, bake.origin))
             lines.push_back(prefix_of(map) + line);
     }
-    if (!lines.empty()) print_entry("missed", lines);
+    return lines;
 }
 
 /// "auto 2" or "16", for the table.
 std::string sample_cell(const MeasuredBake& bake) {
-    return bake.samples.is_auto ? fmt::format("auto {:g}", bake.sample_angle.value_or(0.0))
-                                : fmt::format("{}", bake.samples.count);
+    return bake.sampling.sample_degrees ? fmt::format("auto {:g}", *bake.sampling.sample_degrees)
+                                        : fmt::format("{}", bake.sampling.samples);
 }
 
 /// The table of --compare, sorted by error.
-std::vector<std::string> comparison_table(const MeshAccuracy& accuracy) {
+std::vector<std::string> comparison_table(const BakeComparison& accuracy) {
     std::vector<const MeasuredBake*> rows;
     for (const MeasuredBake& bake : accuracy.measured)
         rows.push_back(&bake);
@@ -390,11 +389,13 @@ std::vector<std::string> comparison_table(const MeshAccuracy& accuracy) {
 }
 
 /// The steps of --max-error: a line for each number of samples.
-std::vector<std::string> step_lines(const MeshBakeRequest& request, const MeshAccuracy& accuracy) {
+std::vector<std::string> step_lines(const MeshBakeRequest& request,
+                                    const BakeComparison& accuracy) {
     std::vector<std::string> lines;
     const MeasuredBake* previous = nullptr;
     for (const MeasuredBake& bake : accuracy.measured) {
-        const bool is_new = previous == nullptr || previous->samples.count != bake.samples.count;
+        const bool is_new =
+            previous == nullptr || previous->sampling.samples != bake.sampling.samples;
         const auto bytes = std::uintmax_t{3} * static_cast<unsigned>(bake.format.bits / 8) *
                            static_cast<unsigned>(request.size.x) *
                            static_cast<unsigned>(request.size.y);
@@ -402,31 +403,18 @@ std::vector<std::string> step_lines(const MeshBakeRequest& request, const MeshAc
             fmt::format("{:.3g} in {} bit ({} at most)", request.bound.error(bake.error),
                         bake.format.bits, byte_size(bytes));
         if (is_new) {
-            lines.push_back(
-                fmt::format("{}, {} rays in {}: {}",
-                            bake.samples.is_auto
-                                ? std::string("auto samples")
-                                : counted(static_cast<std::size_t>(bake.samples.count), "sample"),
-                            bake.rays, duration(1000.0 * bake.seconds), error));
+            lines.push_back(fmt::format(
+                "{}, {} rays in {}: {}",
+                bake.sampling.sample_degrees
+                    ? std::string("auto samples")
+                    : counted(static_cast<std::size_t>(bake.sampling.samples), "sample"),
+                bake.rays, duration(1000.0 * bake.seconds), error));
         } else {
             lines.back() += ", " + error;
         }
         previous = &bake;
     }
     return lines;
-}
-
-void print_accuracy(const MeshBakeRequest& request, const MeshAccuracy& accuracy) {
-    if (accuracy.selected) {
-        print_entry("steps", step_lines(request, accuracy));
-        print_entry("selected", fmt::format("{}: {}", to_string(*accuracy.selected),
-                                            to_string(accuracy.selected->error)));
-    }
-    print_entry("errors",
-                fmt::format("measured on {} of the map, against {} samples per texel",
-                            accuracy.is_whole ? "all" : fmt::format("{} texels", accuracy.texels),
-                            accuracy.reference_samples));
-    if (!accuracy.selected) print_entry("", comparison_table(accuracy));
 }
 
 /// "out/height.png: height map, 16 bit, -0.1 to 0.1"
@@ -441,13 +429,12 @@ std::string layer_text(const WrittenLayer& layer) {
     return text;
 }
 
-void print_layers(const MeshBake& bake) {
+std::vector<std::string> layer_lines(const MeshBake& bake) {
     std::vector<std::string> lines;
     for (const BakedMap& map : bake.maps) {
         for (const WrittenLayer& layer : map.layers)
             lines.push_back(layer_text(layer));
     }
-    if (lines.empty()) return;
     for (const WrittenLayer& layer : bake.maps.front().layers) {
         const LayerCoding& coding = layer.coding;
         if (coding.kind != LayerKind::height) continue;
@@ -461,7 +448,7 @@ void print_layers(const MeshBake& bake) {
     }
     if (bake.all.occlusion_rays > 0)
         lines.push_back(fmt::format("{} rays for occlusion", bake.all.occlusion_rays));
-    print_entry("layers", lines);
+    return lines;
 }
 
 std::vector<std::string> written_files(const MeshBakeRequest& request, const MeshBake& bake) {
@@ -480,25 +467,23 @@ std::vector<std::string> written_files(const MeshBakeRequest& request, const Mes
 
 // JSON.
 
-nlohmann::ordered_json point_json(const glm::dvec3& point) {
+Json point_json(const glm::dvec3& point) {
     return {point.x, point.y, point.z};
 }
 
-nlohmann::ordered_json clipped_json(const ClippedRays& clipped) {
+Json clipped_json(const ClippedRays& clipped) {
     return {{"texels", clipped.texels},
             {"shortest", clipped.shortest},
             {"half", clipped.half},
             {"longest", clipped.longest}};
 }
 
-nlohmann::ordered_json missed_json(const BakeResult& result, const glm::dvec3& origin) {
-    nlohmann::ordered_json first = nlohmann::ordered_json::array();
-    for (const MissedTexel& texel : result.first_missed) {
-        first.push_back(
-            {{"x", texel.x}, {"y", texel.y}, {"position", point_json(texel.position + origin)}});
-    }
+Json missed_json(const BakeResult& result, const glm::dvec3& origin) {
+    const auto texel_json = [&](const MissedTexel& texel) -> Json {
+        return {{"x", texel.x}, {"y", texel.y}, {"position", point_json(texel.position + origin)}};
+    };
     return {{"percent", missed_percent(result.texels_missed, result.texels_baked)},
-            {"first", first},
+            {"first", json_list(result.first_missed, texel_json)},
             {"from_behind", result.missed_from_behind},
             {"clipped_outside", clipped_json(result.clipped_outside)},
             {"clipped_inside", clipped_json(result.clipped_inside)},
@@ -506,8 +491,8 @@ nlohmann::ordered_json missed_json(const BakeResult& result, const glm::dvec3& o
 }
 
 /// The bounding boxes in world space, their gap and the ratio of their sizes.
-nlohmann::ordered_json boxes_json(const BakeFit& fit, const glm::dvec3& origin) {
-    const auto box_json = [&](const Bounds& box) -> nlohmann::ordered_json {
+Json boxes_json(const BakeFit& fit, const glm::dvec3& origin) {
+    const auto box_json = [&](const Bounds& box) -> Json {
         if (box.empty()) return nullptr;
         return {{"min", point_json(glm::dvec3(box.min) + origin)},
                 {"max", point_json(glm::dvec3(box.max) + origin)}};
@@ -518,11 +503,11 @@ nlohmann::ordered_json boxes_json(const BakeFit& fit, const glm::dvec3& origin) 
             {"size_ratio", fit.size_ratio}};
 }
 
-nlohmann::ordered_json layer_json(const WrittenLayer& layer) {
+Json layer_json(const WrittenLayer& layer) {
     const LayerCoding& coding = layer.coding;
-    nlohmann::ordered_json json = {{"content", layer_name(coding.kind)},
-                                   {"output", layer.file.string()},
-                                   {"bits", coding.bits}};
+    Json json = {{"content", layer_name(coding.kind)},
+                 {"output", layer.file.string()},
+                 {"bits", coding.bits}};
     if (coding.bits != 32 && coding.is_signed()) {
         json["range"] = coding.range;
         json["zero"] = coding.zero_code();
@@ -534,8 +519,8 @@ nlohmann::ordered_json layer_json(const WrittenLayer& layer) {
     return json;
 }
 
-nlohmann::ordered_json map_json(const BakedMap& map, const glm::dvec3& origin) {
-    nlohmann::ordered_json json = {{"output", map.plan.output.string()}};
+Json map_json(const BakedMap& map, const glm::dvec3& origin) {
+    Json json = {{"output", map.plan.output.string()}};
     if (map.plan.material) json["material"] = *map.plan.material;
     if (map.plan.udim) json["tile"] = *map.plan.udim;
     json.update({{"texels_baked", map.result.texels_baked},
@@ -545,40 +530,48 @@ nlohmann::ordered_json map_json(const BakedMap& map, const glm::dvec3& origin) {
                  {"samples", map.result.samples},
                  {"rays", map.result.rays},
                  {"missed", missed_json(map.result, origin)}});
-    if (map.verified) json["check"] = verified_json(*map.verified);
+    if (map.verified) json["check"] = summary_of(*map.verified).json();
     for (const WrittenLayer& layer : map.layers)
         json["layers"].push_back(layer_json(layer));
     return json;
 }
 
-nlohmann::ordered_json measured_json(const MeasuredBake& bake) {
-    return {{"samples", bake.samples.is_auto ? nlohmann::ordered_json("auto")
-                                             : nlohmann::ordered_json(bake.samples.count)},
-            {"sample_angle", bake.sample_angle ? nlohmann::ordered_json(*bake.sample_angle)
-                                               : nlohmann::ordered_json(nullptr)},
+Json measured_json(const MeasuredBake& bake) {
+    return {{"samples", bake.sampling.sample_degrees ? Json("auto") : Json(bake.sampling.samples)},
+            {"sample_angle", or_null(bake.sampling.sample_degrees)},
             {"bits", bake.format.bits},
             {"dither", enum_name(bake.format.dither)},
             {"rms", bake.error.rms},
             {"mean", bake.error.mean},
             {"p99", bake.error.p99},
             {"max", bake.error.max},
-            {"rounding", bake.rounding.rms},
-            {"sampling", bake.sampling.rms},
+            {"rounding", bake.quantization.rms},
+            {"sampling", bake.sampling_error.rms},
             {"rays", bake.rays},
             {"milliseconds", 1000.0 * bake.seconds},
             {"efficient", bake.is_pareto_optimal}};
 }
 
-void add_accuracy(const MeshAccuracy& accuracy, nlohmann::ordered_json& json) {
-    json["reference"] = {{"samples", accuracy.reference_samples},
-                         {"rays", accuracy.reference_rays},
-                         {"texels", accuracy.texels},
-                         {"whole", accuracy.is_whole}};
-    if (accuracy.selected) json["kept"] = measured_json(*accuracy.selected);
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const MeasuredBake& bake : accuracy.measured)
-        all.push_back(measured_json(bake));
-    json[accuracy.selected ? "steps" : "comparison"] = all;
+void add_accuracy(Summary& summary, const MeshBakeRequest& request,
+                  const BakeComparison& accuracy) {
+    const Json measured = json_list(accuracy.measured, measured_json);
+    if (accuracy.selected) {
+        const MeasuredBake& selected = *accuracy.selected;
+        summary.add("steps", step_lines(request, accuracy), {{"steps", measured}});
+        summary.add("selected",
+                    fmt::format("{}: {}", to_string(selected), to_string(selected.error)),
+                    {{"kept", measured_json(selected)}});
+    }
+    summary.add("errors",
+                fmt::format("measured on {} of the map, against {} samples per texel",
+                            accuracy.is_whole ? "all" : fmt::format("{} texels", accuracy.texels),
+                            accuracy.reference_samples),
+                {{"reference",
+                  {{"samples", accuracy.reference_samples},
+                   {"rays", accuracy.reference_rays},
+                   {"texels", accuracy.texels},
+                   {"whole", accuracy.is_whole}}}});
+    if (!accuracy.selected) summary.add("", comparison_table(accuracy), {{"comparison", measured}});
 }
 
 }  // namespace
@@ -592,72 +585,63 @@ std::string shared_texels_warning(const MeshBakeRequest& request, const MeshBake
         request.low.string(), counted(bake.materials, "material"));
 }
 
-void print_summary(const MeshBakeRequest& request, const MeshBake& bake, const Stages& stages) {
+Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const Stages& stages) {
     const BakeResult& result = bake.all;
-    print_entry("read", read_lines(request, bake));
-    print_entry("rays", {ray_text(request, result),
-                         fmt::format("{} for {}, {:.2f} million per second", result.rays,
-                                     counted(result.samples, "sample"),
-                                     megarays_per_second(bake, stages))});
-    print_entry(bake.maps.size() == 1 ? "map" : "maps", map_lines(request, bake));
-    print_missed(request, bake);
-    print_entry("format", fmt::format("{}, {}", space_text(request, bake), to_string(bake.format)));
-    if (bake.accuracy) print_accuracy(request, *bake.accuracy);
+    const NormalMapFormat& format = bake.format;
+    const double rate = megarays_per_second(bake, stages);
+    const auto file_name = [](const std::filesystem::path& file) { return file.string(); };
+    const auto pair_json = [](const BakePair& pair) -> Json {
+        return {{"name", pair.name},
+                {"high_triangles", pair.high_triangles},
+                {"low_triangles", pair.low.size()}};
+    };
+    Summary summary;
+    summary.add_tool("relief-bake mesh");
+    summary.add("read", read_lines(request, bake),
+                {{"high", json_list(request.high, file_name)},
+                 {"low", request.low.string()},
+                 {"output", request.output.string()},
+                 {"high_triangles", bake.high_triangles},
+                 {"low_triangles", bake.low_triangles},
+                 {"boxes", boxes_json(bake.fit, bake.origin)},
+                 {"pairs", json_list(bake.pairs, pair_json)}});
+    summary.add(
+        "rays",
+        {ray_text(request, result), fmt::format("{} for {}, {:.2f} million per second", result.rays,
+                                                counted(result.samples, "sample"), rate)},
+        {{"offset", result.distances.offset},
+         {"max_distance", result.distances.max_distance},
+         {"least_height", result.min_height},
+         {"greatest_height", result.max_height},
+         {"samples", result.samples},
+         {"rays", result.rays},
+         {"occlusion_rays", result.occlusion_rays},
+         {"rays_per_second", rate * 1e6}});
+    summary.add(bake.maps.size() == 1 ? "map" : "maps", map_lines(request, bake),
+                {{"width", request.size.x},
+                 {"height", request.size.y},
+                 {"texels_baked", result.texels_baked},
+                 {"texels_missed", result.texels_missed},
+                 {"maps", json_list(bake.maps, [&](const BakedMap& map) {
+                      return map_json(map, bake.origin);
+                  })}});
+    summary.add("missed", all_missed_lines(request, bake));
+    summary.add("format", fmt::format("{}, {}", space_text(request, bake), to_string(format)),
+                {{"space", enum_name(request.bake.space)},
+                 {"bits", format.bits},
+                 {"green", enum_name(format.green)},
+                 {"zero_code", enum_name(format.flat)},
+                 {"dither", enum_name(format.dither)}});
+    if (bake.accuracy) add_accuracy(summary, request, *bake.accuracy);
     for (const BakedMap& map : bake.maps) {
-        if (map.verified) print_verified(*map.verified);
+        if (map.verified) summary.add_lines(summary_of(*map.verified));
     }
-    print_layers(bake);
-    print_entry("findings",
-                bake.findings.empty() ? std::vector<std::string>{"none"} : bake.findings.lines());
-    print_entry("time", durations(stages.finished()));
-    print_entry("wrote", written_files(request, bake));
-}
-
-nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBake& bake,
-                                    const Stages& stages) {
-    const BakeResult& result = bake.all;
-    nlohmann::ordered_json high = nlohmann::ordered_json::array();
-    for (const std::filesystem::path& file : request.high)
-        high.push_back(file.string());
-    nlohmann::ordered_json pairs = nlohmann::ordered_json::array();
-    for (const BakePair& pair : bake.pairs) {
-        pairs.push_back({{"name", pair.name},
-                         {"high_triangles", pair.high_triangles},
-                         {"low_triangles", pair.low.size()}});
-    }
-    nlohmann::ordered_json maps = nlohmann::ordered_json::array();
-    for (const BakedMap& map : bake.maps)
-        maps.push_back(map_json(map, bake.origin));
-    nlohmann::ordered_json results = {{"high", high},
-                                      {"low", request.low.string()},
-                                      {"output", request.output.string()},
-                                      {"width", request.size.x},
-                                      {"height", request.size.y},
-                                      {"space", enum_name(request.space)},
-                                      {"bits", bake.format.bits},
-                                      {"green", enum_name(bake.format.green)},
-                                      {"zero_code", enum_name(bake.format.flat)},
-                                      {"dither", enum_name(bake.format.dither)},
-                                      {"high_triangles", bake.high_triangles},
-                                      {"low_triangles", bake.low_triangles},
-                                      {"offset", result.distances.offset},
-                                      {"max_distance", result.distances.max_distance},
-                                      {"least_height", result.min_height},
-                                      {"greatest_height", result.max_height},
-                                      {"texels_baked", result.texels_baked},
-                                      {"texels_missed", result.texels_missed},
-                                      {"samples", result.samples},
-                                      {"rays", result.rays},
-                                      {"occlusion_rays", result.occlusion_rays},
-                                      {"rays_per_second", megarays_per_second(bake, stages) * 1e6},
-                                      {"boxes", boxes_json(bake.fit, bake.origin)},
-                                      {"pairs", pairs},
-                                      {"maps", maps},
-                                      {"findings", bake.findings.json()},
-                                      {"milliseconds", durations_json(stages.finished())}};
-    if (bake.accuracy) add_accuracy(*bake.accuracy, results);
-    if (request.preview.file) results["preview"] = request.preview.file->string();
-    return results;
+    summary.add("layers", layer_lines(bake));
+    summary.add_findings(bake.findings);
+    summary.add_times(stages);
+    summary.add("wrote", written_files(request, bake));
+    if (request.preview.file) summary.add_json({{"preview", request.preview.file->string()}});
+    return summary;
 }
 
 }  // namespace relief::tools

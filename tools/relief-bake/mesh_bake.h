@@ -5,12 +5,11 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "common/text.h"
+#include "common/summary.h"
 #include "mesh_accuracy.h"
 #include "mesh_maps.h"
 #include "mesh_models.h"
@@ -39,10 +38,10 @@ struct MeshBake {
     std::string textures;     ///< HighTextures::description()
     double texel_size = 0.0;  ///< The mean side of a texel in the unit of the mesh; 0: unknown.
     std::vector<BakedMap> maps;
-    BakeResult all;                        ///< Sums and extremes over all maps.
-    BakeFit fit;                           ///< Baker::fit()
-    glm::dvec3 origin{0.0};                ///< As in BakeModels.
-    std::optional<MeshAccuracy> accuracy;  ///< If errors were measured before the bake.
+    BakeResult all;                          ///< Sums and extremes over all maps.
+    BakeFit fit;                             ///< Baker::fit()
+    glm::dvec3 origin{0.0};                  ///< As in BakeModels.
+    std::optional<BakeComparison> accuracy;  ///< If errors were measured before the bake.
     Findings findings;
 };
 
@@ -51,12 +50,9 @@ struct MeshBake {
 /// \throws FileError, UsageError
 MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages);
 
-void print_summary(const MeshBakeRequest& request, const MeshBake& bake, const Stages& stages);
+Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const Stages& stages);
 
 /// A warning if several materials share texels of one map; else empty.
 std::string shared_texels_warning(const MeshBakeRequest& request, const MeshBake& bake);
-
-nlohmann::ordered_json results_json(const MeshBakeRequest& request, const MeshBake& bake,
-                                    const Stages& stages);
 
 }  // namespace relief::tools

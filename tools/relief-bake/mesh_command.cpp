@@ -6,10 +6,9 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "common/model_file.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "mesh_bake.h"
 #include "relief/mesh/execution.h"
 
@@ -49,7 +48,7 @@ void add_map_options(CLI::App& app, MeshBakeRequest& request) {
               "bytes per texel, and 4 bytes per texel and channel. Default: 16.",
               [&](const std::string& subject, const std::string& text) {
                   request.fills_to_border = text == "border";
-                  request.bake.padding =
+                  request.bake.map.padding =
                       request.fills_to_border ? 0 : parse_integer(subject, text, 0, 1024);
               })
         .group(group);
@@ -313,16 +312,15 @@ ExitCode run(const CLI::App& app, MeshOptions& options) {
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
     const MeshBake bake = bake_maps(request, stages);
-    if (!options.general.quiet) print_summary(request, bake, stages);
+    const Summary summary = summary_of(request, bake, stages);
+    if (!options.general.quiet) summary.print();
     for (const std::string& warning :
          {shared_texels_warning(request, bake),
           swapped_models_warning(request, bake.high_triangles, bake.low_triangles)}) {
         if (!warning.empty()) warn(app, warning);
     }
-    nlohmann::ordered_json report = {{"tool", "relief-bake mesh"}, {"version", version()}};
-    report.update(results_json(request, bake, stages));
     return finish(app, request.report, request.low, strict_findings(request, bake.findings),
-                  report);
+                  summary.json());
 }
 
 }  // namespace
@@ -367,7 +365,7 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
 
 void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
     const std::string group = "Map";
-    add_choice(app, "--space", request.space, enum_choices<VectorSpace>(),
+    add_choice(app, "--space", request.bake.space, enum_choices<VectorSpace>(),
                "Space of the normals: the tangent space of the low mesh (with the tangents of its "
                "file, else those of MikkTSpace), its object space, or world space. Default: "
                "tangent.")
@@ -384,7 +382,7 @@ void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
                            "Default: {:g}.",
                            default_angle))
         .group(group);
-    add_choice(app, "--outside", request.bake.placement.repeat,
+    add_choice(app, "--outside", request.bake.map.placement.repeat,
                Choices<bool>{{"drop", false}, {"repeat", true}},
                "Texture coordinates outside the unit square: do not bake them (drop), or wrap them "
                "into the square (repeat). Default: drop.")
@@ -505,18 +503,17 @@ std::optional<double> angle_of(const MeshBakeRequest& request, const SampleChoic
 
 BakeOptions bake_options_of(const MeshBakeRequest& request) {
     BakeOptions options = request.bake;
-    options.layers = bake_layers_of(request.layers);
-    options.width = request.size.x;
-    options.height = request.size.y;
-    options.space = request.space;
+    options.map.layers = bake_layers_of(request.layers);
+    options.map.width = request.size.x;
+    options.map.height = request.size.y;
     options.directions = request.directions.value_or(RayDirections::averaged);
     options.hardness = request.hardness.value_or(0.0);
-    options.samples = request.samples.count;
+    options.map.samples = request.samples.count;
     if (const auto angle = angle_of(request, request.samples))
-        options.sample_angle = glm::radians(*angle);
+        options.map.sample_angle = glm::radians(*angle);
     if (request.fills_to_border) {
         const std::filesystem::path folder = request.output.parent_path();
-        options.border_folder = folder.empty() ? "." : folder;
+        options.map.border_folder = folder.empty() ? "." : folder;
     }
     return options;
 }
@@ -550,6 +547,10 @@ Command add_mesh_command(CLI::App& tool) {
         "texels of mirrored triangles; missed texels, with --max-missed; normals behind the "
         "surface, with --max-error.");
     add_general_options(app, options->general);
+    set_common_options(app, {"--cage", "--offset", "--max-distance", "--match", "--size", "--space",
+                             "--samples", "--padding", "--height-map", "--occlusion-map",
+                             "--curvature-map", "--green", "--bits", "--preview", "--report",
+                             "--strict", "--verify", "--max-error", "--threads"});
     set_examples(
         app,
         {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",

@@ -90,7 +90,7 @@ void report_outside(const MapTiles& tiles, const std::string& remedy, Report& re
 void add_maps(const MeshBakeRequest& request, const Mesh& low, const MapPlan& plan,
               MapPlans& plans) {
     const bool has_tiles = names_word(request.output, tile_word);
-    if (!has_tiles && request.bake.placement.repeat) {
+    if (!has_tiles && request.bake.map.placement.repeat) {
         plans.maps.push_back(plan);
         return;
     }
@@ -161,7 +161,7 @@ std::string MapPlan::name() const {
 }
 
 BakeMapOptions map_options(const BakeOptions& options, const MapPlan& plan) {
-    BakeMapOptions map = options;
+    BakeMapOptions map = options.map;
     map.placement.tile = plan.tile;
     if (plan.triangles) map.triangles = *plan.triangles;
     return map;
@@ -184,7 +184,7 @@ void check_map_names(const MeshBakeRequest& request) {
             throw UsageError(fmt::format("{}: {} occurs twice", output.string(), word),
                              "use it once");
     }
-    if (names_word(output, tile_word) && request.bake.placement.repeat)
+    if (names_word(output, tile_word) && request.bake.map.placement.repeat)
         throw UsageError("--outside repeat: has no effect with <UDIM>, which bakes all tiles");
 }
 
@@ -228,7 +228,7 @@ BakeRecord record_of(const MeshBakeRequest& request) {
     const auto add_number = [&](const char* name, const std::optional<double>& number) {
         if (number) record[name] = fmt::format("{}", *number);
     };
-    record["--space"] = enum_name(request.space);
+    record["--space"] = enum_name(request.bake.space);
     record["--samples"] =
         request.samples.is_auto ? "auto" : fmt::format("{}", request.samples.count);
     add_number("--sample-angle", request.sample_angle);
@@ -240,7 +240,7 @@ BakeRecord record_of(const MeshBakeRequest& request) {
     if (request.bake.back_faces == BackFaces::take) record["--back-faces"] = "take";
     if (request.match != PartMatching::automatic)
         record["--match"] = request.match == PartMatching::name ? "name" : "all";
-    if (request.bake.placement.repeat) record["--outside"] = "repeat";
+    if (request.bake.map.placement.repeat) record["--outside"] = "repeat";
     if (request.map.dither) record["--dither"] = enum_name(*request.map.dither);
     return record;
 }
@@ -357,9 +357,10 @@ std::map<std::string, std::string> map_metadata(const MeshBakeRequest& request, 
                                                 const NormalMapFormat& format) {
     std::map<std::string, std::string> metadata = normal_map_metadata(format);
     metadata.merge(bake_metadata(request, plan));
-    if (request.space == VectorSpace::object)
+    if (request.bake.space == VectorSpace::object)
         metadata["relief:content"] = "normal map, object space";
-    if (request.space == VectorSpace::world) metadata["relief:content"] = "normal map, world space";
+    if (request.bake.space == VectorSpace::world)
+        metadata["relief:content"] = "normal map, world space";
     return metadata;
 }
 

@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "common/text.h"
-#include "relief/mesh/bake_matching.h"
+#include "relief/mesh/bake_check.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief::tools {
@@ -109,17 +109,19 @@ ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low,
     return pairs;
 }
 
-const Image* HighTextures::image(const std::filesystem::path& file, ImageUse use) {
+std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& file, ImageUse use) {
     const std::string key = fmt::format("{} {}", file.string(), static_cast<int>(use));
     const auto known = images_.find(key);
-    if (known != images_.end()) return &known->second;
-    const Image* added = &images_.emplace(key, read_image(file, use)).first->second;
-    if (use == ImageUse::data) metadata_[added] = read_image_info(file).metadata;
+    if (known != images_.end()) return known->second;
+    const auto added = std::make_shared<const Image>(read_image(file, use));
+    images_[key] = added;
+    if (use == ImageUse::data) metadata_[added.get()] = read_image_info(file).metadata;
     return added;
 }
 
-const Image* HighTextures::image(const std::filesystem::path& model,
-                                 const MapAppearance& appearance, std::size_t index, ImageUse use) {
+std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& model,
+                                                 const MapAppearance& appearance, std::size_t index,
+                                                 ImageUse use) {
     const GltfImage& source = appearance.images[index];
     const char* remedy = "put it there, or use --high-normal-map none, --high-color none";
     if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) {
@@ -130,13 +132,14 @@ const Image* HighTextures::image(const std::filesystem::path& model,
     const std::string name = fmt::format("{}, image {}", model.string(), index);
     const std::string key = fmt::format("{} {}", name, static_cast<int>(use));
     const auto known = images_.find(key);
-    if (known != images_.end()) return &known->second;
+    if (known != images_.end()) return known->second;
     const auto& bytes = std::get<std::vector<std::byte>>(source.source);
     if (bytes.empty()) {
         throw failure(model, fmt::format("image {} is outside of its folder", index), remedy);
     }
-    const Image* added = &images_.emplace(key, read_image(bytes, name, use)).first->second;
-    if (use == ImageUse::data) metadata_[added] = read_image_info(bytes, name).metadata;
+    const auto added = std::make_shared<const Image>(read_image(bytes, name, use));
+    images_[key] = added;
+    if (use == ImageUse::data) metadata_[added.get()] = read_image_info(bytes, name).metadata;
     return added;
 }
 
@@ -201,7 +204,7 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
     if (detail.otherwise) set_textures(*detail.otherwise);
     normal_maps_ += has_normal_map ? 1 : 0;
     color_textures_ += has_color ? 1 : 0;
-    details_.push_back(std::move(detail));
+    materials_.push_back(std::move(detail));
 }
 
 std::string HighTextures::description() const {
@@ -224,8 +227,8 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
         appearances.push_back(std::move(high.back().appearance));
     }
     if (request.cage) {
-        models.cage =
-            join_parts(*request.cage, read_with_origin(low.origin, *request.cage, findings));
+        models.cage = std::make_shared<const Mesh>(
+            join_parts(*request.cage, read_with_origin(low.origin, *request.cage, findings)));
     }
     const std::vector<std::size_t> file_of =
         add_high(request, low, std::move(high), models, findings);
@@ -239,7 +242,7 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
 
 glm::dmat3 output_axes(const MeshBakeRequest& request,
                        const std::optional<glm::dmat3>& world_from_low) {
-    if (request.space != VectorSpace::object) return glm::dmat3(1.0);
+    if (request.bake.space != VectorSpace::object) return glm::dmat3(1.0);
     if (!world_from_low) {
         throw failure(request.low, "has several primitives, and therefore no single object space",
                       "use --space world or tangent");
@@ -405,9 +408,9 @@ void check_missed_early(const MeshBakeRequest& request, const BakeModels& models
                         const Baker& baker, const BakeMapOptions& map, const std::string& name) {
     const double limit = request.missed_limit() + estimate_margin;
     if (limit >= 100.0) return;
-    // The estimate is not faster than the bake of a small map, but faster than trials.
+    // The estimate is not faster than the bake of a small map, but faster than measuring errors.
     const double texels = static_cast<double>(map.width) * static_cast<double>(map.height);
-    if (!request.needs_trials() && texels <= 2.0 * estimate_texels) return;
+    if (!request.measures_errors() && texels <= 2.0 * estimate_texels) return;
     const MissedEstimate estimate = estimate_missed(baker, map);
     if (!misses_too_much(estimate.result, limit)) return;
     throw missed_error(request, models, name, estimate.result,

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,7 +18,7 @@
 #include "common/text.h"
 #include "mesh_request.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/bake_matching.h"
+#include "relief/mesh/bake_check.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
@@ -37,21 +38,22 @@ class HighTextures {
     void add(const std::filesystem::path& file, const Mesh& mesh, const MapAppearance& appearance,
              const HighTextureOptions& options, bool with_colors, Report& report);
 
-    [[nodiscard]] std::span<const HighMaterials> details() const { return details_; }
+    [[nodiscard]] const std::vector<HighMaterials>& materials() const { return materials_; }
 
     /// "1 normal map added to their normals, 2 color textures"; empty if there are none.
     [[nodiscard]] std::string description() const;
 
   private:
-    const Image* image(const std::filesystem::path& model, const MapAppearance& appearance,
-                       std::size_t index, ImageUse use);
-    const Image* image(const std::filesystem::path& file, ImageUse use);
+    std::shared_ptr<const Image> image(const std::filesystem::path& model,
+                                       const MapAppearance& appearance, std::size_t index,
+                                       ImageUse use);
+    std::shared_ptr<const Image> image(const std::filesystem::path& file, ImageUse use);
     SurfaceTexture texture(const std::filesystem::path& model, const MapAppearance& appearance,
                            const GltfTexture& texture, ImageUse use);
     [[nodiscard]] SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale) const;
 
-    std::vector<HighMaterials> details_;
-    std::map<std::string, Image> images_;  ///< By file, index and use.
+    std::vector<HighMaterials> materials_;
+    std::map<std::string, std::shared_ptr<const Image>> images_;  ///< By file, index and use.
     std::map<const Image*, std::map<std::string, std::string>> metadata_;
     std::size_t normal_maps_ = 0;
     std::size_t color_textures_ = 0;
@@ -73,7 +75,7 @@ struct BakeModels {
     std::vector<std::string> materials;  ///< Of the low mesh.
     std::optional<glm::dmat3> world_from_low;
     glm::dvec3 origin{0.0};  ///< The world position of the origin.
-    std::optional<Mesh> cage;
+    std::shared_ptr<const Mesh> cage;
     HighTextures textures;
     std::vector<BakePair> pairs;  ///< Empty: every low part sees all high parts.
     std::vector<std::string> unpaired;

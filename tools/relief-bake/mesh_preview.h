@@ -15,7 +15,7 @@
 #include "mesh_request.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 
 namespace relief::tools {

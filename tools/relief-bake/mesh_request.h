@@ -13,8 +13,8 @@
 
 #include "commands.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/bake_matching.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/bake_check.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 
@@ -72,11 +72,10 @@ struct MeshBakeRequest {
     std::filesystem::path low, output;
     std::optional<std::filesystem::path> cage;
     glm::ivec2 size{1024, 1024};
-    VectorSpace space = VectorSpace::tangent;
     std::optional<RayDirections> directions;
     std::optional<double> hardness;
-    /// The other options of the library: ray lengths, back faces, padding, size mismatch, repeating
-    /// texture coordinates.
+    /// Other options of the library: space, ray lengths, back faces, padding, size mismatch,
+    /// repeating texture coordinates.
     BakeOptions bake = default_bake();
     std::optional<double> max_missed;  ///< In percent of the covered texels.
     PartMatching match = PartMatching::automatic;
@@ -95,14 +94,14 @@ struct MeshBakeRequest {
     bool compare = false;
 
     /// Returns whether errors are measured before the bake.
-    [[nodiscard]] bool needs_trials() const { return compare || bound.degrees.has_value(); }
+    [[nodiscard]] bool measures_errors() const { return compare || bound.degrees.has_value(); }
 
     /// The limit of missed texels in percent: --max-missed or its default.
     [[nodiscard]] double missed_limit() const { return max_missed.value_or(50.0); }
 
     static BakeOptions default_bake() {
         BakeOptions options;
-        options.padding = 16;
+        options.map.padding = 16;
         return options;
     }
 };

@@ -7,9 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,173 +14,38 @@
 #include "commands.h"
 #include "common/model_file.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/model_check.h"
 #include "relief/mesh/tangents.h"
 
 namespace relief::tools {
 namespace {
 
-/// The result of identifying the tangents of a primitive.
-struct CheckedTangents {
-    IdentifiedTangents identified;
-    int texcoord_set = 0;       ///< The set that the tangents match, or else `usual_set`.
-    int usual_set = 0;          ///< The set that glTF assigns to the tangents.
-    bool has_normals = true;    ///< Without normals, glTF ignores tangents.
-    bool has_texcoords = true;  ///< Without them, no method can be compared.
-};
-
-/// A triangle primitive of a glTF file, or the mesh of another file.
-struct CheckedPart {
-    std::string name;  ///< Empty for a file with one mesh.
-    std::size_t triangles = 0;
-    std::size_t vertices = 0;
-    Diagnosis diagnosis;
-    Report problems;
-    Report notes;
-    std::optional<CheckedTangents> tangents;  ///< Absent if the primitive has no tangents.
-};
-
-struct CheckedModel {
+/// A file and its check.
+struct CheckedFile {
     std::filesystem::path file;
     std::string error;  ///< The reason why the file cannot be read, or empty.
     std::string format;
-    /// Findings of the reader. Missing references are problems; content that relief does not use
-    /// (points, lines, foreign properties) is a note.
-    Report reading_problems;
-    Report reading_notes;
-    std::vector<CheckedPart> parts;
-
-    [[nodiscard]] bool is_sound() const;
-};
-
-bool CheckedModel::is_sound() const {
-    return error.empty() && reading_problems.empty() &&
-           std::all_of(parts.begin(), parts.end(),
-                       [](const CheckedPart& part) { return part.problems.empty(); });
-}
-
-/// Identifies the method of a primitive's stored tangents. If no method matches with the texture
-/// coordinates that glTF assigns to the tangents, the other sets are tried.
-/// \return nothing if the primitive has no tangents
-std::optional<CheckedTangents> check_tangents(const GltfDocument& document, GltfPrimitiveId id,
-                                              const Mesh& mesh) {
-    if (mesh.tangents.empty()) return std::nullopt;
-    CheckedTangents result;
-    result.usual_set = document.tangent_texcoords(id).set;
-    result.texcoord_set = result.usual_set;
-    result.has_normals = !mesh.normals.empty();
-    const std::vector<int> sets = document.texcoord_sets(id);
-    result.has_texcoords = !sets.empty();
-    if (!result.has_normals || sets.empty()) return result;
-    result.identified = identify_tangents(document.mesh(id, result.usual_set));
-    for (const int set : sets) {
-        if (result.identified.method) break;
-        if (set == result.usual_set) continue;
-        IdentifiedTangents other = identify_tangents(document.mesh(id, set));
-        if (!other.method) continue;
-        result.identified = std::move(other);
-        result.texcoord_set = set;
-    }
-    return result;
-}
-
-/// Returns whether the model is complete in spite of a finding of its reader.
-bool is_harmless(const Finding& finding) {
-    static constexpr std::array kinds = {"far from the origin",
-                                         "point",
-                                         "line",
-                                         "unknown statement",
-                                         "line with more values than the header names",
-                                         "bytes behind the GLB",
-                                         "bytes behind the last triangle"};
-    return finding.kind.starts_with("PLY property") ||
-           std::find(kinds.begin(), kinds.end(), finding.kind) != kinds.end();
-}
-
-void add_reading(CheckedModel& model, const Report& reading) {
-    for (const Finding& finding : reading.findings())
-        (is_harmless(finding) ? model.reading_notes : model.reading_problems).add(finding);
-}
-
-/// The intended use of a part, which decides the severity of a condition.
-struct Use {
-    bool tangents = false;
-    bool baking = false;
-};
-
-Severity severity_of(MeshCondition condition, const Use& use) {
-    if (condition == MeshCondition::texture_degenerate && !use.tangents && !use.baking)
-        return Severity::note;
-    if (condition == MeshCondition::texture_overlapping && use.baking) return Severity::problem;
-    return condition_info(condition).severity;
-}
-
-void add_part(CheckedModel& model, std::string name, const Mesh& mesh, const Use& use) {
-    CheckedPart part{
-        std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}, {}};
-    for (const MeshConditionCount& found : part.diagnosis.found) {
-        const bool is_problem = severity_of(found.condition, use) == Severity::problem;
-        (is_problem ? part.problems : part.notes).add(to_finding(found));
-    }
-    model.parts.push_back(std::move(part));
-}
-
-bool wants_tangents(const Mesh& mesh, const std::vector<GltfMaterial>& materials) {
-    if (!mesh.tangents.empty()) return true;
-    return std::any_of(mesh.material_ranges.begin(), mesh.material_ranges.end(),
-                       [&](const MaterialRange& range) {
-                           return range.material && *range.material < materials.size() &&
-                                  materials[*range.material].normal_texture;
-                       });
-}
-
-/// Returns true also if no material has a texture, because the use of the mesh is then unknown.
-bool wants_tangents(const std::vector<MtlMaterial>& materials) {
-    bool has_textures = false;
-    for (const MtlMaterial& material : materials) {
-        if (material.normal_map || material.bump_map) return true;
-        has_textures = has_textures || material.diffuse_map || material.emission_map;
-    }
-    return !has_textures;
-}
-
-void add_parts(CheckedModel& model, const GltfDocument& document, bool for_baking) {
-    const std::vector<GltfMaterial> materials = document.view().materials;
-    for (const GltfPrimitiveId id : document.triangle_primitives()) {
-        const Mesh mesh = document.mesh(id);
-        add_part(model, document.describe(id), mesh, {wants_tangents(mesh, materials), for_baking});
-        model.parts.back().tangents = check_tangents(document, id, mesh);
-    }
-}
-
-void add_parts(CheckedModel& model, const MeshFile& contents, bool for_baking) {
-    add_part(model, "", contents.mesh, {wants_tangents(contents.materials), for_baking});
-}
-
-/// Reads and diagnoses a file. A file that cannot be read, or is not valid, gets an `error`.
-///
-/// The severities are those of diagnose.h with two exceptions. With `for_baking`, overlapping
-/// texture coordinates are a problem. Triangles without texture gradient are only a note if nothing
-/// needs tangents: no baking, no normal or bump map in the materials, and no stored tangents.
-CheckedModel check_model(const std::filesystem::path& file, bool for_baking) {
     CheckedModel model;
-    model.file = file;
-    model.format = format_name(readable_format(file));
+
+    [[nodiscard]] bool is_sound() const { return error.empty() && model.is_sound(); }
+};
+
+/// Reads and checks a file. A file that cannot be read, or is not valid, gets an `error`.
+CheckedFile check_file(const std::filesystem::path& file, bool for_baking) {
+    CheckedFile checked;
+    checked.file = file;
+    checked.format = format_name(readable_format(file));
     try {
         Report reading;
         const Model contents = read_model(file, reading);
-        add_reading(model, reading);
-        about(file, [&] {
-            std::visit([&](const auto& document) { add_parts(model, document, for_baking); },
-                       contents);
-        });
+        checked.model = about(file, [&] { return check_model(contents, reading, for_baking); });
     } catch (const FileError& error) {
-        model.error = error.what();
+        checked.error = error.what();
     }
-    return model;
+    return checked;
 }
 
 /// A few corners may have the other sign: degenerate triangles, welded seams.
@@ -255,36 +117,29 @@ std::string as_text(const CheckedTangents& tangents) {
                        angles_text(best->angles));
 }
 
-nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
+Json json_of(const TangentAgreement& agreement) {
+    const ErrorStats& angles = agreement.angles;
+    return {{"basis", enum_name(agreement.method)},
+            {"agreeing", agreement.agreeing()},
+            {"variant", variant_of(agreement)},
+            {"w_negated", agreement.negated},
+            {"rms", angles.rms},
+            {"mean", angles.mean},
+            {"median", angles.median},
+            {"p90", angles.p90},
+            {"p99", angles.p99},
+            {"max", angles.max},
+            {"histogram", histogram_json(angles)}};
+}
+
+Json json_of(const CheckedTangents& tangents) {
     const IdentifiedTangents& identified = tangents.identified;
-    nlohmann::ordered_json agreements = nlohmann::ordered_json::array();
-    for (const TangentAgreement& agreement : identified.agreements) {
-        const ErrorStats& angles = agreement.angles;
-        nlohmann::ordered_json histogram = nlohmann::ordered_json::array();
-        for (std::size_t i = 0; i < angles.histogram.size(); ++i)
-            histogram.push_back(
-                {{"up_to", ErrorStats::bounds[i]}, {"corners", angles.histogram[i]}});
-        agreements.push_back({{"basis", enum_name(agreement.method)},
-                              {"agreeing", agreement.agreeing()},
-                              {"variant", variant_of(agreement)},
-                              {"w_negated", agreement.negated},
-                              {"rms", angles.rms},
-                              {"mean", angles.mean},
-                              {"median", angles.median},
-                              {"p90", angles.p90},
-                              {"p99", angles.p99},
-                              {"max", angles.max},
-                              {"histogram", std::move(histogram)}});
-    }
-    nlohmann::ordered_json equivalent_methods = nlohmann::ordered_json::array();
-    for (const TangentMethod method : identified.equivalent_methods)
-        equivalent_methods.push_back(enum_name(method));
     const TangentAgreement* best = identified.best();
     return {{"basis", identified.method ? std::string(enum_name(*identified.method)) : "unknown"},
             {"variant", best == nullptr ? "" : variant_of(*best)},
             {"nearest", best == nullptr ? "" : std::string(enum_name(best->method))},
             {"nearest_by_far", identified.is_clearly_best()},
-            {"same_here", std::move(equivalent_methods)},
+            {"same_here", json_list(identified.equivalent_methods, enum_name<TangentMethod>)},
             {"texcoord_set", tangents.texcoord_set},
             {"texcoord_set_of_material", tangents.usual_set},
             {"corners", identified.corners},
@@ -292,7 +147,9 @@ nlohmann::ordered_json json_of(const CheckedTangents& tangents) {
             {"without_direction", identified.undefined},
             {"stored_bits", identified.stored_bits == 0 ? 32 : identified.stored_bits},
             {"tolerance", identified.tolerance},
-            {"agreements", std::move(agreements)}};
+            {"agreements", json_list(identified.agreements, [](const TangentAgreement& agreement) {
+                 return json_of(agreement);
+             })}};
 }
 
 std::size_t triangles_of(const CheckedModel& model) {
@@ -397,16 +254,16 @@ std::vector<std::string> tangents_text(const CheckedModel& model) {
 }
 
 /// Returns findings without "where", which the enclosing object gives.
-nlohmann::ordered_json findings_json(const Report& report) {
+Json json_of(const Report& report) {
     Findings findings;
     findings.add("", report);
-    nlohmann::ordered_json list = findings.json();
-    for (nlohmann::ordered_json& finding : list)
+    Json list = findings.json();
+    for (Json& finding : list)
         finding.erase("where");
     return list;
 }
 
-nlohmann::ordered_json part_json(const CheckedPart& part) {
+Json json_of(const CheckedPart& part) {
     return {{"name", part.name},
             {"sound", part.problems.empty()},
             {"triangles", part.triangles},
@@ -414,33 +271,31 @@ nlohmann::ordered_json part_json(const CheckedPart& part) {
             {"size", part.diagnosis.size},
             {"spacing", part.diagnosis.spacing},
             {"overlap_raster", part.diagnosis.overlap_raster},
-            {"tangents", part.tangents ? json_of(*part.tangents) : nlohmann::ordered_json()},
-            {"trouble", findings_json(part.problems)},
-            {"remarks", findings_json(part.notes)}};
+            {"tangents", part.tangents ? json_of(*part.tangents) : Json()},
+            {"trouble", json_of(part.problems)},
+            {"remarks", json_of(part.notes)}};
 }
 
-void print_text(const CheckedModel& model) {
-    print_entry("file", fmt::format("{}: {}, {}, {}: {}", model.file.string(), model.format,
-                                    counted(model.parts.size(), "primitive"),
-                                    counted(triangles_of(model), "triangle"), verdict(model)));
-    print_entry("problems", problem_lines(model));
-    const std::string notes = notes_text(model);
-    if (!notes.empty()) print_entry("notes", notes);
-    print_entry("tangents", tangents_text(model));
-}
-
-nlohmann::ordered_json json_of(const CheckedModel& model) {
-    if (!model.error.empty())
-        return {{"file", model.file.string()}, {"sound", false}, {"error", model.error}};
-    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-    for (const CheckedPart& part : model.parts)
-        parts.push_back(part_json(part));
-    return {{"file", model.file.string()},
-            {"sound", model.is_sound()},
-            {"format", model.format},
-            {"trouble", findings_json(model.reading_problems)},
-            {"remarks", findings_json(model.reading_notes)},
-            {"primitives", std::move(parts)}};
+/// The text of a file that cannot be read is the error message.
+Summary summary_of(const CheckedFile& file) {
+    Summary summary;
+    summary.add_json({{"file", file.file.string()}, {"sound", file.is_sound()}});
+    if (!file.error.empty()) {
+        summary.add_json({{"error", file.error}});
+        return summary;
+    }
+    summary.add("file",
+                fmt::format("{}: {}, {}, {}: {}", file.file.string(), file.format,
+                            counted(file.model.parts.size(), "primitive"),
+                            counted(triangles_of(file.model), "triangle"), verdict(file.model)),
+                {{"format", file.format}});
+    summary.add("problems", problem_lines(file.model),
+                {{"trouble", json_of(file.model.reading_problems)}});
+    summary.add("notes", notes_text(file.model), {{"remarks", json_of(file.model.reading_notes)}});
+    summary.add("tangents", tangents_text(file.model),
+                {{"primitives", json_list(file.model.parts,
+                                          [](const CheckedPart& part) { return json_of(part); })}});
+    return summary;
 }
 
 constexpr const char* page = "docs/hard-cases.md";
@@ -453,53 +308,33 @@ struct CheckOptions {
     GeneralOptions general;
 };
 
-Verdicts verdicts_of(const std::vector<CheckedModel>& models) {
-    Verdicts verdicts;
-    for (const CheckedModel& model : models) {
-        ++(!model.error.empty() ? verdicts.unreadable
-           : model.is_sound()   ? verdicts.sound
-                                : verdicts.with_problems);
-    }
-    return verdicts;
-}
-
-void print_checks(const std::vector<CheckedModel>& models, const Verdicts& verdicts) {
-    nlohmann::ordered_json files = nlohmann::ordered_json::array();
-    for (const CheckedModel& model : models)
-        files.push_back(json_of(model));
-    tools::print_json({{"tool", "relief-mesh check"},
-                       {"version", version()},
-                       {"sound", verdicts.sound},
-                       {"with_trouble", verdicts.with_problems},
-                       {"unreadable", verdicts.unreadable},
-                       {"words", page},
-                       {"files", std::move(files)}});
-}
-
 ExitCode run(const CLI::App& app, const CheckOptions& options) {
     if (options.json && options.general.quiet)
         throw UsageError("--json and --quiet contradict each other");
     for (const std::filesystem::path& file : options.files)
         readable_format(file);
     set_thread_limit(options.general.threads);
-    const bool to_print = !options.json && !options.general.quiet;
+    const bool prints_text = !options.json && !options.general.quiet;
     Stages stages(options.general.quiet);
-    std::vector<CheckedModel> models;
+    Verdicts verdicts;
+    Json files = Json::array();
     for (const std::filesystem::path& file : options.files) {
-        models.push_back(stages.run("check", "check " + file.string(),
-                                    [&] { return check_model(file, options.for_baking); }));
-        if (!models.back().error.empty())
-            complain(app, models.back().error);
-        else if (to_print)
-            print_text(models.back());
+        const CheckedFile checked = stages.run("check", "check " + file.string(), [&] {
+            return check_file(file, options.for_baking);
+        });
+        ++(!checked.error.empty() ? verdicts.unreadable
+           : checked.is_sound()   ? verdicts.sound
+                                  : verdicts.with_problems);
+        if (!checked.error.empty()) complain(app, checked.error);
+        const Summary summary = summary_of(checked);
+        if (prints_text) summary.print();
+        files.push_back(summary.json());
     }
-    const Verdicts verdicts = verdicts_of(models);
-    if (to_print) {
-        print_verdicts(verdicts);
-        if (verdicts.all() > verdicts.unreadable)
-            print_entry("details", fmt::format("{} describes each condition", page));
-    }
-    if (options.json) print_checks(models, verdicts);
+    const Summary all = summary_of("relief-mesh check", verdicts, page, std::move(files));
+    if (options.json)
+        print_json(all.json());
+    else if (prints_text)
+        all.print();
     return exit_code_for(app, verdicts, options.strict);
 }
 

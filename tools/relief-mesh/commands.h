@@ -9,6 +9,7 @@ namespace relief::tools {
 
 Command add_process_command(CLI::App& tool);
 Command add_decimate_command(CLI::App& tool);
+Command add_lods_command(CLI::App& tool);
 Command add_subdivide_command(CLI::App& tool);
 Command add_info_command(CLI::App& tool);
 Command add_check_command(CLI::App& tool);
@@ -19,8 +20,8 @@ Command add_conformance_command(CLI::App& tool);
 inline Tool relief_mesh() {
     return {"relief-mesh",
             "Computes normals and tangents, decimates, subdivides, inspects and compares models.",
-            {add_process_command, add_decimate_command, add_subdivide_command, add_info_command,
-             add_check_command, add_compare_command, add_conformance_command}};
+            {add_process_command, add_decimate_command, add_lods_command, add_subdivide_command,
+             add_info_command, add_check_command, add_compare_command, add_conformance_command}};
 }
 
 }  // namespace relief::tools

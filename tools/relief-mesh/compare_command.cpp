@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +16,7 @@
 #include "commands.h"
 #include "common/model_file.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 
@@ -202,66 +201,32 @@ bool any_has(const JoinedModel& model, bool ComparedPart::*attribute) {
                        [&](const ComparedPart& part) { return part.*attribute; });
 }
 
-void print_text(const CompareRequest& request, const ModelComparison& compared) {
-    print_entry("A", as_text(request.a, compared.a));
-    print_entry("B", as_text(request.b, compared.b));
-    print_entry("matched", matched_text(compared));
-    print_entry("unmatched", unmatched_lines(compared));
-    if (compared.match.ambiguous != 0) {
-        print_entry("ambiguous", fmt::format("{} matched to one of several at the same position",
-                                             counted(compared.match.ambiguous, "triangle")));
-    }
-    print_entry(
-        "normals",
-        attribute_lines(compared.all.normals, any_has(compared.a, &ComparedPart::has_normals),
-                        any_has(compared.b, &ComparedPart::has_normals), compared.normals_in_one));
-    print_entry("tangents", attribute_lines(compared.all.tangents,
-                                            any_has(compared.a, &ComparedPart::has_tangents),
-                                            any_has(compared.b, &ComparedPart::has_tangents),
-                                            compared.tangents_in_one));
-    if (compared.all.sign_differences != 0) {
-        print_entry("signs", fmt::format("{} with different handedness",
-                                         counted(compared.all.sign_differences, "tangent")));
-    }
-    print_entry("worst", worst_lines(compared));
-    print_entry("parts", part_lines(compared));
-}
-
-nlohmann::ordered_json json_of(const ErrorStats& angles) {
-    nlohmann::ordered_json histogram = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < angles.histogram.size(); ++i)
-        histogram.push_back({{"up_to", ErrorStats::bounds[i]}, {"corners", angles.histogram[i]}});
+Json json_of(const ErrorStats& angles) {
     return {{"corners", angles.count},
             {"undefined", angles.undefined},
             {"rms", angles.rms},
             {"mean", angles.mean},
             {"p99", angles.p99},
             {"max", angles.max},
-            {"histogram", std::move(histogram)}};
+            {"histogram", histogram_json(angles)}};
 }
 
-nlohmann::ordered_json worst_json(const ModelComparison& compared,
-                                  const std::vector<WorstCorner>& corners) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const WorstCorner& worst : corners) {
+Json worst_json(const ModelComparison& compared, const std::vector<WorstCorner>& corners) {
+    return json_list(corners, [&](const WorstCorner& worst) -> Json {
         const ComparedPart& part = part_of(compared.a, worst.corner_a / 3);
         const ComparedPart& other = part_of(compared.b, worst.corner_b / 3);
         const glm::vec3 at = place_of(compared.a, worst.corner_a);
-        const nlohmann::ordered_json degrees = std::isnan(worst.degrees)
-                                                   ? nlohmann::ordered_json()
-                                                   : nlohmann::ordered_json(worst.degrees);
-        list.push_back({{"degrees", degrees},
-                        {"position", {at.x, at.y, at.z}},
-                        {"primitive", part.name},
-                        {"triangle", worst.corner_a / 3 - part.first_triangle},
-                        {"corner", worst.corner_a % 3},
-                        {"triangle_of_b", worst.corner_b / 3 - other.first_triangle},
-                        {"corner_of_b", worst.corner_b % 3}});
-    }
-    return list;
+        return {{"degrees", std::isnan(worst.degrees) ? Json() : Json(worst.degrees)},
+                {"position", {at.x, at.y, at.z}},
+                {"primitive", part.name},
+                {"triangle", worst.corner_a / 3 - part.first_triangle},
+                {"corner", worst.corner_a % 3},
+                {"triangle_of_b", worst.corner_b / 3 - other.first_triangle},
+                {"corner_of_b", worst.corner_b % 3}};
+    });
 }
 
-nlohmann::ordered_json json_of(const ModelComparison& compared, const FrameComparison& own) {
+Json json_of(const ModelComparison& compared, const FrameComparison& own) {
     return {{"corners", own.corners},
             {"normals", json_of(own.normals)},
             {"tangents", json_of(own.tangents)},
@@ -270,32 +235,55 @@ nlohmann::ordered_json json_of(const ModelComparison& compared, const FrameCompa
             {"worst_tangents", worst_json(compared, own.worst_tangents)}};
 }
 
-nlohmann::ordered_json json_of(const CompareRequest& request, const ModelComparison& compared) {
-    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-    for (const ComparedPart& part : compared.a.parts) {
-        nlohmann::ordered_json json = {
-            {"name", part.name}, {"triangles", part.triangle_count}, {"only_in_a", part.unmatched}};
-        json.update(json_of(compared, part.comparison));
-        parts.push_back(std::move(json));
-    }
+Json part_json(const ModelComparison& compared, const ComparedPart& part) {
+    Json json = {
+        {"name", part.name}, {"triangles", part.triangle_count}, {"only_in_a", part.unmatched}};
+    json.update(json_of(compared, part.comparison));
+    return json;
+}
+
+Summary summary_of(const CompareRequest& request, const ModelComparison& compared) {
     const CornerMatch& match = compared.match;
-    nlohmann::ordered_json result = {
-        {"a", request.a.string()},
-        {"b", request.b.string()},
-        {"world_space", compared.a.in_world_space},
-        {"by_texture_coordinate", match.by_texcoord},
-        {"tolerance", compared.options.position_tolerance},
-        {"uv_tolerance", compared.options.texcoord_tolerance},
-        {"triangles",
-         {{"equal", match.exact},
-          {"near", match.near},
-          {"ambiguous", match.ambiguous},
-          {"only_in_a", match.only_a.size()},
-          {"only_in_b", match.only_b.size()}}},
-    };
-    result.update(json_of(compared, compared.all));
-    result["primitives"] = std::move(parts);
-    return result;
+    const FrameComparison& all = compared.all;
+    Summary summary;
+    summary.add_tool("relief-mesh compare");
+    summary.add("A", as_text(request.a, compared.a), {{"a", request.a.string()}});
+    summary.add("B", as_text(request.b, compared.b), {{"b", request.b.string()}});
+    summary.add("matched", matched_text(compared),
+                {{"world_space", compared.a.in_world_space},
+                 {"by_texture_coordinate", match.by_texcoord},
+                 {"tolerance", compared.options.position_tolerance},
+                 {"uv_tolerance", compared.options.texcoord_tolerance},
+                 {"triangles",
+                  {{"equal", match.exact},
+                   {"near", match.near},
+                   {"ambiguous", match.ambiguous},
+                   {"only_in_a", match.only_a.size()},
+                   {"only_in_b", match.only_b.size()}}}});
+    summary.add("unmatched", unmatched_lines(compared));
+    if (match.ambiguous != 0) {
+        summary.add("ambiguous", fmt::format("{} matched to one of several at the same position",
+                                             counted(match.ambiguous, "triangle")));
+    }
+    summary.add_json(json_of(compared, all));
+    summary.add(
+        "normals",
+        attribute_lines(all.normals, any_has(compared.a, &ComparedPart::has_normals),
+                        any_has(compared.b, &ComparedPart::has_normals), compared.normals_in_one));
+    summary.add("tangents",
+                attribute_lines(all.tangents, any_has(compared.a, &ComparedPart::has_tangents),
+                                any_has(compared.b, &ComparedPart::has_tangents),
+                                compared.tangents_in_one));
+    if (all.sign_differences != 0) {
+        summary.add("signs", fmt::format("{} with different handedness",
+                                         counted(all.sign_differences, "tangent")));
+    }
+    summary.add("worst", worst_lines(compared));
+    summary.add("parts", part_lines(compared),
+                {{"primitives", json_list(compared.a.parts, [&](const ComparedPart& part) {
+                      return part_json(compared, part);
+                  })}});
+    return summary;
 }
 
 struct CompareOptions {
@@ -362,19 +350,15 @@ ExitCode run(const CLI::App& app, const CompareOptions& options) {
     Stages stages(options.general.quiet);
     const ModelComparison compared =
         stages.run("compare", [&] { return compare_files(options.request); });
-    if (options.json) {
-        nlohmann::ordered_json json = {{"tool", "relief-mesh compare"}, {"version", version()}};
-        json.update(json_of(options.request, compared));
-        json["max_angle"] = options.max_angle ? nlohmann::ordered_json(*options.max_angle)
-                                              : nlohmann::ordered_json();
-        json["within"] = options.max_angle
-                             ? nlohmann::ordered_json(compared.is_within(*options.max_angle))
-                             : nlohmann::ordered_json();
-        json["complete"] = compared.is_complete();
-        print_json(json);
-    } else if (!options.general.quiet) {
-        print_text(options.request, compared);
-    }
+    Summary summary = summary_of(options.request, compared);
+    const std::optional<double>& limit = options.max_angle;
+    summary.add_json({{"max_angle", or_null(limit)},
+                      {"within", limit ? Json(compared.is_within(*limit)) : Json()},
+                      {"complete", compared.is_complete()}});
+    if (options.json)
+        print_json(summary.json());
+    else if (!options.general.quiet)
+        summary.print();
     return judge(app, options, compared);
 }
 

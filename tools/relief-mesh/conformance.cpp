@@ -15,20 +15,16 @@
 #include "commands.h"
 #include "common/command.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/compare.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 
 // The kit and the comparison.
 
 namespace {
-
-const Choices<KitGroup> kit_groups = {{"conformance", KitGroup::conformance},
-                                      {"defect", KitGroup::defect},
-                                      {"stability", KitGroup::stability}};
 
 std::vector<glm::vec4> read_expected(const std::filesystem::path& file, std::size_t corners) {
     std::ifstream stream(file, std::ios::binary);
@@ -50,7 +46,8 @@ void append(std::vector<T>& all, const std::vector<T>& more, std::size_t count) 
 KitMesh read_entry(const nlohmann::json& entry, const std::filesystem::path& folder) {
     KitMesh kit;
     kit.name = entry.at("name").get<std::string>();
-    kit.group = parse_choice("group", entry.at("group").get<std::string>(), kit_groups);
+    kit.group =
+        parse_choice("group", entry.at("group").get<std::string>(), enum_choices<KitGroup>());
     kit.about = entry.at("about").get<std::string>();
     kit.mesh = read_triangles(folder / (kit.name + ".glb"));
     if (kit.group != KitGroup::stability) {
@@ -294,28 +291,9 @@ struct Scores {
     [[nodiscard]] bool is_stable() const { return usable.passed == usable.meshes; }
 };
 
-void show_text(const std::vector<Result>& results) {
-    std::size_t longest = 0;
-    for (const Result& result : results)
-        longest = std::max(longest, result.name.size());
-    std::vector<std::string> lines;
-    for (const Result& result : results)
-        lines.push_back(fmt::format("{:<{}}  {}", result.name, longest, as_text(result)));
-    print_entry("meshes", lines);
-    const Scores scores(results);
-    const Score& conforming = scores.conforming;
-    print_entry(
-        "verdict",
-        fmt::format("{} on {} of {} meshes; usable tangents on {} of {} hard ones",
-                    scores.conforms() ? "conforms" : "DIFFERS",
-                    scores.conforms() ? conforming.passed : conforming.meshes - conforming.passed,
-                    conforming.meshes, scores.usable.passed, scores.usable.meshes));
-}
-
-nlohmann::ordered_json json_of(const Result& result) {
-    nlohmann::ordered_json json = {{"name", result.name},
-                                   {"group", name_of(result.group, kit_groups)},
-                                   {"passed", result.passed()}};
+Json result_json(const Result& result) {
+    Json json = {
+        {"name", result.name}, {"group", enum_name(result.group)}, {"passed", result.passed()}};
     if (!result.error.empty()) {
         json["error"] = result.error;
         return json;
@@ -340,16 +318,25 @@ nlohmann::ordered_json json_of(const Result& result) {
     return json;
 }
 
-void show_json(const std::vector<Result>& results) {
-    const Scores scores(results);
-    nlohmann::ordered_json meshes = nlohmann::ordered_json::array();
+Summary summary_of(const std::vector<Result>& results, const Scores& scores) {
+    std::size_t longest = 0;
     for (const Result& result : results)
-        meshes.push_back(json_of(result));
-    print_json(nlohmann::ordered_json{{"tool", "relief-mesh conformance"},
-                                      {"version", version()},
-                                      {"conforms", scores.conforms()},
-                                      {"stable", scores.is_stable()},
-                                      {"meshes", std::move(meshes)}});
+        longest = std::max(longest, result.name.size());
+    Summary::Lines lines;
+    for (const Result& result : results)
+        lines.push_back(fmt::format("{:<{}}  {}", result.name, longest, as_text(result)));
+    const Score& conforming = scores.conforming;
+    Summary summary;
+    summary.add_tool("relief-mesh conformance");
+    summary.add("meshes", lines, {{"meshes", json_list(results, result_json)}});
+    summary.add(
+        "verdict",
+        fmt::format("{} on {} of {} meshes; usable tangents on {} of {} hard ones",
+                    scores.conforms() ? "conforms" : "DIFFERS",
+                    scores.conforms() ? conforming.passed : conforming.meshes - conforming.passed,
+                    conforming.meshes, scores.usable.passed, scores.usable.meshes),
+        {{"conforms", scores.conforms()}, {"stable", scores.is_stable()}});
+    return summary;
 }
 
 ExitCode run(const CLI::App& app, const ConformanceOptions& options) {
@@ -366,11 +353,12 @@ ExitCode run(const CLI::App& app, const ConformanceOptions& options) {
         results.push_back(stages.run("judge", "judge " + mesh.name,
                                      [&] { return result_of(mesh, options.results); }));
     }
-    if (options.json)
-        show_json(results);
-    else if (!options.quiet)
-        show_text(results);
     const Scores scores(results);
+    const Summary summary = summary_of(results, scores);
+    if (options.json)
+        print_json(summary.json());
+    else if (!options.quiet)
+        summary.print();
     if (!scores.conforms()) return ExitCode::failed;
     if (!options.strict || scores.is_stable()) return ExitCode::done;
     warn(app, fmt::format("{} with unusable tangents (exit code 3, because of --strict)",

@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 
@@ -23,6 +24,20 @@ enum class KitGroup {
     defect,
     stability,  ///< Tangents must only be finite, unit and perpendicular.
 };
+
+}  // namespace relief::tools
+
+namespace relief {
+
+template <>
+inline constexpr auto enum_names<tools::KitGroup> =
+    std::to_array<EnumName<tools::KitGroup>>({{"conformance", tools::KitGroup::conformance},
+                                              {"defect", tools::KitGroup::defect},
+                                              {"stability", tools::KitGroup::stability}});
+
+}  // namespace relief
+
+namespace relief::tools {
 
 struct KitMesh {
     std::string name;

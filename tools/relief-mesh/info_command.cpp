@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,7 +15,7 @@
 #include "common/command.h"
 #include "common/model_file.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief::tools {
@@ -207,11 +206,11 @@ std::string as_text(const MeshBytes& memory) {
                        byte_size(memory.attributes), byte_size(memory.indices));
 }
 
-nlohmann::ordered_json memory_json(const MeshBytes& memory) {
+Json json_of(const MeshBytes& memory) {
     return {{"attributes", memory.attributes}, {"indices", memory.indices}};
 }
 
-nlohmann::ordered_json bounds_json(const Bounds& bounds) {
+Json json_of(const Bounds& bounds) {
     if (bounds.empty()) return nullptr;
     return {{"min", {bounds.min.x, bounds.min.y, bounds.min.z}},
             {"max", {bounds.max.x, bounds.max.y, bounds.max.z}}};
@@ -228,16 +227,31 @@ std::string as_text(const PartInfo& part) {
     return text;
 }
 
+Json json_of(const PartInfo& part) {
+    return {{"name", part.name},
+            {"triangles", part.triangles},
+            {"vertices", part.vertices},
+            {"attributes", part.attributes},
+            {"materials", part.materials},
+            {"memory", json_of(part.memory)},
+            {"bounds", json_of(part.bounds)}};
+}
+
 std::string as_text(const MaterialInfo& material) {
     if (material.textures.empty()) return material.name;
     return fmt::format("{}: textures {}", material.name, fmt::join(material.textures, ", "));
 }
 
-/// Returns one line per entry, and cuts long lists.
-template <typename Things>
-std::vector<std::string> list(const Things& things) {
-    std::vector<std::string> lines;
-    for (const auto& thing : things) {
+Json json_of(const MaterialInfo& material) {
+    return {{"name", material.name}, {"textures", material.textures}};
+}
+
+/// Adds one line per thing, and cuts long lists of the text.
+template <typename Thing>
+void add_list(Summary& summary, const std::string& label, const std::string& key,
+              const std::vector<Thing>& things) {
+    Summary::Lines lines;
+    for (const Thing& thing : things) {
         if (lines.size() == max_lines) {
             lines.push_back(
                 fmt::format("... and {} more (--json lists all)", things.size() - lines.size()));
@@ -245,60 +259,39 @@ std::vector<std::string> list(const Things& things) {
         }
         lines.push_back(as_text(thing));
     }
-    return lines;
+    summary.add(label, lines,
+                {{key, json_list(things, [](const Thing& thing) { return json_of(thing); })}});
 }
 
-void print_info(const std::filesystem::path& file, const ModelInfo& info) {
-    print_entry("file",
-                fmt::format("{}: {}, {}", file.string(), info.format, byte_size(info.bytes)));
-    print_entry("contents",
+Summary summary_of(const std::filesystem::path& file, const ModelInfo& info) {
+    Summary summary;
+    summary.add("file",
+                fmt::format("{}: {}, {}", file.string(), info.format, byte_size(info.bytes)),
+                {{"file", file.string()}, {"format", info.format}, {"bytes", info.bytes}});
+    summary.add("contents",
                 fmt::format("{}, {}, {}", counted(info.triangles, "triangle"),
                             counted(info.vertices, "vertex", "vertices"),
                             counted(info.parts.size(), "primitive")) +
                     (info.instances != info.parts.size()
                          ? fmt::format(", {} in the scene", counted(info.instances, "instance"))
-                         : ""));
-    print_entry("memory", as_text(info.memory));
-    print_entry("bounds", as_text(info.bounds));
-    print_entry("parts", list(info.parts));
-    print_entry("materials", list(info.materials));
+                         : ""),
+                {{"triangles", info.triangles},
+                 {"vertices", info.vertices},
+                 {"instances", info.instances}});
+    summary.add("memory", as_text(info.memory), {{"memory", json_of(info.memory)}});
+    summary.add("bounds", as_text(info.bounds), {{"bounds", json_of(info.bounds)}});
+    add_list(summary, "parts", "primitives", info.parts);
+    add_list(summary, "materials", "materials", info.materials);
     std::vector<std::string> rest = info.unsupported_contents;
     if (info.images != 0) rest.push_back(counted(info.images, "image"));
-    if (!rest.empty()) print_entry("also", fmt::format("{}", fmt::join(rest, ", ")));
-    print_entry("packed", info.compression);
-    print_entry("findings", info.findings.lines());
-}
-
-nlohmann::ordered_json json_of(const std::filesystem::path& file, const ModelInfo& info) {
-    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-    for (const PartInfo& part : info.parts) {
-        parts.push_back({{"name", part.name},
-                         {"triangles", part.triangles},
-                         {"vertices", part.vertices},
-                         {"attributes", part.attributes},
-                         {"materials", part.materials},
-                         {"memory", memory_json(part.memory)},
-                         {"bounds", bounds_json(part.bounds)}});
-    }
-    nlohmann::ordered_json materials = nlohmann::ordered_json::array();
-    for (const MaterialInfo& material : info.materials)
-        materials.push_back({{"name", material.name}, {"textures", material.textures}});
-    return {{"file", file.string()},
-            {"format", info.format},
-            {"bytes", info.bytes},
-            {"triangles", info.triangles},
-            {"vertices", info.vertices},
-            {"instances", info.instances},
-            {"memory", memory_json(info.memory)},
-            {"bounds", bounds_json(info.bounds)},
-            {"primitives", std::move(parts)},
-            {"materials", std::move(materials)},
-            {"images", info.images},
-            {"lights", info.lights},
-            {"cameras", info.cameras},
-            {"beyond_a_mesh", info.unsupported_contents},
-            {"compression", info.compression},
-            {"findings", info.findings.json()}};
+    summary.add("also", fmt::format("{}", fmt::join(rest, ", ")),
+                {{"images", info.images},
+                 {"lights", info.lights},
+                 {"cameras", info.cameras},
+                 {"beyond_a_mesh", info.unsupported_contents}});
+    summary.add("packed", info.compression, {{"compression", info.compression}});
+    summary.add_findings(info.findings, "");
+    return summary;
 }
 
 struct InfoOptions {
@@ -307,11 +300,11 @@ struct InfoOptions {
 };
 
 ExitCode run(const InfoOptions& options) {
-    const ModelInfo info = model_info(options.input);
+    const Summary summary = summary_of(options.input, model_info(options.input));
     if (options.json)
-        print_json(json_of(options.input, info));
+        print_json(summary.json());
     else
-        print_info(options.input, info);
+        summary.print();
     return ExitCode::done;
 }
 
@@ -323,6 +316,7 @@ Command add_info_command(CLI::App& tool) {
         "Lists the contents of a model file: counts, memory, bounds, attributes, materials.");
     const auto options = std::make_shared<InfoOptions>();
     add_file(app, "IN", options->input, "Model to read: .glb .gltf .obj .ply .stl .off");
+    add_limit_options(app);
     add_switch(app, "--json", options->json,
                "Print one JSON object: file, format, bytes, triangles, vertices, instances, memory "
                "{attributes, indices} in bytes, bounds {min, max} in world space (null if empty), "

@@ -9,7 +9,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -20,7 +19,7 @@
 #include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 
@@ -183,8 +182,8 @@ std::string part_tangents_text(const FramedPart& part) {
 }
 
 /// "kept", or for different primitives: "kept in 3 primitives; computed in 1 primitive".
-std::string summary_of(const std::vector<FramedPart>& parts,
-                       const std::function<std::string(const FramedPart&)>& words) {
+std::string text_of(const std::vector<FramedPart>& parts,
+                    const std::function<std::string(const FramedPart&)>& words) {
     std::map<std::string, std::size_t> counts;
     for (const FramedPart& part : parts)
         ++counts[words(part)];
@@ -236,101 +235,77 @@ std::vector<std::string> notes_text(const Processed& done) {
     return lines;
 }
 
-nlohmann::ordered_json parts_json(const Processed& done) {
-    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-    for (const FramedPart& part : done.parts) {
-        nlohmann::ordered_json json = {{"name", part.name},
-                                       {"triangles", part.triangles},
-                                       {"vertices_read", part.vertices_read},
-                                       {"vertices_written", part.vertices_written},
-                                       {"normals", outcome_name(part.normals)}};
-        if (part.normals == AttributeOutcome::computed) {
-            json["normal_method"] = enum_name(part.normal_mode);
-            if (part.normal_mode == NormalMode::automatic)
-                json["vertices_by_area"] = part.normals_by_area;
-            json["smoothing_groups"] = part.smoothing_groups;
-        }
-        json["tangents"] = outcome_name(part.tangents);
-        if (part.tangents == AttributeOutcome::computed) {
-            json["tangent_method"] = enum_name(part.tangent_method);
-            json["texcoord_set"] = part.texcoords.set;
-            json["texcoord_set_reason"] = part.texcoords.reason;
-        }
-        json["notes"] = part.notes;
-        parts.push_back(std::move(json));
+Json primitive_json(const FramedPart& part) {
+    Json json = {{"name", part.name},
+                 {"triangles", part.triangles},
+                 {"vertices_read", part.vertices_read},
+                 {"vertices_written", part.vertices_written},
+                 {"normals", outcome_name(part.normals)}};
+    if (part.normals == AttributeOutcome::computed) {
+        json["normal_method"] = enum_name(part.normal_mode);
+        if (part.normal_mode == NormalMode::automatic)
+            json["vertices_by_area"] = part.normals_by_area;
+        json["smoothing_groups"] = part.smoothing_groups;
     }
-    return parts;
+    json["tangents"] = outcome_name(part.tangents);
+    if (part.tangents == AttributeOutcome::computed) {
+        json["tangent_method"] = enum_name(part.tangent_method);
+        json["texcoord_set"] = part.texcoords.set;
+        json["texcoord_set_reason"] = part.texcoords.reason;
+    }
+    json["notes"] = part.notes;
+    return json;
 }
 
-void print_summary(const ProcessRequest& request, const Processed& done, const Stages& stages) {
+Summary summary_of(const ProcessRequest& request, const Processed& done, const Stages& stages) {
     const Totals totals = totals_of(done);
-    print_entry("read", fmt::format("{}: {}, {}, {}, {}", request.input.string(),
-                                    format_name(readable_format(request.input)),
-                                    counted(done.parts.size(), "primitive"),
-                                    counted(totals.triangles, "triangle"),
-                                    counted(totals.vertices_read, "vertex", "vertices")));
-    print_entry("normals", summary_of(done.parts, part_normals_text));
-    print_entry("tangents", summary_of(done.parts, part_tangents_text));
-    print_entry("splits", splits_text(totals));
-    print_entry("findings",
-                done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
-    print_entry("notes", notes_text(done));
-    if (!done.decompressed.empty()) {
-        print_entry("unpacked",
-                    fmt::format("{} (written uncompressed)", fmt::join(done.decompressed, ", ")));
-    }
-    if (!done.omitted.empty()) {
-        print_entry("omitted",
-                    fmt::format("{} (cannot be stored in {})", fmt::join(done.omitted, ", "),
-                                extension_of(request.output)));
-    }
-    print_entry("time", durations(stages.finished()));
+    Summary summary;
+    summary.add(
+        "read",
+        fmt::format("{}: {}, {}, {}, {}", request.input.string(),
+                    format_name(readable_format(request.input)),
+                    counted(done.parts.size(), "primitive"), counted(totals.triangles, "triangle"),
+                    counted(totals.vertices_read, "vertex", "vertices")),
+        {{"primitives", json_list(done.parts, primitive_json)}});
+    summary.add("normals", text_of(done.parts, part_normals_text));
+    summary.add("tangents", text_of(done.parts, part_tangents_text));
+    summary.add("splits", splits_text(totals));
+    summary.add_findings(done.findings);
+    summary.add("notes", notes_text(done));
+    summary.add("unpacked",
+                done.decompressed.empty()
+                    ? ""
+                    : fmt::format("{} (written uncompressed)", fmt::join(done.decompressed, ", ")),
+                {{"decompressed", done.decompressed}});
+    add_omitted(summary, done.omitted, request.output);
+    summary.add_times(stages);
     const bool has_companions = writable_format(request.output) == ModelFormat::gltf;
-    print_entry("wrote", file_and_size(request.output) +
+    summary.add("wrote", file_and_size(request.output) +
                              (has_companions ? ", its buffer and images beside it" : ""));
+    return summary;
 }
 
 std::string line_of(const ProcessRequest& request, const Processed& done, const Stages& stages) {
     const Totals totals = totals_of(done);
-    double sum = 0;
-    for (const Stage& stage : stages.finished())
-        sum += stage.milliseconds;
     return fmt::format(
         "{}: {}, {}, normals {}, tangents {}, {}{}, {}", request.output.string(),
         counted(totals.triangles, "triangle"),
         counted(totals.vertices_written, "vertex", "vertices"),
-        summary_of(done.parts, part_normals_text), summary_of(done.parts, part_tangents_text),
-        done.findings.empty() ? "no findings" : counted(done.findings.all().size(), "finding"),
+        text_of(done.parts, part_normals_text), text_of(done.parts, part_tangents_text),
+        done.findings.count_text(),
         done.omitted.empty() ? "" : fmt::format(", left out: {}", fmt::join(done.omitted, ", ")),
-        duration(sum));
+        duration(stages.milliseconds()));
 }
 
-nlohmann::ordered_json options_json(const ProcessRequest& request) {
-    nlohmann::ordered_json json = {{"normals", enum_name(request.normals)},
-                                   {"tangents", enum_name(request.tangents)}};
-    if (request.uv_set) json["uv_set"] = *request.uv_set;
-    if (request.crease_degrees) json["crease_degrees"] = *request.crease_degrees;
-    json["weld_tolerance"] = request.weld_tolerance;
-    return json;
-}
-
-nlohmann::ordered_json results_json(const Processed& done, const Stages& stages) {
-    return {{"primitives", parts_json(done)},
-            {"findings", done.findings.json()},
-            {"decompressed", done.decompressed},
-            {"left_behind", done.omitted},
-            {"milliseconds", durations_json(stages.finished())}};
-}
-
-nlohmann::ordered_json process_json(const ProcessRequest& request, const Processed& done,
-                                    const Stages& stages) {
-    nlohmann::ordered_json json = {{"tool", "relief-mesh process"},
-                                   {"version", version()},
-                                   {"input", request.input.string()},
-                                   {"output", request.output.string()},
-                                   {"options", options_json(request)}};
-    json.update(results_json(done, stages));
-    return json;
+/// The head of the report, without the files.
+Json head_json(const ProcessRequest& request) {
+    Json options = {{"normals", enum_name(request.normals)},
+                    {"tangents", enum_name(request.tangents)}};
+    if (request.uv_set) options["uv_set"] = *request.uv_set;
+    if (request.crease_degrees) options["crease_degrees"] = *request.crease_degrees;
+    options["weld_tolerance"] = request.weld_tolerance;
+    return {
+        {"tool", "relief-mesh process"}, {"version", version()}, {"options", std::move(options)}};
 }
 
 /// Buffers and images beside two .gltf files may have the same name.
@@ -343,7 +318,7 @@ bool may_share_companions(const std::vector<ProcessRequest>& requests) {
 FileOutcome outcome_of(const ProcessRequest& request) {
     Stages stages(true);
     const Processed done = process(request, stages);
-    return {line_of(request, done, stages), done.findings, results_json(done, stages)};
+    return {line_of(request, done, stages), done.findings, summary_of(request, done, stages)};
 }
 
 /// Processes several models, in parallel unless they could write the same companion files. An error
@@ -358,9 +333,7 @@ ExitCode process_all(const CLI::App& app, const std::vector<ProcessRequest>& req
         batch.jobs.push_back({request.input, request.output});
     batch.work = [&](std::size_t index) { return outcome_of(requests[index]); };
     batch.one_by_one = may_share_companions(requests);
-    batch.head = {{"tool", "relief-mesh process"},
-                  {"version", version()},
-                  {"options", options_json(requests.front())}};
+    batch.head = head_json(requests.front());
     return run_batch(app, batch, report, general);
 }
 
@@ -439,9 +412,13 @@ ExitCode process_one(const CLI::App& app, const ProcessRequest& request,
                      const ProcessOptions& options) {
     Stages stages(options.general.quiet);
     const Processed done = process(request, stages);
-    if (!options.general.quiet) print_summary(request, done, stages);
-    return finish(app, options.report, request.input, done.findings,
-                  process_json(request, done, stages));
+    const Summary summary = summary_of(request, done, stages);
+    if (!options.general.quiet) summary.print();
+    Json report = head_json(request);
+    report["input"] = request.input.string();
+    report["output"] = request.output.string();
+    report.update(summary.json());
+    return finish(app, options.report, request.input, done.findings, report);
 }
 
 ExitCode run(const CLI::App& app, const ProcessOptions& options) {

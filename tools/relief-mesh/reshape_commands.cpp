@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh decimate IN OUT` and `relief-mesh subdivide IN OUT` give a model other triangles.
+// `relief-mesh decimate IN OUT` and `relief-mesh subdivide IN OUT` give a model other triangles;
+// `relief-mesh lods IN OUT` adds levels of detail.
 // Tests: tests/tools/reshaping_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "commands.h"
 #include "common/command.h"
 #include "common/model_file.h"
 #include "common/options.h"
-#include "common/text.h"
-#include "relief/mesh/decimate.h"
+#include "common/summary.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
-#include "relief/mesh/subdivide.h"
+#include "relief/mesh/topology.h"
 
 namespace relief::tools {
 namespace {
@@ -36,23 +38,84 @@ struct ReshapeRequest {
 
 struct Reshaped {
     ChangedModel changed;
+    std::optional<SurfaceDistance> distance;
+    double corner_angle = 0.0;         ///< What --max-normal-error limits, in degrees.
     std::vector<std::string> omitted;  ///< Content that the output format cannot store.
     Findings findings;
 };
 
+/// A mesh without attributes, before and after a change.
+struct SurfacePair {
+    Mesh before;
+    Mesh after;
+};
+
+Mesh without_attributes(const Mesh& mesh) {
+    Mesh surface;
+    surface.positions = mesh.positions;
+    surface.triangles = mesh.triangles;
+    return surface;
+}
+
+/// Adds the distances of a mesh to those of other meshes. Means and rms stay sums over area.
+void add_distances(DistanceStats& all, const DistanceStats& one) {
+    all.area += one.area;
+    all.mean += one.mean * one.area;
+    all.rms += one.rms * one.rms * one.area;
+    all.mean_degrees += one.mean_degrees * one.area;
+    all.max = std::max(all.max, one.max);
+    all.max_degrees = std::max(all.max_degrees, one.max_degrees);
+}
+
+/// Joins the distances of several meshes. Means are over area.
+SurfaceDistance joined_distance(const std::vector<SurfaceDistance>& distances) {
+    SurfaceDistance all;
+    for (const SurfaceDistance& one : distances) {
+        add_distances(all.from_a, one.from_a);
+        add_distances(all.from_b, one.from_b);
+    }
+    for (DistanceStats* stats : {&all.from_a, &all.from_b}) {
+        if (!(stats->area > 0.0)) continue;
+        stats->mean /= stats->area;
+        stats->rms = std::sqrt(stats->rms / stats->area);
+        stats->mean_degrees /= stats->area;
+    }
+    return all;
+}
+
+/// Selects whether the distance between IN and OUT is measured.
+enum class Measuring { off, on };
+
 /// Reads, changes and writes a model.
 Reshaped run(const ReshapeRequest& request, const std::string& verb, const TriangleChange& change,
-             Stages& stages) {
+             Measuring measuring, Stages& stages) {
     Reshaped done;
     Report read_report;
     Model model = stages.run("read", [&] { return read_model(request.input, read_report); });
     done.findings.add("", read_report);
+    std::vector<SurfacePair> pairs;
+    const TriangleChange kept_change = [&](const Mesh& mesh, std::size_t all, Report& report) {
+        FramedMesh changed = change(mesh, all, report);
+        if (measuring == Measuring::on)
+            pairs.push_back({without_attributes(mesh), without_attributes(changed.mesh)});
+        return changed;
+    };
     done.changed = stages.run(verb, [&] {
         return about(request.input,
-                     [&] { return change_triangles(model, request.normals, change); });
+                     [&] { return change_triangles(model, request.normals, kept_change); });
     });
     for (const PartReport& part : done.changed.reports)
         done.findings.add(part.part, part.report);
+    if (measuring == Measuring::on)
+        done.distance = stages.run("measure", [&] {
+            std::vector<SurfaceDistance> distances;
+            for (const SurfacePair& pair : pairs) {
+                distances.push_back(surface_distance(pair.before, pair.after));
+                const double angle = max_corner_angle(pair.before, pair.after);
+                done.corner_angle = std::max(done.corner_angle, angle * 180.0 / std::numbers::pi);
+            }
+            return joined_distance(distances);
+        });
     Report write_report;
     stages.run("write", [&] {
         done.omitted = write_model(request.output, model, request.input, done.changed.has_tangents,
@@ -62,40 +125,57 @@ Reshaped run(const ReshapeRequest& request, const std::string& verb, const Trian
     return done;
 }
 
-void print_reshaped(const ReshapeRequest& request, const Reshaped& done, const Stages& stages) {
-    print_entry("read", fmt::format("{}: {}, {}, {}", request.input.string(),
-                                    format_name(readable_format(request.input)),
-                                    counted(done.changed.triangles_read, "triangle"),
-                                    counted(done.changed.vertices_read, "vertex", "vertices")));
-    print_entry("result",
-                fmt::format("{}, {}", counted(done.changed.triangles_written, "triangle"),
-                            counted(done.changed.vertices_written, "vertex", "vertices")));
-    print_entry("findings",
-                done.findings.empty() ? std::vector<std::string>{"none"} : done.findings.lines());
-    if (!done.omitted.empty()) {
-        print_entry("omitted",
-                    fmt::format("{} (cannot be stored in {})", fmt::join(done.omitted, ", "),
-                                extension_of(request.output)));
-    }
-    print_entry("time", durations(stages.finished()));
-    print_entry("wrote", file_and_size(request.output));
+Json distance_json(const DistanceStats& stats) {
+    return {{"mean", stats.mean},
+            {"rms", stats.rms},
+            {"max", stats.max},
+            {"mean_degrees", stats.mean_degrees},
+            {"max_degrees", stats.max_degrees}};
 }
 
-nlohmann::ordered_json report_json(const std::string& command, const ReshapeRequest& request,
-                                   const nlohmann::ordered_json& options, const Reshaped& done,
-                                   const Stages& stages) {
-    return {{"tool", "relief-mesh " + command},
-            {"version", version()},
-            {"input", request.input.string()},
-            {"output", request.output.string()},
-            {"options", options},
-            {"triangles_read", done.changed.triangles_read},
-            {"triangles_written", done.changed.triangles_written},
-            {"vertices_read", done.changed.vertices_read},
-            {"vertices_written", done.changed.vertices_written},
-            {"findings", done.findings.json()},
-            {"left_behind", done.omitted},
-            {"milliseconds", durations_json(stages.finished())}};
+void add_distance(Summary& summary, const SurfaceDistance& distance, double corner_angle) {
+    const auto length = [](const DistanceStats& stats) {
+        return fmt::format("mean {:.3g}, max {:.3g}", stats.mean, stats.max);
+    };
+    const auto angle = [](const DistanceStats& stats) {
+        return fmt::format("mean {:.3g}, max {:.3g}", stats.mean_degrees, stats.max_degrees);
+    };
+    summary.add("distance",
+                {fmt::format("of IN from OUT: {}", length(distance.from_a)),
+                 fmt::format("of OUT from IN: {} (unit of the model)", length(distance.from_b))},
+                {{"distance",
+                  {{"of_input", distance_json(distance.from_a)},
+                   {"of_output", distance_json(distance.from_b)}}}});
+    summary.add(
+        "angle",
+        {fmt::format("between normals of IN and OUT: {}; of OUT and IN: {} degrees",
+                     angle(distance.from_a), angle(distance.from_b)),
+         fmt::format("at corners of OUT, as --max-normal-error limits it: max {:.3g} degrees",
+                     corner_angle)},
+        {{"max_corner_degrees", corner_angle}});
+}
+
+Summary summary_of(const ReshapeRequest& request, const Reshaped& done, const Stages& stages) {
+    const auto& changed = done.changed;
+    Summary summary;
+    summary.add(
+        "read",
+        fmt::format("{}: {}, {}, {}", request.input.string(),
+                    format_name(readable_format(request.input)),
+                    counted(changed.triangles_read, "triangle"),
+                    counted(changed.vertices_read, "vertex", "vertices")),
+        {{"triangles_read", changed.triangles_read}, {"vertices_read", changed.vertices_read}});
+    summary.add("result",
+                fmt::format("{}, {}", counted(changed.triangles_written, "triangle"),
+                            counted(changed.vertices_written, "vertex", "vertices")),
+                {{"triangles_written", changed.triangles_written},
+                 {"vertices_written", changed.vertices_written}});
+    if (done.distance) add_distance(summary, *done.distance, done.corner_angle);
+    summary.add_findings(done.findings);
+    add_omitted(summary, done.omitted, request.output);
+    summary.add_times(stages);
+    summary.add("wrote", file_and_size(request.output));
+    return summary;
 }
 
 /// Adds IN, OUT, --normals, --report, --strict, --threads and --quiet.
@@ -113,17 +193,23 @@ void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::stri
 /// \param options  the command's options for the report
 /// \throws UsageError, FileError; then no file is written
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const TriangleChange& change,
-                 const nlohmann::ordered_json& options) {
+                 Measuring measuring, const Json& options) {
     readable_format(request.input);
     writable_format(request.output);
     check(request.report, {request.input, request.output});
     require_folder_of(request.output);
     set_thread_limit(request.general.threads);
     Stages stages(request.general.quiet);
-    const Reshaped done = run(request, command_name(app), change, stages);
-    if (!request.general.quiet) print_reshaped(request, done, stages);
-    return finish(app, request.report, request.input, done.findings,
-                  report_json(command_name(app), request, options, done, stages));
+    const Reshaped done = run(request, command_name(app), change, measuring, stages);
+    const Summary summary = summary_of(request, done, stages);
+    if (!request.general.quiet) summary.print();
+    Json report = {{"tool", "relief-mesh " + command_name(app)},
+                   {"version", version()},
+                   {"input", request.input.string()},
+                   {"output", request.output.string()},
+                   {"options", options}};
+    report.update(summary.json());
+    return finish(app, request.report, request.input, done.findings, report);
 }
 
 struct DecimateCommand {
@@ -131,13 +217,57 @@ struct DecimateCommand {
     std::optional<int> triangles;
     std::optional<double> ratio;
     std::optional<double> max_error;
+    std::optional<double> max_normal_error;  ///< In degrees.
+    AttributeWeights weights;
+    bool keep_borders = false;
+    bool keep_seams = false;
 };
+
+/// The attributes of --weights.
+struct WeightWord {
+    std::string_view word;
+    double AttributeWeights::*weight;
+};
+
+constexpr std::array weight_words = {WeightWord{"texcoords", &AttributeWeights::texcoord},
+                                     WeightWord{"normals", &AttributeWeights::normal},
+                                     WeightWord{"colors", &AttributeWeights::color}};
+
+/// Parses "normals=0.1,colors=0.01". Attributes that are not named keep their weight.
+AttributeWeights parse_weights(const std::string& subject, const std::string& text) {
+    AttributeWeights weights;
+    std::vector<std::string_view> given;
+    for (const std::string& part : split(text, ',')) {
+        const std::string here = fmt::format("{}: '{}'", subject, part);
+        const std::size_t equals = part.find('=');
+        if (equals == std::string::npos)
+            throw UsageError(here + ": not NAME=WEIGHT", "for example normals=0.1,colors=0.01");
+        const std::string name = part.substr(0, equals);
+        const auto known =
+            std::find_if(weight_words.begin(), weight_words.end(),
+                         [&](const WeightWord& candidate) { return candidate.word == name; });
+        if (known == weight_words.end())
+            throw UsageError(here + ": not one of texcoords, normals, colors");
+        if (std::find(given.begin(), given.end(), known->word) != given.end())
+            throw UsageError(fmt::format("{}: {} is given twice", subject, name));
+        given.push_back(known->word);
+        weights.*(known->weight) =
+            parse_number(here, part.substr(equals + 1), {0.0, Range().max, ""});
+    }
+    return weights;
+}
 
 void check_limits(const DecimateCommand& command) {
     if (command.triangles && command.ratio)
         throw UsageError("--triangles and --ratio contradict each other", "give one of them");
     if (!command.triangles && !command.ratio && !command.max_error)
         throw UsageError("no limit is given", "give --triangles N, --ratio R or --max-error E");
+    if (command.weights.normal > 0.0 && command.request.normals != NormalMode::keep) {
+        throw UsageError(
+            fmt::format("--weights normals: has no effect with --normals {}, which replaces them",
+                        enum_name(command.request.normals)),
+            "leave one of them out");
+    }
 }
 
 /// Returns the number of triangles for one of several meshes, in proportion to its size.
@@ -151,11 +281,18 @@ std::optional<std::size_t> wanted_triangles(const DecimateCommand& command, std:
     return static_cast<std::size_t>(std::max(wanted, 1.0));
 }
 
-nlohmann::ordered_json options_json(const DecimateCommand& command) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+Json options_json(const DecimateCommand& command) {
+    Json json = Json::object();
     if (command.triangles) json["triangles"] = *command.triangles;
     if (command.ratio) json["ratio"] = *command.ratio;
     if (command.max_error) json["max_error"] = *command.max_error;
+    if (command.max_normal_error) json["max_normal_error"] = *command.max_normal_error;
+    json["keep_borders"] = command.keep_borders;
+    json["keep_seams"] = command.keep_seams;
+    Json weights = Json::object();
+    for (const WeightWord& entry : weight_words)
+        weights[std::string(entry.word)] = command.weights.*(entry.weight);
+    json["weights"] = std::move(weights);
     json["normals"] = enum_name(command.request.normals);
     return json;
 }
@@ -167,9 +304,16 @@ ExitCode decimate(const CLI::App& app, const DecimateCommand& command) {
         options.triangles = wanted_triangles(command, mesh.triangles.size(), all_triangles);
         options.max_error = command.max_error;
         options.frames.normals = command.request.normals;
+        options.weights = command.weights;
+        if (command.max_normal_error)
+            options.max_normal_error = *command.max_normal_error * std::numbers::pi / 180.0;
+        options.keep_borders = command.keep_borders;
+        options.keep_seams = command.keep_seams;
         return decimated(mesh, options, report);
     };
-    return reshape(app, command.request, change, options_json(command));
+    const bool reports = !command.request.general.quiet || command.request.report.file;
+    return reshape(app, command.request, change, reports ? Measuring::on : Measuring::off,
+                   options_json(command));
 }
 
 void add_decimate_options(CLI::App& app, DecimateCommand& command) {
@@ -189,13 +333,37 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
                "Stop at this fraction of the triangles, 0 to 1.")
         .group(limits);
     add_number(app, "--max-error", "E", command.max_error, {0.0, Range().max, ""},
-               "Stop before a vertex of IN would be farther than E from the result, in the unit of "
-               "the model (relief-mesh info prints its size).")
+               "Stop while no point of IN is farther than E from OUT, and no point of OUT farther "
+               "than E from IN, in the unit of the model (relief-mesh info prints its size). The "
+               "distance is measured several times, so this takes longer.")
         .group(limits);
+    const std::string preserved = "What is preserved";
+    add_number(
+        app, "--max-normal-error", "DEGREES", command.max_normal_error, {0.001, 180.0, "degrees"},
+        "Omit collapses that would turn a triangle by more than this angle from the triangles "
+        "of IN at one of its corners, 0.001 to 180.")
+        .group(preserved);
+    add_switch(app, "--keep-borders", command.keep_borders,
+               "Keep all vertices of boundaries. Default: boundaries are simplified.")
+        .group(preserved);
+    add_switch(app, "--keep-seams", command.keep_seams,
+               "Keep all vertices of texture seams, hard edges and borders between materials or "
+               "colors. Default: they are simplified.")
+        .group(preserved);
+    add_value(app, "--weights", "NAME=W,...",
+              "How much differences of attributes count, each at least 0: texcoords, in lengths on "
+              "the surface (default: 1); normals and colors, as the fraction of the model's size "
+              "that a difference of 1 counts (default: 0 and 0.01).",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.weights = parse_weights(subject, text);
+              })
+        .group(preserved);
     set_examples(
         app, {"relief-mesh decimate data/vase.obj out/vase-1000.glb --triangles 1000",
               "relief-mesh decimate data/vase.obj out/vase-tenth.obj --ratio 0.1 --normals angle",
-              "relief-mesh decimate data/vase.obj out/vase-near.glb --max-error 0.01"});
+              "relief-mesh decimate data/vase.obj out/vase-near.glb --max-error 0.01",
+              "relief-mesh decimate data/vase.obj out/vase-smooth.glb --ratio 0.2 "
+              "--max-normal-error 30 --weights normals=0.1 --keep-seams"});
 }
 
 struct SubdivideCommand {
@@ -208,7 +376,7 @@ ExitCode subdivide(const CLI::App& app, const SubdivideCommand& command) {
         return FramedMesh{
             subdivided(mesh, command.levels, {.normals = command.request.normals}, report), {}};
     };
-    return reshape(app, command.request, change,
+    return reshape(app, command.request, change, Measuring::off,
                    {{"levels", command.levels}, {"normals", enum_name(command.request.normals)}});
 }
 
@@ -228,6 +396,272 @@ void add_subdivide_options(CLI::App& app, SubdivideCommand& command) {
                        "relief-mesh subdivide data/vase.obj out/vase-finer.ply --levels 2"});
 }
 
+/// The screen that the pixels of `lods` are counted on.
+constexpr double screen_width = 1920.0;
+constexpr double screen_height = 1080.0;
+
+struct LodsCommand {
+    ReshapeRequest request;
+    std::optional<int> levels;  ///< Below the input; each has half the triangles of the one before.
+    std::vector<int> triangles;  ///< By level.
+    double pixel_error = 0.5;
+    bool names = false;
+};
+
+/// A level of detail of a model.
+struct LevelResult {
+    std::size_t triangles = 0;
+    std::size_t vertices = 0;
+    SurfaceDistance distance;  ///< Of the input (a) and the level (b).
+    double pixels = 0.0;       ///< The smallest height on the screen at which a mesh switches.
+    double coverage = 1.0;     ///< The same as a part of the screen.
+};
+
+/// A mesh of a document with its levels of detail.
+struct LodMesh {
+    std::size_t mesh = 0;
+    Mesh surface;  ///< Of the input, without attributes.
+    double diameter = 0.0;
+    std::size_t last = 0;  ///< The mesh of the last level.
+    std::vector<GltfLevel> levels;
+};
+
+/// Returns the diameter of the sphere around the bounds.
+double diameter_of(const Mesh& mesh) {
+    const Bounds bounds = bounds_of(mesh);
+    if (bounds.empty()) return 0.0;
+    return glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
+}
+
+std::vector<LodMesh> lod_meshes_of(const GltfDocument& document) {
+    std::vector<LodMesh> meshes;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        if (meshes.empty() || meshes.back().mesh != id.mesh) {
+            meshes.emplace_back();
+            meshes.back().mesh = id.mesh;
+            meshes.back().last = id.mesh;
+        }
+        Mesh& surface = meshes.back().surface;
+        const Mesh part = document.mesh(id);
+        const auto first = static_cast<std::uint32_t>(surface.positions.size());
+        surface.positions.insert(surface.positions.end(), part.positions.begin(),
+                                 part.positions.end());
+        for (const glm::uvec3& triangle : part.triangles)
+            surface.triangles.push_back(triangle + first);
+    }
+    for (LodMesh& mesh : meshes)
+        mesh.diameter = diameter_of(mesh.surface);
+    return meshes;
+}
+
+/// Adds the next level to each mesh.
+///
+/// \param ratio  of the triangles of the level to those of the input
+LevelResult add_level(GltfDocument& document, std::vector<LodMesh>& meshes, double ratio,
+                      double pixel_error, std::size_t level, Findings& findings) {
+    LevelResult result;
+    result.pixels = std::numeric_limits<double>::infinity();
+    std::vector<SurfaceDistance> distances;
+    for (LodMesh& mesh : meshes) {
+        const std::size_t copy = document.copy_mesh(mesh.last);
+        Mesh surface;
+        const double wanted = ratio * static_cast<double>(mesh.surface.triangles.size());
+        const ChangedModel changed = change_triangles(
+            document, std::array{copy}, NormalMode::keep,
+            [&](const Mesh& before, std::size_t, Report& report) {
+                DecimateOptions options;
+                options.triangles = static_cast<std::size_t>(std::max(1.0, std::round(wanted)));
+                FramedMesh after = decimated(before, options, report);
+                surface = without_attributes(after.mesh);
+                return after;
+            });
+        for (const PartReport& part : changed.reports)
+            findings.add(fmt::format("LOD{} of {}", level, part.part), part.report);
+        result.triangles += changed.triangles_written;
+        result.vertices += changed.vertices_written;
+        const SurfaceDistance distance = surface_distance(mesh.surface, surface);
+        const double largest = std::max(distance.from_a.max, distance.from_b.max);
+        // The height of the sphere on the screen at which the distance is `pixel_error` high.
+        const double most = mesh.levels.empty() ? 1.0 : mesh.levels.back().max_coverage;
+        const double pixels =
+            largest > 0.0 ? pixel_error * mesh.diameter / largest : screen_height * 4.0;
+        const double area = std::numbers::pi / 4.0 * pixels * pixels;
+        const double coverage = std::min(most, area / (screen_width * screen_height));
+        mesh.levels.push_back({copy, coverage});
+        mesh.last = copy;
+        result.pixels = std::min(result.pixels, pixels);
+        result.coverage = std::min(result.coverage, coverage);
+        distances.push_back(distance);
+    }
+    result.distance = joined_distance(distances);
+    return result;
+}
+
+/// Returns the number of triangles of each level.
+std::vector<double> wanted_levels(const LodsCommand& command, std::size_t all) {
+    std::vector<double> wanted;
+    for (const int triangles : command.triangles)
+        wanted.push_back(triangles);
+    double count = static_cast<double>(all);
+    const int levels = command.triangles.empty() ? command.levels.value_or(3) : 0;
+    for (int i = 0; i < levels; ++i) {
+        count /= 2.0;
+        wanted.push_back(std::round(count));
+    }
+    return wanted;
+}
+
+struct LodsResult {
+    LevelResult input;
+    std::vector<LevelResult> levels;
+    Findings findings;
+};
+
+LodsResult make_levels(const LodsCommand& command, Stages& stages) {
+    LodsResult done;
+    Report report;
+    const std::filesystem::path& input = command.request.input;
+    Model model = stages.run("read", [&] { return read_model(input, report); });
+    if (const auto* contents = std::get_if<MeshFile>(&model))
+        model = about(input, [&] { return GltfDocument::from_mesh(*contents, report); });
+    done.findings.add("", report);
+    auto& document = std::get<GltfDocument>(model);
+    stages.run("decimate", [&] {
+        about(input, [&] {
+            std::vector<LodMesh> meshes = lod_meshes_of(document);
+            if (meshes.empty()) throw InvalidInput("holds no triangles");
+            for (const LodMesh& mesh : meshes) {
+                done.input.triangles += mesh.surface.triangles.size();
+                done.input.vertices += mesh.surface.positions.size();
+            }
+            const auto all = static_cast<double>(done.input.triangles);
+            for (const double wanted : wanted_levels(command, done.input.triangles)) {
+                done.levels.push_back(add_level(document, meshes, std::min(1.0, wanted / all),
+                                                command.pixel_error, done.levels.size() + 1,
+                                                done.findings));
+            }
+            for (const LodMesh& mesh : meshes)
+                document.set_levels_of_detail(mesh.mesh, mesh.levels, command.names);
+            return 0;
+        });
+        return 0;
+    });
+    stages.run("write", [&] {
+        document.write(command.request.output);
+        return 0;
+    });
+    return done;
+}
+
+Summary lods_summary(const LodsCommand& command, const LodsResult& done, const Stages& stages) {
+    Summary summary;
+    const std::filesystem::path& input = command.request.input;
+    summary.add("read",
+                fmt::format("{}: {}, {}, {}", input.string(), format_name(readable_format(input)),
+                            counted(done.input.triangles, "triangle"),
+                            counted(done.input.vertices, "vertex", "vertices")),
+                {{"triangles_read", done.input.triangles}, {"vertices_read", done.input.vertices}});
+    std::vector<std::string> lines;
+    Json levels = Json::array();
+    for (const LevelResult& level : done.levels) {
+        const double largest = std::max(level.distance.from_a.max, level.distance.from_b.max);
+        const std::string takes_over =
+            level.coverage < 1.0 ? fmt::format("below {:.4g} pixels, {:.3g} % of the screen",
+                                               level.pixels, 100.0 * level.coverage)
+                                 : "at any size";
+        lines.push_back(fmt::format("LOD{}: {}, largest distance {:.3g}, used {}", lines.size() + 1,
+                                    counted(level.triangles, "triangle"), largest, takes_over));
+        levels.push_back({{"triangles", level.triangles},
+                          {"vertices", level.vertices},
+                          {"distance",
+                           {{"of_input", distance_json(level.distance.from_a)},
+                            {"of_output", distance_json(level.distance.from_b)}}},
+                          {"pixels", level.pixels},
+                          {"coverage", level.coverage}});
+    }
+    summary.add("levels", lines, {{"levels", std::move(levels)}});
+    summary.add_findings(done.findings);
+    summary.add_times(stages);
+    summary.add("wrote", file_and_size(command.request.output));
+    return summary;
+}
+
+ExitCode lods(const CLI::App& app, const LodsCommand& command) {
+    const ReshapeRequest& request = command.request;
+    readable_format(request.input);
+    if (!is_document(writable_format(request.output))) {
+        throw UsageError(fmt::format("{}: cannot store levels of detail", request.output.string()),
+                         "write a .glb or .gltf");
+    }
+    if (command.levels && !command.triangles.empty())
+        throw UsageError("--levels and --triangles contradict each other", "give one of them");
+    for (std::size_t i = 1; i < command.triangles.size(); ++i) {
+        if (command.triangles[i] >= command.triangles[i - 1]) {
+            throw UsageError(fmt::format("--triangles: {} is not less than {}",
+                                         command.triangles[i], command.triangles[i - 1]),
+                             "give the finest level first");
+        }
+    }
+    check(request.report, {request.input, request.output});
+    require_folder_of(request.output);
+    set_thread_limit(request.general.threads);
+    Stages stages(request.general.quiet);
+    const LodsResult done = make_levels(command, stages);
+    const Summary summary = lods_summary(command, done, stages);
+    if (!request.general.quiet) summary.print();
+    Json options = {{"error", command.pixel_error}, {"names", command.names}};
+    if (command.levels) options["levels"] = *command.levels;
+    if (!command.triangles.empty()) options["triangles"] = command.triangles;
+    Json report = {{"tool", "relief-mesh " + command_name(app)},
+                   {"version", version()},
+                   {"input", request.input.string()},
+                   {"output", request.output.string()},
+                   {"options", std::move(options)}};
+    report.update(summary.json());
+    return finish(app, request.report, request.input, done.findings, report);
+}
+
+void add_lods_options(CLI::App& app, LodsCommand& command) {
+    constexpr int max_levels = 16;
+    add_file(app, "IN", command.request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
+    add_file(app, "OUT", command.request.output, "Model to write: .glb .gltf. May be IN itself.");
+    const std::string levels = "Levels";
+    add_value(app, "--levels", "N",
+              "The number of levels below IN, 1 to 16. Each has half the triangles of the one "
+              "before. Default: 3.",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.levels = parse_integer(subject, text, 1, max_levels);
+              })
+        .group(levels);
+    add_value(app, "--triangles", "A,B,...",
+              "The number of triangles of each level below IN, in descending order.",
+              [&command](const std::string& subject, const std::string& text) {
+                  for (const std::string& part : split(text, ','))
+                      command.triangles.push_back(
+                          parse_integer(subject, part, 1, std::numeric_limits<int>::max()));
+              })
+        .group(levels);
+    add_value(app, "--error", "PIXELS",
+              "A level takes over at the size on the screen at which no point of its surface is "
+              "farther than this from that of IN, in pixels of a screen of 1920 x 1080: 0.5 or "
+              "0.5px. Default: 0.5.",
+              [&command](const std::string& subject, const std::string& text) {
+                  const bool has_unit = text.ends_with("px");
+                  command.pixel_error =
+                      parse_number(subject, text.substr(0, text.size() - (has_unit ? 2 : 0)),
+                                   {0.001, 1000.0, "pixels"});
+              })
+        .group(levels);
+    add_switch(app, "--names", command.names,
+               "Append _LOD0, _LOD1, ... to the names of the nodes. Default: they keep their name.")
+        .group(levels);
+    add_report_options(app, command.request.report);
+    add_general_options(app, command.request.general);
+    set_examples(app, {"relief-mesh lods data/vase.obj out/vase-lods.glb",
+                       "relief-mesh lods data/vase.obj out/vase-lods.glb --triangles 3000,1000,300 "
+                       "--error 1px --names"});
+}
+
 }  // namespace
 
 Command add_decimate_command(CLI::App& tool) {
@@ -235,6 +669,12 @@ Command add_decimate_command(CLI::App& tool) {
         tool, "decimate",
         "Reduces the number of triangles; texture seams, materials and borders are kept.",
         add_decimate_options, decimate);
+}
+
+Command add_lods_command(CLI::App& tool) {
+    return add_command<LodsCommand>(
+        tool, "lods", "Adds levels of detail to a model, with the sizes at which they take over.",
+        add_lods_options, lods);
 }
 
 Command add_subdivide_command(CLI::App& tool) {

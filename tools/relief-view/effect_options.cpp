@@ -7,10 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "common/command.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/shade/effects.h"
 
 namespace relief::tools {
@@ -34,14 +33,29 @@ std::string material_name(const Scene& scene, const DrawPlan& draw) {
 
 using Table = std::vector<EffectReason>;
 
-void print_table(const Table& reasons) {
+/// A line for each effect that is on; effects that are off for the same reason share a line.
+std::vector<std::string> table_lines(const Table& reasons) {
     std::size_t width = 0;
-    for (const EffectReason& reason : reasons)
-        width = std::max(width, reason.effect.size());
     for (const EffectReason& reason : reasons) {
-        fmt::print(out(), "  {:<3}  {:<{}}  {}\n", reason.on ? "on" : "off", reason.effect, width,
-                   reason.reason);
+        if (reason.on) width = std::max(width, reason.effect.size());
     }
+    std::vector<std::string> lines;
+    std::vector<std::pair<std::string, std::string>> off;  // Reasons and the names of effects.
+    for (const EffectReason& reason : reasons) {
+        if (reason.on) {
+            lines.push_back(fmt::format("on   {:<{}}  {}", reason.effect, width, reason.reason));
+            continue;
+        }
+        const auto same = std::ranges::find(off, reason.reason, &decltype(off)::value_type::first);
+        if (same == off.end()) {
+            off.emplace_back(reason.reason, reason.effect);
+        } else {
+            same->second += ", " + reason.effect;
+        }
+    }
+    for (const auto& [reason, effects] : off)
+        lines.push_back(fmt::format("off  {}: {}", effects, reason));
+    return lines;
 }
 
 /// The vertex attributes and textures of a draw, as table rows.
@@ -69,31 +83,28 @@ std::vector<EffectReason> pass_rows(const FramePlan& plan) {
     return rows;
 }
 
-nlohmann::ordered_json attributes_json(const DrawInputs& inputs) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const PlannedAttribute& attribute : inputs.attributes) {
-        list.push_back(
-            {{"name", attribute.name}, {"stored", attribute.stored}, {"reason", attribute.reason}});
-    }
-    return list;
+Json json_of(const PlannedAttribute& attribute) {
+    return {{"name", attribute.name}, {"stored", attribute.stored}, {"reason", attribute.reason}};
 }
 
-nlohmann::ordered_json textures_json(const DrawInputs& inputs) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const PlannedTexture& texture : inputs.textures) {
-        list.push_back({{"sampler", texture.sampler},
-                        {"image", texture.image},
-                        {"mip_chain", texture.mip_chain},
-                        {"reason", texture.reason}});
-    }
-    return list;
+Json json_of(const PlannedTexture& texture) {
+    return {{"sampler", texture.sampler},
+            {"image", texture.image},
+            {"mip_chain", texture.mip_chain},
+            {"reason", texture.reason}};
 }
 
-nlohmann::ordered_json reasons_json(const std::vector<EffectReason>& reasons) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const EffectReason& reason : reasons)
-        list.push_back({{"effect", reason.effect}, {"on", reason.on}, {"reason", reason.reason}});
-    return list;
+Json json_of(const EffectReason& reason) {
+    return {{"effect", reason.effect}, {"on", reason.on}, {"reason", reason.reason}};
+}
+
+Json json_of(const PlannedPass& pass) {
+    return {{"pass", pass.name}, {"reason", pass.reason}};
+}
+
+template <typename Thing>
+Json list_of(const std::vector<Thing>& things) {
+    return json_list(things, [](const Thing& thing) { return json_of(thing); });
 }
 
 Table joined(Table rows, const Table& more) {
@@ -115,50 +126,42 @@ std::string draw_heading(const Scene& scene, const DrawPlan& draw) {
                        material_name(scene, draw), counted(draw.range.triangle_count, "triangle"));
 }
 
-void print_effects(const Scene& scene, const FramePlan& plan) {
-    fmt::print(out(), "Whole frame\n");
-    print_table(joined(plan.reasons, pass_rows(plan)));
+Summary effect_summary(const Scene& scene, const FramePlan& plan) {
+    Summary summary;
+    summary.add("frame", table_lines(joined(plan.reasons, pass_rows(plan))),
+                {{"frame", list_of(plan.reasons)}, {"passes", list_of(planned_passes(plan))}});
     std::vector<Table> tables;
     for (const DrawPlan& draw : plan.draws)
         tables.push_back(joined(draw.reasons, input_rows(scene, draw)));
-    std::vector<bool> printed(plan.draws.size(), false);
+    std::vector<bool> is_listed(plan.draws.size(), false);
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
-        if (printed[i]) continue;
+        if (is_listed[i]) continue;
         std::size_t same = 0;
         for (std::size_t j = i; j < plan.draws.size(); ++j) {
             if (!same_table(tables[i], tables[j])) continue;
-            printed[j] = true;
+            is_listed[j] = true;
             ++same;
         }
-        fmt::print(out(), "\n{}{}\n", draw_heading(scene, plan.draws[i]),
-                   same > 1 ? fmt::format(" (and {} alike)", counted(same - 1, "draw")) : "");
-        print_table(tables[i]);
+        std::vector<std::string> lines = {
+            draw_heading(scene, plan.draws[i]) +
+            (same > 1 ? fmt::format(" (and {} alike)", counted(same - 1, "draw")) : "")};
+        const std::vector<std::string> table = table_lines(tables[i]);
+        lines.insert(lines.end(), table.begin(), table.end());
+        summary.add("draw", lines);
     }
-}
-
-nlohmann::ordered_json effects_json(const Scene& scene, const FramePlan& plan) {
-    nlohmann::ordered_json draws = nlohmann::ordered_json::array();
-    for (const DrawPlan& draw : plan.draws) {
+    const auto draw_json = [&](const DrawPlan& draw) -> Json {
         const DrawInputs inputs = planned_inputs(scene, draw);
-        draws.push_back({{"instance", instance_name(scene, draw)},
-                         {"material", material_name(scene, draw)},
-                         {"triangles", draw.range.triangle_count},
-                         {"tangents_computed", draw.needs_tangents},
-                         {"effects", reasons_json(draw.reasons)},
-                         {"attributes", attributes_json(inputs)},
-                         {"textures", textures_json(inputs)}});
-    }
-    nlohmann::ordered_json passes = nlohmann::ordered_json::array();
-    for (const PlannedPass& pass : planned_passes(plan))
-        passes.push_back({{"pass", pass.name}, {"reason", pass.reason}});
-    return {{"frame", reasons_json(plan.reasons)},
-            {"passes", std::move(passes)},
-            {"draws", std::move(draws)}};
+        return {
+            {"instance", instance_name(scene, draw)}, {"material", material_name(scene, draw)},
+            {"triangles", draw.range.triangle_count}, {"tangents_computed", draw.needs_tangents},
+            {"effects", list_of(draw.reasons)},       {"attributes", list_of(inputs.attributes)},
+            {"textures", list_of(inputs.textures)}};
+    };
+    summary.add_json({{"draws", json_list(plan.draws, draw_json)}});
+    return summary;
 }
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Frames per effect, unless --benchmark gives a number.
 constexpr std::size_t frames_per_effect = 3;
@@ -192,15 +195,25 @@ double peak_of(const ViewOptions& options) {
     return is_linear_output(options) ? 1.0 : 255.0;
 }
 
-void print_costs(const EffectCosts& costs, const ViewOptions& options) {
-    print_entry("costs", fmt::format("a frame takes {}; without", milliseconds(costs.frame)));
+void add_costs(Summary& summary, const EffectCosts& costs, const ViewOptions& options) {
     std::size_t width = 0;
     for (const EffectCost& cost : costs.effects)
         width = std::max(width, cost.effect.size());
+    Summary::Lines lines = {fmt::format("a frame takes {}; without", milliseconds(costs.frame))};
     for (const EffectCost& cost : costs.effects) {
-        fmt::print(out(), "  {:<{}}  {:+8.2f} ms  {}\n", cost.effect, width, -cost.milliseconds,
-                   change_text(cost.change, peak_of(options)));
+        lines.push_back(fmt::format("{:<{}}  {:+8.2f} ms  {}", cost.effect, width,
+                                    -cost.milliseconds,
+                                    change_text(cost.change, peak_of(options))));
     }
+    const auto cost_json = [](const EffectCost& cost) -> Json {
+        return {{"effect", cost.effect},
+                {"milliseconds", cost.milliseconds},
+                {"change", change_json(cost.change)}};
+    };
+    summary.add("costs", lines,
+                {{"effect_costs",
+                  {{"frame_milliseconds", spread_json(costs.frame)},
+                   {"effects", json_list(costs.effects, cost_json)}}}});
 }
 
 std::string budget_text(const BudgetedPlan& budgeted, const ViewOptions& options) {
@@ -328,52 +341,37 @@ FrameMeasures measure_frame(const ViewOptions& options, const MeasuredFrame& fra
     return measures;
 }
 
-void print_measures(const FrameMeasures& measures, const ViewOptions& options, const Frame& drawn) {
-    if (measures.budget) print_entry("budget", budget_text(*measures.budget, options));
-    if (measures.benchmark) {
-        const FrameSeries& series = *measures.benchmark;
-        print_entry("benchmark",
-                    fmt::format("{}: {}, of which drawing {} and reading back {}; {} linked in {}",
-                                counted(series.frame.size(), "frame"),
-                                milliseconds(time_statistics(series.frame)),
-                                milliseconds(time_statistics(series.draw)),
-                                milliseconds(time_statistics(series.read_back)),
-                                counted(drawn.programs, "program"), duration(drawn.times.link)));
-    }
-    if (measures.costs) print_costs(*measures.costs, options);
-}
-
-Json measures_json(const FrameMeasures& measures, const ViewOptions& options, const Frame& drawn) {
-    Json json = Json::object();
-    if (measures.benchmark) {
-        const FrameSeries& series = *measures.benchmark;
-        json["benchmark"] = {
-            {"frames", series.frame.size()},
-            {"frame_milliseconds", spread_json(time_statistics(series.frame))},
-            {"draw_milliseconds", spread_json(time_statistics(series.draw))},
-            {"read_back_milliseconds", spread_json(time_statistics(series.read_back))},
-            {"programs", drawn.programs},
-            {"link_milliseconds", drawn.times.link}};
-    }
-    if (measures.costs) {
-        Json list = Json::array();
-        for (const EffectCost& cost : measures.costs->effects) {
-            list.push_back({{"effect", cost.effect},
-                            {"milliseconds", cost.milliseconds},
-                            {"change", change_json(cost.change)}});
-        }
-        json["effect_costs"] = {{"frame_milliseconds", spread_json(measures.costs->frame)},
-                                {"effects", std::move(list)}};
-    }
+void add_measures(Summary& summary, const FrameMeasures& measures, const ViewOptions& options,
+                  const Frame& drawn) {
     if (measures.budget) {
         const BudgetedPlan& budgeted = *measures.budget;
-        json["budget"] = {{"milliseconds", *options.effects.budget},
-                          {"before", budgeted.milliseconds_before},
-                          {"after", budgeted.choice.milliseconds},
-                          {"dropped", budgeted.choice.dropped},
-                          {"change", change_json(budgeted.change)}};
+        summary.add("budget", budget_text(budgeted, options),
+                    {{"budget",
+                      {{"milliseconds", *options.effects.budget},
+                       {"before", budgeted.milliseconds_before},
+                       {"after", budgeted.choice.milliseconds},
+                       {"dropped", budgeted.choice.dropped},
+                       {"change", change_json(budgeted.change)}}}});
     }
-    return json;
+    if (measures.benchmark) {
+        const FrameSeries& series = *measures.benchmark;
+        const TimeStatistics frame = time_statistics(series.frame);
+        const TimeStatistics draw = time_statistics(series.draw);
+        const TimeStatistics read_back = time_statistics(series.read_back);
+        summary.add("benchmark",
+                    fmt::format("{}: {}, of which drawing {} and reading back {}; {} linked in {}",
+                                counted(series.frame.size(), "frame"), milliseconds(frame),
+                                milliseconds(draw), milliseconds(read_back),
+                                counted(drawn.programs, "program"), duration(drawn.times.link)),
+                    {{"benchmark",
+                      {{"frames", series.frame.size()},
+                       {"frame_milliseconds", spread_json(frame)},
+                       {"draw_milliseconds", spread_json(draw)},
+                       {"read_back_milliseconds", spread_json(read_back)},
+                       {"programs", drawn.programs},
+                       {"link_milliseconds", drawn.times.link}}}});
+    }
+    if (measures.costs) add_costs(summary, *measures.costs, options);
 }
 
 void print_shaders(const Scene& scene, const FramePlan& plan) {
@@ -390,15 +388,13 @@ void print_shaders(const Scene& scene, const FramePlan& plan) {
 }
 
 Json shaders_json(const FramePlan& plan) {
-    Json list = Json::array();
-    for (const ShaderListing& listing : shader_listings(plan)) {
-        list.push_back({{"effects", describe(listing.features)},
-                        {"draws", listing.draws},
-                        {"files", listing.files},
-                        {"vertex", listing.vertex},
-                        {"fragment", listing.fragment}});
-    }
-    return list;
+    return json_list(shader_listings(plan), [](const ShaderListing& listing) -> Json {
+        return {{"effects", describe(listing.features)},
+                {"draws", listing.draws},
+                {"files", listing.files},
+                {"vertex", listing.vertex},
+                {"fragment", listing.fragment}};
+    });
 }
 
 // Debug views and overlays.
@@ -516,8 +512,8 @@ FramePlan viewed_plan(const ViewOptions& options, const Scene& scene, const Fram
     }
 }
 
-std::vector<std::string> legend(const HealthMarkers& markers) {
-    std::vector<std::string> lines;
+void add_legend(Summary& summary, const HealthMarkers& markers) {
+    Summary::Lines lines;
     for (const MarkedCondition& marked : markers.conditions) {
         const std::string_view word = condition_info(marked.condition).word;
         std::string line =
@@ -526,25 +522,22 @@ std::vector<std::string> legend(const HealthMarkers& markers) {
         lines.push_back(std::move(line));
     }
     if (lines.empty()) lines.emplace_back("none");
-    return lines;
+    summary.add("markers", lines, {{"markers", legend_json(markers)}});
 }
 
-nlohmann::ordered_json legend_json(const HealthMarkers& markers) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const MarkedCondition& marked : markers.conditions) {
-        list.push_back({{"kind", condition_info(marked.condition).word},
-                        {"count", marked.count},
-                        {"marked", marked.marked},
-                        {"color", hex_color(marked.color_srgb)}});
-    }
-    return list;
+Json legend_json(const HealthMarkers& markers) {
+    return json_list(markers.conditions, [](const MarkedCondition& marked) -> Json {
+        return {{"kind", condition_info(marked.condition).word},
+                {"count", marked.count},
+                {"marked", marked.marked},
+                {"color", hex_color(marked.color_srgb)}};
+    });
 }
 
-nlohmann::ordered_json overlays_json(const DebugChoices& choices, const HealthMarkers& markers) {
+Json overlays_json(const DebugChoices& choices, const HealthMarkers& markers) {
     return {{"wireframe", choices.wireframe},
             {"vertex_frames", choices.vertex_frames},
-            {"health_markers",
-             choices.health_markers ? legend_json(markers) : nlohmann::ordered_json(nullptr)}};
+            {"health_markers", choices.health_markers ? legend_json(markers) : Json()}};
 }
 
 std::string command_line_of(const DebugChoices& choices) {

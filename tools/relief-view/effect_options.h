@@ -8,10 +8,10 @@
 /// Tests: tests/tools/effect_options_test.cpp, debug_options_test.cpp.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "common/summary.h"
 #include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
@@ -25,13 +25,8 @@ namespace relief::tools {
 /// For example "'vase', material 'clay', 4096 triangles".
 std::string draw_heading(const Scene& scene, const DrawPlan& draw);
 
-/// Prints the plan on stdout. Draws with the same reasons share one table.
-void print_effects(const Scene& scene, const FramePlan& plan);
-
-/// {"frame": [{"effect", "on", "reason"}], "passes": [{"pass", "reason"}], "draws": [{"instance",
-/// "material", "triangles", "tangents_computed", "effects": [...], "attributes": [{"name",
-/// "stored", "reason"}], "textures": [{"sampler", "image", "mip_chain", "reason"}]}]}
-nlohmann::ordered_json effects_json(const Scene& scene, const FramePlan& plan);
+/// The plan with its reasons. As text, draws with the same reasons share a list.
+Summary effect_summary(const Scene& scene, const FramePlan& plan);
 
 void add_effect_options(CLI::App& app, ViewOptions& options);
 
@@ -57,20 +52,17 @@ struct FrameMeasures {
 FrameMeasures measure_frame(const ViewOptions& options, const MeasuredFrame& frame, FramePlan& plan,
                             Stages& stages);
 
-/// Prints lines of the summary. \param drawn  a frame of the measured plan
-void print_measures(const FrameMeasures& measures, const ViewOptions& options, const Frame& drawn);
-
-/// {"benchmark": {...}, "effect_costs": {...}, "budget": {...}}, without measurements that were not
-/// made.
-nlohmann::ordered_json measures_json(const FrameMeasures& measures, const ViewOptions& options,
-                                     const Frame& drawn);
+/// Adds the members "benchmark", "effect_costs" and "budget", if they were measured.
+/// \param drawn  a frame of the measured plan
+void add_measures(Summary& summary, const FrameMeasures& measures, const ViewOptions& options,
+                  const Frame& drawn);
 
 /// Prints the vertex and fragment shader of each program, after a comment with its effects and
 /// draws.
 void print_shaders(const Scene& scene, const FramePlan& plan);
 
 /// [{"effects", "draws", "files", "vertex", "fragment"}]
-nlohmann::ordered_json shaders_json(const FramePlan& plan);
+Json shaders_json(const FramePlan& plan);
 
 // Debug views and overlays.
 
@@ -92,13 +84,13 @@ FramePlan viewed_plan(const ViewOptions& options, const Scene& scene, const Fram
                       FramePlan plan, Report& report);
 
 /// Describes each marker color, for example "#ff0000 collapsed triangles: 3".
-std::vector<std::string> legend(const HealthMarkers& markers);
+void add_legend(Summary& summary, const HealthMarkers& markers);
 
 /// [{"kind", "count", "marked", "color"}]
-nlohmann::ordered_json legend_json(const HealthMarkers& markers);
+Json legend_json(const HealthMarkers& markers);
 
 /// {"wireframe", "vertex_frames", "health_markers": legend_json() or null}
-nlohmann::ordered_json overlays_json(const DebugChoices& choices, const HealthMarkers& markers);
+Json overlays_json(const DebugChoices& choices, const HealthMarkers& markers);
 
 /// The options that select this view, each after a space; "" for the picture.
 std::string command_line_of(const DebugChoices& choices);

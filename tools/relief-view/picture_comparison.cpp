@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "common/text.h"
+#include "common/summary.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
@@ -71,7 +70,7 @@ std::string difference_text(const PictureComparison& comparison) {
                            : fmt::format("{} pixels differ", difference.differing_pixels));
 }
 
-nlohmann::ordered_json numbers_json(const PictureComparison& comparison) {
+Json numbers_json(const PictureComparison& comparison) {
     const ImageDifference& difference = comparison.difference;
     return {{"max", difference.max},
             {"mean", difference.mean},
@@ -211,14 +210,14 @@ void write_difference_map(const ViewOptions& options, const PictureComparison& c
     write_image(file, extension_of(file) == ".png" ? false_color_image(map, 1.0) : map);
 }
 
-nlohmann::ordered_json comparison_json(const ViewOptions& options,
-                                       const ReferenceComparison& comparison) {
-    nlohmann::ordered_json json = {{"reference", options.reference->string()},
-                                   {"matches", comparison.matches()},
-                                   {"allowed", comparison.allowed}};
+void add_comparison(Summary& summary, const ViewOptions& options,
+                    const ReferenceComparison& comparison) {
+    Json json = {{"reference", options.reference->string()},
+                 {"matches", comparison.matches()},
+                 {"allowed", comparison.allowed}};
     json.update(numbers_json(comparison));
     if (options.difference_map) json["difference_map"] = options.difference_map->string();
-    return json;
+    summary.add("compared", difference_text(comparison), {{"comparison", std::move(json)}});
 }
 
 void require_match(const ViewOptions& options, const ReferenceComparison& comparison) {
@@ -303,13 +302,14 @@ std::string side_name(const CompareChoices& choices) {
     return choices.variant ? to_text(*choices.variant) : choices.file->filename().string();
 }
 
-nlohmann::ordered_json sides_json(const CompareChoices& choices,
-                                  const PictureComparison& comparison) {
-    nlohmann::ordered_json json = {
-        {"with", choices.variant ? to_text(*choices.variant) : choices.file->string()},
-        {"split", choices.split.value_or(default_split)}};
+void add_sides(Summary& summary, const CompareChoices& choices,
+               const PictureComparison& comparison) {
+    Json json = {{"with", choices.variant ? to_text(*choices.variant) : choices.file->string()},
+                 {"split", choices.split.value_or(default_split)}};
     json.update(numbers_json(comparison));
-    return json;
+    summary.add("compared",
+                fmt::format("with {}: {}", side_name(choices), difference_text(comparison)),
+                {{"compare", std::move(json)}});
 }
 
 std::string command_line_of(const CompareChoices& choices) {

@@ -5,9 +5,9 @@
 /// Tests: tests/tools/compare_options_test.cpp, picture_reference_test.cpp.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "common/summary.h"
 #include "relief/shade/image_compare.h"
 #include "relief/shade/renderer.h"
 #include "scene_options.h"
@@ -34,7 +34,7 @@ std::string with_peak(double value, double peak);
 
 /// {"max", "mean", "rms", "psnr", "differing_pixels", "flip_mean", "flip_max"}. Infinite values,
 /// such as the PSNR of equal pictures, are null.
-nlohmann::ordered_json numbers_json(const PictureComparison& comparison);
+Json numbers_json(const PictureComparison& comparison);
 
 /// The largest difference of any channel at each pixel, from 0 to 1, as one float channel.
 /// \throws InvalidInput if the sizes, bits or channels differ
@@ -69,8 +69,9 @@ ReferenceComparison compare_with_reference(const ViewOptions& options, const Ima
 /// Writes --difference-map, if it is given. \throws FileError
 void write_difference_map(const ViewOptions& options, const PictureComparison& comparison);
 
-nlohmann::ordered_json comparison_json(const ViewOptions& options,
-                                       const ReferenceComparison& comparison);
+/// Adds the member "comparison".
+void add_comparison(Summary& summary, const ViewOptions& options,
+                    const ReferenceComparison& comparison);
 
 /// \throws FileError, which leads to exit code 1, if the pictures do not match
 void require_match(const ViewOptions& options, const ReferenceComparison& comparison);
@@ -100,9 +101,9 @@ OtherSide side_of_file(const Scene& scene, const Camera& camera, const ViewOptio
 /// For example "kernel=central3", or the name of the file.
 std::string side_name(const CompareChoices& choices);
 
-/// {"with", "split"} and the members of numbers_json().
-nlohmann::ordered_json sides_json(const CompareChoices& choices,
-                                  const PictureComparison& comparison);
+/// Adds the member "compare": {"with", "split"} and the members of numbers_json().
+void add_sides(Summary& summary, const CompareChoices& choices,
+               const PictureComparison& comparison);
 
 /// The options of the comparison, each after a space; "" without a comparison.
 std::string command_line_of(const CompareChoices& choices);

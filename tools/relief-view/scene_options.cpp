@@ -343,31 +343,13 @@ void set_shading(Scene& scene, const ViewOptions& options) {
     }
 }
 
-/// The format of converted height maps.
-constexpr NormalMapFormat converted_format{
-    .bits = 16, .green = Green::up, .flat = FlatCode::middle};
-
 }  // namespace
 
-Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report) {
-    NormalMapFormat format = converted_format;
-    format.bits = bits;
-    return encode_normal_map(normals_from_height(height_field(image), bump, report), format,
-                             report);
-}
-
-std::optional<Kernel> displayed_kernel(const ViewOptions& options) {
-    if (options.kernel || !options.height_map) return options.kernel;
-    BumpOptions bump;
-    bump.strength = options.strength.value_or(bump.strength);
-    bump = resolve_options(height_field(read_image(*options.height_map, ImageUse::data)), bump);
-    if (bump.kernel == Kernel::gaussian && bump.gaussian_radius != BumpOptions{}.gaussian_radius)
-        return std::nullopt;
-    return bump.kernel;
-}
-
-NormalMap converted_map(const Texture& texture) {
-    return {.texture = texture, .green = converted_format.green, .flat = converted_format.flat};
+SceneHeights scene_heights(const ViewOptions& options) {
+    return {.file = options.height_map,
+            .is_bump_map = options.height_as == HeightUse::bump_map,
+            .strength = options.strength,
+            .kernel = options.kernel};
 }
 
 void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,

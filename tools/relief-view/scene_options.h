@@ -15,7 +15,6 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_fields.h"
-#include "relief/shade/scene_graph.h"
 #include "view_options.h"
 
 namespace relief::tools {
@@ -53,18 +52,8 @@ std::string reason_for_phong(const ViewOptions& options);
 void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
                         std::vector<std::string>& notes);
 
-/// Converts heights to a normal map with this number of bits. Green is up, and flat decodes to
-/// exactly flat.
-Image converted_heights(const Image& image, const BumpOptions& bump, int bits, Report& report);
-
-/// The kernel that converts the height map of the options.
-///
-/// \return empty for an automatic Gaussian, which has its own radius
-/// \throws FileError if the height map cannot be read
-std::optional<Kernel> displayed_kernel(const ViewOptions& options);
-
-/// The decoding parameters of a converted height map.
-NormalMap converted_map(const Texture& texture);
+/// The height map of the options.
+SceneHeights scene_heights(const ViewOptions& options);
 
 // The environment, and the composed scene.
 

@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "common/command.h"
 #include "common/model_file.h"
-#include "common/text.h"
+#include "common/summary.h"
 #include "effect_options.h"
 #include "picture_comparison.h"
 #include "portable_math.h"
@@ -22,7 +21,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene_file.h"
 #include "scene_options.h"
@@ -329,46 +328,9 @@ std::string written(const ViewOptions& options) {
                        numbered_file(output, picture_count(options)).string());
 }
 
-void print_summary(const ViewOptions& options, const ComposedScene& composed, const Drawn& drawn,
-                   const Findings& findings, const Stages& stages) {
-    const Scene& scene = composed.scene();
-    print_entry("read", fmt::format("{}: {}, {}", options.model.string(),
-                                    counted(scene.instances.size(), "mesh", "meshes"),
-                                    counted(triangle_count(scene), "triangle")));
-    print_entry("light", lights_text(scene));
-    print_entry("notes", composed.notes);
-    print_entry("findings", findings.empty() ? std::vector<std::string>{"none"} : findings.lines());
-    print_entry(
-        "drew",
-        fmt::format("{} x {}, {}, {}, {}, by {}: {}", options.size.x, options.size.y,
-                    counted(static_cast<std::size_t>(options.samples), "sample"),
-                    counted(drawn.frame.programs, "program"),
-                    counted(drawn.frame.textures, "texture"), drawn.backend, drawn.renderer));
-    print_entry("time", durations(stages.finished()));
-    if (drawn.times.draw.size() > 1) print_entry("frames", frames_text(drawn.times));
-    if (options.output) print_entry("wrote", written(options));
-    if (drawn.comparison) print_entry("compared", difference_text(*drawn.comparison));
-    if (drawn.sides)
-        print_entry("compared", fmt::format("with {}: {}", side_name(options.compare),
-                                            difference_text(*drawn.sides)));
-}
-
-nlohmann::ordered_json summary_json(const ViewOptions& options, const ComposedScene& composed,
-                                    const Findings& findings, const Stages& stages) {
-    return {{"tool", "relief-view"},
-            {"version", version()},
-            {"model", options.model.string()},
-            {"instances", composed.scene().instances.size()},
-            {"triangles", triangle_count(composed.scene())},
-            {"notes", composed.notes},
-            {"findings", findings.json()},
-            {"milliseconds", durations_json(stages.finished())}};
-}
-
-nlohmann::ordered_json picture_json(const ViewOptions& options, const Drawn& drawn) {
+Json picture_json(const ViewOptions& options, const Drawn& drawn) {
     const FrameTimes& times = drawn.frame.times;
-    return {{"output", options.output ? nlohmann::ordered_json(options.output->string())
-                                      : nlohmann::ordered_json(nullptr)},
+    return {{"output", options.output ? Json(options.output->string()) : Json()},
             {"width", options.size.x},
             {"height", options.size.y},
             {"samples", options.samples},
@@ -386,6 +348,46 @@ nlohmann::ordered_json picture_json(const ViewOptions& options, const Drawn& dra
              {{"count", drawn.times.draw.size()},
               {"median_draw_milliseconds", time_statistics(drawn.times.draw).median},
               {"median_read_back_milliseconds", time_statistics(drawn.times.read_back).median}}}};
+}
+
+void add_picture(Summary& summary, const ViewOptions& options, const Drawn& drawn) {
+    summary.add(
+        "drew",
+        fmt::format("{} x {}, {}, {}, {}, by {}: {}", options.size.x, options.size.y,
+                    counted(static_cast<std::size_t>(options.samples), "sample"),
+                    counted(drawn.frame.programs, "program"),
+                    counted(drawn.frame.textures, "texture"), drawn.backend, drawn.renderer),
+        {{"picture", picture_json(options, drawn)}});
+}
+
+/// \param drawn  null if no picture was drawn; then only the JSON is of use
+Summary summary_of(const ViewOptions& options, const ComposedScene& composed, const Drawn* drawn,
+                   const HealthMarkers& markers, const Findings& findings, const Stages& stages) {
+    const Scene& scene = composed.scene();
+    const std::size_t triangles = triangle_count(scene);
+    Summary summary;
+    summary.add_tool("relief-view");
+    summary.add("read",
+                fmt::format("{}: {}, {}", options.model.string(),
+                            counted(scene.instances.size(), "mesh", "meshes"),
+                            counted(triangles, "triangle")),
+                {{"model", options.model.string()},
+                 {"instances", scene.instances.size()},
+                 {"triangles", triangles}});
+    summary.add("light", lights_text(scene));
+    summary.add("notes", composed.notes, {{"notes", composed.notes}});
+    summary.add_findings(findings);
+    if (drawn != nullptr) add_picture(summary, options, *drawn);
+    summary.add_times(stages);
+    if (drawn != nullptr) {
+        if (drawn->times.draw.size() > 1) summary.add("frames", frames_text(drawn->times));
+        if (options.output) summary.add("wrote", written(options));
+        if (drawn->comparison) add_comparison(summary, options, *drawn->comparison);
+        if (drawn->sides) add_sides(summary, options.compare, *drawn->sides);
+    }
+    if (options.debug.health_markers) add_legend(summary, markers);
+    if (drawn != nullptr) add_measures(summary, drawn->measures, options, drawn->frame);
+    return summary;
 }
 
 OutputCoding coding_of(const ViewOptions& options) {
@@ -483,28 +485,21 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.output || options.reference || options.effects.measures()) {
         drawn = draw(options, settings, composed, plan, stages, report);
     }
-    if (options.explain_effects && !options.json) print_effects(composed.scene(), plan);
+    if (options.explain_effects && !options.json) effect_summary(composed.scene(), plan).print();
     if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
 
     Findings findings;
     findings.add("", report);
+    Summary summary =
+        summary_of(options, composed, drawn ? &*drawn : nullptr, markers, findings, stages);
     if (options.json) {
-        nlohmann::ordered_json json = summary_json(options, composed, findings, stages);
-        if (drawn) json["picture"] = picture_json(options, *drawn);
-        if (drawn) json.update(measures_json(drawn->measures, options, drawn->frame));
-        if (drawn && drawn->comparison) {
-            json["comparison"] = comparison_json(options, *drawn->comparison);
-        }
-        if (drawn && drawn->sides) json["compare"] = sides_json(options.compare, *drawn->sides);
-        if (options.debug.health_markers) json["markers"] = legend_json(markers);
-        if (options.explain_effects) json["effects"] = effects_json(composed.scene(), plan);
-        if (options.effects.print_shaders) json["shaders"] = shaders_json(plan);
-        print_json(json);
+        if (options.explain_effects)
+            summary.add_part("effects", effect_summary(composed.scene(), plan));
+        if (options.effects.print_shaders) summary.add_json({{"shaders", shaders_json(plan)}});
+        print_json(summary.json());
     } else if (drawn && !options.general.quiet) {
         if (options.explain_effects || options.effects.print_shaders) fmt::print(out(), "\n");
-        print_summary(options, composed, *drawn, findings, stages);
-        if (options.debug.health_markers) print_entry("markers", legend(markers));
-        print_measures(drawn->measures, options, drawn->frame);
+        summary.print();
     }
     if (drawn && drawn->comparison) require_match(options, *drawn->comparison);
     ReportOptions strictness;
@@ -518,6 +513,10 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
 Command add_view_command(CLI::App& tool) {
     const auto options = std::make_shared<ViewOptions>();
     add_view_options(tool, *options);
+    set_common_options(
+        tool, {"--output", "--size", "--explain-effects", "--diffuse-map", "--normal-map",
+               "--height-map", "--strength", "--material", "--environment", "--light", "--camera",
+               "--turntable", "--compare", "--show"});
     set_examples(
         tool,
         {"relief-view --list-bindings", "relief-view data/vase.obj --output out/vase.png",

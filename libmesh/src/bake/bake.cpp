@@ -18,6 +18,7 @@
 #include "bake/layers.h"
 #include "geometry/direction.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
@@ -75,8 +76,8 @@ glm::dvec3 inverse_heights(const Mesh& mesh, const glm::uvec3& corners) {
 LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& report) {
     validate(low);
     if (low.texcoords.empty()) throw InvalidInput("the low mesh has no texture coordinates");
-    const bool to_tangent =
-        options.space == VectorSpace::tangent && (options.layers.normals || options.sample_angle);
+    const bool to_tangent = options.space == VectorSpace::tangent &&
+                            (options.map.layers.normals || options.map.sample_angle);
     FrameOptions frames;
     frames.tangents = !to_tangent            ? TangentMethod::none
                       : low.tangents.empty() ? TangentMethod::mikktspace
@@ -384,21 +385,23 @@ int rows_per_strip(const BakeLayers& requested, int width, int height) {
 
 /// Bakes rows [first, last) of the map into a strip.
 void bake_strip(const BakeWork& work, const TexelRasterizer& cover, Strip& strip, int first,
-                int last, BakeResult& result, BakeCounts& counts, int& rows_done, Report& report) {
+                int last, BakeResult& result, BakeCounts& counts, int& rows_done,
+                ProgressStage& stage, Report& report) {
     const int side = work.side;
     std::mutex mutex;
     std::map<int, Report> reports;  // By row, so that the order does not depend on threads.
     const auto take = [&](int first_sample_row, std::span<const CoveredTexel> owners) {
         const int row = first_sample_row / side;
         const int count = static_cast<int>(owners.size() / static_cast<std::size_t>(side * side) /
-                                           static_cast<std::size_t>(work.options.width));
+                                           static_cast<std::size_t>(work.map.width));
         Report row_report;
         const BakeCounts more = bake_rows(
-            work, row, owners, strip.rows(work.options.width, row, row - first, count), row_report);
+            work, row, owners, strip.rows(work.map.width, row, row - first, count), row_report);
         const std::lock_guard lock(mutex);
         counts += more;
         rows_done += count;
-        if (work.options.progress) work.options.progress({rows_done, counts.rays});
+        if (work.map.progress) work.map.progress({rows_done, counts.rays});
+        stage.advance(static_cast<std::size_t>(count));
         reports.emplace(row, std::move(row_report));
     };
     result.coverage += cover.cover(first * side, last * side, take, report);
@@ -524,12 +527,11 @@ LayerBounds Baker::bounds(const BakeLayers& layers) const {
 }
 
 BakeResult Baker::bake(const BakeMapOptions& map,
-                       const std::function<void(const BakedRows& rows)>& take,
-                       Report& report) const {
+                       const std::function<void(const BakedRows& rows)>& take, Report& report,
+                       const ExecutionOptions& execution) const {
+    const ExecutionScope scope(execution);
     check_map(map, low());
-    check_layers(map.layers, implementation_->options.layers);
-    BakeOptions options = implementation_->options;
-    static_cast<BakeMapOptions&>(options) = map;
+    check_layers(map.layers, implementation_->options.map.layers);
     const int side = samples_across(map.samples);
     const BakeRowRange range = map.rows.value_or(BakeRowRange{0, map.height});
     Report ignored;
@@ -537,19 +539,20 @@ BakeResult Baker::bake(const BakeMapOptions& map,
                                 range.first == 0 ? report : ignored);
     BakeResult result;
     result.distances = distances();
-    const BakeWork work{implementation_->parts, implementation_->low, options, side};
-    const int rows = rows_per_strip(options.layers, map.width, range.last - range.first);
-    Strip strip(options.layers, static_cast<std::size_t>(map.width),
-                static_cast<std::size_t>(rows));
+    const BakeWork work{implementation_->parts, implementation_->low, implementation_->options, map,
+                        side};
+    const int rows = rows_per_strip(map.layers, map.width, range.last - range.first);
+    Strip strip(map.layers, static_cast<std::size_t>(map.width), static_cast<std::size_t>(rows));
     std::optional<BorderFill> border;
     if (map.border_folder) border.emplace(map.width, map.height, *map.border_folder, take);
     Dilation dilation(map.width, map.height, map.padding,
                       [&](const BakedRows& done) { border ? border->push(done) : take(done); });
     BakeCounts counts;
     int rows_done = 0;
+    ProgressStage stage("baking", static_cast<std::size_t>(range.last - range.first));
     for (int first = range.first; first < range.last; first += rows) {
         const int last = std::min(first + rows, range.last);
-        bake_strip(work, cover, strip, first, last, result, counts, rows_done, report);
+        bake_strip(work, cover, strip, first, last, result, counts, rows_done, stage, report);
         dilation.push(strip.rows(map.width, first, 0, last - first));
     }
     result.samples = counts.samples;
@@ -570,10 +573,12 @@ BakeResult Baker::bake(const BakeMapOptions& map,
 }
 
 BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
-                        const std::function<void(const BakedRows& rows)>& take, Report& report) {
+                        const std::function<void(const BakedRows& rows)>& take, Report& report,
+                        const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
     // Errors of the map options are reported before the meshes are prepared, which is slow.
-    check_map(options, low);
-    return Baker(high, low, options, report).bake(options, take, report);
+    check_map(options.map, low);
+    return Baker(high, low, options, report).bake(options.map, take, report);
 }
 
 }  // namespace relief

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares baked maps with a reference bake of many samples, in strips of rows: the error of each
-// texel in degrees, in the space of the meshes, and its causes. The benchmark compares several
-// sample counts and encodings on bands spread over the map, whose reference is baked once. Tests:
-// tests/mesh/bake/bake_check_test.cpp.
+// texel in degrees, in the space of the meshes, and its causes. Several bakes can be compared with
+// one reference, on bands spread over the map.
+// Tests: tests/mesh/bake/bake_check_test.cpp, tests/accuracy/bake_accuracy_test.cpp.
 #include "relief/mesh/bake_check.h"
 
 #include <fmt/format.h>
@@ -22,17 +22,16 @@
 #include "geometry/error_accumulator.h"
 #include "parallel.h"
 #include "progress_stage.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {
 
-/// The bake of some rows.
-struct CastRows {
-    std::vector<float> normals, heights;
-    std::vector<TexelState> states;
-    std::size_t rays = 0;
+/// The normals of some rows of a bake.
+struct NormalRows {
+    std::span<const float> normals;
+    std::span<const TexelState> states;
 
     [[nodiscard]] bool is_baked(std::size_t texel) const {
         return states[texel] == TexelState::baked;
@@ -42,12 +41,21 @@ struct CastRows {
     }
 };
 
+/// The bake of some rows, with heights.
+struct CastRows {
+    std::vector<float> normals, heights;
+    std::vector<TexelState> states;
+    std::size_t rays = 0;
+
+    [[nodiscard]] NormalRows rows() const { return {normals, states}; }
+};
+
 /// Bakes rows [first, last).
 CastRows cast_rows(const Baker& baker, BakeMapOptions map, int first, int last, Report& report);
 
 /// Normals encoded as map codes and decoded again.
-std::vector<float> coded(const std::vector<float>& normals, int width,
-                         const NormalMapFormat& format);
+std::vector<float> coded_normals(std::span<const float> normals, int width,
+                                 const NormalMapFormat& format);
 
 /// Sums of errors over texels.
 struct CheckSums {
@@ -92,7 +100,7 @@ struct BakeCasts {
 /// \param step     the distance, along and across, of texels stored in CheckSums::known; 0: none
 /// \param degrees  gets the errors, NaN if there is none
 CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const BakeCasts& casts,
-                       const CastRows& made, std::span<const float> rebaked,
+                       const NormalRows& made, std::span<const float> rebaked,
                        std::span<const float> shown, int first, int step, std::span<float> degrees);
 
 constexpr double reference_angle = 0.5;  // In degrees.
@@ -114,7 +122,7 @@ struct RowsToCheck {
     std::span<const float> map;           ///< Decoded, three values per texel.
     const CastRows* reference = nullptr;  ///< The bake of many samples.
     const CastRows* center = nullptr;     ///< The bake of one sample.
-    const CastRows* made = nullptr;  ///< The bake with the options of the map; may be `center`.
+    NormalRows made;                 ///< The bake with the options of the map; may be `center`.
     std::span<const float> rebaked;  ///< `made`, encoded and decoded.
 };
 
@@ -190,7 +198,7 @@ class TexelCheck {
         const double none = std::numeric_limits<double>::quiet_NaN();
         const CoveredTexel& owner = rows_.owners[texel];
         if (!owner.is_covered()) return none;
-        if (!rows_.reference->is_baked(texel)) {
+        if (!rows_.reference->rows().is_baked(texel)) {
             ++sums.missed;
             return none;
         }
@@ -199,10 +207,11 @@ class TexelCheck {
             ++sums.frameless;
             return none;
         }
-        const glm::dvec3 reference = to_mesh.shown(rows_.reference->normal(texel));
+        const glm::dvec3 reference = to_mesh.shown(rows_.reference->rows().normal(texel));
         const glm::dvec3 shown = to_mesh.shown(at(rows_.map, texel));
-        if (rows_.center->is_baked(texel)) {
-            sums.center.add(degrees_between(shown, to_mesh.shown(rows_.center->normal(texel))));
+        if (rows_.center->rows().is_baked(texel)) {
+            sums.center.add(
+                degrees_between(shown, to_mesh.shown(rows_.center->rows().normal(texel))));
         }
         const double degrees = degrees_between(shown, reference);
         sums.error.add(degrees);
@@ -222,7 +231,7 @@ class TexelCheck {
 
     [[nodiscard]] bool tears(std::size_t texel, const MapToMesh& to_mesh,
                              const glm::dvec3& reference) const {
-        if (!rows_.center->is_baked(texel)) return true;
+        if (!rows_.center->rows().is_baked(texel)) return true;
         const double jump = std::abs(double{rows_.reference->heights[texel]} -
                                      double{rows_.center->heights[texel]});
         const double texels = static_cast<double>(rows_.width) * rows_.height;
@@ -235,7 +244,7 @@ class TexelCheck {
                const glm::dvec3& shown, bool is_discontinuous, CheckSums& sums) const {
         const auto stage = [](BakeStage s) { return static_cast<std::size_t>(s); };
         const glm::dvec3 whole = shown - reference;
-        const bool is_made = rows_.made->is_baked(texel);
+        const bool is_made = rows_.made.is_baked(texel);
         const glm::dvec3 recoded = at(rows_.rebaked, texel);
         const glm::dvec3 rebaked = to_mesh.shown(recoded);
         if (is_made) sums.rebaked.add(degrees_between(rebaked, reference));
@@ -245,8 +254,8 @@ class TexelCheck {
             sums.squares[stage(BakeStage::projection)] += glm::dot(whole, whole);
             return;
         }
-        const glm::dvec3 made = to_mesh.shown(rows_.made->normal(texel));
-        const double in_map = degrees_between(recoded, rows_.made->normal(texel));
+        const glm::dvec3 made = to_mesh.shown(rows_.made.normal(texel));
+        const double in_map = degrees_between(recoded, rows_.made.normal(texel));
         const double in_object = degrees_between(rebaked, made);
         sums.stages[stage(BakeStage::sampling)].add(degrees_between(made, reference));
         sums.stages[stage(BakeStage::quantization)].add(in_map);
@@ -371,18 +380,17 @@ void summarize(const CheckSums& sums, BakeCheck& check) {
         all += squares;
     const auto index = [](BakeStage stage) { return static_cast<std::size_t>(stage); };
     for (std::size_t i = 0; i < bake_stage_count; ++i) {
-        check.stages[i].rms = sums.stages[i].stats().rms;
+        check.stages[i].error = sums.stages[i].stats();
         check.stages[i].share = all > 0.0 ? sums.squares[i] / all : 0.0;
     }
     // The error of the codes in object space minus that in tangent space is the error of the basis.
     StageError& codes = check.stages[index(BakeStage::quantization)];
     StageError& basis = check.stages[index(BakeStage::basis)];
-    const double texels =
-        static_cast<double>(sums.stages[index(BakeStage::quantization)].stats().count);
+    const double texels = static_cast<double>(codes.error.count);
     const double more = sums.object_squares - sums.tangent_squares;
     if (!(more > 0.0)) return;
     // This is the difference of two mean squares, not a mean of angles.
-    basis.rms = std::sqrt(more / texels);
+    basis.error.rms = std::sqrt(more / texels);
     basis.share = codes.share * more / sums.object_squares;
     codes.share -= basis.share;
 }
@@ -438,13 +446,13 @@ CastRows cast_rows(const Baker& baker, BakeMapOptions map, int first, int last, 
     return cast;
 }
 
-std::vector<float> coded(const std::vector<float>& normals, int width,
-                         const NormalMapFormat& format) {
+std::vector<float> coded_normals(std::span<const float> normals, int width,
+                                 const NormalMapFormat& format) {
     Image image;
     image.width = width;
     image.height = static_cast<int>(normals.size() / (3 * static_cast<std::size_t>(width)));
     image.channels = 3;
-    image.samples = normals;
+    image.samples = std::vector<float>(normals.begin(), normals.end());
     Report ignored;  // Unit normals cause no findings.
     const Image decoded = decode_normal_map(encode_normal_map(image, format, ignored), format.green,
                                             format.flat, ignored);
@@ -474,7 +482,7 @@ BakeCasts::BakeCasts(const Baker& baker, const BakeMapOptions& map, int referenc
 }
 
 CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const BakeCasts& casts,
-                       const CastRows& made, std::span<const float> rebaked,
+                       const NormalRows& made, std::span<const float> rebaked,
                        std::span<const float> shown, int first, int step,
                        std::span<float> degrees) {
     const auto count = static_cast<int>(degrees.size() / static_cast<std::size_t>(map.width));
@@ -485,7 +493,7 @@ CheckSums compare_rows(const Baker& baker, const BakeMapOptions& map, const Bake
     rows.owners = owners_of(baker, map, first, first + count);
     rows.reference = &casts.reference;
     rows.center = &casts.center;
-    rows.made = &made;
+    rows.made = made;
     rows.rebaked = rebaked;
     rows.map = shown.empty() ? rebaked : shown;
     return check_texels(baker, rows, step, degrees);
@@ -511,9 +519,9 @@ BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOption
         const BakeCasts casts(baker, options.map, options.reference_samples, first, last, report);
         std::vector<float> degrees(static_cast<std::size_t>(map.width) *
                                    static_cast<std::size_t>(last - first));
-        const std::vector<float> rebaked = coded(casts.made().normals, map.width, format);
-        sums.add(compare_rows(baker, options.map, casts, casts.made(), rebaked, shown.as<float>(),
-                              first, step, degrees));
+        const std::vector<float> rebaked = coded_normals(casts.made().normals, map.width, format);
+        sums.add(compare_rows(baker, options.map, casts, casts.made().rows(), rebaked,
+                              shown.as<float>(), first, step, degrees));
         result.rays += casts.rays();
         if (take) take(first, degrees);
     }
@@ -533,34 +541,24 @@ struct Band {
 
 }  // namespace
 
-struct BakeBenchmark::Implementation {
+struct BakeReference::Implementation {
     const Baker& baker;
     BakeMapOptions map;  ///< With one sample.
-    int reference_samples;
+    int samples = 0;
     std::vector<Band> bands;
     bool is_whole = true;
 
-    [[nodiscard]] BakeMapOptions map_by(const BakeSampling& way) const {
-        BakeMapOptions made = map;
-        made.samples = way.samples;
-        if (way.sample_degrees) made.sample_angle = glm::radians(*way.sample_degrees);
-        return made;
-    }
-
-    [[nodiscard]] std::size_t texels_of(const BakeRowRange& rows) const {
+    [[nodiscard]] std::size_t texels_of(const Band& band) const {
         return static_cast<std::size_t>(map.width) *
-               static_cast<std::size_t>(rows.last - rows.first);
+               static_cast<std::size_t>(band.rows.last - band.rows.first);
     }
 };
 
-BakeBenchmark::BakeBenchmark(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
-                             int reference_samples)
-    : implementation_(new Implementation{baker, map, 0, {}, true}) {
+BakeReference::BakeReference(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
+                             int samples)
+    : implementation_(new Implementation{baker, with_samples(map, 1, std::nullopt), 0, {}, true}) {
     Implementation& data = *implementation_;
-    data.map.samples = 1;
-    data.map.sample_angle.reset();
-    data.reference_samples =
-        reference_of(map, reference_samples > 0 ? reference_samples : 256).samples;
+    data.samples = reference_of(map, samples > 0 ? samples : 256).samples;
     constexpr int band = TexelRasterizer::band_rows;
     const int bands = (map.height + band - 1) / band;
     const std::size_t band_texels =
@@ -573,118 +571,87 @@ BakeBenchmark::BakeBenchmark(const Baker& baker, const BakeMapOptions& map, std:
         // The middle band of each of `count` equal parts.
         const int first = (2 * i + 1) * bands / (2 * count) * band;
         const BakeRowRange rows{first, std::min(first + band, map.height)};
-        data.bands.push_back({rows, BakeCasts(baker, data.map, data.reference_samples, rows.first,
-                                              rows.last, ignored)});
+        data.bands.push_back(
+            {rows, BakeCasts(baker, data.map, data.samples, rows.first, rows.last, ignored)});
     }
 }
 
-BakeBenchmark::~BakeBenchmark() = default;
+BakeReference::~BakeReference() = default;
 
-BakeMeasurement BakeBenchmark::measure(const BakeSampling& way,
-                                       std::span<const NormalMapFormat> formats) const {
+BakedTexels BakeReference::bake(int samples, std::optional<double> sample_angle) const {
     const Implementation& data = *implementation_;
-    const BakeMapOptions map = data.map_by(way);
-    BakeMeasurement trial;
-    trial.code_seconds.resize(formats.size());
-    std::vector<CheckSums> sums(formats.size());
+    BakedTexels all;
     Report ignored;
-    for (const Band& part : data.bands) {
-        CastRows made;
-        trial.cast_seconds += seconds_of(
-            [&] { made = cast_rows(data.baker, map, part.rows.first, part.rows.last, ignored); });
-        trial.rays += made.rays;
-        std::vector<float> degrees(data.texels_of(part.rows));
-        for (std::size_t f = 0; f < formats.size(); ++f) {
-            std::vector<float> rebaked;
-            trial.code_seconds[f] +=
-                seconds_of([&] { rebaked = coded(made.normals, map.width, formats[f]); });
-            sums[f].add(compare_rows(data.baker, map, part.casts, made, rebaked, {},
-                                     part.rows.first, 0, degrees));
-        }
+    for (const Band& band : data.bands) {
+        const CastRows part = cast_rows(data.baker, with_samples(data.map, samples, sample_angle),
+                                        band.rows.first, band.rows.last, ignored);
+        all.normals.insert(all.normals.end(), part.normals.begin(), part.normals.end());
+        all.states.insert(all.states.end(), part.states.begin(), part.states.end());
+        all.rays += part.rays;
     }
-    for (const CheckSums& sum : sums) {
-        trial.errors.push_back(sum.error.stats());
-        const auto codes = static_cast<std::size_t>(BakeStage::quantization);
-        trial.quantization.push_back(sum.stages[codes].stats());
-        trial.center.push_back(sum.center.stats());
-    }
-    if (!sums.empty()) {
-        const auto samples = static_cast<std::size_t>(BakeStage::sampling);
-        trial.sampling = sums.front().stages[samples].stats();
-    }
-    return trial;
+    return all;
 }
 
-Image BakeBenchmark::error_map(const BakeSampling& way, const NormalMapFormat& format) const {
+std::vector<float> BakeReference::coded(const BakedTexels& bake,
+                                        const NormalMapFormat& format) const {
     const Implementation& data = *implementation_;
-    const BakeMapOptions map = data.map_by(way);
-    Image errors =
-        make_image(map.width, static_cast<int>(texels()) / map.width, 1, 32, ColorSpace::data);
-    std::span<float> left = errors.as<float>();
-    Report ignored;
-    for (const Band& part : data.bands) {
-        const CastRows made = cast_rows(data.baker, map, part.rows.first, part.rows.last, ignored);
-        const std::vector<float> rebaked = coded(made.normals, map.width, format);
-        const std::span<float> rows = left.first(data.texels_of(part.rows));
-        compare_rows(data.baker, map, part.casts, made, rebaked, {}, part.rows.first, 0, rows);
-        left = left.subspan(rows.size());
+    std::vector<float> all;
+    all.reserve(bake.normals.size());
+    std::span<const float> left = bake.normals;
+    for (const Band& band : data.bands) {
+        const std::size_t values = 3 * data.texels_of(band);
+        const std::vector<float> part = coded_normals(left.first(values), data.map.width, format);
+        all.insert(all.end(), part.begin(), part.end());
+        left = left.subspan(values);
     }
-    return errors;
+    return all;
 }
 
-std::size_t BakeBenchmark::texels() const {
+BakeCheck BakeReference::compare(const BakedTexels& bake, std::span<const float> coded,
+                                 std::span<float> degrees) const {
+    const Implementation& data = *implementation_;
+    BakeCheck result;
+    result.reference_samples = data.samples;
+    result.rays = bake.rays;
+    CheckSums sums;
+    std::size_t first = 0;
+    for (const Band& band : data.bands) {
+        const std::size_t count = data.texels_of(band);
+        const NormalRows made = {std::span(bake.normals).subspan(3 * first, 3 * count),
+                                 std::span(bake.states).subspan(first, count)};
+        sums.add(compare_rows(data.baker, data.map, band.casts, made,
+                              coded.subspan(3 * first, 3 * count), {}, band.rows.first, 0,
+                              degrees.subspan(first, count)));
+        first += count;
+    }
+    summarize(sums, result);
+    return result;
+}
+
+int BakeReference::width() const {
+    return implementation_->map.width;
+}
+
+std::size_t BakeReference::texels() const {
     std::size_t sum = 0;
-    for (const Band& part : implementation_->bands)
-        sum += implementation_->texels_of(part.rows);
+    for (const Band& band : implementation_->bands)
+        sum += implementation_->texels_of(band);
     return sum;
 }
 
-bool BakeBenchmark::is_whole() const {
+bool BakeReference::is_whole() const {
     return implementation_->is_whole;
 }
 
-int BakeBenchmark::reference_samples() const {
-    return implementation_->reference_samples;
+int BakeReference::samples() const {
+    return implementation_->samples;
 }
 
-std::size_t BakeBenchmark::reference_rays() const {
+std::size_t BakeReference::rays() const {
     std::size_t sum = 0;
-    for (const Band& part : implementation_->bands)
-        sum += part.casts.reference.rays;
+    for (const Band& band : implementation_->bands)
+        sum += band.casts.reference.rays;
     return sum;
-}
-
-std::span<const BakeSampling> default_bake_samplings() {
-    static const std::array<BakeSampling, 7> ways = {
-        {{1, {}}, {4, {}}, {16, {}}, {64, {}}, {16, 8.0}, {16, 2.0}, {16, 0.5}}};
-    return ways;
-}
-
-std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format) {
-    std::vector<NormalMapFormat> formats(4, format);
-    for (NormalMapFormat& one : formats)
-        one.dither = Dither::none;
-    formats[0].bits = formats[1].bits = 8;
-    formats[1].dither = Dither::blue_noise;
-    formats[2].bits = 16;
-    formats[3].bits = 32;
-    return formats;
-}
-
-std::vector<TimedBakeMeasurement> measure_interleaved(const BakeBenchmark& trials,
-                                                      std::span<const BakeSampling> ways,
-                                                      std::span<const NormalMapFormat> formats,
-                                                      const Repeats& repeats) {
-    std::vector<TimedBakeMeasurement> results(ways.size());
-    interleave(ways.size(), repeats, [&](std::size_t way, bool counted) {
-        check_cancelled();
-        TimedBakeMeasurement& one = results[way];
-        one.trial = trials.measure(ways[way], formats);
-        one.seconds.resize(formats.size());
-        for (std::size_t f = 0; counted && f < formats.size(); ++f)
-            one.seconds[f].push_back(one.trial.cast_seconds + one.trial.code_seconds[f]);
-    });
-    return results;
 }
 
 }  // namespace relief

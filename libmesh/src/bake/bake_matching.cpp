@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs parts by name, explains boxes that do not fit, and estimates missed texels.
-#include "relief/mesh/bake_matching.h"
+#include "relief/mesh/bake_check.h"
 
 #include <fmt/format.h>
 

@@ -18,8 +18,8 @@
 namespace relief {
 namespace {
 
-constexpr int block = 4;                    // Samples along the side of a block.
-constexpr std::size_t rays_at_once = 4096;  // Their data fits a cache.
+constexpr int block = 4;                      // Samples along the side of a block.
+constexpr std::size_t rays_per_flush = 4096;  // Their data fits a cache.
 constexpr std::size_t max_first_missed = 8;
 constexpr int bins_per_octave = 8;  // Of ray lengths.
 
@@ -62,14 +62,14 @@ class Piece {
           first_row_(first_row),
           begin_(begin),
           end_(end),
-          width_(work.options.width),
+          width_(work.map.width),
           report_(report),
-          needs_normals_(work.options.layers.normals || work.options.sample_angle),
+          needs_normals_(work.map.layers.normals || work.map.sample_angle),
           sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(end - begin)) {
         const int samples = work.side * work.side;
-        if (LayerBake::is_requested(work.options.layers)) {
+        if (LayerBake::is_requested(work.map.layers)) {
             layers_.emplace(
-                work.options.layers, map_index(0), sums_.size(),
+                work.map.layers, map_index(0), sums_.size(),
                 is_adaptive_bake() ? first_count() : static_cast<std::uint32_t>(samples));
         }
     }
@@ -79,7 +79,7 @@ class Piece {
             cast([&](int x, int y, std::size_t) {
                 return is_first(x % work_.side, y % work_.side, work_.side);
             });
-            const double limit = portable::cos(*work_.options.sample_angle);
+            const double limit = portable::cos(*work_.map.sample_angle);
             std::vector<bool> disagree(sums_.size());
             for (std::size_t i = 0; i < sums_.size(); ++i) {
                 const TexelSum& sum = sums_[i];
@@ -99,7 +99,7 @@ class Piece {
 
   private:
     [[nodiscard]] bool is_adaptive_bake() const {
-        return work_.side > 1 && work_.options.sample_angle.has_value();
+        return work_.side > 1 && work_.map.sample_angle.has_value();
     }
     [[nodiscard]] std::uint32_t first_count() const {
         const int count = work_.side == 2 ? 2 : work_.side * work_.side / block;
@@ -127,7 +127,7 @@ class Piece {
                             add_line(owner, texel, (y % side) * side + x % side);
                     }
                 }
-                if (lines_.size() + block * block > rays_at_once) flush();
+                if (lines_.size() + block * block > rays_per_flush) flush();
             }
         }
         flush();
@@ -241,8 +241,8 @@ class Piece {
             describe_missed(texel);
         }
         rows_.states[at] = state;
-        if (work_.options.layers.normals) store_normal(sum, at);
-        if (work_.options.layers.heights)
+        if (work_.map.layers.normals) store_normal(sum, at);
+        if (work_.map.layers.heights)
             rows_.heights[at] = sum.hits > 0 ? static_cast<float>(sum.height / sum.hits) : 0.0F;
         if (layers_) layers_->store(texel, rows_, at);
     }
@@ -263,7 +263,7 @@ class Piece {
 
     void describe_missed(std::size_t texel) {
         const bool is_first = counts_.first_missed.size() < max_first_missed;
-        if (!is_first && !work_.options.measures_missed) return;
+        if (!is_first && !work_.map.measures_missed) return;
         const CoveredTexel& owner = first_owner(texel);
         const SeenSurface& surface = work_.parts.surface_of(owner.triangle);
         Report ignored;
@@ -275,7 +275,7 @@ class Piece {
                                             first_row_ + begin_ + static_cast<int>(texel / width),
                                             work_.low.position(owner)});
         }
-        if (work_.options.measures_missed && line.outside >= 0.0) measure_missed(line, surface);
+        if (work_.map.measures_missed && line.outside >= 0.0) measure_missed(line, surface);
     }
 
     /// Measures the distance of the nearest surfaces of a missed texel, outwards and inwards.

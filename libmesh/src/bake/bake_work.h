@@ -112,6 +112,7 @@ struct BakeWork {
     const BakeParts& parts;
     const LowSurface& low;
     const BakeOptions& options;
+    const BakeMapOptions& map;
     int side = 1;  ///< Samples along each side of a texel.
 };
 

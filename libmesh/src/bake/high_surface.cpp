@@ -98,7 +98,7 @@ constexpr double usual_share = 0.99;  // Of the area.
 constexpr std::size_t max_area_samples = 250'000;
 
 const HighMaterials* detail_of(const Mesh& mesh, const BakeOptions& options) {
-    for (const HighMaterials& detail : options.details) {
+    for (const HighMaterials& detail : options.materials) {
         if (detail.mesh != &mesh) continue;
         check(detail);
         return &detail;
@@ -140,9 +140,9 @@ Wide interpolated(std::span<const Value> values, const glm::uvec3& corners, cons
 
 /// Returns the number of rays if charts cover the maps completely.
 double expected_rays(const BakeOptions& options) {
-    const int rays = options.layers.occlusion ? options.layers.occlusion->rays : 0;
-    return static_cast<double>(options.map_count) * options.width * options.height *
-           (options.samples + rays);
+    const int rays = options.map.layers.occlusion ? options.map.layers.occlusion->rays : 0;
+    return static_cast<double>(options.map_count) * options.map.width * options.map.height *
+           (options.map.samples + rays);
 }
 
 }  // namespace
@@ -257,7 +257,7 @@ std::vector<std::uint32_t> HighSurface::attributes(const MetTriangle& met) const
 
 HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
                                       const BakeOptions& options, Report& report) {
-    const BakeLayers& layers = options.layers;
+    const BakeLayers& layers = options.map.layers;
     Entry result;
     result.mesh = &mesh;
     const HighMaterials* detail = detail_of(mesh, options);

@@ -12,7 +12,7 @@
 #include "geometry/direction.h"
 #include "geometry/error_accumulator.h"
 #include "parallel.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 
 namespace relief {

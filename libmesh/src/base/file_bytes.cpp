@@ -19,6 +19,7 @@
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
+#include "require_memory.h"
 
 namespace relief {
 namespace {
@@ -39,6 +40,7 @@ std::string read_file(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw FileError(file, fmt::format("cannot be opened: {}", std::strerror(errno)));
     const std::size_t size = std::filesystem::file_size(file);
+    require_memory_for(file, size);
     std::string bytes;
     bytes.reserve(size);
     expect_filling(bytes.data(), size);
@@ -62,6 +64,7 @@ FileContents::FileContents(const std::filesystem::path& file) {
     constexpr std::size_t piece = 1 << 22;
     const RandomAccessFile opened(file);
     size_ = static_cast<std::size_t>(opened.size());
+    require_memory_for(file, size_);
     bytes_ = std::make_unique_for_overwrite<char[]>(size_);
     expect_filling(bytes_.get(), size_);
     ProgressStage stage("reading", size_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Reading files as a whole or in parts, with errors that tell the reason.
+/// Reading files as a whole or in parts, with errors that tell the reason; text and numbers in
+/// their bytes.
 #pragma once
 
 #include <cstddef>
@@ -44,6 +45,8 @@ class RandomAccessFile {
     /// Returns the size in bytes when it was opened.
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
+    [[nodiscard]] int descriptor() const { return descriptor_; }
+
     /// Fills `to` with the bytes from an offset on. \throws FileError if this fails, or if the file
     /// is too short
     void read(std::uint64_t offset, std::span<std::byte> to) const;
@@ -56,5 +59,19 @@ class RandomAccessFile {
 
 /// Returns the extension in lower case with its dot (".obj"); empty if there is none.
 std::string lower_extension(const std::filesystem::path& file);
+
+// Bytes of a file.
+
+inline std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Returns the big-endian number at an offset.
+inline std::uint32_t big32(std::span<const std::byte> bytes, std::size_t offset = 0) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        value = value << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
+    return value;
+}
 
 }  // namespace relief

@@ -3,8 +3,11 @@
 // handler can neither lock nor allocate.
 #include "file_replacement.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -12,6 +15,7 @@
 #include <cerrno>
 #include <climits>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 
@@ -92,46 +96,129 @@ void remove_temporaries_on_signals() {
     }
 }
 
+namespace {
+
+/// Returns the file that is replaced: `file`, or the file that it links to, which need not exist.
+std::filesystem::path target_of(const std::filesystem::path& file) {
+    constexpr int max_links = 40;
+    std::filesystem::path target = file;
+    std::error_code error;
+    for (int links = 0; std::filesystem::is_symlink(target, error); ++links) {
+        if (links == max_links) throw FileError(file, "is a link that leads back to itself");
+        // An absolute link replaces the folder.
+        target = target.parent_path() / std::filesystem::read_symlink(target, error);
+    }
+    return target;
+}
+
+/// Returns a random name in the folder of the target, with its extension.
+std::filesystem::path random_name_beside(const std::filesystem::path& target) {
+    constexpr std::size_t max_extension = 16;
+    std::string extension = target.extension().string();
+    if (extension.size() > max_extension) extension.clear();
+    std::uint64_t number = 0;
+    while (::getrandom(&number, sizeof number, 0) < 0 && errno == EINTR) {
+    }
+    return std::filesystem::path(target).replace_filename(
+        fmt::format(".relief-{:016x}{}", number, extension));
+}
+
+/// Creates an empty file; an existing file or a link is never opened. \return its descriptor
+int create_exclusively(const std::filesystem::path& file) {
+    constexpr ::mode_t everybody = 0666;  // Reduced by the umask.
+    return ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, everybody);
+}
+
+/// Gives the temporary file the mode and the owner of the file that it replaces.
+void copy_mode_and_owner(const std::filesystem::path& from, int to) {
+    struct stat old {};
+    struct stat now {};
+    if (::stat(from.c_str(), &old) != 0 || ::fstat(to, &now) != 0) return;
+    // Only privileged programs may change owners. A change clears the bits that set identifiers.
+    const bool is_same = old.st_uid == now.st_uid && old.st_gid == now.st_gid;
+    const bool changed = !is_same && ::fchown(to, old.st_uid, old.st_gid) == 0;
+    constexpr ::mode_t all_bits = 07777;
+    constexpr ::mode_t permissions = 0777;
+    ::fchmod(to, old.st_mode & (is_same || changed ? all_bits : permissions));
+}
+
+bool is_same_file(const std::filesystem::path& path, int descriptor) {
+    struct stat named {};
+    struct stat opened {};
+    return ::lstat(path.c_str(), &named) == 0 && ::fstat(descriptor, &opened) == 0 &&
+           named.st_dev == opened.st_dev && named.st_ino == opened.st_ino;
+}
+
+}  // namespace
+
 FileReplacement::FileReplacement(std::filesystem::path file)
-    : file_(std::move(file)), place_(max_listed) {
+    : file_(std::move(file)), target_(target_of(file_)), place_(max_listed) {
     const std::filesystem::path folder =
-        file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
-    if (!std::filesystem::is_directory(folder)) {
+        target_.has_parent_path() ? target_.parent_path() : std::filesystem::path(".");
+    std::error_code unknown;
+    if (!std::filesystem::is_directory(folder, unknown)) {
         throw FileError(file_, fmt::format("the folder {} does not exist", folder.string()));
     }
-    if (std::filesystem::is_directory(file_)) throw FileError(file_, "is a folder");
+    const std::filesystem::file_status status = std::filesystem::status(target_, unknown);
+    if (std::filesystem::is_directory(status)) throw FileError(file_, "is a folder");
     // Renaming would replace /dev/null, or the pipe behind /dev/stdout, by a file.
-    if (std::filesystem::exists(file_) && !std::filesystem::is_regular_file(file_))
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw FileError(file_, "is a device or a pipe, which would be replaced by a file");
-    // Unique among all processes and threads that may write here at the same time.
-    static std::atomic<unsigned> counter = 0;
-    temporary_ = folder / fmt::format(".{}.{}-{}{}", file_.stem().string(), ::getpid(), counter++,
-                                      file_.extension().string());
     wait_if_ending();
-    place_ = add_to_list(temporary_);
+    constexpr int max_attempts = 100;
+    for (int attempt = 0; attempt < max_attempts && descriptor_ < 0; ++attempt) {
+        temporary_ = random_name_beside(target_);
+        place_ = add_to_list(temporary_);  // A signal may arrive as soon as the file exists.
+        descriptor_ = create_exclusively(temporary_);
+        if (descriptor_ >= 0) return;
+        const int error = errno;
+        remove_from_list(place_);
+        if (error != EEXIST)
+            throw FileError(file_, fmt::format("cannot be written: {}", std::strerror(error)));
+    }
+    throw FileError(file_, "cannot be written: no temporary file can be made beside it");
 }
 
 FileReplacement::~FileReplacement() {
-    std::error_code ignored;
-    if (!committed_) std::filesystem::remove(temporary_, ignored);
+    if (!committed_ && is_same_file(temporary_, descriptor_)) ::unlink(temporary_.c_str());
+    if (descriptor_ >= 0) ::close(descriptor_);
     remove_from_list(place_);
 }
 
+void FileReplacement::complete() {
+    if (is_complete_) return;
+    copy_mode_and_owner(target_, descriptor_);
+    // Some file systems cannot synchronize, which is no error.
+    if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
+        throw FileError(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
+    is_complete_ = true;
+}
+
 void FileReplacement::commit() {
+    complete();
     wait_if_ending();
+    if (!is_same_file(temporary_, descriptor_))
+        throw FileError(file_, "cannot be written: another program replaced the temporary file");
     std::error_code error;
-    std::filesystem::rename(temporary_, file_, error);
+    std::filesystem::rename(temporary_, target_, error);
     if (error) throw FileError(file_, "cannot be written: " + error.message());
     committed_ = true;
 }
 
-void replace_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-    FileReplacement replacement(file);
+void write_all(const FileReplacement& replacement, std::span<const std::byte> bytes) {
     std::ofstream stream(replacement.temporary(), std::ios::binary);
     stream.write(reinterpret_cast<const char*>(bytes.data()),
                  static_cast<std::streamsize>(bytes.size()));
     stream.close();
-    if (!stream) throw FileError(file, fmt::format("cannot be written: {}", std::strerror(errno)));
+    if (!stream) {
+        throw FileError(replacement.file(),
+                        fmt::format("cannot be written: {}", std::strerror(errno)));
+    }
+}
+
+void replace_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+    FileReplacement replacement(file);
+    write_all(replacement, bytes);
     replacement.commit();
 }
 

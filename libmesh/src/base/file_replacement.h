@@ -13,8 +13,11 @@ namespace RELIEF_API relief {
 
 /// A temporary file beside the file that it will replace.
 ///
-/// Write to temporary(), then call commit(). Without commit(), the destructor removes the temporary
-/// file. Its name keeps the extension, from which writers choose the format.
+/// Write to temporary(), which exists and is empty, then call commit(). Without commit(), the
+/// destructor removes the temporary file. Its name is random and keeps the extension, from which
+/// writers choose the format. A symbolic link is followed: the file that it names is replaced. The
+/// mode and, where the system permits it, the owner of a replaced file are kept; other hard links
+/// to it keep the old contents.
 class FileReplacement {
   public:
     /// \throws FileError if the folder does not exist, or `file` is a folder, a device or a pipe
@@ -23,14 +26,22 @@ class FileReplacement {
     FileReplacement(const FileReplacement&) = delete;
     FileReplacement& operator=(const FileReplacement&) = delete;
 
+    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
     [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
 
-    /// Renames the temporary file. \throws FileError
+    /// Waits until the temporary file is on the disk, so that commit() only renames it.
+    /// \throws FileError
+    void complete();
+
+    /// Calls complete() if needed, and renames the temporary file. \throws FileError
     void commit();
 
   private:
     std::filesystem::path file_;
+    std::filesystem::path target_;  ///< `file_`, or the file that the link `file_` names.
     std::filesystem::path temporary_;
+    int descriptor_ = -1;
+    bool is_complete_ = false;
     bool committed_ = false;
     std::size_t place_;  ///< Index in the list of files that a signal removes.
 };
@@ -41,6 +52,9 @@ class FileReplacement {
 /// user. Ignored signals stay ignored. At most 128 files at a time are known; further ones would
 /// remain.
 void remove_temporaries_on_signals();
+
+/// Writes all bytes to a new temporary file. \throws FileError
+void write_all(const FileReplacement& replacement, std::span<const std::byte> bytes);
 
 /// Replaces the contents of a file. \throws FileError
 void replace_file(const std::filesystem::path& file, std::span<const std::byte> bytes);

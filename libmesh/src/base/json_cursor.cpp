@@ -53,6 +53,25 @@ class DuplicateKeys {
 
 }  // namespace
 
+void require_json_depth(std::string_view text, std::size_t max_depth) {
+    std::size_t depth = 0;
+    bool is_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (is_string) {
+            if (c == '\\') ++i;
+            if (c == '"') is_string = false;
+        } else if (c == '"') {
+            is_string = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > max_depth)
+                throw InvalidInput(fmt::format("its JSON is nested deeper than {}", max_depth));
+        } else if ((c == '}' || c == ']') && depth > 0) {
+            --depth;
+        }
+    }
+}
+
 JsonCursor::JsonCursor(std::shared_ptr<const Json> document, const Json* value,
                        std::string location, Wording wording)
     : document_(std::move(document)),
@@ -66,6 +85,8 @@ JsonCursor::JsonCursor(Json&& document, Wording wording)
       wording_(wording) {}
 
 JsonCursor JsonCursor::parse(std::string_view text) {
+    constexpr std::size_t max_depth = 1024;
+    require_json_depth(text, max_depth);
     DuplicateKeys duplicates;
     try {
         return JsonCursor(Json::parse(text.begin(), text.end(), std::ref(duplicates)),

@@ -24,6 +24,10 @@
 
 namespace RELIEF_API relief {
 
+/// Limits the nesting of a document before it is parsed. Broken text is not noticed.
+/// \throws InvalidInput if arrays and objects are nested deeper
+void require_json_depth(std::string_view text, std::size_t max_depth);
+
 class JsonCursor {
   public:
     /// The text of errors: "must be a string" and "has no 'id'" for files that people write, "is of

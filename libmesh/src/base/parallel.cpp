@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 
 #include <algorithm>
 #include <exception>
@@ -72,30 +73,56 @@ void call_hook() {
     if (void (*const hook)() = before_each_piece.load(std::memory_order_relaxed)) hook();
 }
 
-/// Runs the pieces that oneTBB chooses.
+/// Runs the pieces on at most `threads` threads: each of them takes the next piece until none is
+/// left. The loops in the pieces share the limit.
+template <typename RunPiece>
+void take_pieces(unsigned threads, std::size_t count, std::size_t grain,
+                 const RunPiece& run_piece) {
+    constexpr std::size_t pieces_per_thread = 8;
+    const std::size_t step = std::max(grain, count / (pieces_per_thread * threads));
+    const std::size_t takers = std::min<std::size_t>(threads, (count + step - 1) / step);
+    std::atomic<std::size_t> next = 0;
+    const auto take = [&](const auto&) {
+        const unsigned before =
+            std::exchange(current_thread_limit, threads / static_cast<unsigned>(takers));
+        for (std::size_t begin = next.fetch_add(step); begin < count; begin = next.fetch_add(step))
+            run_piece(begin, std::min(begin + step, count));
+        current_thread_limit = before;
+    };
+    tbb::task_group_context context(tbb::task_group_context::isolated);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, takers), take, tbb::simple_partitioner(),
+                      context);
+}
+
+/// Runs the pieces that oneTBB chooses, or within the limit of this operation.
 ///
 /// After an exception oneTBB would cancel the loop and all nested loops, which would then return
 /// normally although some of their pieces never ran. Each exception is therefore caught in its
 /// piece. The isolated context prevents cancellation by oneTBB tasks of the caller.
 template <typename RunPiece>
 void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece) {
+    if (current_thread_limit == 1) return run_piece(0, count);
     FirstFailure failure;
-    tbb::task_group_context context(tbb::task_group_context::isolated);
-    release_writes(&failure);
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, count, grain),
-        [&](const auto& piece) {
-            acquire_writes(&failure);
-            if (!failure.is_before(piece.begin())) {
-                try {
-                    run_piece(piece.begin(), piece.end());
-                } catch (...) {
-                    failure.set(piece.begin(), std::current_exception());
-                }
+    const auto run_and_catch = [&](std::size_t begin, std::size_t end) {
+        acquire_writes(&failure);
+        if (!failure.is_before(begin)) {
+            try {
+                run_piece(begin, end);
+            } catch (...) {
+                failure.set(begin, std::current_exception());
             }
-            release_writes(&failure);
-        },
-        context);
+        }
+        release_writes(&failure);
+    };
+    release_writes(&failure);
+    if (current_thread_limit > 0) {
+        take_pieces(current_thread_limit, count, grain, run_and_catch);
+    } else {
+        tbb::task_group_context context(tbb::task_group_context::isolated);
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, grain),
+            [&](const auto& piece) { run_and_catch(piece.begin(), piece.end()); }, context);
+    }
     acquire_writes(&failure);
     failure.rethrow();
 }
@@ -146,7 +173,9 @@ void parallel_for_reporting(std::size_t count, std::size_t grain, Report& report
 }
 
 std::size_t thread_count() {
-    // The limit of set_thread_limit(), or the number of processors. This call starts no threads.
+    // The limits of this operation and of set_thread_limit(), or the number of processors. This
+    // call starts no threads.
+    if (current_thread_limit > 0) return current_thread_limit;
     const auto capped =
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     return std::min<std::size_t>(
@@ -171,7 +200,9 @@ void parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_sm
 }
 
 void set_thread_limit(unsigned count) {
+    static std::mutex mutex;
     static std::unique_ptr<tbb::global_control> limit;
+    const std::lock_guard lock(mutex);
     limit.reset();
     if (count > 0) {
         limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

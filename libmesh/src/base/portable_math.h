@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Mathematics whose results are the same bits on every processor and with every compiler and C
-/// library: functions of <cmath>, angles that compilers can vectorize, and sums of two doubles.
+/// library: functions of <cmath>, angles that compilers can vectorize, sums of two doubles, and
+/// random numbers.
 ///
 /// The C library's functions are not used for numbers that end up in files: glibc chooses variants
 /// with and without fused multiplication by the processor, whose last bits differ. Nor is `long
@@ -11,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <numbers>
 
 #include "relief/export.h"
@@ -176,5 +179,41 @@ inline DoubleDouble upper_angle(const DoubleDouble& y, const DoubleDouble& x) {
     if (steep) angle = quarter * 2.0 - angle;
     return backward ? quarter * 4.0 - angle : angle;
 }
+
+template <int N, typename T>
+bool is_finite(const glm::vec<N, T>& vector) {
+    for (int i = 0; i < N; ++i) {
+        if (!std::isfinite(vector[i])) return false;
+    }
+    return true;
+}
+
+/// A pseudorandom number generator: SplitMix64 [Steele et al. 2014].
+class Random {
+  public:
+    explicit Random(std::uint32_t seed) : state_(seed) {}
+
+    /// Returns a uniformly distributed number in [low, high).
+    double between(double low, double high) {
+        state_ += 0x9e3779b97f4a7c15ULL;
+        std::uint64_t bits = state_;
+        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
+        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
+        bits ^= bits >> 31;
+        return low + (high - low) * (static_cast<double>(bits >> 11) * 0x1p-53);
+    }
+
+    /// Returns a nearly Gaussian number with mean 0 and standard deviation 1, in [-6, 6]. It is a
+    /// sum of 12 uniform numbers, because the last bits of logarithms depend on the machine.
+    double normal() {
+        double sum = -6.0;
+        for (int i = 0; i < 12; ++i)
+            sum += between(0.0, 1.0);
+        return sum;
+    }
+
+  private:
+    std::uint64_t state_;
+};
 
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread-local variable holds the Progress of an operation; parallel loops pass it on to their
-// threads.
+// Thread-local variables hold the Progress and the limit of threads of an operation; parallel loops
+// pass the Progress on to their threads.
 #include "relief/mesh/execution.h"
 
 #include <sys/stat.h>
@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "parallel.h"
 #include "progress_stage.h"
 
 namespace relief {
 
 constinit thread_local Progress* current_progress = nullptr;
+constinit thread_local unsigned current_thread_limit = 0;
 
 namespace {
 
@@ -102,6 +104,20 @@ ProgressScope::ProgressScope(Progress& progress)
 
 ProgressScope::~ProgressScope() {
     current_progress = before_;
+}
+
+ExecutionScope::ExecutionScope(const ExecutionOptions& options)
+    : limit_before_(current_thread_limit), progress_before_(current_progress) {
+    if (options.threads > 0) {
+        current_thread_limit =
+            static_cast<unsigned>(std::min<std::size_t>(options.threads, thread_count()));
+    }
+    if (options.progress != nullptr) current_progress = options.progress;
+}
+
+ExecutionScope::~ExecutionScope() {
+    current_thread_limit = limit_before_;
+    current_progress = progress_before_;
 }
 
 ProgressPiece::ProgressPiece(Progress* progress)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Progress from the side of the operation: stages, and cancellation points.
+/// Progress from the side of the operation: stages, and cancellation points; and its limit of
+/// threads.
 ///
 /// Without a Progress, all functions here only read a thread-local variable.
 #pragma once
@@ -16,6 +17,9 @@ namespace RELIEF_API relief {
 
 /// The Progress of this thread; null if there is none.
 extern constinit thread_local Progress* current_progress;
+
+/// The limit of threads of the loops that this thread starts; 0 if there is none.
+extern constinit thread_local unsigned current_thread_limit;
 
 /// A cancellation point. \throws Cancelled if cancellation was requested
 inline void check_cancelled() {

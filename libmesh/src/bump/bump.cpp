@@ -28,7 +28,6 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/height_map.h"
-#include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -485,7 +484,7 @@ namespace {
 constexpr double max_strength = 1e30;
 constexpr double max_texel = 1e30;
 
-void check(const Image& height, const BumpOptions& options) {
+void check(const ImageView& height, const BumpOptions& options) {
     if (height.empty()) throw InvalidInput("an empty height field has no normals");
     if (height.channels != 1)
         throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
@@ -513,25 +512,24 @@ std::function<const void*(int)> rows_of(std::span<const Sample> samples, int wid
 }
 
 /// Computes all rows of an image. If it has holes, the rows are computed from a filled copy.
-void make_image_rows(const Image& height, const BumpOptions& given, const BumpTarget& target,
+void make_image_rows(const ImageView& height, const BumpOptions& given, const BumpTarget& target,
                      Report& report) {
     const BumpOptions options = resolve_options(height, given);
     HeightRows heights{height.width, height.height, height.bits(), {}};
-    std::visit(
-        [&](const auto& samples) { heights.row = rows_of(std::span(samples), height.width); },
-        height.samples);
+    with_sample_type(height, [&]<typename Sample>(Sample) {
+        heights.row = [&height](int row) { return height.row<Sample>(row); };
+    });
     if (make_all_rows(heights, options, target)) return;
-    const std::vector<float> whole = filled_holes(height, *options.wrap, report);
-    heights.row = rows_of(std::span(whole), height.width);
+    const Image whole = part_of(height, {0, 0, height.width, height.height});
+    const std::vector<float> filled = filled_holes(whole, *options.wrap, report);
+    heights.row = rows_of(std::span(filled), height.width);
     make_all_rows(heights, options, target);
 }
 
 /// The rows of an image as a target.
 template <typename Sample>
-std::function<void*(int)> target_rows(Image& image) {
-    Sample* const first = image.as<Sample>().data();
-    const std::ptrdiff_t row_size = static_cast<std::ptrdiff_t>(image.width) * image.channels;
-    return [=](int row) { return first + row * row_size; };
+std::function<void*(int)> target_rows(const MutableImageView& image) {
+    return [image](int row) { return image.row<Sample>(row); };
 }
 
 Image floats_from_height(const Image& height, int channels, BumpResult result,
@@ -576,7 +574,7 @@ void check_bump(const BumpOptions& options) {
     gradient_kernel(options.kernel.value_or(Kernel::gaussian), options.gaussian_radius);
 }
 
-BumpOptions resolve_options(const Image& height, BumpOptions options) {
+BumpOptions resolve_options(const ImageView& height, BumpOptions options) {
     check(height, options);
     if (!options.wrap) options.wrap = detect_tiling(height).wraps();
     if (!options.kernel) {
@@ -602,13 +600,26 @@ void normal_map_from_height(const Image& height, const BumpOptions& options,
                       result.channels == 3 && result.bits() == format.bits;
     if (!fits) result = image_to_fill(height.width, height.height, 3, format.bits);
     result.color_space = ColorSpace::data;
+    normal_map_from_height(height, options, format, MutableImageView(result), report);
+}
+
+void normal_map_from_height(const ImageView& height, const BumpOptions& options,
+                            const NormalMapFormat& format, const MutableImageView& result,
+                            Report& report, const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
+    check(height, options);
+    const bool fits = result.width == height.width && result.height == height.height &&
+                      result.channels == 3 && result.bits() == format.bits;
+    if (!fits) {
+        throw InvalidInput(fmt::format(
+            "the memory for the normal map has {} x {} texels of {} channels with {} bits, but "
+            "must have {} x {} of 3 with {}",
+            result.width, result.height, result.channels, result.bits(), height.width,
+            height.height, format.bits));
+    }
     BumpTarget target{BumpResult::codes, format, {}};
-    if (format.bits == 8)
-        target.row = target_rows<std::uint8_t>(result);
-    else if (format.bits == 16)
-        target.row = target_rows<std::uint16_t>(result);
-    else
-        target.row = target_rows<float>(result);
+    with_sample_type(result,
+                     [&]<typename Sample>(Sample) { target.row = target_rows<Sample>(result); });
     make_image_rows(height, options, target, report);
 }
 

@@ -8,7 +8,7 @@
 // three ways. Noise, and quantization that behaves like white noise, is removed by spectral
 // subtraction. Quantization steps wider than texels are removed by destaircase(). Floats without
 // noise remain unchanged.
-#include "relief/mesh/kernel_choice.h"
+#include "relief/mesh/height_map.h"
 
 #include <fmt/format.h>
 
@@ -28,8 +28,6 @@
 #include "image/height_holes.h"
 #include "parallel.h"
 #include "portable_math.h"
-#include "random.h"
-#include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -729,7 +727,7 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
     return choice;
 }
 
-KernelChoice choose_kernel(const Image& height, const BumpOptions& options, bool destaircased,
+KernelChoice choose_kernel(const ImageView& height, const BumpOptions& options, bool destaircased,
                            Grain grain) {
     if (height.empty()) throw InvalidInput("an empty height field has no kernel");
     std::vector<Image> parts;

@@ -12,7 +12,6 @@
 #include "image/fft.h"
 #include "image/texel_loops.h"
 #include "portable_math.h"
-#include "random.h"
 
 namespace relief {
 namespace {

@@ -15,14 +15,6 @@
 
 namespace relief {
 
-template <int N, typename T>
-bool is_finite(const glm::vec<N, T>& vector) {
-    for (int i = 0; i < N; ++i) {
-        if (!std::isfinite(vector[i])) return false;
-    }
-    return true;
-}
-
 /// Normalizes `vector`. Returns zero if it has no direction (zero or not finite).
 inline glm::dvec3 direction_or_zero(const glm::dvec3& vector) {
     const double length = glm::length(vector);

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 

@@ -15,7 +15,7 @@
 #include "geometry/smooth_fans.h"
 #include "geometry/weld.h"
 #include "parallel.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encodes and decodes tangent frames in double precision. A frame that is not orthonormal is
-// replaced by the rules of frame_encoding.h and counted. The code uses only sums, products,
+// replaced by the rules of frames.h and counted. The code uses only sums, products,
 // quotients and square roots, so the codes are the same on every processor. Frames are independent
 // of each other and processed in parallel. Sources: [Cigolle et al. 2014], [Frey and Herzeg 2011],
 // [Ong 2023], [Duff et al. 2017].
-#include "relief/mesh/frame_encoding.h"
+#include "relief/mesh/frames.h"
 
 #include <fmt/format.h>
 

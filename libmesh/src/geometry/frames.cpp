@@ -158,35 +158,10 @@ void make_flat(FramedMesh& framed, Report& report) {
     store_corner_normals(framed, at_corners, report);
 }
 
-/// Returns the weighting of an averaging mode; absent for automatic weighting.
-std::optional<NormalWeight> weight_of(NormalMode mode) {
-    switch (mode) {
-        case NormalMode::uniform:
-            return NormalWeight::uniform;
-        case NormalMode::area:
-            return NormalWeight::area;
-        case NormalMode::angle:
-            return NormalWeight::angle;
-        case NormalMode::sine:
-            return NormalWeight::sine;
-        case NormalMode::max:
-            return NormalWeight::max;
-        case NormalMode::angle_edges:
-            return NormalWeight::angle_edges;
-        case NormalMode::area_angle:
-            return NormalWeight::area_angle;
-        case NormalMode::automatic:
-        case NormalMode::keep:
-        case NormalMode::flat:
-            break;
-    }
-    return std::nullopt;
-}
-
 void make_averaged(FramedMesh& framed, NormalMode mode, const FrameOptions& options,
                    Report& report) {
     Mesh& mesh = framed.mesh;
-    const std::optional<NormalWeight> weight = weight_of(mode);
+    const std::optional<NormalWeight> weight = mode.weight();
     NormalOptions how;
     how.weld_tolerance = options.weld_tolerance;
     const bool has_groups = options.smoothing_groups &&
@@ -255,7 +230,7 @@ void repair_kept(Mesh& mesh, const FrameOptions& options, Report& report) {
         }
         if (averaged.empty()) {
             NormalOptions how;
-            how.weight = weight_of(options.if_missing).value_or(NormalWeight::angle);
+            how.weight = options.if_missing.weight().value_or(NormalWeight::angle);
             how.weld_tolerance = options.weld_tolerance;
             averaged = vertex_normals(mesh.positions, mesh.triangles, how, rest);
         }
@@ -266,17 +241,13 @@ void repair_kept(Mesh& mesh, const FrameOptions& options, Report& report) {
 
 void make_normals(FramedMesh& framed, NormalMode mode, const FrameOptions& options,
                   Report& report) {
-    switch (mode) {
-        case NormalMode::keep:
-            report_kept(framed.mesh.normals, options.repair, report);
-            if (options.repair) repair_kept(framed.mesh, options, report);
-            break;
-        case NormalMode::flat:
-            make_flat(framed, report);
-            break;
-        default:
-            make_averaged(framed, mode, options, report);
-            break;
+    if (mode == NormalMode::keep) {
+        report_kept(framed.mesh.normals, options.repair, report);
+        if (options.repair) repair_kept(framed.mesh, options, report);
+    } else if (mode == NormalMode::flat) {
+        make_flat(framed, report);
+    } else {
+        make_averaged(framed, mode, options, report);
     }
 }
 

@@ -12,8 +12,8 @@
 #include "geometry/corners.h"
 #include "geometry/normal_sums.h"
 #include "geometry/weld.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {

@@ -439,7 +439,9 @@ void report_all(const AveragingResult& averaged, StridedSpan<const glm::vec3> po
 }  // namespace
 
 void vertex_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
-                    const NormalOptions& options, StridedSpan<glm::vec3> normals, Report* report) {
+                    const NormalOptions& options, StridedSpan<glm::vec3> normals, Report& report,
+                    const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
     if (normals.size() != positions.size()) {
         throw InvalidInput(fmt::format("there is memory for {} normals, but there are {} positions",
                                        normals.size(), positions.size()));
@@ -447,14 +449,14 @@ void vertex_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangl
     const AveragingResult averaged = averaged_normals(
         positions, triangles, options.weight, options.arithmetic,
         [&] { return sharing_vertices(positions, options.weld_tolerance); }, normals);
-    if (report != nullptr) report_all(averaged, positions, triangles, *report);
+    report_all(averaged, positions, triangles, report);
 }
 
 std::vector<glm::vec3> vertex_normals(StridedSpan<const glm::vec3> positions,
                                       TriangleSpan triangles, const NormalOptions& options,
                                       Report& report) {
     std::vector<glm::vec3> normals(positions.size());
-    vertex_normals(positions, triangles, options, normals, &report);
+    vertex_normals(positions, triangles, options, normals, report);
     return normals;
 }
 

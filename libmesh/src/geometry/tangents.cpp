@@ -350,24 +350,24 @@ std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> position
 
 void vertex_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const glm::vec3> normals,
                      StridedSpan<const glm::vec2> texcoords, TriangleSpan triangles,
-                     StridedSpan<glm::vec4> tangents, Report* report) {
+                     StridedSpan<glm::vec4> tangents, Report& report,
+                     const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
     if (tangents.size() != positions.size()) {
         throw InvalidInput(
             fmt::format("there is memory for {} tangents, but there are {} positions",
                         tangents.size(), positions.size()));
     }
-    Report ignored;
-    Report& findings = report != nullptr ? *report : ignored;
     const std::vector<glm::vec4> of_corners =
-        mikktspace_tangents(positions, normals, texcoords, triangles, findings);
+        mikktspace_tangents(positions, normals, texcoords, triangles, report);
     const std::vector<std::uint32_t> differing =
         write_first_tangents(of_corners, triangles, tangents);
-    settle_differing(of_corners, triangles, differing, tangents, findings);
+    settle_differing(of_corners, triangles, differing, tangents, report);
     for (std::size_t v = 0; v < tangents.size(); ++v) {
         if (tangents[v].w != 0.0F) continue;
         tangents[v] = glm::vec4(perpendicular_to(normals[v]), -1.0F);
-        findings.add("isolated vertex", "vertex", v,
-                     "gets a fixed tangent perpendicular to its normal");
+        report.add("isolated vertex", "vertex", v,
+                   "gets a fixed tangent perpendicular to its normal");
     }
 }
 

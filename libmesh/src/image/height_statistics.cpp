@@ -43,12 +43,16 @@ class Heights {
     std::span<const Sample> samples_;
 };
 
-/// Calls with_heights(Heights) for the sample type of the image.
-template <typename WithHeights>
-auto on_heights(const Image& image, const WithHeights& with_heights) {
+void check_heights(const ImageView& image) {
     if (image.empty()) throw InvalidInput("an empty height field has no statistics");
     if (image.channels != 1)
         throw InvalidInput(fmt::format("a height field has one channel, not {}", image.channels));
+}
+
+/// Calls with_heights(Heights) for the sample type of the image.
+template <typename WithHeights>
+auto on_heights(const Image& image, const WithHeights& with_heights) {
+    check_heights(image);
     if (image.bits() == 8) return with_heights(Heights<std::uint8_t>(image));
     if (image.bits() == 16) return with_heights(Heights<std::uint16_t>(image));
     return with_heights(Heights<float>(image));
@@ -144,12 +148,13 @@ double noise_of(const Heights<Sample>& heights) {
 
 }  // namespace
 
-Tiling detect_tiling(const Image& height) {
-    return on_heights(height, [](const auto& heights) {
-        SeamSurvey survey(heights.width, heights.height);
-        const auto width = static_cast<std::size_t>(heights.width);
-        for (int row = 0; row < heights.height; ++row)
-            survey.add_row(heights.samples().subspan(static_cast<std::size_t>(row) * width, width));
+Tiling detect_tiling(const ImageView& height) {
+    check_heights(height);
+    return with_sample_type(height, [&]<typename Sample>(Sample) {
+        SeamSurvey survey(height.width, height.height);
+        for (int row = 0; row < height.height; ++row)
+            survey.add_row(
+                std::span(height.row<Sample>(row), static_cast<std::size_t>(height.width)));
         return survey.tiling();
     });
 }

@@ -22,6 +22,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 #include "relief/mesh/report.h"
+#include "require_memory.h"
 
 namespace relief {
 namespace {
@@ -130,6 +131,7 @@ Image make_image(int width, int height, int channels, int bits, ColorSpace color
                         width, height, channels));
     }
     Image image{width, height, channels, color_space, {}};
+    require_memory(image.sample_count(), static_cast<std::uint64_t>(bits / 8));
     image.samples = zeros(bits, image.sample_count());
     return image;
 }
@@ -252,7 +254,7 @@ void drop_alpha(Image& image) {
     image.channels = 3;
 }
 
-Image part_of(const Image& image, const ImagePart& part) {
+Image part_of(const ImageView& image, const ImagePart& part) {
     const bool is_within = part.x >= 0 && part.y >= 0 && part.width > 0 && part.height > 0 &&
                            part.width <= image.width - part.x &&
                            part.height <= image.height - part.y;
@@ -262,26 +264,26 @@ Image part_of(const Image& image, const ImagePart& part) {
                                        image.height));
     }
     Image result =
-        make_image(part.width, part.height, image.channels, image.bits(), image.color_space);
-    std::visit(
-        [&]<typename Sample>(std::vector<Sample>& samples) {
-            const std::span<const Sample> all = image.as<Sample>();
-            const auto channels = static_cast<std::size_t>(image.channels);
-            const std::size_t row = static_cast<std::size_t>(part.width) * channels;
-            for (int y = 0; y < part.height; ++y) {
-                const std::size_t texel =
-                    static_cast<std::size_t>(part.y + y) * static_cast<std::size_t>(image.width) +
-                    static_cast<std::size_t>(part.x);
-                std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(texel * channels), row,
-                            samples.begin() +
-                                static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row));
-            }
-        },
-        result.samples);
+        make_image(part.width, part.height, image.channels, image.bits(), ColorSpace::data);
+    with_sample_type(image, [&]<typename Sample>(Sample) {
+        const auto channels = static_cast<std::size_t>(image.channels);
+        const std::size_t row = static_cast<std::size_t>(part.width) * channels;
+        for (int y = 0; y < part.height; ++y) {
+            const Sample* const from =
+                image.row<Sample>(part.y + y) + static_cast<std::size_t>(part.x) * channels;
+            std::copy_n(from, row, result.as<Sample>().data() + static_cast<std::size_t>(y) * row);
+        }
+    });
     return result;
 }
 
-void check_floats(const Image& image, int channels, const char* what) {
+Image part_of(const Image& image, const ImagePart& part) {
+    Image result = part_of(ImageView(image), part);
+    result.color_space = image.color_space;
+    return result;
+}
+
+void check_floats(const ImageView& image, int channels, const char* what) {
     if (image.empty()) throw InvalidInput(fmt::format("an empty image holds no {}", what));
     if (image.channels != channels || image.bits() != 32) {
         throw InvalidInput(fmt::format("{} have {} float channels, not {} of {} bits", what,

@@ -130,7 +130,7 @@ Sums sums_of(const MapVectors<Sample>& vectors, std::size_t begin, std::size_t e
 
 }  // namespace
 
-MapStatistics map_statistics(const Image& map, const SampleMeaning& meaning, std::size_t step) {
+MapStatistics map_statistics(const ImageView& map, const SampleMeaning& meaning, std::size_t step) {
     return with_sample_type(map, [&](auto sample) {
         const MapVectors<decltype(sample)> vectors(map, meaning);
         const std::size_t count =
@@ -243,7 +243,7 @@ Observation observe(const Slopes& slopes) {
 template <typename Sample>
 class Squares {
   public:
-    Squares(const Image& map, const SampleMeaning& meaning)
+    Squares(const ImageView& map, const SampleMeaning& meaning)
         : vectors_(map, meaning), width_(map.width), height_(map.height) {
         const int shorter = std::min(width_, height_);
         side_ = std::clamp(shorter / 4 / 8 * 8, least_square, largest_square);
@@ -395,7 +395,7 @@ std::optional<double> alpha_correlation(const std::vector<SquareEvidence>& squar
 
 }  // namespace
 
-SurfaceEvidence surface_evidence(const Image& map, const SampleMeaning& meaning) {
+SurfaceEvidence surface_evidence(const ImageView& map, const SampleMeaning& meaning) {
     return with_sample_type(map, [&](auto sample) {
         const Squares<decltype(sample)> all(map, meaning);
         std::vector<SquareEvidence> squares(all.count());
@@ -412,25 +412,26 @@ SurfaceEvidence surface_evidence(const Image& map, const SampleMeaning& meaning)
 namespace {
 
 template <typename Code>
-FlatEvidence counted(const Image& map) {
+FlatEvidence counted(const ImageView& map) {
     constexpr int lower = std::numeric_limits<Code>::max() / 2;
-    const std::span<const Code> samples = map.as<Code>();
-    const auto channels = static_cast<std::size_t>(map.channels);
     const auto is_near = [](int code) { return code >= lower - 1 && code <= lower + 2; };
     FlatEvidence evidence;
-    for (std::size_t first = 0; first + 2 < samples.size(); first += channels) {
-        const int x = samples[first];
-        const int y = samples[first + 1];
-        if (!is_near(x) || !is_near(y)) continue;
-        ++evidence.near;
-        if (x == lower && y == lower) ++evidence.lower;
+    for (int row = 0; row < map.height; ++row) {
+        const Code* texel = map.row<Code>(row);
+        for (int column = 0; column < map.width; ++column, texel += map.channels) {
+            const int x = texel[0];
+            const int y = texel[1];
+            if (!is_near(x) || !is_near(y)) continue;
+            ++evidence.near;
+            if (x == lower && y == lower) ++evidence.lower;
+        }
     }
     return evidence;
 }
 
 }  // namespace
 
-FlatEvidence flat_evidence(const Image& map) {
+FlatEvidence flat_evidence(const ImageView& map) {
     switch (map.bits()) {
         case 8:
             return counted<std::uint8_t>(map);

@@ -48,8 +48,9 @@ float component_of(Sample sample, const SampleMeaning& meaning) {
 template <typename Sample>
 class MapVectors {
   public:
-    MapVectors(const Image& map, const SampleMeaning& meaning)
-        : samples_(map.as<Sample>()),
+    MapVectors(const ImageView& map, const SampleMeaning& meaning)
+        : map_(map),
+          samples_(map.contiguous<Sample>()),
           channels_(static_cast<std::size_t>(map.channels)),
           meaning_(meaning) {
         if constexpr (!std::is_same_v<Sample, float>) {
@@ -59,7 +60,8 @@ class MapVectors {
     }
 
     [[nodiscard]] float component(std::size_t texel, std::size_t channel) const {
-        const Sample sample = samples_[texel * channels_ + channel];
+        const Sample sample = samples_ != nullptr ? samples_[texel * channels_ + channel]
+                                                  : map_.texel<Sample>(texel)[channel];
         if constexpr (std::is_same_v<Sample, float>)
             return component_of(sample, meaning_);
         else
@@ -74,7 +76,8 @@ class MapVectors {
     [[nodiscard]] std::size_t channels() const { return channels_; }
 
   private:
-    std::span<const Sample> samples_;
+    ImageView map_;
+    const Sample* samples_;  ///< Null if the rows are not contiguous.
     std::size_t channels_;
     SampleMeaning meaning_;
     std::vector<float> table_;
@@ -104,7 +107,8 @@ struct MapStatistics {
 };
 
 /// \param step  only every step-th texel is evaluated
-MapStatistics map_statistics(const Image& map, const SampleMeaning& meaning, std::size_t step = 1);
+MapStatistics map_statistics(const ImageView& map, const SampleMeaning& meaning,
+                             std::size_t step = 1);
 
 struct SurfaceEvidence {
     GreenEvidence green;
@@ -117,7 +121,7 @@ struct SurfaceEvidence {
 /// Texels that are not finite, face back or are steeper than 10 do not contribute, nor do their
 /// neighbors. The map is evaluated as it is and averaged over 2, 4 and 8 texels, which reduces the
 /// noise of few bits. The scale with the highest significance determines the result.
-SurfaceEvidence surface_evidence(const Image& map, const SampleMeaning& meaning);
+SurfaceEvidence surface_evidence(const ImageView& map, const SampleMeaning& meaning);
 
 /// Counts of texels whose x and y both have one of the two codes below or the two codes above 127.5
 /// (32767.5).
@@ -132,6 +136,6 @@ struct FlatEvidence {
 };
 
 /// \param map  at least three channels; a map of 32 bits gives no evidence
-FlatEvidence flat_evidence(const Image& map);
+FlatEvidence flat_evidence(const ImageView& map);
 
 }  // namespace relief

@@ -95,7 +95,7 @@ class ExactFlat {
   public:
     /// \param codes  the codes of x and y, see flat_texel_codes()
     explicit ExactFlat(const std::optional<std::array<std::uint16_t, 2>>& codes) : codes_(codes) {}
-    ExactFlat(const Image& map, FlatCode flat, FlatTexels texels, int x, int y) {
+    ExactFlat(const ImageView& map, FlatCode flat, FlatTexels texels, int x, int y) {
         if (texels == FlatTexels::exact && flat == FlatCode::half)
             codes_ = flat_texel_codes(map, x, y);
     }

@@ -61,13 +61,12 @@ void encode_row(const float* normals, int width, int row, const NormalMapFormat&
 }
 
 template <typename Sample>
-void encode(const Image& normals, const NormalMapFormat& format, Image& result, Report& report) {
-    const float* const from = normals.as<float>().data();
-    Sample* const to = result.as<Sample>().data();
-    const auto row_size = static_cast<std::size_t>(normals.width) * 3;
-    for_each_row(normals.width, normals.height, report, [&](std::size_t row, Report& found) {
-        encode_row(from + row * row_size, normals.width, static_cast<int>(row), format,
-                   to + row * row_size, found);
+void encode(const ImageView& normals, const NormalMapFormat& format, const MutableImageView& map,
+            Report& report) {
+    for_each_row(normals.width, normals.height, report, [&](std::size_t index, Report& found) {
+        const int row = static_cast<int>(index);
+        encode_row(normals.row<float>(row), normals.width, row, format, map.row<Sample>(row),
+                   found);
     });
 }
 
@@ -87,36 +86,40 @@ bool has_no_direction(const Sample* sample, FlatCode flat) {
 }
 
 template <typename Sample>
-void decode(const Image& map, Green green, FlatCode flat, FlatTexels texels,
-            std::span<float> normals, Report& report) {
-    const std::span<const Sample> samples = map.as<Sample>();
+void decode(const ImageView& map, Green green, FlatCode flat, FlatTexels texels,
+            const MutableImageView& normals, Report& report) {
+    const auto width = static_cast<std::size_t>(map.width);
     const auto channels = static_cast<std::size_t>(map.channels);
     const NormalCoding<Sample> coding{flat};
     const double up = green == Green::up ? 1.0 : -1.0;
     const ExactFlat<Sample> exact(map, flat, texels, 0, 1);
-    for_each_texel(normals.size() / 3, report, [&](std::size_t texel, Report& found) {
-        const Sample* sample = &samples[texel * channels];
-        Direction direction{coding.decoded(sample[0]), coding.decoded(sample[1]) * up,
-                            coding.decoded(sample[2])};
-        if (exact.is_flat(sample[0], sample[1])) direction.x = direction.y = 0.0;
-        if (has_no_direction(sample, flat)) direction = {0.0, 0.0, 0.0};
-        if (!make_unit(direction))
-            found.add("normal without direction", "texel", texel, "read as flat");
-        store(direction, &normals[texel * 3]);
+    for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
+        const Sample* sample = map.row<Sample>(static_cast<int>(row));
+        float* normal = normals.row<float>(static_cast<int>(row));
+        for (std::size_t x = 0; x < width; ++x, sample += channels, normal += 3) {
+            Direction direction{coding.decoded(sample[0]), coding.decoded(sample[1]) * up,
+                                coding.decoded(sample[2])};
+            if (exact.is_flat(sample[0], sample[1])) direction.x = direction.y = 0.0;
+            if (has_no_direction(sample, flat)) direction = {0.0, 0.0, 0.0};
+            if (!make_unit(direction))
+                found.add("normal without direction", "texel", row * width + x, "read as flat");
+            store(direction, normal);
+        }
     });
 }
 
 /// Counts the texels with each pair of the two codes around zero, lower first, x before y.
 template <typename Code>
-std::array<std::size_t, 4> pairs_around_zero(const Image& map, int x, int y) {
+std::array<std::size_t, 4> pairs_around_zero(const ImageView& map, int x, int y) {
     constexpr Code lower = std::numeric_limits<Code>::max() / 2;
-    const std::span<const Code> samples = map.as<Code>();
-    const auto channels = static_cast<std::size_t>(map.channels);
     std::array<std::size_t, 4> counts{};
-    for (std::size_t first = 0; first < samples.size(); first += channels) {
-        const auto in_x = static_cast<Code>(samples[first + static_cast<std::size_t>(x)] - lower);
-        const auto in_y = static_cast<Code>(samples[first + static_cast<std::size_t>(y)] - lower);
-        if (in_x <= 1 && in_y <= 1) ++counts[2U * in_x + in_y];
+    for (int row = 0; row < map.height; ++row) {
+        const Code* sample = map.row<Code>(row);
+        for (int column = 0; column < map.width; ++column, sample += map.channels) {
+            const auto in_x = static_cast<Code>(sample[x] - lower);
+            const auto in_y = static_cast<Code>(sample[y] - lower);
+            if (in_x <= 1 && in_y <= 1) ++counts[2U * in_x + in_y];
+        }
     }
     return counts;
 }
@@ -128,52 +131,67 @@ std::string zero_code(const NormalMapFormat& format) {
                        format.flat == FlatCode::middle ? (largest + 1.0) / 2.0 : largest / 2.0);
 }
 
-void check_map(const Image& map) {
+void check_map(const ImageView& map) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     if (map.channels < 3) {
         throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
     }
 }
 
+/// \param what  "normal map"
+/// \throws InvalidInput if the memory for a result does not have three channels of these bits and
+///         the size of the input
+void check_target(const MutableImageView& target, const ImageView& input, int bits,
+                  const char* what) {
+    if (target.width == input.width && target.height == input.height && target.channels == 3 &&
+        target.bits() == bits)
+        return;
+    throw InvalidInput(
+        fmt::format("the memory for the {} has {} x {} texels of {} channels with {} bits, but "
+                    "must have {} x {} of 3 with {}",
+                    what, target.width, target.height, target.channels, target.bits(), input.width,
+                    input.height, bits));
+}
+
 }  // namespace
 
-Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Report& report) {
+Image encode_normal_map(const ImageView& normals, const NormalMapFormat& format, Report& report) {
     check_floats(normals, 3, "normals");
     Image result = make_image(normals.width, normals.height, 3, format.bits, ColorSpace::data);
-    switch (format.bits) {
-        case 8:
-            encode<std::uint8_t>(normals, format, result, report);
-            break;
-        case 16:
-            encode<std::uint16_t>(normals, format, result, report);
-            break;
-        default:
-            encode<float>(normals, format, result, report);
-            break;
-    }
+    encode_normal_map(normals, format, MutableImageView(result), report);
     return result;
 }
 
-Image decode_normal_map(const Image& map, Green green, FlatCode flat, Report& report,
+void encode_normal_map(const ImageView& normals, const NormalMapFormat& format,
+                       const MutableImageView& map, Report& report,
+                       const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
+    check_floats(normals, 3, "normals");
+    check_target(map, normals, format.bits, "normal map");
+    with_sample_type(
+        map, [&]<typename Sample>(Sample) { encode<Sample>(normals, format, map, report); });
+}
+
+Image decode_normal_map(const ImageView& map, Green green, FlatCode flat, Report& report,
                         FlatTexels texels) {
     check_map(map);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
-    const std::span<float> normals = result.as<float>();
-    switch (map.bits()) {
-        case 8:
-            decode<std::uint8_t>(map, green, flat, texels, normals, report);
-            break;
-        case 16:
-            decode<std::uint16_t>(map, green, flat, texels, normals, report);
-            break;
-        default:
-            decode<float>(map, green, flat, texels, normals, report);
-            break;
-    }
+    decode_normal_map(map, green, flat, MutableImageView(result), report, texels);
     return result;
 }
 
-std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const Image& map, int x, int y) {
+void decode_normal_map(const ImageView& map, Green green, FlatCode flat,
+                       const MutableImageView& normals, Report& report, FlatTexels texels,
+                       const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
+    check_map(map);
+    check_target(normals, map, 32, "normals");
+    with_sample_type(map, [&]<typename Sample>(Sample) {
+        decode<Sample>(map, green, flat, texels, normals, report);
+    });
+}
+
+std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const ImageView& map, int x, int y) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     if (std::min(x, y) < 0 || std::max(x, y) >= map.channels) {
         throw InvalidInput(
@@ -192,7 +210,8 @@ std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const Image& map, i
                       static_cast<std::uint16_t>(lower + pair % 2)};
 }
 
-FlatCode detect_flat_code(const Image& map, const std::map<std::string, std::string>& metadata) {
+FlatCode detect_flat_code(const ImageView& map,
+                          const std::map<std::string, std::string>& metadata) {
     check_map(map);
     if (const auto said = metadata.find("relief:flat"); said != metadata.end()) {
         if (said->second == "127.5" || said->second == "32767.5") return FlatCode::half;

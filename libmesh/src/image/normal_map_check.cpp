@@ -146,13 +146,13 @@ bool are_object_normals(const MapStatistics& all) {
 
 /// Returns whether two components lie within the unit disk, around 0, and the third one is
 /// constant.
-bool are_xy_normals(const Image& map, const MapStatistics& all) {
+bool are_xy_normals(const ImageView& map, const MapStatistics& all) {
     const bool has_no_z = map.channels == 2 || all.constant[2];
     return has_no_z && !(all.constant[0] && all.constant[1]) && all.share(all.in_disk) >= 0.99 &&
            std::abs(all.mean.x) <= 0.2 && std::abs(all.mean.y) <= 0.2;
 }
 
-MapContent content_of(const Image& map, const MapStatistics& all) {
+MapContent content_of(const ImageView& map, const MapStatistics& all) {
     if (map.channels == 1 || is_gray(all)) return MapContent::gray;
     if (map.channels >= 3 && are_tangent_normals(all)) return MapContent::tangent_normals;
     if (are_xy_normals(map, all)) return MapContent::xy_normals;
@@ -167,7 +167,7 @@ struct Meaning {
 
 /// Returns the meaning that gives vectors nearest to unit length. Samples are taken as stored
 /// unless another meaning is much better.
-Meaning meaning_of(const Image& map, FlatCode flat) {
+Meaning meaning_of(const ImageView& map, FlatCode flat) {
     const std::size_t count =
         static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
     const std::size_t step = std::max<std::size_t>(1, count / max_samples);
@@ -200,23 +200,27 @@ Meaning meaning_of(const Image& map, FlatCode flat) {
 }
 
 /// Returns one channel of a map, for the statistics of height maps.
-Image channel_to_check(const Image& map, int channel) {
+Image channel_to_check(const ImageView& map, int channel) {
     Image one = make_image(map.width, map.height, 1, map.bits(), ColorSpace::data);
     with_sample_type(map, [&](auto sample) {
         using Sample = decltype(sample);
-        const std::span<const Sample> from = map.as<Sample>();
-        const std::span<Sample> to = one.as<Sample>();
-        parallel_for(to.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t texel = begin; texel < end; ++texel)
-                to[texel] = from[texel * static_cast<std::size_t>(map.channels) +
-                                 static_cast<std::size_t>(channel)];
-        });
+        const MutableImageView to(one);
+        const std::size_t rows_per_piece = (1 << 16) / static_cast<std::size_t>(map.width) + 1;
+        parallel_for(static_cast<std::size_t>(map.height), rows_per_piece,
+                     [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t row = begin; row < end; ++row) {
+                             const Sample* from = map.row<Sample>(static_cast<int>(row)) + channel;
+                             Sample* const values = to.row<Sample>(static_cast<int>(row));
+                             for (int x = 0; x < map.width; ++x, from += map.channels)
+                                 values[x] = *from;
+                         }
+                     });
     });
     return one;
 }
 
 /// Determines the larger seams of x and y, and the bits of every channel.
-void look_at_channels(const Image& map, NormalMapCheck& check) {
+void look_at_channels(const ImageView& map, NormalMapCheck& check) {
     for (int channel = 0; channel < map.channels; ++channel) {
         const Image one = channel_to_check(map, channel);
         check.bits.push_back(height_depth(one).bits);
@@ -278,12 +282,13 @@ void find_texels(const NormalMapCheck& check, const MapStatistics& all, FoundCon
 
 /// Returns whether flat texels have 127 although the file says that zero is 128. The opposite case
 /// cannot be detected: maps with zero at 127.5 have 128 in flat texels too.
-bool contradicts_flat_code(const Image& map, const std::map<std::string, std::string>& metadata) {
+bool contradicts_flat_code(const ImageView& map,
+                           const std::map<std::string, std::string>& metadata) {
     return metadata.contains("relief:flat") &&
            detect_flat_code(map, metadata) == FlatCode::middle && flat_evidence(map).is_half();
 }
 
-void find_conventions(const Image& map, const NormalMapCheck& check,
+void find_conventions(const ImageView& map, const NormalMapCheck& check,
                       const std::map<std::string, std::string>& metadata, const MapStatistics& all,
                       FoundConditions& found) {
     using enum MapCondition;
@@ -304,7 +309,7 @@ void find_conventions(const Image& map, const NormalMapCheck& check,
         found.if_so(contradicts_flat_code(map, metadata), flat_contradicted);
 }
 
-void find_channels(const Image& map, const NormalMapCheck& check, const MapStatistics& all,
+void find_channels(const ImageView& map, const NormalMapCheck& check, const MapStatistics& all,
                    FoundConditions& found) {
     using enum MapCondition;
     if (check.content == MapContent::gray || check.content == MapContent::other) return;
@@ -328,7 +333,7 @@ void find_channels(const Image& map, const NormalMapCheck& check, const MapStati
 }
 
 /// Measures lengths with the detected meaning, and as stored.
-void measure_lengths(const Image& map, const SampleMeaning& meaning, const MapStatistics& all,
+void measure_lengths(const ImageView& map, const SampleMeaning& meaning, const MapStatistics& all,
                      NormalMapCheck& check) {
     check.lengths = check.lengths_uncurved = all.lengths;
     if (meaning.curve == StoredCurve::none) return;
@@ -345,7 +350,7 @@ bool is_surface(const MapStatistics& all, const GreenEvidence& green) {
 
 /// Evaluates the properties of tangent-space normals, and sets the content if the map turns out to
 /// hold some.
-void look_at_surface(const Image& map, SampleMeaning meaning, const MapStatistics& all,
+void look_at_surface(const ImageView& map, SampleMeaning meaning, const MapStatistics& all,
                      NormalMapCheck& check) {
     if (check.content == MapContent::gray || check.content == MapContent::object_normals) return;
     meaning.z_is_stored = check.content != MapContent::xy_normals;
@@ -360,7 +365,7 @@ void look_at_surface(const Image& map, SampleMeaning meaning, const MapStatistic
 
 }  // namespace
 
-NormalMapCheck check_normal_map(const Image& map,
+NormalMapCheck check_normal_map(const ImageView& map,
                                 const std::map<std::string, std::string>& metadata,
                                 std::string_view color_tag) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");

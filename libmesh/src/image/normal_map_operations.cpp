@@ -23,7 +23,7 @@ namespace {
 
 constexpr double largest_strength = 1e6;
 
-void check_xy_map(const Image& map, const XyChannels& channels) {
+void check_xy_map(const ImageView& map, const XyChannels& channels) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     for (const int channel : {channels.x, channels.y}) {
         if (channel < 0 || channel >= map.channels) {
@@ -102,7 +102,7 @@ LengthRange time_statistics(const std::vector<RowLengths>& rows) {
 
 }  // namespace
 
-Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
+Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green green, FlatCode flat,
                     Report& report, FlatTexels texels) {
     check_xy_map(map, channels);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
@@ -112,17 +112,20 @@ Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, F
     const auto x = static_cast<std::size_t>(channels.x);
     const auto y = static_cast<std::size_t>(channels.y);
     with_sample_type(map, [&]<typename Sample>(Sample) {
-        const std::span<const Sample> samples = map.as<Sample>();
         const NormalCoding<Sample> coding{flat};
         const ExactFlat<Sample> exact(map, flat, texels, channels.x, channels.y);
-        for_each_texel(samples.size() / stride, report, [&](std::size_t texel, Report& found) {
-            const Sample* sample = &samples[texel * stride];
-            const Direction normal =
-                exact.is_flat(sample[x], sample[y])
-                    ? Direction{0.0, 0.0, 1.0}
-                    : facing_outwards(coding.decoded(sample[x]), coding.decoded(sample[y]) * up,
-                                      texel, found);
-            store(normal, normals + texel * 3);
+        for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
+            const Sample* sample = map.row<Sample>(static_cast<int>(row));
+            const std::size_t first = row * static_cast<std::size_t>(map.width);
+            const std::size_t end = first + static_cast<std::size_t>(map.width);
+            for (std::size_t texel = first; texel < end; ++texel, sample += stride) {
+                const Direction normal =
+                    exact.is_flat(sample[x], sample[y])
+                        ? Direction{0.0, 0.0, 1.0}
+                        : facing_outwards(coding.decoded(sample[x]), coding.decoded(sample[y]) * up,
+                                          texel, found);
+                store(normal, normals + texel * 3);
+            }
         });
     });
     return result;

@@ -41,8 +41,8 @@ void for_each_row(int width, int height, Report& report, Each each) {
 }
 
 /// Calls with(Sample{}) for the sample type of an image.
-template <typename With>
-auto with_sample_type(const Image& image, const With& with) {
+template <typename AnyImage, typename With>
+auto with_sample_type(const AnyImage& image, const With& with) {
     if (image.bits() == 8) return with(std::uint8_t{});
     if (image.bits() == 16) return with(std::uint16_t{});
     return with(float{});
@@ -55,7 +55,7 @@ inline bool has_alpha(const Image& image) {
 
 /// \param what  the plural for messages: "normals"
 /// \throws InvalidInput if the image is empty or does not have this number of float channels
-void check_floats(const Image& image, int channels, const char* what);
+void check_floats(const ImageView& image, int channels, const char* what);
 
 struct Direction {
     double x, y, z;

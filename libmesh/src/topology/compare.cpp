@@ -29,7 +29,7 @@
 #include "geometry/direction.h"
 #include "geometry/weld.h"
 #include "parallel.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {

@@ -1,504 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edge-collapse decimation with OpenMesh's decimater and an own module.
+// Decimation: prepares a mesh for edge collapses (edge_collapse.h) and gathers what remains.
 //
-// The error is a quadric of distance and, if the mesh has texture coordinates, of the texture's
-// movement ([Garland and Heckbert 1997], [Hoppe 1999]). Both are in squared units of length,
-// weighted by area. A collapse moves a vertex onto a neighbor, so the result uses a subset of the
-// vertices with all their attributes. Seams, material borders and boundaries are lines: a vertex on
-// a line moves only along it, and a vertex where lines meet or end does not move. Both sides of a
-// seam therefore stay together and keep their texture coordinates. Collapses that flip a triangle,
-// in space or in the texture, or make its area zero are refused. Ties: the lower index wins.
-//
-// The vertices of the mesh are the wedges of a manifold surface (topology.h). Positions are scaled
-// into [-1, 1] by a power of two, so the result does not depend on the unit of length.
-#include "relief/mesh/decimate.h"
+// Positions are scaled into [-1, 1] by a power of two, so the result does not depend on the unit of
+// length. Triangles are visited along a space-filling curve, with ties in the order of their
+// vertices' values, so the result does not depend on the order of triangles.
+#include "relief/mesh/topology.h"
 
 #include <fmt/format.h>
-#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
-#include <OpenMesh/Tools/Decimater/ModBaseT.hh>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/direction.h"
 #include "geometry/weld.h"
+#include "parallel.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
-#include "topology/openmesh.h"
+#include "topology/edge_collapse.h"
 #include "topology/topology.h"
-
-// QuadricT.hh does not include what it needs.
-#include <OpenMesh/Core/Geometry/QuadricT.hh>
 
 namespace relief {
 namespace {
-
-/// The input of a decimation, and when to stop. All spans outlive the call.
-struct Decimation {
-    const Topology& topology;
-    std::span<const glm::dvec3> points;  ///< By vertex of the topology; within [-1, 1].
-    /// For each triangle of the topology, the mesh vertices at its corners. If those of two
-    /// neighbors differ along their edge, there is a seam.
-    std::span<const glm::uvec3> wedges;
-    /// For each triangle, the index of its material range. Ranges are not mixed.
-    std::span<const std::uint32_t> parts;
-    std::span<const glm::vec2> texcoords;  ///< By mesh vertex, or empty.
-    std::optional<std::size_t> triangles;  ///< The number of triangles to stop at.
-    std::optional<double> max_error;       ///< The maximum error in the unit of the points.
-};
-
-using Quadric = OpenMesh::Geometry::QuadricT<double>;
-using CollapseInfo = OpenMesh::Decimater::CollapseInfoT<SurfaceMesh>;
-
-/// The maximum rotation of a triangle in one move: about 78 degrees.
-constexpr double min_turn_cosine = 0.2;
-
-/// The weight of the squared length, which prefers short edges if costs are otherwise equal.
-constexpr double length_preference = 1e-7;
-
-/// The cost of moving along a line, relative to that of leaving the surface.
-constexpr double line_weight = 1.0;
-
-glm::dvec3 to_glm(const OpenMesh::Vec3d& v) {
-    return {v[0], v[1], v[2]};
-}
-
-/// The part of the quadric of [Hoppe 1999] for texture coordinates, for both at once: the integral
-/// of |gradient * p + offset - t|^2 over the added triangles.
-struct TextureQuadric {
-    double area = 0.0;
-    glm::dmat3 squares{0.0};               ///< Sum of gradient^T gradient.
-    glm::dvec3 mixed{0.0};                 ///< Sum of gradient^T offset.
-    double offsets = 0.0;                  ///< Sum of |offset|^2.
-    std::array<glm::dvec3, 2> gradient{};  ///< Sums, for u and v.
-    glm::dvec2 offset{0.0};
-
-    TextureQuadric& operator+=(const TextureQuadric& other) {
-        area += other.area;
-        squares += other.squares;
-        mixed += other.mixed;
-        offsets += other.offsets;
-        gradient[0] += other.gradient[0];
-        gradient[1] += other.gradient[1];
-        offset += other.offset;
-        return *this;
-    }
-
-    [[nodiscard]] double operator()(const glm::dvec3& p, const glm::dvec2& t) const {
-        const glm::dvec2 slope(glm::dot(gradient[0], p), glm::dot(gradient[1], p));
-        return std::max(0.0, glm::dot(p, squares * p) + 2.0 * glm::dot(mixed, p) + offsets -
-                                 2.0 * glm::dot(t, slope + offset) + area * glm::dot(t, t));
-    }
-};
-
-/// Returns the squared distance from a point to a triangle.
-double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
-                        const glm::dvec3& c) {
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const std::array<glm::dvec3, 3> corners = {a, b, c};
-    bool is_above = glm::dot(normal, normal) > 0.0;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
-        const glm::dvec3 offset = p - corners[i];
-        if (glm::dot(glm::cross(normal, edge), offset) < 0.0) is_above = false;
-        const double length = glm::dot(edge, edge);
-        const double along =
-            length > 0.0 ? std::clamp(glm::dot(edge, offset) / length, 0.0, 1.0) : 0.0;
-        const glm::dvec3 away = offset - along * edge;
-        nearest = std::min(nearest, glm::dot(away, away));
-    }
-    if (!is_above) return nearest;
-    const double height = glm::dot(normal, p - a);
-    return std::min(nearest, height * height / glm::dot(normal, normal));
-}
-
-/// A triangle that remains when a vertex moves, and its corner at that vertex.
-struct MovedFace {
-    int face = 0;
-    int corner = 0;  ///< The corner of the face that moves.
-    std::uint32_t wedge_before = 0;
-    std::uint32_t wedge_after = 0;
-};
-
-/// The triangles around a vertex, counter-clockwise from the edge along which it may move.
-class Ring {
-  public:
-    struct Spoke {
-        int face;      ///< The face on the left; -1 at a boundary.
-        bool is_line;  ///< True for a seam, a border or a boundary.
-    };
-    std::vector<Spoke> spokes;
-    std::vector<MovedFace> moved;
-};
-
-/// The decimater module that computes the cost of moves and updates wedges.
-class SeamQuadrics : public OpenMesh::Decimater::ModBaseT<SurfaceMesh> {
-  public:
-    using Handle = OpenMesh::Decimater::ModHandleT<SeamQuadrics>;
-    using Base = OpenMesh::Decimater::ModBaseT<SurfaceMesh>;
-
-    explicit SeamQuadrics(SurfaceMesh& mesh) : Base(mesh, false) {}
-    DECIMATER_MODNAME(SeamQuadrics)
-
-    void use(const Decimation& decimation) { input_ = &decimation; }
-    void initialize() override;
-    float collapse_priority(const CollapseInfo& move) override;
-    void preprocess_collapse(const CollapseInfo& move) override;
-    void postprocess_collapse(const CollapseInfo& move) override;
-
-    [[nodiscard]] const std::vector<glm::uvec3>& wedges() const { return wedges_; }
-
-  private:
-    void add_triangle_quadrics(std::size_t face);
-    void add_line_quadric(SurfaceMesh::EdgeHandle edge);
-    void set_texture_scale();
-    [[nodiscard]] bool is_line(int left, int right, int vertex) const;
-    [[nodiscard]] int corner_of(int face, int vertex) const;
-    [[nodiscard]] std::uint32_t wedge_at(int face, int vertex) const;
-    [[nodiscard]] glm::dvec3 point(int vertex) const { return input_->points[index(vertex)]; }
-    [[nodiscard]] glm::dvec2 texcoord(std::uint32_t wedge) const {
-        return glm::dvec2(input_->texcoords[wedge]);
-    }
-    static std::size_t index(int number) { return static_cast<std::size_t>(number); }
-
-    bool look_around(const CollapseInfo& move);
-    void gather_moved(const CollapseInfo& move);
-    [[nodiscard]] bool joins_lines(const CollapseInfo& move);
-    [[nodiscard]] bool turns_over(const MovedFace& moved, const CollapseInfo& move) const;
-    [[nodiscard]] bool turns_texture_over(const MovedFace& moved) const;
-    [[nodiscard]] double texture_cost(const CollapseInfo& move) const;
-    [[nodiscard]] std::pair<double, int> nearest_face(std::uint32_t point_number,
-                                                      const glm::dvec3& moved_to) const;
-    [[nodiscard]] bool keeps_points_near(const CollapseInfo& move);
-    void gather_points(const CollapseInfo& move);
-
-    const Decimation* input_ = nullptr;
-    std::vector<glm::uvec3> triangles_;  ///< The current triangles, with vertices of the topology.
-    std::vector<glm::uvec3> wedges_;
-    std::vector<Quadric> quadrics_;        ///< By vertex.
-    std::vector<TextureQuadric> texture_;  ///< By wedge.
-    std::vector<std::vector<std::uint32_t>>
-        gone_;                    ///< By face: removed vertices that are nearest to it.
-    double texture_scale_ = 0.0;  ///< The squared length of a squared texture coordinate.
-    Ring ring_;
-    std::vector<std::uint32_t> points_;  ///< The points whose distance the move must preserve.
-};
-
-int SeamQuadrics::corner_of(int face, int vertex) const {
-    const glm::uvec3& triangle = triangles_[index(face)];
-    const auto wanted = static_cast<std::uint32_t>(vertex);
-    if (triangle[0] == wanted) return 0;
-    return triangle[1] == wanted ? 1 : 2;
-}
-
-std::uint32_t SeamQuadrics::wedge_at(int face, int vertex) const {
-    return wedges_[index(face)][corner_of(face, vertex)];
-}
-
-/// Returns whether the edge between two triangles is a line as far as its end at `vertex` is
-/// concerned. What differs only at the other end, as at the pole of a sphere, does not bind this
-/// one.
-bool SeamQuadrics::is_line(int left, int right, int vertex) const {
-    return left < 0 || right < 0 || input_->parts[index(left)] != input_->parts[index(right)] ||
-           wedge_at(left, vertex) != wedge_at(right, vertex);
-}
-
-void SeamQuadrics::add_triangle_quadrics(std::size_t face) {
-    const glm::uvec3& triangle = triangles_[face];
-    const glm::dvec3 a = input_->points[triangle[0]];
-    const glm::dvec3 ab = input_->points[triangle[1]] - a;
-    const glm::dvec3 ac = input_->points[triangle[2]] - a;
-    const glm::dvec3 cross = glm::cross(ab, ac);
-    const double doubled_area = glm::length(cross);
-    if (!(doubled_area > 0.0)) return;
-    const glm::dvec3 normal = cross / doubled_area;
-    Quadric quadric(normal.x, normal.y, normal.z, -glm::dot(normal, a));
-    quadric *= doubled_area / 2.0;
-    for (int i = 0; i < 3; ++i)
-        quadrics_[triangle[i]] += quadric;
-    if (texture_.empty()) return;
-
-    const glm::uvec3& wedge = wedges_[face];
-    const glm::dvec2 t = texcoord(wedge[0]);
-    const glm::dvec2 tb = texcoord(wedge[1]) - t;
-    const glm::dvec2 tc = texcoord(wedge[2]) - t;
-    // The gradient in the plane of the triangle results from the dual basis of its edges.
-    const glm::dvec3 dual_b = glm::cross(ac, normal) / doubled_area;
-    const glm::dvec3 dual_c = glm::cross(normal, ab) / doubled_area;
-    TextureQuadric texture;
-    texture.area = doubled_area / 2.0;
-    for (int k = 0; k < 2; ++k) {
-        const glm::dvec3 gradient = tb[k] * dual_b + tc[k] * dual_c;
-        const double offset = t[k] - glm::dot(gradient, a);
-        texture.squares += texture.area * glm::outerProduct(gradient, gradient);
-        texture.mixed += texture.area * offset * gradient;
-        texture.offsets += texture.area * offset * offset;
-        texture.gradient[static_cast<std::size_t>(k)] = texture.area * gradient;
-        texture.offset[k] = texture.area * offset;
-    }
-    for (int i = 0; i < 3; ++i)
-        texture_[wedge[i]] += texture;
-}
-
-/// Adds planes through a line, perpendicular to the triangles, which keep the line in place.
-void SeamQuadrics::add_line_quadric(SurfaceMesh::EdgeHandle edge) {
-    const auto halfedge = mesh().halfedge_handle(edge, 0);
-    const int left = mesh().face_handle(halfedge).idx();
-    const int right = mesh().face_handle(mesh().opposite_halfedge_handle(halfedge)).idx();
-    const int from = mesh().from_vertex_handle(halfedge).idx();
-    const int to = mesh().to_vertex_handle(halfedge).idx();
-    if (!is_line(left, right, from) && !is_line(left, right, to)) return;
-    const glm::dvec3 along = point(to) - point(from);
-    for (const int face : {left, right}) {
-        if (face < 0) continue;
-        const glm::uvec3& triangle = triangles_[index(face)];
-        const glm::dvec3 a = input_->points[triangle[0]];
-        const glm::dvec3 upright = glm::cross(
-            along, glm::cross(input_->points[triangle[1]] - a, input_->points[triangle[2]] - a));
-        const double length = glm::length(upright);
-        if (!(length > 0.0)) continue;
-        const glm::dvec3 normal = upright / length;
-        Quadric quadric(normal.x, normal.y, normal.z, -glm::dot(normal, point(from)));
-        quadric *= line_weight * glm::dot(along, along);
-        quadrics_[index(from)] += quadric;
-        quadrics_[index(to)] += quadric;
-    }
-}
-
-/// Computes the mean squared length of a texture unit on the surface.
-void SeamQuadrics::set_texture_scale() {
-    double area = 0.0;
-    double texture_area = 0.0;
-    for (std::size_t f = 0; f < triangles_.size(); ++f) {
-        const auto at = [&](int i) { return input_->points[triangles_[f][i]]; };
-        area += glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
-        const glm::dvec2 t = texcoord(wedges_[f][0]);
-        const glm::dvec2 tb = texcoord(wedges_[f][1]) - t;
-        const glm::dvec2 tc = texcoord(wedges_[f][2]) - t;
-        const double here = std::abs(tb.x * tc.y - tb.y * tc.x);
-        if (std::isfinite(here)) texture_area += here;
-    }
-    texture_scale_ = texture_area > 0.0 ? area / texture_area : 0.0;
-}
-
-void SeamQuadrics::initialize() {
-    triangles_ = input_->topology.triangles;
-    wedges_.assign(input_->wedges.begin(), input_->wedges.end());
-    quadrics_.assign(input_->points.size(), Quadric());
-    texture_.clear();
-    if (!input_->texcoords.empty()) {
-        set_texture_scale();
-        if (texture_scale_ > 0.0) texture_.resize(input_->texcoords.size());
-    }
-    for (std::size_t face = 0; face < triangles_.size(); ++face)
-        add_triangle_quadrics(face);
-    for (const auto edge : mesh().edges())
-        add_line_quadric(edge);
-    gone_.assign(input_->max_error ? triangles_.size() : 0, {});
-}
-
-/// Fills ring_.spokes. \return whether the lines at the vertex allow the move
-bool SeamQuadrics::look_around(const CollapseInfo& move) {
-    ring_.spokes.clear();
-    const int vertex = move.v0.idx();
-    int right = move.fr.idx();
-    std::size_t lines = 0;
-    auto halfedge = move.v0v1;
-    do {
-        const int left = mesh().face_handle(halfedge).idx();
-        const bool line = is_line(left, right, vertex);
-        ring_.spokes.push_back({left, line});
-        lines += line ? 1 : 0;
-        right = left;
-        halfedge = mesh().ccw_rotated_halfedge_handle(halfedge);
-    } while (halfedge != move.v0v1);
-    if (lines != 0) return lines == 2 && ring_.spokes[0].is_line;
-    // If the neighbor has two wedges, it is undefined which one the vertex becomes.
-    return wedge_at(move.fl.idx(), move.v1.idx()) == wedge_at(move.fr.idx(), move.v1.idx());
-}
-
-/// Gathers the triangles that remain. Those to the left of the line get the left wedge of the
-/// neighbor.
-void SeamQuadrics::gather_moved(const CollapseInfo& move) {
-    ring_.moved.clear();
-    const int vertex = move.v0.idx();
-    const int target = move.v1.idx();
-    const int left = ring_.spokes.front().face;
-    const int right = ring_.spokes.back().face;
-    bool is_left = true;
-    for (std::size_t i = 0; i < ring_.spokes.size(); ++i) {
-        if (i > 0 && ring_.spokes[i].is_line) is_left = false;
-        const int face = ring_.spokes[i].face;
-        if (face < 0 || face == left || face == right) continue;
-        const int beside = (is_left && left >= 0) || right < 0 ? left : right;
-        const int corner = corner_of(face, vertex);
-        ring_.moved.push_back(
-            {face, corner, wedges_[index(face)][corner], wedge_at(beside, target)});
-    }
-}
-
-/// Returns whether a removed triangle has lines on both its other sides. The move would join them,
-/// and the last triangle between them, of a texture island or a material, would vanish.
-bool SeamQuadrics::joins_lines(const CollapseInfo& move) {
-    const auto face_beyond = [&](SurfaceMesh::HalfedgeHandle halfedge) {
-        return mesh().face_handle(mesh().opposite_halfedge_handle(halfedge)).idx();
-    };
-    const int target = move.v1.idx();
-    if (move.fl.is_valid() && ring_.spokes[1].is_line &&
-        is_line(move.fl.idx(), face_beyond(mesh().next_halfedge_handle(move.v0v1)), target)) {
-        return true;
-    }
-    return move.fr.is_valid() && ring_.spokes.back().is_line &&
-           is_line(move.fr.idx(), face_beyond(mesh().prev_halfedge_handle(move.v1v0)), target);
-}
-
-bool SeamQuadrics::turns_over(const MovedFace& moved, const CollapseInfo& move) const {
-    const glm::uvec3& triangle = triangles_[index(moved.face)];
-    const glm::dvec3 b = input_->points[triangle[(moved.corner + 1) % 3]];
-    const glm::dvec3 c = input_->points[triangle[(moved.corner + 2) % 3]];
-    const glm::dvec3 before = glm::cross(b - to_glm(move.p0), c - to_glm(move.p0));
-    const glm::dvec3 after = glm::cross(b - to_glm(move.p1), c - to_glm(move.p1));
-    const double length_before = glm::length(before);
-    if (!(length_before > 0.0)) return false;  // A triangle without area has no orientation.
-    return !(glm::dot(before, after) > min_turn_cosine * length_before * glm::length(after));
-}
-
-bool SeamQuadrics::turns_texture_over(const MovedFace& moved) const {
-    const glm::uvec3& wedge = wedges_[index(moved.face)];
-    const glm::dvec2 b = texcoord(wedge[(moved.corner + 1) % 3]);
-    const glm::dvec2 c = texcoord(wedge[(moved.corner + 2) % 3]);
-    const auto area_from = [&](const glm::dvec2& a) {
-        return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    };
-    const double before = area_from(texcoord(moved.wedge_before));
-    return before != 0.0 && !(before * area_from(texcoord(moved.wedge_after)) > 0.0);
-}
-
-/// Returns the cost of the texture's movement, for each removed wedge and the wedge that replaces
-/// it.
-double SeamQuadrics::texture_cost(const CollapseInfo& move) const {
-    if (texture_.empty()) return 0.0;
-    const glm::dvec3 p = to_glm(move.p1);
-    double cost = 0.0;
-    const auto add = [&](int face) {
-        if (face < 0) return;
-        const std::uint32_t before = wedge_at(face, move.v0.idx());
-        const std::uint32_t after = wedge_at(face, move.v1.idx());
-        cost += texture_[before](p, texcoord(after)) + texture_[after](p, texcoord(after));
-    };
-    add(move.fl.idx());
-    const bool both = move.fl.is_valid() && move.fr.is_valid();
-    if (!both || wedge_at(move.fl.idx(), move.v0.idx()) != wedge_at(move.fr.idx(), move.v0.idx()))
-        add(move.fr.idx());
-    return cost * texture_scale_;
-}
-
-/// Returns the squared distance of the triangle around the moved vertex that is nearest to a point,
-/// and that triangle.
-std::pair<double, int> SeamQuadrics::nearest_face(std::uint32_t point_number,
-                                                  const glm::dvec3& moved_to) const {
-    std::pair<double, int> nearest = {std::numeric_limits<double>::infinity(), -1};
-    for (const MovedFace& moved : ring_.moved) {
-        const glm::uvec3& triangle = triangles_[index(moved.face)];
-        const double distance = squared_distance(input_->points[point_number], moved_to,
-                                                 input_->points[triangle[(moved.corner + 1) % 3]],
-                                                 input_->points[triangle[(moved.corner + 2) % 3]]);
-        nearest = std::min(nearest, {distance, moved.face});
-    }
-    return nearest;
-}
-
-void SeamQuadrics::gather_points(const CollapseInfo& move) {
-    points_.assign(1, static_cast<std::uint32_t>(move.v0.idx()));
-    for (const Ring::Spoke& spoke : ring_.spokes) {
-        if (spoke.face < 0) continue;
-        const std::vector<std::uint32_t>& gone = gone_[index(spoke.face)];
-        points_.insert(points_.end(), gone.begin(), gone.end());
-    }
-}
-
-bool SeamQuadrics::keeps_points_near(const CollapseInfo& move) {
-    if (!input_->max_error) return true;
-    gather_points(move);
-    const double most = *input_->max_error * *input_->max_error;
-    return std::all_of(points_.begin(), points_.end(), [&](std::uint32_t number) {
-        return nearest_face(number, to_glm(move.p1)).first <= most;
-    });
-}
-
-float SeamQuadrics::collapse_priority(const CollapseInfo& move) {
-    constexpr auto refused = static_cast<float>(ILLEGAL_COLLAPSE);
-    if (!look_around(move) || joins_lines(move)) return refused;
-    gather_moved(move);
-    for (const MovedFace& moved : ring_.moved) {
-        if (turns_over(moved, move)) return refused;
-        if (!texture_.empty() && turns_texture_over(moved)) return refused;
-    }
-    if (!keeps_points_near(move)) return refused;
-    Quadric quadric = quadrics_[index(move.v0.idx())];
-    quadric += quadrics_[index(move.v1.idx())];
-    const double squared_length = (move.p1 - move.p0).sqrnorm();
-    const double cost = std::max(0.0, quadric(move.p1)) + texture_cost(move) +
-                        length_preference * squared_length * squared_length;
-    return static_cast<float>(std::min(cost, 1e30));
-}
-
-void SeamQuadrics::preprocess_collapse(const CollapseInfo& move) {
-    look_around(move);
-    gather_moved(move);
-    if (input_->max_error) {
-        gather_points(move);
-        for (const Ring::Spoke& spoke : ring_.spokes) {
-            if (spoke.face >= 0) gone_[index(spoke.face)].clear();
-        }
-        for (const std::uint32_t number : points_)
-            gone_[index(nearest_face(number, to_glm(move.p1)).second)].push_back(number);
-    }
-    std::array<std::uint32_t, 2> added = {no_corner, no_corner};
-    for (const MovedFace& moved : ring_.moved) {
-        triangles_[index(moved.face)][moved.corner] = static_cast<std::uint32_t>(move.v1.idx());
-        wedges_[index(moved.face)][moved.corner] = moved.wedge_after;
-        if (texture_.empty() || moved.wedge_before == added[0] || moved.wedge_before == added[1])
-            continue;
-        added[added[0] == no_corner ? 0 : 1] = moved.wedge_before;
-        texture_[moved.wedge_after] += texture_[moved.wedge_before];
-    }
-}
-
-void SeamQuadrics::postprocess_collapse(const CollapseInfo& move) {
-    quadrics_[index(move.v1.idx())] += quadrics_[index(move.v0.idx())];
-}
-
-/// Returns for each triangle of the topology the mesh vertices at its corners after decimation;
-/// none if the triangle is removed.
-std::vector<std::optional<glm::uvec3>> decimated_wedges(const Decimation& decimation) {
-    SurfaceMesh mesh;
-    build(mesh, decimation.topology, decimation.points);
-    OpenMesh::Decimater::DecimaterT<SurfaceMesh> decimater(mesh);
-    for (std::size_t v = 0; v < decimation.points.size(); ++v) {
-        const SurfaceMesh::VertexHandle vertex(static_cast<int>(v));
-        mesh.status(vertex).set_locked(decimation.topology.is_cut[v]);
-    }
-    SeamQuadrics::Handle handle;
-    decimater.add(handle);
-    decimater.module(handle).use(decimation);
-    decimater.initialize();
-    decimater.decimate_to_faces(0, decimation.triangles.value_or(0));
-
-    std::vector<std::optional<glm::uvec3>> result(decimation.wedges.size());
-    for (const auto face : mesh.faces()) {
-        const auto f = static_cast<std::size_t>(face.idx());
-        if (!mesh.status(face).deleted()) result[f] = decimater.module(handle).wedges()[f];
-    }
-    return result;
-}
 
 void check(const Mesh& mesh, const DecimateOptions& options) {
     validate(mesh);
@@ -508,6 +41,14 @@ void check(const Mesh& mesh, const DecimateOptions& options) {
         throw InvalidInput("0 triangles are no surface; at least 1 must be left");
     if (options.max_error && !(*options.max_error >= 0.0 && std::isfinite(*options.max_error)))
         throw InvalidInput(fmt::format("an error of {} is no distance", *options.max_error));
+    if (options.max_normal_error && !(*options.max_normal_error > 0.0))
+        throw InvalidInput(fmt::format("an angle of {} between normals is not above 0",
+                                       *options.max_normal_error));
+    for (const double weight :
+         {options.weights.texcoord, options.weights.normal, options.weights.color}) {
+        if (!(weight >= 0.0 && std::isfinite(weight)))
+            throw InvalidInput(fmt::format("a weight of {} is not 0 or above", weight));
+    }
 }
 
 /// Maps object space to [-1, 1]; `scale` is the factor of lengths.
@@ -543,34 +84,235 @@ std::vector<std::uint32_t> parts_of(const Mesh& mesh) {
     return parts;
 }
 
-/// Returns for each vertex the first one with the same position, part and seam attributes. Vertices
-/// of different parts stay separate even if they are equal.
-std::vector<std::uint32_t> wedges_of(const Mesh& mesh, std::span<const std::uint32_t> classes,
-                                     std::span<const std::uint32_t> parts, bool with_normals) {
-    std::vector<std::uint32_t> part_of(classes.size(), 0);
-    for (std::size_t t = 0; t < parts.size(); ++t) {
-        for (int i = 0; i < 3; ++i)
-            part_of[mesh.triangles[t][i]] = parts[t];
+/// Compares the numbers of two vectors; a NaN is ordered by its bits, and -0 equals +0.
+template <typename Vector>
+std::strong_ordering compare(const Vector& a, const Vector& b) {
+    for (int i = 0; i < Vector::length(); ++i) {
+        const auto left = std::bit_cast<std::int32_t>(a[i] + 0.0F);
+        const auto right = std::bit_cast<std::int32_t>(b[i] + 0.0F);
+        if (left != right) return left <=> right;
     }
-    const auto is_equal = [&](std::uint32_t a, std::uint32_t b) {
-        return part_of[a] == part_of[b] &&
-               (mesh.texcoords.empty() || mesh.texcoords[a] == mesh.texcoords[b]) &&
-               (mesh.colors.empty() || mesh.colors[a] == mesh.colors[b]) &&
-               (!with_normals || mesh.normals.empty() || mesh.normals[a] == mesh.normals[b]);
-    };
-    // The wedges of each position form a list that starts at its first vertex.
-    constexpr std::uint32_t none = no_corner;
-    std::vector<std::uint32_t> wedges(classes.size());
-    std::vector<std::uint32_t> next(classes.size(), none);
-    for (std::uint32_t v = 0; v < classes.size(); ++v) {
-        std::uint32_t candidate = classes[v];
-        while (candidate != v && !is_equal(candidate, v)) {
-            if (next[candidate] == none) next[candidate] = v;
-            candidate = next[candidate];
+    return std::strong_ordering::equal;
+}
+
+/// Compares the attributes of two vertices that make seams.
+std::strong_ordering compare_attributes(const Mesh& mesh, bool with_normals, std::uint32_t a,
+                                        std::uint32_t b) {
+    auto order = std::strong_ordering::equal;
+    if (a == b) return order;
+    if (!mesh.texcoords.empty()) order = compare(mesh.texcoords[a], mesh.texcoords[b]);
+    if (order == 0 && !mesh.colors.empty()) order = compare(mesh.colors[a], mesh.colors[b]);
+    if (order == 0 && with_normals && !mesh.normals.empty())
+        order = compare(mesh.normals[a], mesh.normals[b]);
+    return order;
+}
+
+/// The corners of a surface that share position, part and attributes. A vertex that several parts
+/// use has a wedge for each.
+struct Wedges {
+    std::vector<std::uint32_t> vertex;  ///< By wedge: the mesh vertex.
+    /// By mesh vertex: its wedge in the first part that uses it.
+    std::vector<std::uint32_t> of_vertex;
+    /// Vertex, part and wedge where a vertex is used by another part too; ascending.
+    std::vector<std::array<std::uint32_t, 3>> others;
+    std::vector<std::uint32_t> first_part;  ///< By mesh vertex; empty with one part.
+
+    [[nodiscard]] std::uint32_t at(std::uint32_t vertex_index, std::uint32_t part) const {
+        if (first_part.empty() || first_part[vertex_index] == part) return of_vertex[vertex_index];
+        const std::array<std::uint32_t, 3> key = {vertex_index, part, 0};
+        return (*std::lower_bound(others.begin(), others.end(), key))[2];
+    }
+};
+
+/// Joins equal wedges at the same position; the one with the lowest index remains.
+Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> classes,
+                 std::span<const std::uint32_t> parts, bool with_normals) {
+    Wedges wedges;
+    const std::size_t vertices = mesh.positions.size();
+    wedges.vertex.resize(vertices);
+    std::iota(wedges.vertex.begin(), wedges.vertex.end(), 0U);
+    if (mesh.material_ranges.size() > 1) {
+        wedges.first_part.assign(vertices, no_corner);
+        for (std::size_t t = 0; t < parts.size(); ++t) {
+            for (int i = 0; i < 3; ++i) {
+                const std::uint32_t v = mesh.triangles[t][i];
+                if (wedges.first_part[v] == no_corner) wedges.first_part[v] = parts[t];
+                if (wedges.first_part[v] != parts[t]) wedges.others.push_back({v, parts[t], 0});
+            }
         }
-        wedges[v] = candidate;
+        std::sort(wedges.others.begin(), wedges.others.end());
+        wedges.others.erase(std::unique(wedges.others.begin(), wedges.others.end()),
+                            wedges.others.end());
+        for (auto& other : wedges.others) {
+            other[2] = static_cast<std::uint32_t>(wedges.vertex.size());
+            wedges.vertex.push_back(other[0]);
+        }
     }
+    // Only positions with several wedges are sorted.
+    std::vector<bool> is_shared(vertices, false);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        if (classes[v] != v) is_shared[classes[v]] = true;
+    }
+    for (const auto& other : wedges.others)
+        is_shared[classes[other[0]]] = true;
+    const auto part_at = [&](std::uint32_t wedge) {
+        if (wedge >= vertices) return wedges.others[wedge - vertices][1];
+        return wedges.first_part.empty() ? 0U : wedges.first_part[wedge];
+    };
+    const auto compared = [&](std::uint32_t a, std::uint32_t b) {
+        const std::uint32_t va = wedges.vertex[a];
+        const std::uint32_t vb = wedges.vertex[b];
+        if (classes[va] != classes[vb]) return classes[va] <=> classes[vb];
+        if (part_at(a) != part_at(b)) return part_at(a) <=> part_at(b);
+        return compare_attributes(mesh, with_normals, va, vb);
+    };
+    std::vector<std::uint32_t> sorted;
+    for (std::uint32_t w = 0; w < wedges.vertex.size(); ++w) {
+        if (is_shared[classes[wedges.vertex[w]]]) sorted.push_back(w);
+    }
+    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const std::strong_ordering order = compared(a, b);
+        return order == 0 ? a < b : order < 0;
+    });
+    std::vector<std::uint32_t> first(wedges.vertex.size());
+    std::iota(first.begin(), first.end(), 0U);
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+        if (compared(sorted[i - 1], sorted[i]) == 0) first[sorted[i]] = first[sorted[i - 1]];
+    }
+    for (auto& other : wedges.others)
+        other[2] = first[other[2]];
+    first.resize(vertices);
+    wedges.of_vertex = std::move(first);
     return wedges;
+}
+
+/// Returns the position along the Z curve of a point within [-1, 1], with 16 bits for each axis.
+std::uint64_t curve_key(const glm::dvec3& p) {
+    const auto spread = [](double x) {
+        const double scaled = std::clamp((x + 1.0) * 32768.0, 0.0, 65535.0);
+        auto bits = static_cast<std::uint64_t>(scaled);
+        bits = (bits | (bits << 16)) & 0x0000FF0000FF;
+        bits = (bits | (bits << 8)) & 0x00F00F00F00F;
+        bits = (bits | (bits << 4)) & 0x0C30C30C30C3;
+        return (bits | (bits << 2)) & 0x249249249249;
+    };
+    return spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2);
+}
+
+/// An index with a key of 48 bits.
+struct KeyedIndex {
+    std::uint64_t key = 0;
+    std::uint32_t index = 0;
+};
+
+/// Sorts by key; equal keys keep their order.
+void radix_sort(std::vector<KeyedIndex>& values) {
+    constexpr unsigned digit_bits = 12;
+    constexpr std::size_t digits = std::size_t(1) << digit_bits;
+    std::vector<KeyedIndex> sorted(values.size());
+    std::vector<std::size_t> place(digits);
+    for (unsigned shift = 0; shift < 48; shift += digit_bits) {
+        std::fill(place.begin(), place.end(), 0);
+        const auto digit = [&](const KeyedIndex& value) {
+            return static_cast<std::size_t>(value.key >> shift) & (digits - 1);
+        };
+        for (const KeyedIndex& value : values)
+            ++place[digit(value)];
+        std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t(0));
+        for (const KeyedIndex& value : values)
+            sorted[place[digit(value)]++] = value;
+        values.swap(sorted);
+    }
+}
+
+/// Returns the triangles in an order that depends only on their values.
+std::vector<std::uint32_t> canonical_order(const Mesh& mesh, const UnitSpace& space,
+                                           std::span<const std::uint32_t> parts,
+                                           bool with_normals) {
+    std::vector<KeyedIndex> keyed(mesh.triangles.size());
+    parallel_for(keyed.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            glm::dvec3 sum(0.0);
+            for (int i = 0; i < 3; ++i)
+                sum += space(mesh.positions[mesh.triangles[t][i]]);
+            const bool finite = is_finite(glm::vec3(sum));
+            keyed[t] = {finite ? curve_key(sum / 3.0) : 0, static_cast<std::uint32_t>(t)};
+        }
+    });
+    radix_sort(keyed);
+    const auto is_before = [&](const KeyedIndex& a, const KeyedIndex& b) {
+        for (int i = 0; i < 3; ++i) {
+            const std::uint32_t va = mesh.triangles[a.index][i];
+            const std::uint32_t vb = mesh.triangles[b.index][i];
+            if (va == vb) continue;
+            auto order = compare(mesh.positions[va], mesh.positions[vb]);
+            if (order == 0) order = compare_attributes(mesh, with_normals, va, vb);
+            if (order != 0) return order < 0;
+        }
+        if (parts[a.index] != parts[b.index]) return parts[a.index] < parts[b.index];
+        if (!mesh.smoothing_groups.empty() &&
+            mesh.smoothing_groups[a.index] != mesh.smoothing_groups[b.index])
+            return mesh.smoothing_groups[a.index] < mesh.smoothing_groups[b.index];
+        return a.index < b.index;
+    };
+    for (auto first = keyed.begin(); first != keyed.end();) {
+        const auto last = std::find_if(
+            first, keyed.end(), [&](const KeyedIndex& value) { return value.key != first->key; });
+        std::sort(first, last, is_before);
+        first = last;
+    }
+    std::vector<std::uint32_t> order;
+    order.reserve(keyed.size());
+    for (const KeyedIndex& value : keyed)
+        order.push_back(value.index);
+    return order;
+}
+
+/// Returns the mean squared length of a texture unit on the surface; 0 if the texture has no area.
+double texture_scale_of(const Mesh& mesh, const CollapseInput& input,
+                        std::span<const std::uint32_t> vertex_of_wedge) {
+    double area = 0.0;
+    double texture_area = 0.0;
+    for (std::size_t t = 0; t < input.wedges.size(); ++t) {
+        const auto at = [&](int i) { return input.points[input.topology.triangles[t][i]]; };
+        const auto texcoord = [&](int i) {
+            return glm::dvec2(mesh.texcoords[vertex_of_wedge[input.wedges[t][i]]]);
+        };
+        area += glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+        const glm::dvec2 tb = texcoord(1) - texcoord(0);
+        const glm::dvec2 tc = texcoord(2) - texcoord(0);
+        const double here = std::abs(tb.x * tc.y - tb.y * tc.x);
+        if (std::isfinite(here)) texture_area += here;
+    }
+    return texture_area > 0.0 ? area / texture_area : 0.0;
+}
+
+/// Sets the attributes that the error considers, and their weights.
+void set_attributes(CollapseInput& input, const Mesh& mesh, const DecimateOptions& options,
+                    std::span<const std::uint32_t> vertex_of_wedge) {
+    const AttributeWeights& weights = options.weights;
+    double texture_scale = 0.0;
+    if (!mesh.texcoords.empty()) texture_scale = texture_scale_of(mesh, input, vertex_of_wedge);
+    input.has_texcoords = texture_scale > 0.0;
+    const bool with_normals =
+        weights.normal > 0.0 && !mesh.normals.empty() && options.frames.normals == NormalMode::keep;
+    const bool with_colors = weights.color > 0.0 && !mesh.colors.empty();
+    const auto add = [&](bool is_used, std::size_t count, double weight) {
+        if (is_used) input.attribute_weights.insert(input.attribute_weights.end(), count, weight);
+    };
+    add(input.has_texcoords, 2, weights.texcoord * weights.texcoord * texture_scale);
+    add(with_normals, 3, weights.normal * weights.normal);
+    add(with_colors, 4, weights.color * weights.color);
+    input.attributes.reserve(vertex_of_wedge.size() * input.attribute_weights.size());
+    const auto append = [&](const auto& value) {
+        for (int i = 0; i < value.length(); ++i)
+            input.attributes.push_back(std::isfinite(value[i]) ? value[i] : 0.0F);
+    };
+    for (const std::uint32_t vertex : vertex_of_wedge) {
+        if (input.has_texcoords) append(mesh.texcoords[vertex]);
+        if (with_normals) append(mesh.normals[vertex]);
+        if (with_colors) append(mesh.colors[vertex]);
+    }
 }
 
 /// The remaining triangles, at the indices of the input.
@@ -581,38 +323,103 @@ struct Remains {
 
 Remains remains_of(const Mesh& mesh, const DecimateOptions& options, Report& report) {
     const std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
-    const Topology topology = topology_of(mesh, classes, report);
-    const std::vector<std::uint32_t> all_parts = parts_of(mesh);
-    const std::vector<std::uint32_t> wedges =
-        wedges_of(mesh, classes, all_parts, options.frames.normals == NormalMode::keep);
     const UnitSpace space = unit_space(mesh);
+    const std::vector<std::uint32_t> parts = parts_of(mesh);
+    const bool with_normals = options.frames.normals == NormalMode::keep;
+    const Wedges wedges = wedges_of(mesh, classes, parts, with_normals);
 
-    std::vector<glm::dvec3> points;
-    for (const std::uint32_t vertex : topology.position_vertex)
-        points.push_back(space(mesh.positions[vertex]));
-    std::vector<glm::uvec3> corners;
-    std::vector<std::uint32_t> parts;
-    for (const std::uint32_t source : topology.source_triangle) {
+    CollapseInput input;
+    input.topology =
+        topology_of(mesh, classes, report, canonical_order(mesh, space, parts, with_normals));
+    for (const std::uint32_t vertex : input.topology.position_vertex)
+        input.points.push_back(space(mesh.positions[vertex]));
+    for (const std::uint32_t source : input.topology.source_triangle) {
         const glm::uvec3& triangle = mesh.triangles[source];
-        corners.emplace_back(wedges[triangle.x], wedges[triangle.y], wedges[triangle.z]);
-        parts.push_back(all_parts[source]);
+        const std::uint32_t part = parts[source];
+        input.wedges.emplace_back(wedges.at(triangle.x, part), wedges.at(triangle.y, part),
+                                  wedges.at(triangle.z, part));
     }
-
-    Decimation decimation{topology, points, corners, parts, mesh.texcoords, {}, {}};
-    const std::size_t aside = topology.set_aside.size();
+    input.wedge_count = wedges.vertex.size();
+    set_attributes(input, mesh, options, wedges.vertex);
+    input.keeps_borders = options.keep_borders;
+    input.keeps_seams = options.keep_seams;
+    const std::vector<std::uint32_t> set_aside = input.topology.set_aside;
+    const std::vector<std::uint32_t> source_triangle = input.topology.source_triangle;
     if (options.triangles)
-        decimation.triangles = *options.triangles - std::min(*options.triangles, aside);
-    if (options.max_error) decimation.max_error = *options.max_error * space.scale;
+        input.triangles = *options.triangles - std::min(*options.triangles, set_aside.size());
+    if (options.max_error) input.max_error = *options.max_error * space.scale;
+    if (options.max_normal_error) input.min_normal_cosine = std::cos(*options.max_normal_error);
 
-    Remains remains{std::vector<std::optional<glm::uvec3>>(mesh.triangles.size()), aside};
-    const std::vector<std::optional<glm::uvec3>> left = decimated_wedges(decimation);
-    for (std::size_t t = 0; t < left.size(); ++t) {
-        remains.triangles[topology.source_triangle[t]] = left[t];
-        if (left[t]) ++remains.count;
+    const Collapsed collapsed = collapse_edges(std::move(input));
+    Remains remains{std::vector<std::optional<glm::uvec3>>(mesh.triangles.size()),
+                    collapsed.triangles + set_aside.size()};
+    for (std::size_t t = 0; t < source_triangle.size(); ++t) {
+        if (!collapsed.remains[t]) continue;
+        const glm::uvec3& triangle = collapsed.wedges[t];
+        remains.triangles[source_triangle[t]] = glm::uvec3(
+            wedges.vertex[triangle.x], wedges.vertex[triangle.y], wedges.vertex[triangle.z]);
     }
-    for (const std::uint32_t t : topology.set_aside)
+    for (const std::uint32_t t : set_aside)
         remains.triangles[t] = mesh.triangles[t];
     return remains;
+}
+
+/// Returns the larger of the maximum distances in both directions.
+double distance_from(const Mesh& mesh, const Remains& remains) {
+    Mesh before;
+    Mesh after;
+    before.positions = mesh.positions;
+    before.triangles = mesh.triangles;
+    after.positions = mesh.positions;
+    for (const auto& triangle : remains.triangles) {
+        if (triangle) after.triangles.push_back(*triangle);
+    }
+    const SurfaceDistance distance = surface_distance(before, after);
+    return std::max(distance.from_a.max, distance.from_b.max);
+}
+
+/// Decimates until the measured distance reaches `max_error`. The error of a collapse only
+/// estimates that distance, so its limit is adjusted: the result with the fewest triangles within
+/// the distance is returned.
+Remains remains_within(const Mesh& mesh, const DecimateOptions& options, Report& report) {
+    constexpr int max_attempts = 10;
+    constexpr double well_used = 0.7;  ///< The part of the distance at which the search ends.
+    constexpr double rounding = 2.5e-7;
+    const double allowed = *options.max_error + rounding / unit_space(mesh).scale;
+    DecimateOptions attempt = options;
+    std::optional<Remains> best;
+    Report best_report;
+    // Limits below `good` keep the distance, and limits above `bad` do not.
+    double good = 0.0;
+    double bad = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < max_attempts; ++i) {
+        Report found;
+        Remains remains = remains_of(mesh, attempt, found);
+        const double distance = distance_from(mesh, remains);
+        const double limit = *attempt.max_error;
+        const bool is_within = distance <= allowed;
+        if (is_within && (!best || remains.count <= best->count)) {
+            best = std::move(remains);
+            best_report = found;
+        }
+        (is_within ? good : bad) = limit;
+        const bool has_reached = options.triangles && best && best->count <= *options.triangles;
+        if (has_reached || limit == 0.0) break;
+        if (is_within && distance >= well_used * *options.max_error) break;
+        // The distance is nearly proportional to the limit. Steps are at most a factor of 4.
+        const double factor = std::clamp(0.9 * *options.max_error / distance, 0.25, 4.0);
+        double next = limit * (distance > 0.0 ? factor : 4.0);
+        if (next <= good || next >= bad) next = std::sqrt(std::max(good, bad / 16.0) * bad);
+        if (!(next < std::numeric_limits<double>::max())) break;
+        attempt.max_error = i + 2 == max_attempts && !best ? 0.0 : next;
+    }
+    if (!best) {
+        // Not even collapses without an error keep the distance.
+        attempt.triangles = mesh.triangles.size();
+        best = remains_of(mesh, attempt, best_report);
+    }
+    report.merge(best_report);
+    return *std::move(best);
 }
 
 /// Returns the vertices that the remaining triangles use, in their order. Isolated vertices are
@@ -691,7 +498,8 @@ FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Repo
 
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& report) {
     check(mesh, options);
-    const Remains remains = remains_of(mesh, options, report);
+    const Remains remains = options.max_error ? remains_within(mesh, options, report)
+                                              : remains_of(mesh, options, report);
     // One interior move removes two triangles, so the result may be one less than requested.
     if (options.triangles && !options.max_error && remains.count > *options.triangles) {
         report.add("number of triangles out of reach", "mesh", 0,
@@ -699,6 +507,53 @@ FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& r
                                remains.count));
     }
     return framed(mesh, gathered(mesh, remains, report), options.frames, report);
+}
+
+double max_corner_angle(const Mesh& original, const Mesh& decimated) {
+    validate(original);
+    validate(decimated);
+    std::vector<glm::vec3> positions = original.positions;
+    positions.insert(positions.end(), decimated.positions.begin(), decimated.positions.end());
+    const std::vector<std::uint32_t> classes = weld_positions(positions);
+    const auto normal_of = [](const Mesh& mesh, const glm::uvec3& t) {
+        const glm::dvec3 a(mesh.positions[t.x]);
+        const glm::dvec3 cross =
+            glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+        const double length = glm::length(cross);
+        return length > 0.0 && std::isfinite(length) ? cross / length : glm::dvec3(0.0);
+    };
+    // The triangles of the original at each position, sorted by position.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> at;
+    for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
+        if (normal_of(original, original.triangles[t]) == glm::dvec3(0.0)) continue;
+        for (int i = 0; i < 3; ++i)
+            at.emplace_back(classes[original.triangles[t][i]], t);
+    }
+    std::sort(at.begin(), at.end());
+    const std::size_t offset = original.positions.size();
+    const double infinite = std::numeric_limits<double>::infinity();
+    std::vector<double> largest(decimated.triangles.size(), 0.0);
+    parallel_for(largest.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const glm::dvec3 normal = normal_of(decimated, decimated.triangles[t]);
+            if (normal == glm::dvec3(0.0)) continue;
+            for (int i = 0; i < 3; ++i) {
+                const std::uint32_t position = classes[offset + decimated.triangles[t][i]];
+                const auto first = std::lower_bound(at.begin(), at.end(), std::pair(position, 0U));
+                double nearest = infinite;
+                std::size_t count = 0;
+                for (auto here = first; here != at.end() && here->first == position; ++here) {
+                    if (++count > max_valence) break;
+                    const glm::uvec3& triangle = original.triangles[here->second];
+                    nearest =
+                        std::min(nearest, angle_between(normal, normal_of(original, triangle)));
+                }
+                if (count > max_valence) continue;
+                if (nearest < infinite) largest[t] = std::max(largest[t], nearest);
+            }
+        }
+    });
+    return largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
 }
 
 }  // namespace relief

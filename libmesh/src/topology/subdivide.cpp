@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loop subdivision, level by level.
 //
-// OpenMesh's Loop subdivider runs for one level on the manifold surface of the mesh (topology.h),
-// and only its points are used. The new vertex of an edge has the index (number of vertices + index
-// of the edge). OpenMesh's table of weights has room for 50 neighbors and is read beyond its end
-// for vertices with more, so it is enlarged first. The triangles of the mesh determine texture
-// coordinates and colors. Positions stay in double precision, relative to the center of the mesh,
-// until the last level.
-#include "relief/mesh/subdivide.h"
+// The rules of [Loop 1987] apply to the manifold surface of the mesh (topology.h), as half-edges of
+// OpenMesh: inner vertices by their valence, boundaries as cubic splines. They are computed here,
+// because OpenMesh's own subdivider walks around a vertex once for each of its edges. The triangles
+// of the mesh determine texture coordinates and colors. Positions stay in double precision,
+// relative to the center of the mesh, until the last level.
+#include "relief/mesh/topology.h"
 
 #include <fmt/format.h>
-#include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
 
 #include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include "geometry/direction.h"
 #include "geometry/weld.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "topology/openmesh.h"
 #include "topology/topology.h"
@@ -33,18 +33,41 @@ struct LoopPoints {
     std::vector<glm::dvec3> on_edges;     ///< One per corner: on the edge to the next corner.
 };
 
-glm::dvec3 point_of(const SurfaceMesh& mesh, std::size_t vertex) {
-    const OpenMesh::Vec3d& p = mesh.point(SurfaceMesh::VertexHandle(static_cast<int>(vertex)));
-    return {p[0], p[1], p[2]};
+using Halfedge = SurfaceMesh::HalfedgeHandle;
+
+/// The rule for vertices. Every vertex of a topology has triangles.
+OpenMesh::Vec3d moved_vertex(const SurfaceMesh& mesh, SurfaceMesh::VertexHandle vertex) {
+    const OpenMesh::Vec3d& point = mesh.point(vertex);
+    if (mesh.is_boundary(vertex)) {
+        const Halfedge next = mesh.halfedge_handle(vertex);
+        const Halfedge previous = mesh.prev_halfedge_handle(next);
+        return (point * 6.0 + mesh.point(mesh.to_vertex_handle(next)) +
+                mesh.point(mesh.from_vertex_handle(previous))) *
+               0.125;
+    }
+    OpenMesh::Vec3d sum(0.0, 0.0, 0.0);
+    int valence = 0;
+    for (const auto& neighbor : mesh.vv_range(vertex)) {
+        ++valence;
+        sum += mesh.point(neighbor);
+    }
+    const double part = 1.0 / valence;
+    const double t = 3.0 + 2.0 * portable::cos(2.0 * std::numbers::pi * part);
+    const double alpha = (40.0 - t * t) / 64.0;
+    return sum * (part * alpha) + point * (1.0 - alpha);
 }
 
-std::size_t largest_valence(const Topology& topology) {
-    std::vector<std::size_t> valence(topology.position_vertex.size(), 0);
-    for (const glm::uvec3& triangle : topology.triangles) {
-        for (int i = 0; i < 3; ++i)
-            ++valence[triangle[i]];
-    }
-    return valence.empty() ? 0 : *std::max_element(valence.begin(), valence.end());
+/// The rule for edges.
+OpenMesh::Vec3d middle_of_edge(const SurfaceMesh& mesh, SurfaceMesh::EdgeHandle edge) {
+    const Halfedge one = mesh.halfedge_handle(edge, 0);
+    const Halfedge other = mesh.halfedge_handle(edge, 1);
+    const OpenMesh::Vec3d ends =
+        mesh.point(mesh.to_vertex_handle(one)) + mesh.point(mesh.to_vertex_handle(other));
+    if (mesh.is_boundary(edge)) return ends * 0.5;
+    const auto across = [&](Halfedge side) {
+        return mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(side)));
+    };
+    return (ends * 3.0 + across(one) + across(other)) * 0.125;
 }
 
 /// \param points  one per vertex of the topology
@@ -52,15 +75,15 @@ LoopPoints loop_points(const Topology& topology, std::span<const glm::dvec3> poi
     SurfaceMesh mesh;
     std::vector<std::uint32_t> edges;
     build(mesh, topology, points, &edges);
-    OpenMesh::Subdivider::Uniform::LoopT<SurfaceMesh> loop;
-    loop.init_weights(largest_valence(topology) + 2);
-    loop(mesh, 1);
-
+    const auto plain = [](const OpenMesh::Vec3d& p) { return glm::dvec3(p[0], p[1], p[2]); };
     LoopPoints result;
-    for (std::size_t v = 0; v < points.size(); ++v)
-        result.at_vertices.push_back(point_of(mesh, v));
+    for (const auto& vertex : mesh.vertices())
+        result.at_vertices.push_back(plain(moved_vertex(mesh, vertex)));
+    std::vector<glm::dvec3> middles;
+    for (const auto& edge : mesh.edges())
+        middles.push_back(plain(middle_of_edge(mesh, edge)));
     for (const std::uint32_t edge : edges)
-        result.on_edges.push_back(point_of(mesh, points.size() + edge));
+        result.on_edges.push_back(middles[edge]);
     return result;
 }
 
@@ -273,7 +296,7 @@ FrameOptions frames_for(const Mesh& input, FrameOptions frames, Report& report) 
     }
     const bool needs_normals =
         !input.normals.empty() || frames.tangents == TangentMethod::mikktspace;
-    if (frames.normals == NormalMode::keep && needs_normals) frames.normals = NormalMode::angle;
+    if (frames.normals == NormalMode::keep && needs_normals) frames.normals = NormalWeight::angle;
     return frames;
 }
 

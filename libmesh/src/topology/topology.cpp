@@ -53,8 +53,9 @@ void for_each_edge(std::size_t vertex_count, std::span<const glm::uvec3> triangl
 
 class TopologyMaker {
   public:
-    TopologyMaker(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report)
-        : mesh_(mesh), classes_(classes), report_(report) {}
+    TopologyMaker(const Mesh& mesh, std::span<const std::uint32_t> classes,
+                  std::span<const std::uint32_t> order, Report& report)
+        : mesh_(mesh), classes_(classes), order_(order), report_(report) {}
 
     Topology make();
 
@@ -68,6 +69,7 @@ class TopologyMaker {
 
     const Mesh& mesh_;
     std::span<const std::uint32_t> classes_;
+    std::span<const std::uint32_t> order_;
     Report& report_;
     Topology result_;
     /// Triangles of the result with the indices of position classes.
@@ -77,7 +79,8 @@ class TopologyMaker {
 };
 
 void TopologyMaker::choose_triangles() {
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+        const std::uint32_t t = order_.empty() ? i : order_[i];
         const glm::uvec3& triangle = mesh_.triangles[t];
         const bool finite = is_finite(mesh_.positions[triangle.x]) &&
                             is_finite(mesh_.positions[triangle.y]) &&
@@ -138,11 +141,10 @@ void TopologyMaker::give_vertex(Corner first) {
 }
 
 void TopologyMaker::find_vertices() {
-    constexpr std::uint32_t none = no_corner;
     result_.position_vertex.clear();
-    result_.triangles.assign(welded_.size(), glm::uvec3(none));
+    result_.triangles.assign(welded_.size(), glm::uvec3(no_corner));
     for (Corner corner = 0; corner < 3 * welded_.size(); ++corner) {
-        if (vertex_of(corner, result_.triangles) == none) give_vertex(corner);
+        if (vertex_of(corner, result_.triangles) == no_corner) give_vertex(corner);
     }
 }
 
@@ -191,8 +193,9 @@ Topology TopologyMaker::make() {
 
 }  // namespace
 
-Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report) {
-    return TopologyMaker(mesh, classes, report).make();
+Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report,
+                     std::span<const std::uint32_t> order) {
+    return TopologyMaker(mesh, classes, order, report).make();
 }
 
 namespace {

@@ -39,8 +39,10 @@ struct Topology {
 
 /// \param classes  for each mesh vertex, the smallest vertex with its position (weld.h)
 /// \param report   counts collapsed triangles (two corners at one position), which are left out;
-/// excluded triangles; non-manifold edges
 ///                 triangles set aside; non-manifold edges
-Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report);
+/// \param order  the mesh triangles in the order of the surface's triangles; or empty, which means
+///               the order of the mesh
+Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report,
+                     std::span<const std::uint32_t> order = {});
 
 }  // namespace relief

@@ -26,8 +26,8 @@
 
 #include "parallel.h"
 #include "portable_math.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 

@@ -18,7 +18,7 @@
 #include <system_error>
 
 #include "progress_stage.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <utility>
 
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief::gl {
 

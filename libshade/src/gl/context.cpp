@@ -10,7 +10,7 @@
 // EGL_EXT_device_enumeration, EGL_EXT_device_query, EGL_EXT_platform_device,
 // EGL_MESA_device_software, EGL_MESA_platform_surfaceless, EGL_KHR_no_config_context,
 // EGL_KHR_surfaceless_context, EGL_KHR_create_context.
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 #define EGL_NO_X11
 #include <EGL/egl.h>

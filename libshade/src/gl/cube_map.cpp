@@ -19,7 +19,7 @@
 #include "gl/resources.h"
 #include "portable_math.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief::gl {
 

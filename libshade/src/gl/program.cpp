@@ -8,7 +8,7 @@
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief::gl {
 

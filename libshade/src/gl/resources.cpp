@@ -11,7 +11,7 @@
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 namespace relief::gl {
 

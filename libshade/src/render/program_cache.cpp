@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "effects/shader_source.h"
-#include "relief/mesh/timing.h"
-#include "relief/shade/context.h"
+#include "relief/mesh/statistics.h"
+#include "relief/shade/renderer.h"
 
 namespace relief {
 

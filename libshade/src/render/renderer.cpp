@@ -24,7 +24,7 @@
 #include "gl/resources.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 #include "render/draw_values.h"

@@ -13,7 +13,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
-#include "relief/shade/scene_graph.h"
+#include "relief/shade/scene.h"
 #include "scene/scene_parts.h"
 
 namespace relief {

@@ -108,9 +108,13 @@ class ImagesByPath {
     ImagesByPath(const std::filesystem::path& model, std::vector<ImageSource>& images)
         : model_(model.string()), images_(images) {}
 
-    Texture texture(const std::filesystem::path& file) {
+    Texture texture(const MtlMaterial& material, const std::filesystem::path& file) {
         const auto [entry, is_new] = index_of_.try_emplace(file, images_.size());
-        if (is_new) images_.push_back({file.string(), file, model_});
+        if (is_new) {
+            images_.push_back({file.string(), file, model_});
+            if (!material.may_read(file))
+                images_.back().fault = file.string() + " lies outside of the model's folder";
+        }
         return {entry->second};
     }
 
@@ -134,31 +138,32 @@ Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath&
                        Report& report) {
     const MtlMaterial material = visible_material(read, index, report);
     Material phong = phong_from_mtl(material);
-    if (material.diffuse_map) phong.diffuse_texture = images.texture(*material.diffuse_map);
+    if (material.diffuse_map)
+        phong.diffuse_texture = images.texture(material, *material.diffuse_map);
     if (material.specular_map) {
-        phong.specular_texture = images.texture(*material.specular_map);
+        phong.specular_texture = images.texture(material, *material.specular_map);
         // map_Ks without Ks is not scaled.
         if (phong.specular == glm::vec3(0.0F) && material.illumination_model >= 2)
             phong.specular = glm::vec3(1.0F);
     }
     if (material.emission_map) {
-        phong.emission_texture = images.texture(*material.emission_map);
+        phong.emission_texture = images.texture(material, *material.emission_map);
         // map_Ke without Ke is not scaled.
         if (phong.emission == glm::vec3(0.0F)) phong.emission = glm::vec3(1.0F);
     }
     if (material.normal_map) {
-        phong.normal_map =
-            NormalMap{images.texture(*material.normal_map), 1.0F, Green::up, std::nullopt};
+        phong.normal_map = NormalMap{images.texture(material, *material.normal_map), 1.0F,
+                                     Green::up, std::nullopt};
     }
     if (material.bump_map && material.normal_map) {
         report.add("bump map beside a normal map", "material", index, "left out");
     } else if (material.bump_map) {
-        phong.bump_map = BumpMap{images.texture(*material.bump_map)};
+        phong.bump_map = BumpMap{images.texture(material, *material.bump_map)};
         phong.bump_map->strength *= material.bump_strength;
     }
     // If map_d names the diffuse map, it means its alpha, which blending uses in any case.
     if (material.opacity_map && material.opacity_map != material.diffuse_map)
-        phong.opacity_texture = images.texture(*material.opacity_map);
+        phong.opacity_texture = images.texture(material, *material.opacity_map);
     for (const std::string& statement : material.more)
         report.add(statement + " in MTL", "material", index, "left out");
     return phong;

@@ -2,7 +2,7 @@
 // Scene graphs: key frames, poses of nodes and of what hangs on them, and the union of two graphs.
 // World space, radians, seconds. Angles grow in double, so that a rotation is as smooth after a day
 // as at the start. Source of key frames: glTF 2.0, section 3.11 and appendix C.
-#include "relief/shade/scene_graph.h"
+#include "relief/shade/scene.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Declares parts of scene graphs (scene_graph.h) that files, validation, poses and framing share,
+/// Declares parts of scene graphs (scene.h) that files, validation, poses and framing share,
 /// and parts of load_scene_graph (scene_file.h), one function for each kind of file. World space,
 /// radians, seconds.
 #pragma once
@@ -12,23 +12,16 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "portable_math.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
-#include "relief/shade/scene_graph.h"
 
 namespace relief {
 
 // Numbers
-
-inline bool is_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-inline bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 inline bool is_finite(const glm::mat4& matrix) {
     for (int column = 0; column < 4; ++column) {

@@ -243,12 +243,23 @@ void validate_node(const SceneGraph& graph, std::size_t index) {
                         (!node.matrix || is_finite(*node.matrix));
     if (!finite) throw InvalidInput(thing + " has a transform that is not finite");
     if (!(glm::length(q) > 0.0F)) throw InvalidInput(thing + " has a rotation without a length");
-    // A chain of parents is no longer than the number of nodes, unless it is a cycle.
-    std::optional<std::size_t> above = node.parent;
-    for (std::size_t steps = 0; above && *above < graph.nodes.size(); ++steps) {
-        if (*above == index || steps > graph.nodes.size())
-            throw InvalidInput(thing + " is its own ancestor");
-        above = graph.nodes[*above].parent;
+}
+
+/// Checks that every chain of parents ends. Each node is passed once.
+void validate_parents(const SceneGraph& graph) {
+    const std::size_t count = graph.nodes.size();
+    std::vector<bool> ends(count, false);
+    std::vector<std::size_t> chain;
+    for (std::size_t i = 0; i < count; ++i) {
+        chain.clear();
+        for (std::optional<std::size_t> next = i; next && !ends[*next];
+             next = graph.nodes[*next].parent) {
+            if (chain.size() == count)
+                throw InvalidInput(node_label(graph, i) + " is its own ancestor");
+            chain.push_back(*next);
+        }
+        for (const std::size_t node : chain)
+            ends[node] = true;
     }
 }
 
@@ -305,6 +316,7 @@ void validate_motion(const SceneGraph& graph, const std::string& thing,
 void validate(const SceneGraph& graph) {
     for (std::size_t i = 0; i < graph.nodes.size(); ++i)
         validate_node(graph, i);
+    validate_parents(graph);
     const Scene& scene = graph.scene;
     validate_carried(graph, "instances", graph.instances, scene.instances.size());
     validate_carried(graph, "directional lights", graph.directional_lights,

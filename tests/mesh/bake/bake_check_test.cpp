@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of a baked map: maps with known errors, the error of each stage, and trials of other
-// settings.
+// Checks of a baked map: maps with known errors, and the error of each stage.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,11 +10,11 @@
 
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/bake_check.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/message_of.h"
 
 namespace relief {
@@ -28,7 +27,7 @@ using test::waves;
 const double degree = std::numbers::pi / 180.0;
 
 Image image_of(const std::vector<float>& normals, const BakeOptions& options) {
-    Image image = make_image(options.width, options.height, 3, 32, ColorSpace::data);
+    Image image = make_image(options.map.width, options.map.height, 3, 32, ColorSpace::data);
     std::copy(normals.begin(), normals.end(), image.as<float>().begin());
     return image;
 }
@@ -44,7 +43,7 @@ BakeCheck checked(const Mesh& high, const Mesh& low, const BakeOptions& options,
     Report report;
     const Baker baker(std::span(&high, 1), low, options, report);
     BakeCheckOptions check;
-    check.map = options;
+    check.map = options.map;
     return check_bake(
         baker, map, check,
         [&](int, std::span<const float> degrees) {
@@ -91,7 +90,7 @@ TEST(BakeCheck, NormalsTurnedByOneDegreeAreOneDegreeOff) {
     EXPECT_NEAR(check.error.p99, 1.0, 0.02);
     EXPECT_NEAR(check.center.rms, 1.0, 2e-6);
     EXPECT_EQ(check.rebaked.max, 0.0);
-    EXPECT_NEAR(stage(check, BakeStage::other).rms, 1.0, 2e-6);
+    EXPECT_NEAR(stage(check, BakeStage::other).error.rms, 1.0, 2e-6);
     EXPECT_NEAR(stage(check, BakeStage::other).share, 1.0, 1e-9);
     EXPECT_EQ(check.discontinuous, 0U);
     ASSERT_EQ(errors.size(), 64U * 96U);
@@ -131,9 +130,9 @@ TEST(BakeCheck, QuantisationAloneIsWhatRoundingToCodesDoes) {
     const double rounded = degrees_between({code(0), code(1), code(2)}, {0.6, 0.0, 0.8});
     EXPECT_NEAR(check.error.rms, rounded, 1e-5);
     EXPECT_NEAR(check.center.rms, rounded, 1e-5);
-    EXPECT_NEAR(stage(check, BakeStage::quantization).rms, rounded, 1e-5);
+    EXPECT_NEAR(stage(check, BakeStage::quantization).error.rms, rounded, 1e-5);
     EXPECT_NEAR(stage(check, BakeStage::quantization).share, 1.0, 1e-3);
-    EXPECT_NEAR(stage(check, BakeStage::other).rms, 0.0, 1e-9);
+    EXPECT_NEAR(stage(check, BakeStage::other).error.rms, 0.0, 1e-9);
     EXPECT_NEAR(all_shares(check), 1.0, 1e-9);
 }
 
@@ -143,14 +142,14 @@ TEST(BakeCheck, SamplingAloneIsWhatOneSampleMissesOfTheMean) {
     const Mesh high = waves(512, 100.0);
     BakeOptions options = sized(32, 32);
     const auto errors_of = [&](int samples) {
-        options.samples = samples;
+        options.map.samples = samples;
         return checked(high, make_quad(), options, baked_map(high, make_quad(), options, 32));
     };
     const BakeCheck one = errors_of(1);
     EXPECT_EQ(one.reference_samples, 16);
     EXPECT_GT(one.error.rms, 5.0);
     EXPECT_LT(one.center.max, 1e-4);
-    EXPECT_NEAR(stage(one, BakeStage::sampling).rms, one.error.rms, 1e-4);
+    EXPECT_NEAR(stage(one, BakeStage::sampling).error.rms, one.error.rms, 1e-4);
     EXPECT_NEAR(stage(one, BakeStage::sampling).share, 1.0, 1e-4);
     const BakeCheck sixteen = errors_of(16);
     EXPECT_EQ(sixteen.reference_samples, 256);
@@ -165,15 +164,15 @@ TEST(BakeCheck, BasisIsWhatASkewedFrameMakesOfRounding) {
     low.tangents.assign(low.positions.size(), {0.5F, 0.0F, 0.866025F, 1.0F});
     const BakeOptions options = sized(32, 32);
     const BakeCheck check = checked(high, low, options, baked_map(high, low, options, 8));
-    EXPECT_GT(stage(check, BakeStage::quantization).rms, 0.01);
+    EXPECT_GT(stage(check, BakeStage::quantization).error.rms, 0.01);
     EXPECT_GT(check.error.rms, 0.01);
     EXPECT_NEAR(all_shares(check), 1.0, 1e-9);
-    const double whole =
-        std::hypot(stage(check, BakeStage::quantization).rms, stage(check, BakeStage::basis).rms);
+    const double whole = std::hypot(stage(check, BakeStage::quantization).error.rms,
+                                    stage(check, BakeStage::basis).error.rms);
     EXPECT_GE(whole, check.error.rms - 1e-5);
     low.tangents.assign(low.positions.size(), {1.0F, 0.0F, 0.0F, 1.0F});
     const BakeCheck right = checked(high, low, options, baked_map(high, low, options, 8));
-    EXPECT_LT(stage(right, BakeStage::basis).rms, 1e-3);
+    EXPECT_LT(stage(right, BakeStage::basis).error.rms, 1e-3);
 }
 
 TEST(BakeCheck, ProjectionIsWhereTheSurfaceJumpsWithinATexel) {
@@ -196,7 +195,7 @@ TEST(BakeCheck, ProjectionIsWhereTheSurfaceJumpsWithinATexel) {
     const BakeCheck check =
         checked(high, make_quad(), options, baked_map(high, make_quad(), options, 32));
     EXPECT_EQ(check.discontinuous, 8U);  // The column from 0 to 0.125.
-    EXPECT_GT(stage(check, BakeStage::projection).rms, 5.0);
+    EXPECT_GT(stage(check, BakeStage::projection).error.rms, 5.0);
     EXPECT_NEAR(stage(check, BakeStage::projection).share, 1.0, 1e-6);
     ASSERT_EQ(check.worst.size(), 8U);
     EXPECT_EQ(check.worst[0].x, 8);
@@ -281,125 +280,6 @@ TEST(BakeCheck, RefusesWhatIsNoMapOfThatSize) {
                           make_image(16, 16, 2, 8, ColorSpace::data));
               }),
               "an image of 2 channels holds no normals");
-}
-
-struct Trials {
-    Mesh high = waves(256, 20.0);
-    BakeOptions options = sized(64, 192);
-    Report report;
-    Baker baker{std::span(&high, 1), make_quad(), options, report};
-    std::vector<NormalMapFormat> formats = {{.bits = 8}, {.bits = 16}};
-
-    BakeCheck check_of(int samples, const NormalMapFormat& format) {
-        BakeMapOptions map = options;
-        map.samples = samples;
-        Image normals = make_image(64, 192, 3, 32, ColorSpace::data);
-        std::size_t at = 0;
-        baker.bake(
-            map,
-            [&](const BakedRows& rows) {
-                for (const float value : rows.normals)
-                    normals.as<float>()[at++] = value;
-            },
-            report);
-        BakeCheckOptions check;
-        check.map = map;
-        check.reference_samples = 64;
-        return check_bake(baker, encode_normal_map(normals, format, report), check, {}, report);
-    }
-};
-
-/// The bakes that several tests measure.
-Trials& shared_trials() {
-    static Trials trials;
-    return trials;
-}
-
-/// All texels with 256 samples as the reference, the default.
-const BakeBenchmark& whole_map() {
-    static const BakeBenchmark trials(shared_trials().baker, shared_trials().options, 64 * 192);
-    return trials;
-}
-
-TEST(BakeBenchmark, SayOfAWholeMapWhatACheckSays) {
-    Trials& all = shared_trials();
-    const BakeBenchmark trials(all.baker, all.options, 64 * 192, 64);
-    EXPECT_TRUE(trials.is_whole());
-    EXPECT_EQ(trials.texels(), 64U * 192U);
-    EXPECT_EQ(trials.reference_samples(), 64);
-    for (const int samples : {1, 4}) {
-        const BakeMeasurement trial = trials.measure({samples}, all.formats);
-        EXPECT_GE(trial.rays, static_cast<std::size_t>(samples) * 64U * 192U);
-        for (std::size_t i = 0; i < 2; ++i) {
-            const BakeCheck check = all.check_of(samples, all.formats[i]);
-            EXPECT_NEAR(trial.errors[i].rms, check.error.rms, 1e-9);
-            EXPECT_EQ(trial.errors[i].max, check.error.max);
-            const auto codes = static_cast<std::size_t>(BakeStage::quantization);
-            EXPECT_NEAR(trial.quantization[i].rms, check.stages.at(codes).rms, 1e-6);
-        }
-    }
-}
-
-TEST(BakeBenchmark, MoreSamplesAndBitsAreTruer) {
-    const Trials& all = shared_trials();
-    const BakeBenchmark& trials = whole_map();
-    EXPECT_EQ(trials.reference_samples(), 256);
-    const BakeMeasurement one = trials.measure({1}, all.formats);
-    const BakeMeasurement four = trials.measure({4}, all.formats);
-    EXPECT_LT(four.errors[1].rms, one.errors[1].rms / 2.0);
-    EXPECT_LT(four.errors[1].rms, four.errors[0].rms);
-    EXPECT_LT(four.quantization[1].rms, 0.001);
-    EXPECT_GT(four.quantization[0].rms, 0.05);
-    // A map with one sample at the center is exact there.
-    EXPECT_LT(one.center[1].max, 0.002);
-}
-
-TEST(BakeBenchmark, ErrorMapsHoldTheErrorsOfEachTexel) {
-    const Trials& all = shared_trials();
-    const BakeBenchmark part(all.baker, all.options, 1);
-    for (const BakeBenchmark* trials : {&whole_map(), &part}) {
-        const BakeMeasurement trial = trials->measure({4}, all.formats);
-        const Image map = trials->error_map({4}, all.formats[0]);
-        EXPECT_EQ(map.width, 64);
-        EXPECT_EQ(static_cast<std::size_t>(map.height), trials->texels() / 64);
-        const std::span<const float> texel_errors = map.as<float>();
-        const ErrorStats all_errors = error_stats({texel_errors.begin(), texel_errors.end()});
-        EXPECT_EQ(all_errors.count, trial.errors[0].count);
-        EXPECT_NEAR(all_errors.rms, trial.errors[0].rms, 1e-6);
-        EXPECT_NEAR(all_errors.max, trial.errors[0].max, 1e-6);
-    }
-}
-
-TEST(BakeBenchmark, OfAPartAreNearlyThoseOfTheWhole) {
-    const Trials& all = shared_trials();
-    const BakeBenchmark part(all.baker, all.options, 1);
-    EXPECT_FALSE(part.is_whole());
-    EXPECT_EQ(part.texels(), 64U * 64U);
-    EXPECT_NEAR(part.measure({1}, all.formats).errors[1].rms,
-                whole_map().measure({1}, all.formats).errors[1].rms, 0.01);
-}
-
-TEST(BakeBenchmark, SeparateSamplingFromRoundingUpTo256Samples) {
-    Trials& all = shared_trials();
-    const BakeBenchmark trials(all.baker, all.options, 64, 1024);
-    EXPECT_EQ(trials.reference_samples(), 1024);
-    const BakeMeasurement few = trials.measure({16}, all.formats);
-    const BakeMeasurement many = trials.measure({256}, all.formats);
-    // A map is not compared with its own samples. Four times as many samples per side are better.
-    EXPECT_GT(many.sampling.rms, 0.0);
-    EXPECT_LT(many.sampling.rms, 0.5 * few.sampling.rms);
-    // Rounding and sampling are independent, and their sum is the error.
-    EXPECT_NEAR(many.errors[0].rms, std::hypot(many.sampling.rms, many.quantization[0].rms),
-                0.05 * many.errors[0].rms);
-    // Larger maps have no memory for this number of samples, even if their charts are small.
-    BakeMapOptions large = all.options;
-    large.width = 2112;
-    large.height = 64;
-    Mesh low = make_quad();
-    for (glm::vec2& texcoord : low.texcoords)
-        texcoord *= 0.1F;
-    const Baker baker(std::span(&all.high, 1), low, all.options, all.report);
-    EXPECT_EQ(BakeBenchmark(baker, large, 64, 1024).reference_samples(), 256);
 }
 
 }  // namespace

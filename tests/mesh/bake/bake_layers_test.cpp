@@ -25,10 +25,10 @@ using test::sized;
 
 BakeOptions all_layers(int width, int height) {
     BakeOptions options = sized(width, height);
-    options.layers.occlusion = OcclusionOptions{.rays = 8, .distance = {}};
-    options.layers.curvature = true;
-    options.layers.positions = true;
-    options.layers.colors = true;
+    options.map.layers.occlusion = OcclusionOptions{.rays = 8, .distance = {}};
+    options.map.layers.curvature = true;
+    options.map.layers.positions = true;
+    options.map.layers.colors = true;
     return options;
 }
 
@@ -47,17 +47,17 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
          {std::pair<int, std::optional<double>>(1, {}), {16, {}}, {16, 0.02}}) {
         // Clang 14 captures structured bindings only by name.
         const auto with = [&, samples = samples, angle = angle](BakeOptions options) {
-            options.samples = samples;
-            options.sample_angle = angle;
-            options.padding = 3;
+            options.map.samples = samples;
+            options.map.sample_angle = angle;
+            options.map.padding = 3;
             return bake({high}, low, options);
         };
         const BakedImage all = with(all_layers(70, 50));
         const auto only = [&](const auto& choose) {
             BakeOptions options = sized(70, 50);
-            options.layers = {};
-            options.layers.normals = false;
-            choose(options.layers);
+            options.map.layers = {};
+            options.map.layers.normals = false;
+            choose(options.map.layers);
             return with(options);
         };
         const BakedImage normals = only([](BakeLayers& layers) { layers.normals = true; });
@@ -92,8 +92,8 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
 
 TEST(BakeLayers, PositionsAreWhereRaysHaveHitInTheAxesAskedFor) {
     BakeOptions options = sized(8, 4);
-    options.layers.positions = true;
-    options.layers.position_from_mesh =
+    options.map.layers.positions = true;
+    options.map.layers.position_from_mesh =
         glm::translate(glm::dmat4(1.0), {10.0, 20.0, 30.0}) * glm::dmat4(glm::dmat3(2.0));
     const BakedImage image = bake({moved(make_quad(), 1.0F, {0, 0, 0.25F})}, make_quad(), options);
     for (std::size_t i = 0; i < 32; ++i) {
@@ -107,7 +107,7 @@ TEST(BakeLayers, PositionsAreWhereRaysHaveHitInTheAxesAskedFor) {
 
 TEST(BakeLayers, CurvatureIsThatOfTheHighMesh) {
     BakeOptions options = sized(64, 32);
-    options.layers.curvature = true;
+    options.map.layers.curvature = true;
     const Mesh high = moved(make_sphere(256, 128), 2.5F, glm::vec3(0));
     const Mesh low = moved(make_sphere(32, 16), 2.5F, glm::vec3(0));
     for (const float here : bake({high}, low, options).curvature)
@@ -126,7 +126,7 @@ TEST(BakeLayers, OcclusionIsThatOfTheHighMeshes) {
     // visible; far below it, almost nothing.
     Mesh roof = moved(make_quad(), 8.0F, {8.0F, 0, 0.5F});
     BakeOptions options = sized(33, 1);
-    options.layers.occlusion = OcclusionOptions{.rays = 1024, .distance = 100.0};
+    options.map.layers.occlusion = OcclusionOptions{.rays = 1024, .distance = 100.0};
     options.offset = 0.25;
     options.max_distance = 0.25;
     options.allow_size_mismatch = true;
@@ -148,7 +148,7 @@ TEST(BakeLayers, OfTexelsThatMissAreBackgroundOrPadded) {
         position.x = (position.x - 1.0F) / 2.0F;
     high.colors.assign(4, {0.25F, 0.5F, 0.75F, 1.0F});
     BakeOptions options = all_layers(16, 4);
-    options.padding = 2;
+    options.map.padding = 2;
     const BakedImage image = bake({high}, make_quad(), options);
     for (const std::size_t i : {7UL, 9UL}) {
         EXPECT_EQ(image.occlusion[i], 1.0F);
@@ -170,8 +170,8 @@ TEST(BakeLayers, ColorsOfVerticesAreMixedInLight) {
     for (glm::vec3& position : low.positions)
         position.x = 1.0F + 2.0F * position.x;
     BakeOptions options = sized(16, 1);
-    options.layers.colors = true;
-    options.samples = 4;
+    options.map.layers.colors = true;
+    options.map.samples = 4;
     const BakedImage image = bake({high, bare}, low, options);
     for (std::size_t i = 0; i < 16; ++i) {
         const double red = i < 8 ? (static_cast<double>(i) + 0.5) / 8.0 : 1.0;
@@ -184,10 +184,10 @@ TEST(BakeLayers, ColorsOfVerticesAreMixedInLight) {
 
 TEST(BakeLayers, SaysWhatIsWrong) {
     BakeOptions options = sized(4, 4);
-    options.layers.occlusion = OcclusionOptions{.rays = 0, .distance = {}};
+    options.map.layers.occlusion = OcclusionOptions{.rays = 0, .distance = {}};
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
               "0 rays of occlusion are not within 1 to 65536");
-    options.layers.occlusion = OcclusionOptions{.rays = 4, .distance = -1.0};
+    options.map.layers.occlusion = OcclusionOptions{.rays = 4, .distance = -1.0};
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
               "a distance of occlusion of -1 is negative or not finite");
 }
@@ -197,7 +197,7 @@ TEST(BakeLayers, OfAMapAreSomeOfThoseThatItsBakerWasMadeFor) {
     BakeOptions options = sized(4, 4);
     Report report;
     const Baker baker(high, make_quad(), options, report);
-    BakeMapOptions map = options;
+    BakeMapOptions map = options.map;
     map.layers = {.normals = false, .positions = true};
     std::size_t rows = 0;
     baker.bake(

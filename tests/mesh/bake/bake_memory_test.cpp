@@ -29,21 +29,21 @@ std::size_t texels_of(BakeOptions options, float chart) {
 TEST(BakeMemory, DoesNotGrowWithSamplesNorWithTheMap) {
     set_thread_limit(2);
     BakeOptions options;
-    options.width = 512;
-    options.height = 512;
-    options.samples = 16;
+    options.map.width = 512;
+    options.map.height = 512;
+    options.map.samples = 16;
     texels_of(options, 0.1F);
     const double small = test::peak_megabytes();
-    options.width = 8192;
-    options.height = 1024;
-    options.padding = 16;
+    options.map.width = 8192;
+    options.map.height = 1024;
+    options.map.padding = 16;
     EXPECT_EQ(texels_of(options, 0.02F), 8192U * 1024U);
     const double large = test::peak_megabytes();
     // The owners of all samples would take 2.1 GB. Sanitizers keep 256 MB of freed memory.
     EXPECT_LT(large, small + 600.0);
     // A map of four times the height, with 330 MB more pixels, takes the same memory.
-    options.samples = 4;
-    options.height = 4096;
+    options.map.samples = 4;
+    options.map.height = 4096;
     EXPECT_EQ(texels_of(options, 0.02F), 8192U * 4096U);
     EXPECT_LT(test::peak_megabytes(), large + 100.0);
 }
@@ -54,9 +54,9 @@ TEST(BakeMemory, OfMapsFilledToTheBorderIsTheirFiles) {
     set_thread_limit(2);
     const double before = test::peak_megabytes();
     BakeOptions options;
-    options.width = 4096;
-    options.height = 4096;
-    options.border_folder = folder / ".";
+    options.map.width = 4096;
+    options.map.height = 4096;
+    options.map.border_folder = folder / ".";
     EXPECT_EQ(texels_of(options, 0.02F), 4096U * 4096U);
     EXPECT_LT(test::peak_megabytes(), before + 100.0);
 }

@@ -48,9 +48,9 @@ inline BakedImage bake(const std::vector<Mesh>& high, const Mesh& low, const Bak
 /// Options for a map of this size with heights and otherwise default values.
 inline BakeOptions sized(int width, int height) {
     BakeOptions options;
-    options.width = width;
-    options.height = height;
-    options.layers.heights = true;
+    options.map.width = width;
+    options.map.height = height;
+    options.map.layers.heights = true;
     return options;
 }
 

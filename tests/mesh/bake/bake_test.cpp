@@ -5,17 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <mutex>
 
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/message_of.h"
 
 namespace relief {
@@ -82,8 +83,8 @@ TEST(Bake, HeightsAreHowFarOutsideTheSurfaceLies) {
 
 TEST(Bake, IsTheSameForAnyNumberOfThreadsAndOrderOfHighTriangles) {
     BakeOptions options = sized(150, 130);
-    options.padding = 7;
-    options.samples = 4;
+    options.map.padding = 7;
+    options.map.samples = 4;
     Mesh high = make_torus(0.43F, 200, 100);
     const Mesh low = make_torus();
     const BakedImage usual = bake({high}, low, options);
@@ -112,7 +113,7 @@ TEST(Bake, TexelsThatMeetNothingAreCountedAndFilledFromTheNearest) {
     EXPECT_EQ(image.report.count("texel missed by its rays"), 32U * 64U);
     EXPECT_EQ(image.result.texels_missed, 32U * 64U);
     EXPECT_EQ(image.normal(63), straight_up);
-    options.padding = 5;
+    options.map.padding = 5;
     const BakedImage padded = bake({high}, make_quad(), options);
     EXPECT_EQ(padded.count(TexelState::padded), 5U * 64U);
     EXPECT_LT(degrees_between(padded.normal(36), {0.6, 0, 0.8}), 1e-4);
@@ -138,7 +139,7 @@ TEST(Bake, AChartSmallerThanATexelHasOne) {
 TEST(Bake, OddSizesAreBakedToo) {
     for (const auto& [width, height] : {std::pair(1, 1), {3, 17}, {1, 200}, {129, 1}}) {
         BakeOptions options = sized(width, height);
-        options.padding = 3;
+        options.map.padding = 3;
         const BakedImage image = bake({make_quad()}, make_quad(), options);
         EXPECT_EQ(image.count(TexelState::baked), static_cast<std::size_t>(width * height));
     }
@@ -177,7 +178,7 @@ TEST(Bake, RaysRunFromACageToTheLowMesh) {
         floor.normals.push_back(glm::vec3(position.x, position.y, 10));
     BakeOptions options = sized(8, 8);
     options.space = VectorSpace::object;
-    options.cage = &cage;
+    options.cage = std::make_shared<const Mesh>(cage);
     const BakedImage image = bake({floor}, make_quad(), options);
     ASSERT_EQ(image.count(TexelState::baked), 64U);
     for (int y = 0; y < 8; ++y) {
@@ -189,7 +190,7 @@ TEST(Bake, RaysRunFromACageToTheLowMesh) {
     }
     Mesh other = cage;
     other.triangles.pop_back();
-    options.cage = &other;
+    options.cage = std::make_shared<const Mesh>(other);
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({floor}, make_quad(), options); }),
               "the cage has 1 triangles, not 2 as the low mesh");
 }
@@ -239,17 +240,17 @@ TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
     BakeOptions options = sized(16, 16);
     const BakedImage one = bake({high}, make_quad(), options);
     EXPECT_EQ(one.result.samples, 256U);
-    options.samples = 16;
+    options.map.samples = 16;
     const BakedImage many = bake({high}, make_quad(), options);
     EXPECT_EQ(many.result.samples, 16U * 256U);
-    options.sample_angle = 0.0;
+    options.map.sample_angle = 0.0;
     const BakedImage all = bake({high}, make_quad(), options);
     EXPECT_EQ(all.result.samples, 16U * 256U);
-    options.sample_angle = 3.2;
+    options.map.sample_angle = 3.2;
     EXPECT_THROW(bake({high}, make_quad(), options), InvalidInput);
-    options.sample_angle = 3.1;
+    options.map.sample_angle = 3.1;
     EXPECT_EQ(bake({high}, make_quad(), options).result.samples, 4U * 256U);
-    options.sample_angle = 0.12;
+    options.map.sample_angle = 0.12;
     const BakedImage some = bake({high}, make_quad(), options);
     EXPECT_GT(some.result.samples, 5U * 256U);
     EXPECT_LT(some.result.samples, 15U * 256U);
@@ -277,7 +278,7 @@ TEST(Bake, SaysWhatIsWrong) {
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, bare, sized(4, 4)); }),
               "the low mesh has no texture coordinates");
     BakeOptions options = sized(4, 4);
-    options.samples = 3;
+    options.map.samples = 3;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
               "3 samples are not 1, 4, 16, 64, 256 or 1024");
     options = sized(4, 4);

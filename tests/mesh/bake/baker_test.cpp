@@ -7,15 +7,16 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
 
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/message_of.h"
 
 namespace relief {
@@ -62,15 +63,43 @@ TEST(Baker, BakesAsManyMapsAsAreAskedForEachAsAlone) {
     const Mesh low = make_torus();
     const std::vector<Mesh> high = {make_torus(0.43F, 100, 50)};
     BakeOptions options = sized(40, 30);
-    options.samples = 4;
-    options.padding = 3;
+    options.map.samples = 4;
+    options.map.padding = 3;
     Report report;
     const Baker baker(high, low, options, report);
     const BakedImage alone = bake(high, low, options);
-    EXPECT_EQ(baked(baker, options).normals, alone.normals);
-    EXPECT_EQ(baked(baker, sized(64, 64)).normals, bake(high, low, sized(64, 64)).normals);
-    EXPECT_EQ(baked(baker, options).heights, alone.heights);
+    EXPECT_EQ(baked(baker, options.map).normals, alone.normals);
+    EXPECT_EQ(baked(baker, sized(64, 64).map).normals, bake(high, low, sized(64, 64)).normals);
+    EXPECT_EQ(baked(baker, options.map).heights, alone.heights);
     EXPECT_EQ(baker.distances().offset, alone.result.distances.offset);
+}
+
+TEST(Baker, ReportsItsRowsAndCanBeCancelledThere) {
+    const std::vector<Mesh> high = {make_quad()};
+    Report report;
+    const Baker baker(high, make_quad(), sized(32, 256), report);
+    const auto bake_with = [&](Progress& progress) {
+        int rows = 0;
+        baker.bake(sized(32, 256).map, [&](const BakedRows& band) { rows += band.row_count; },
+                   report, {.progress = &progress});
+        return rows;
+    };
+    std::vector<double> parts;
+    Progress progress([&](const Progress::State& state) {
+        if (state.stage == "baking") parts.push_back(state.part.value_or(-1.0));
+    });
+    EXPECT_EQ(bake_with(progress), 256);
+    EXPECT_EQ(parts.front(), 0.0);
+    EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
+    EXPECT_EQ(parts.back(), 1.0);
+    EXPECT_EQ(progress.state().stage, "");
+
+    Progress* ended = nullptr;
+    Progress ending([&](const Progress::State& state) {
+        if (state.part.value_or(0.0) > 0.0) ended->cancel();
+    });
+    ended = &ending;
+    EXPECT_THROW(bake_with(ending), Cancelled);
 }
 
 TEST(Baker, AMapOfSomeTrianglesHasTheirTexelsAsTheWholeMapHasThem) {
@@ -80,11 +109,11 @@ TEST(Baker, AMapOfSomeTrianglesHasTheirTexelsAsTheWholeMapHasThem) {
     const std::vector<Mesh> high = {make_sphere(64, 32)};
     Report report;
     const Baker baker(high, low, sized(1, 1), report);
-    const BakedImage all = baked(baker, sized(48, 48));
+    const BakedImage all = baked(baker, sized(48, 48).map);
     std::size_t texels = 0;
     for (std::uint32_t first = 0; first < low.triangles.size(); first += 2) {
         const std::vector<std::uint32_t> face = {first, first + 1};
-        BakeMapOptions map = sized(48, 48);
+        BakeMapOptions map = sized(48, 48).map;
         map.triangles = face;
         const BakedImage some = baked(baker, map);
         for (std::size_t i = 0; i < some.states.size(); ++i) {
@@ -96,7 +125,7 @@ TEST(Baker, AMapOfSomeTrianglesHasTheirTexelsAsTheWholeMapHasThem) {
     // The parts agree at texels inside one face, except those that two faces touch.
     EXPECT_GE(texels, all.result.coverage.inside);
     const std::vector<std::uint32_t> none;
-    BakeMapOptions map = sized(8, 8);
+    BakeMapOptions map = sized(8, 8).map;
     map.triangles = none;
     EXPECT_EQ(baked(baker, map).count(TexelState::empty), 64U);
 }
@@ -108,14 +137,14 @@ TEST(Baker, TilesOfOneMeshAreMapsOfTheirOwn) {
     Report report;
     const Baker baker(high, low, sized(1, 1), report);
     for (int tile = 0; tile < 2; ++tile) {
-        BakeMapOptions map = sized(16, 16);
+        BakeMapOptions map = sized(16, 16).map;
         map.placement.tile = {tile, 0};
         const BakedImage image = baked(baker, map);
         EXPECT_EQ(image.count(TexelState::baked), 256U);
         const glm::dvec3 expected = tile == 0 ? glm::dvec3(0.6, 0, 0.8) : glm::dvec3(0, 0.6, 0.8);
         EXPECT_LT(degrees_between(image.normal(100), expected), 1e-4);
     }
-    BakeMapOptions map = sized(16, 16);
+    BakeMapOptions map = sized(16, 16).map;
     map.placement.tile = {2, 0};
     EXPECT_EQ(baked(baker, map).count(TexelState::empty), 256U);
 }
@@ -129,10 +158,10 @@ TEST(Baker, PartsDoNotCatchEachOthersRays) {
     const std::vector<Mesh> all = {left[0], right[0], right[1]};
     Report report;
     const Baker together(all, low, sized(1, 1), report);
-    EXPECT_LT(degrees_between(baked(together, sized(16, 16)).normal(0), {0, 0.6, 0.8}), 1e-4);
+    EXPECT_LT(degrees_between(baked(together, sized(16, 16).map).normal(0), {0, 0.6, 0.8}), 1e-4);
     const std::vector<BakePart> parts = {{left, {0, 1}}, {right, {2, 3}}};
     const Baker baker(parts, low, sized(1, 1), report);
-    const BakedImage image = baked(baker, sized(16, 16));
+    const BakedImage image = baked(baker, sized(16, 16).map);
     EXPECT_EQ(image.count(TexelState::baked), 256U);
     for (std::size_t i = 0; i < 256; ++i)
         EXPECT_LT(degrees_between(image.normal(i), {0.6, 0, 0.8}), 1e-4);
@@ -152,7 +181,7 @@ TEST(Baker, PartsWithoutAnythingHighAreMissed) {
     const std::vector<BakePart> parts = {{high, {0, 1}}, {{}, {2, 3}}};
     Report report;
     const Baker baker(parts, two_tiles(), sized(1, 1), report);
-    BakeMapOptions map = sized(8, 8);
+    BakeMapOptions map = sized(8, 8).map;
     EXPECT_EQ(baked(baker, map).count(TexelState::baked), 64U);
     map.placement.tile = {1, 0};
     EXPECT_EQ(baked(baker, map).result.texels_missed, 64U);
@@ -178,15 +207,15 @@ TEST(Baker, SaysWhatIsWrongWithAMap) {
     const auto message = [&](const BakeMapOptions& map) {
         return test::message_of<InvalidInput>([&] { baked(baker, map); });
     };
-    BakeMapOptions map = sized(std::numeric_limits<int>::max(), 4);
+    BakeMapOptions map = sized(std::numeric_limits<int>::max(), 4).map;
     map.samples = 64;
     EXPECT_EQ(message(map), "a map of 2147483647 x 4 texels of 64 samples is not within 1 to 8192");
-    map = sized(4, 1 << 30);
+    map = sized(4, 1 << 30).map;
     map.samples = 16;
     EXPECT_EQ(message(map),
               "a map of 4 x 1073741824 texels of 16 samples is not within 1 to 16384");
     const std::vector<std::uint32_t> beyond = {0, 2}, turned = {1, 0};
-    map = sized(4, 4);
+    map = sized(4, 4).map;
     map.triangles = beyond;
     EXPECT_EQ(message(map), "there is no triangle 2 in the low mesh");
     map.triangles = turned;
@@ -197,7 +226,7 @@ TEST(Baker, CountsATexelOfSeveralTrianglesOnceForAllItsSamples) {
     const Mesh twice = joined(make_quad(), make_quad());
     for (const int samples : {1, 4, 16, 64}) {
         BakeOptions options = sized(70, 66);
-        options.samples = samples;
+        options.map.samples = samples;
         const BakedImage image = bake({make_quad()}, twice, options);
         EXPECT_EQ(image.report.count("texel of several triangles"), 70U * 66U);
         const auto found = image.report.findings();
@@ -274,7 +303,7 @@ TEST(Baker, RefusesMeshesThatRaysDoNotReach) {
     // With a cage, the length of rays is its distance.
     const Mesh cage = test::moved(make_quad(), 1.0F, {0, 0, 0.5F});
     BakeOptions caged = sized(8, 8);
-    caged.cage = &cage;
+    caged.cage = std::make_shared<const Mesh>(cage);
     EXPECT_DOUBLE_EQ(mismatch_of(high, make_quad(), caged).reach(), 0.5);
 }
 
@@ -315,9 +344,9 @@ TEST(Baker, MeasuresTheRaysThatMissedTexelsNeed) {
     BakeOptions options = sized(8, 8);
     options.offset = 0.375;
     options.max_distance = 0.0;
-    options.measures_missed = true;
+    options.map.measures_missed = true;
     for (const int samples : {1, 4, 16}) {
-        options.samples = samples;
+        options.map.samples = samples;
         const BakeResult result = bake({stairs}, make_quad(), options).result;
         EXPECT_EQ(result.texels_missed, 48U);
         EXPECT_EQ(result.measuring_rays, 96U);
@@ -339,7 +368,7 @@ TEST(Baker, MeasuresTheRaysThatMissedTexelsNeed) {
         longer.offset = 1.001 * result.clipped_outside.longest;
         EXPECT_EQ(bake({stairs}, make_quad(), longer).result.texels_missed, 0U);
     }
-    options.samples = 1;
+    options.map.samples = 1;
     // The same below the low square, and then with reversed faces.
     Mesh below = stairs;
     for (glm::vec3& position : below.positions)
@@ -355,7 +384,7 @@ TEST(Baker, MeasuresTheRaysThatMissedTexelsNeed) {
     const BakeResult behind = bake({below}, make_quad(), options).result;
     EXPECT_EQ(behind.missed_from_behind, 64U);
     EXPECT_EQ(behind.clipped_inside.texels, 0U);
-    options.measures_missed = false;
+    options.map.measures_missed = false;
     EXPECT_EQ(bake({below}, make_quad(), options).result.measuring_rays, 0U);
 }
 
@@ -486,12 +515,12 @@ std::vector<Model> models() {
 
 BakedImage baked(const Mesh& high, const Model& model, std::size_t map_count = 1) {
     BakeOptions options = sized(model.side, model.side);
-    options.samples = 4;
-    options.layers.occlusion = OcclusionOptions{.rays = 16, .distance = {}};
-    options.layers.curvature = true;
-    options.layers.positions = true;
-    options.layers.colors = true;
-    options.padding = 2;
+    options.map.samples = 4;
+    options.map.layers.occlusion = OcclusionOptions{.rays = 16, .distance = {}};
+    options.map.layers.curvature = true;
+    options.map.layers.positions = true;
+    options.map.layers.colors = true;
+    options.map.padding = 2;
     options.map_count = map_count;
     return bake({high}, model.low, options);
 }

@@ -5,13 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "bake/high_surface.h"
 #include "mesh/bake/bake_support.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/message_of.h"
 
 namespace relief {
@@ -28,7 +29,7 @@ Image gray(int width, int height, std::vector<float> samples) {
 TEST(SurfaceTexture, LiesBetweenTexelCentresAndGoesOnBeyondItsBorder) {
     const Image image = gray(4, 1, {0.0F, 0.25F, 0.5F, 1.0F});
     SurfaceTexture texture;
-    texture.image = &image;
+    texture.image = std::make_shared<const Image>(image);
     const auto red = [&](double u) { return color_at(texture, {u, 0.5}).x; };
     EXPECT_DOUBLE_EQ(red(0.125), 0.0);
     EXPECT_DOUBLE_EQ(red(0.25), 0.125);
@@ -57,16 +58,16 @@ TEST(SurfaceTexture, DecodesBeforeItFilters) {
     const Image bytes{2, 1, 3, ColorSpace::srgb,
                       std::vector<std::uint8_t>{0, 188, 255, 255, 0, 255}};
     SurfaceTexture texture;
-    texture.image = &bytes;
+    texture.image = std::make_shared<const Image>(bytes);
     const glm::dvec3 mean = color_at(texture, {0.5, 0.5});
     EXPECT_NEAR(mean.x, 0.5, 1e-7);
     EXPECT_NEAR(mean.y, 0.5 * 0.50288646, 1e-6);
     EXPECT_NEAR(mean.z, 1.0, 1e-7);
     const Image words{1, 1, 2, ColorSpace::srgb, std::vector<std::uint16_t>{48316, 1}};
-    texture.image = &words;
+    texture.image = std::make_shared<const Image>(words);
     EXPECT_NEAR(color_at(texture, {0.5, 0.5}).z, 0.50288646, 1e-6);
     const Image data{1, 1, 1, ColorSpace::linear, std::vector<std::uint8_t>{51}};
-    texture.image = &data;
+    texture.image = std::make_shared<const Image>(data);
     EXPECT_DOUBLE_EQ(color_at(texture, {0.5, 0.5}).z, 0.2);
 }
 
@@ -74,14 +75,15 @@ TEST(HighMaterials, ColorIsFactorTimesTextureTimesVertex) {
     Mesh high = make_quad();
     high.colors.assign(4, {0.5F, 0.25F, 1.0F, 1.0F});
     const Image image = gray(2, 1, {0.25F, 0.75F});
-    HighMaterials detail{&high, {}, {}};
+    BakeOptions options = sized(2, 2);
+    options.map.layers.colors = true;
+    HighMaterials& detail = options.materials.emplace_back();
+    detail.mesh = &high;
     detail.materials.resize(2);
     detail.materials[0].color = {1.0F, 0.5F, 0.25F};
-    detail.materials[0].color_texture = SurfaceTexture{.image = &image};
+    detail.materials[0].color_texture =
+        SurfaceTexture{.image = std::make_shared<const Image>(image)};
     detail.materials[0].color_texture->filter = TextureFilter::nearest;
-    BakeOptions options = sized(2, 2);
-    options.layers.colors = true;
-    options.details = std::span(&detail, 1);
     const auto colors = [&] {
         return bake({}, make_quad(), options).colors;  // There is no high mesh, so the detail has
                                                        // no effect.
@@ -107,8 +109,8 @@ TEST(HighMaterials, MaterialsAreByTriangle) {
     HighMaterials detail{meshes.data(), std::vector<HighMaterial>(2), {}};
     detail.materials[1].color = {0.5F, 0.0F, 0.0F};
     BakeOptions options = sized(64, 64);
-    options.layers.colors = true;
-    options.details = std::span(&detail, 1);
+    options.map.layers.colors = true;
+    options.materials = {detail};
     const BakedImage image = bake(meshes, make_quad(), options);
     std::size_t red = 0, white = 0;
     for (std::size_t i = 0; i < 64UL * 64UL; ++i) {
@@ -149,10 +151,10 @@ TEST(HighMaterials, NormalMapsComeThroughOntoTheSameMesh) {
             for (const Mesh& mesh : {make_quad(), make_torus()}) {
                 const std::vector<Mesh> high = {mesh};
                 HighMaterials detail{high.data(), std::vector<HighMaterial>(1), {}};
-                detail.materials[0].normal_map =
-                    SurfaceNormalMap{{.image = &map}, 1.0F, green, flat};
+                detail.materials[0].normal_map = SurfaceNormalMap{
+                    {.image = std::make_shared<const Image>(map)}, 1.0F, green, flat};
                 BakeOptions options = sized(64, 48);
-                options.details = std::span(&detail, 1);
+                options.materials = {detail};
                 const BakedImage image = bake(high, mesh, options);
                 double worst = 0.0;
                 for (std::size_t i = 0; i < image.states.size(); ++i) {
@@ -172,11 +174,10 @@ TEST(HighMaterials, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
     // Slopes of 3/4 to the right.
     const Image map{1, 1, 3, ColorSpace::data, std::vector<float>{0.8F, 0.5F, 0.9F}};
     std::vector<Mesh> high = {make_quad()};
-    HighMaterials detail{high.data(), std::vector<HighMaterial>(1), {}};
-    detail.materials[0].normal_map = SurfaceNormalMap{.texture = {.image = &map}};
-    SurfaceNormalMap& normal_map = *detail.materials[0].normal_map;
     BakeOptions options = sized(2, 2);
-    options.details = std::span(&detail, 1);
+    options.materials = {{high.data(), std::vector<HighMaterial>(1), {}}};
+    SurfaceNormalMap& normal_map = options.materials[0].materials[0].normal_map.emplace();
+    normal_map.texture.image = std::make_shared<const Image>(map);
     const auto baked = [&] { return bake(high, make_quad(), options).normal(0); };
     EXPECT_LT(degrees_between(baked(), {0.6, 0, 0.8}), 1e-5);
     normal_map.scale = 2.0F;
@@ -189,15 +190,15 @@ TEST(HighMaterials, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
     EXPECT_LT(degrees_between(baked(), {0, -0.6, 0.8}), 1e-4);
     normal_map.texture.transform = {};
     // Without a layer of normals, nothing reads the map.
-    options.layers.normals = false;
+    options.map.layers.normals = false;
     EXPECT_TRUE(bake(high, make_quad(), options).report.empty());
-    options.layers.normals = true;
+    options.map.layers.normals = true;
     high[0].texcoords.clear();
     const BakedImage bare = bake(high, make_quad(), options);
     EXPECT_LT(degrees_between(bare.normal(0), {0, 0, 1}), 1e-5);
     EXPECT_EQ(bare.report.count("normal map without texture coordinates"), 1U);
     const Image narrow = gray(1, 1, {0.5F});
-    normal_map.texture.image = &narrow;
+    normal_map.texture.image = std::make_shared<const Image>(narrow);
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake(high, make_quad(), options); }),
               "a normal map of 1 channels, not 3");
 }
@@ -206,11 +207,12 @@ TEST(HighMaterials, NormalMapsHaveNoSayInOcclusion) {
     const Image map{1, 1, 3, ColorSpace::data, std::vector<float>{0.8F, 0.5F, 0.9F}};
     const std::vector<Mesh> high = {make_torus()};
     HighMaterials detail{high.data(), std::vector<HighMaterial>(1), {}};
-    detail.materials[0].normal_map = SurfaceNormalMap{.texture = {.image = &map}};
+    detail.materials[0].normal_map =
+        SurfaceNormalMap{.texture = {.image = std::make_shared<const Image>(map)}};
     BakeOptions options = sized(32, 32);
-    options.layers.occlusion = OcclusionOptions{};
+    options.map.layers.occlusion = OcclusionOptions{};
     const BakedImage plain = bake(high, make_torus(), options);
-    options.details = std::span(&detail, 1);
+    options.materials = {detail};
     const BakedImage mapped = bake(high, make_torus(), options);
     EXPECT_EQ(mapped.occlusion, plain.occlusion);
     EXPECT_NE(mapped.normals, plain.normals);

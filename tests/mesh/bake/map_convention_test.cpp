@@ -13,13 +13,13 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bake_check.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 #include "support/message_of.h"
 #include "support/shapes.h"
@@ -108,7 +108,7 @@ ConventionFit fit(const Image& map, VectorSpace space = VectorSpace::tangent,
     Report report;
     const Baker baker(std::span(&pair().high, 1), low, options_of(space), report);
     BakeCheckOptions check;
-    check.map = baker.options();
+    check.map = baker.options().map;
     check.given = &low;
     return check_bake(baker, map, check, {}, report).convention;
 }

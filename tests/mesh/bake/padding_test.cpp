@@ -6,15 +6,16 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 
 #include "bake/bake_work.h"
 #include "bake/edge_padding.h"
 #include "mesh/bake/bake_support.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
 
@@ -128,7 +129,7 @@ TEST(OpenBorders, NoTexelOfAMeshOntoItselfIsMissed) {
     for (const Mesh& mesh : {open_grid(), strip_of_one(), confetti()}) {
         for (const int samples : {1, 4}) {
             BakeOptions options = sized(256, 256);
-            options.samples = samples;
+            options.map.samples = samples;
             const BakedImage image = bake({mesh}, mesh, options);
             EXPECT_GT(image.result.coverage.touched, 100U);
             EXPECT_EQ(image.result.texels_missed, 0U);
@@ -154,7 +155,7 @@ TEST(OpenBorders, AreNotMissedFromACageEither) {
     for (glm::vec3& position : cage.positions)
         position += 0.05F * outwards;
     BakeOptions options = sized(256, 256);
-    options.cage = &cage;
+    options.cage = std::make_shared<const Mesh>(cage);
     const BakedImage image = bake({mesh}, mesh, options);
     EXPECT_GT(image.result.coverage.touched, 100U);
     EXPECT_EQ(image.result.texels_missed, 0U);
@@ -449,21 +450,21 @@ TEST(BorderFill, OfABakeReachesTheBorder) {
     Mesh high = make_quad();
     high.normals.assign(4, glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
     BakeOptions options = test::sized(100, 90);
-    options.border_folder = folder / ".";
+    options.map.border_folder = folder / ".";
     const BakedImage image = test::bake({high}, low, options);
     EXPECT_EQ(image.count(TexelState::baked), 90U);
     EXPECT_EQ(image.count(TexelState::padded), 100U * 90U - 90U);
     for (const std::size_t corner : {0UL, 99UL, 8900UL, 8999UL})
         EXPECT_NEAR(image.normal(corner).x, 0.6, 1e-6);
-    options.padding = 1;
+    options.map.padding = 1;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { test::bake({high}, low, options); }),
               "a map that is filled to its border has no padding, and all rows");
     options = test::sized(40000, 1);
-    options.border_folder = folder / ".";
+    options.map.border_folder = folder / ".";
     EXPECT_EQ(test::message_of<InvalidInput>([&] { test::bake({high}, low, options); }),
               "a map of 40000 x 1 texels is too large to be filled: 32768");
     options = test::sized(4, 4);
-    options.border_folder = folder / "none";
+    options.map.border_folder = folder / "none";
     EXPECT_THAT(test::message_of<FileError>([&] { test::bake({high}, low, options); }),
                 testing::HasSubstr("none: no temporary file can be made: No such file"));
 }

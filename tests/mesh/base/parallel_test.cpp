@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/compare.h"
@@ -32,12 +33,14 @@
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normal_map_check.h"
 #include "relief/mesh/normals.h"
+#include "relief/mesh/tangents.h"
 #include "support/images.h"
+#include "support/invariants.h"
+#include "support/shapes.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -55,6 +58,89 @@ TEST(Parallel, EveryElementIsVisitedOnce) {
             EXPECT_THAT(visits, testing::Each(1)) << threads << " threads";
         }
     }
+}
+
+/// Runs nested loops, whose pieces wait for each other for a moment, and returns how many threads
+/// worked in them at the same time at most.
+std::size_t threads_at_once(const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
+    std::atomic<std::size_t> working = 0;
+    std::atomic<std::size_t> most = 0;
+    parallel_for(8, 1, [&](std::size_t, std::size_t) {
+        parallel_for(8, 1, [&](std::size_t, std::size_t) {
+            const std::size_t now = ++working;
+            for (std::size_t seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            --working;
+        });
+    });
+    return most;
+}
+
+TEST(Execution, LimitsOfThreadsApplyToTheirOperationsAlone) {
+    set_thread_limit(0);
+    std::size_t alone = 0;
+    std::thread other([&] {
+        for (int round = 0; round < 5; ++round)
+            alone = std::max(alone, threads_at_once({.threads = 1}));
+    });
+    // On a busy machine the second thread may come late.
+    const std::size_t wanted = std::min<std::size_t>(2, thread_count());
+    std::size_t together = 0;
+    for (int round = 0; round < 5 || (together < wanted && round < 500); ++round)
+        together = std::max(together, threads_at_once({.threads = 2}));
+    other.join();
+    EXPECT_EQ(alone, 1U);
+    EXPECT_EQ(together, wanted);
+}
+
+TEST(Execution, TheSmallestLimitOfNestedScopesApplies) {
+    const std::size_t all = thread_count();
+    const ExecutionScope outer({.threads = 1});
+    EXPECT_EQ(thread_count(), 1U);
+    {
+        const ExecutionScope inner({.threads = 64});
+        EXPECT_EQ(thread_count(), 1U);
+    }
+    std::thread([&] { EXPECT_EQ(thread_count(), all); }).join();
+}
+
+TEST(Execution, OperationsWithDifferentLimitsGiveTheSameBits) {
+    const Mesh mesh = test::sphere(200, 150);
+    const auto normals_with = [&](const ExecutionOptions& execution) {
+        std::vector<glm::vec3> normals(mesh.positions.size());
+        vertex_normals(mesh.positions, mesh.triangles, {}, normals, IgnoredReport(), execution);
+        return normals;
+    };
+    const auto tangents_with = [&](const ExecutionOptions& execution) {
+        std::vector<glm::vec4> tangents(mesh.positions.size());
+        vertex_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, tangents,
+                        IgnoredReport(), execution);
+        return tangents;
+    };
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec4> tangents;
+    std::thread other([&] {
+        normals = normals_with({.threads = 1});
+        tangents = tangents_with({.threads = 2});
+    });
+    EXPECT_TRUE(test::same_bits(tangents_with({.threads = 1}), tangents_with({})));
+    EXPECT_TRUE(test::same_bits(normals_with({.threads = 2}), normals_with({})));
+    other.join();
+    EXPECT_TRUE(test::same_bits(normals, normals_with({})));
+    EXPECT_TRUE(test::same_bits(tangents, tangents_with({})));
+}
+
+TEST(Execution, ACancelledOperationThrows) {
+    const Mesh mesh = test::sphere(20, 15);
+    Progress progress;
+    progress.cancel();
+    std::vector<glm::vec3> normals(mesh.positions.size());
+    EXPECT_THROW(vertex_normals(mesh.positions, mesh.triangles, {}, normals, IgnoredReport(),
+                                {.threads = 1, .progress = &progress}),
+                 Cancelled);
+    EXPECT_NO_THROW(check_cancelled());
 }
 
 TEST(Parallel, FindingsComeInTheOrderOfThePieces) {
@@ -317,10 +403,10 @@ std::string run_bake() {
     const Mesh high = make_sphere(48, 48);
     const Mesh low = make_sphere(12, 12);
     BakeOptions options;
-    options.width = options.height = 96;
-    options.samples = 4;
-    options.padding = 4;
-    options.layers.heights = true;
+    options.map.width = options.map.height = 96;
+    options.map.samples = 4;
+    options.map.padding = 4;
+    options.map.layers.heights = true;
     std::vector<float> normals, heights;
     Report report;
     bake_normals(
@@ -424,8 +510,8 @@ std::vector<Operation> operations() {
         {"Bake", run_bake},
         {"MikkTSpace", [] { return run_frames(NormalMode::automatic, TangentMethod::mikktspace); }},
         {"AreaWeighted",
-         [] { return run_frames(NormalMode::angle, TangentMethod::area_weighted); }},
-        {"Lengyel", [] { return run_frames(NormalMode::area, TangentMethod::lengyel); }},
+         [] { return run_frames(NormalWeight::angle, TangentMethod::area_weighted); }},
+        {"Lengyel", [] { return run_frames(NormalWeight::area, TangentMethod::lengyel); }},
         {"Curvature",
          [] {
              Report report;

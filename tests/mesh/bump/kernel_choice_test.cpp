@@ -8,12 +8,11 @@
 #include <numbers>
 
 #include "bump/power_spectrum.h"
-#include "random.h"
+#include "portable_math.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/kernel_choice.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/shared_data.h"

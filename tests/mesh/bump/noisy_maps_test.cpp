@@ -16,7 +16,6 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/kernel_choice.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -5,8 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
+#include "relief/mesh/bump.h"
+#include "relief/mesh/normal_map_check.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
 #include "support/hard_meshes.h"
@@ -82,7 +87,7 @@ TEST(Buffers, InterleavedVerticesAndShortIndicesGiveTheSameBitsAndFindings) {
             options.weight = weight;
             const auto normals = vertex_normals(mesh.positions, mesh.triangles, options, report);
             vertex_normals(buffer.all(&Vertex::position), buffer.triangles(), options,
-                           buffer.all(&Vertex::normal), &buffer_report);
+                           buffer.all(&Vertex::normal), buffer_report);
             EXPECT_TRUE(test::same_bits(normals, copied(buffer.all(&Vertex::normal))));
         }
         EXPECT_EQ(text_of(buffer_report), text_of(report));
@@ -113,7 +118,7 @@ TEST(Buffers, VertexTangentsAreThoseOfTheCorners) {
     Report report;
     vertex_tangents(buffer.all(&Vertex::position), buffer.all(&Vertex::normal),
                     buffer.all(&Vertex::texcoord), buffer.triangles(), buffer.all(&Vertex::tangent),
-                    &report);
+                    report);
     EXPECT_TRUE(report.empty());
     EXPECT_THAT(copied(buffer.all(&Vertex::tangent)),
                 testing::Each(glm::vec4(1.0F, 0.0F, 0.0F, 1.0F)));
@@ -142,8 +147,7 @@ TEST(Buffers, VertexTangentsReportCornersThatDiffer) {
 
     std::vector<glm::vec4> tangents(mesh.positions.size());
     Report report;
-    vertex_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, tangents,
-                    &report);
+    vertex_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, tangents, report);
     EXPECT_EQ(tangents[mesh.triangles[0].x], glm::vec4(1.0F, 0.0F, 0.0F, 1.0F))
         << "two of three corners";
     EXPECT_EQ(tangents[mesh.triangles[2].y], glm::vec4(-1.0F, 0.0F, 0.0F, -1.0F));
@@ -185,6 +189,173 @@ TEST(Buffers, IgnoreSurplusIndicesAndAcceptNoTriangles) {
     std::vector<glm::vec3> normals(2);
     vertex_normals(positions, TriangleSpan(), NormalOptions{}, normals);
     EXPECT_EQ(normals[1], glm::vec3(0.0F, 0.0F, 1.0F));
+}
+
+/// Codes of an image with four bytes of padding after each row, and the top row last in memory.
+template <typename Sample>
+struct PaddedPixels {
+    explicit PaddedPixels(const Image& image)
+        : row_size(static_cast<std::size_t>(image.width * image.channels) + 4 / sizeof(Sample)),
+          samples(row_size * static_cast<std::size_t>(image.height), Sample(7)),
+          width(image.width),
+          height(image.height),
+          channels(image.channels) {
+        const MutableImageView rows = view();
+        for (int y = 0; y < height; ++y)
+            std::copy_n(ImageView(image).row<Sample>(y), width * channels, rows.row<Sample>(y));
+    }
+    MutableImageView view() {
+        return {&samples[row_size * static_cast<std::size_t>(height - 1)], width, height, channels,
+                -static_cast<std::ptrdiff_t>(row_size * sizeof(Sample))};
+    }
+    ImageView read_only() {
+        return {
+            static_cast<const Sample*>(&samples[row_size * static_cast<std::size_t>(height - 1)]),
+            width, height, channels, -static_cast<std::ptrdiff_t>(row_size * sizeof(Sample))};
+    }
+    [[nodiscard]] bool is_padding_unchanged() const {
+        for (int y = 0; y < height; ++y) {
+            const std::size_t end =
+                static_cast<std::size_t>(y) * row_size + static_cast<std::size_t>(width * channels);
+            for (std::size_t i = end; i < static_cast<std::size_t>(y + 1) * row_size; ++i) {
+                if (samples[i] != Sample(7)) return false;
+            }
+        }
+        return true;
+    }
+
+    std::size_t row_size;
+    std::vector<Sample> samples;
+    int width, height, channels;
+};
+
+Image waves(int bits) {
+    Image image = make_image(150, 90, 1, bits, ColorSpace::data);
+    const double most = bits == 8 ? 255.0 : 1.0;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const double value = most * (0.5 + 0.2 * std::sin(0.2 * x + 0.13 * y) +
+                                         0.2 * std::cos(0.3 * y - 0.11 * x));
+            if (bits == 8)
+                MutableImageView(image).row<std::uint8_t>(y)[x] = static_cast<std::uint8_t>(value);
+            else
+                MutableImageView(image).row<float>(y)[x] = static_cast<float>(value);
+        }
+    }
+    return image;
+}
+
+TEST(Views, OfPaddedPixelsGiveTheNormalMapOfAnImage) {
+    NormalMapFormat format;
+    format.bits = 8;
+    Report report;
+    for (const bool is_chosen : {false, true}) {
+        BumpOptions options;
+        options.strength = 9.0;
+        if (is_chosen) {
+            options.kernel = Kernel::scharr5;
+            options.wrap = Wrap::clamp;
+        }
+        const Image heights = waves(8);
+        const Image map = normal_map_from_height(heights, options, format, report);
+        PaddedPixels<std::uint8_t> from(heights);
+        PaddedPixels<std::uint8_t> to(make_image(150, 90, 3, 8, ColorSpace::data));
+        normal_map_from_height(from.read_only(), options, format, to.view(), report,
+                               {.threads = 2});
+        EXPECT_EQ(part_of(to.read_only(), {0, 0, 150, 90}).samples, map.samples);
+        EXPECT_TRUE(to.is_padding_unchanged());
+    }
+    EXPECT_TRUE(report.empty());
+}
+
+TEST(Views, OfHeightsThatAreNotFiniteGiveTheNormalMapAndFindings) {
+    Image heights = waves(32);
+    heights.as<float>()[150 * 40 + 30] = std::numeric_limits<float>::quiet_NaN();
+    NormalMapFormat format;
+    format.bits = 16;
+    Report report, of_view;
+    const Image map = normal_map_from_height(heights, {}, format, report);
+    PaddedPixels<float> from(heights);
+    Image result = make_image(150, 90, 3, 16, ColorSpace::data);
+    normal_map_from_height(from.read_only(), {}, format, MutableImageView(result), of_view);
+    EXPECT_EQ(result.samples, map.samples);
+    EXPECT_EQ(text_of(of_view), text_of(report));
+    EXPECT_FALSE(report.empty());
+}
+
+TEST(Views, ResultsOfAnotherFormatAreRefused) {
+    const Image heights = waves(8);
+    NormalMapFormat format;
+    format.bits = 16;
+    Image result = make_image(150, 90, 3, 8, ColorSpace::data);
+    EXPECT_EQ(test::message_of<InvalidInput>([&] {
+                  normal_map_from_height(ImageView(heights), {}, format, MutableImageView(result));
+              }),
+              "the memory for the normal map has 150 x 90 texels of 3 channels with 8 bits, but "
+              "must have 150 x 90 of 3 with 16");
+}
+
+TEST(Views, OfPaddedPixelsGiveTheCheckOfAnImage) {
+    Report report;
+    NormalMapFormat format;
+    format.bits = 8;
+    format.green = Green::down;
+    BumpOptions options;
+    options.kernel = Kernel::sobel3;
+    const Image map = normal_map_from_height(waves(32), options, format, report);
+    const NormalMapCheck expected = check_normal_map(map);
+    PaddedPixels<std::uint8_t> pixels(map);
+    const NormalMapCheck check = check_normal_map(pixels.read_only());
+    EXPECT_EQ(check.green.green, Green::down);
+    EXPECT_EQ(check.green.correlation, expected.green.correlation);
+    EXPECT_EQ(check.lengths.rms_deviation, expected.lengths.rms_deviation);
+    EXPECT_EQ(check.tiling.seam_x, expected.tiling.seam_x);
+    EXPECT_EQ(check.bits, expected.bits);
+    EXPECT_EQ(text_of(to_report(check)), text_of(to_report(expected)));
+}
+
+TEST(Views, OfPaddedPixelsDecodeAndEncodeAsImages) {
+    BumpOptions options;
+    options.kernel = Kernel::sobel3;
+    options.strength = 9.0;
+    Image normals = normals_from_height(waves(32), options);
+    normals.as<float>()[3 * (150 * 40 + 30) + 2] = std::numeric_limits<float>::quiet_NaN();
+    for (const Dither dither : {Dither::none, Dither::ordered}) {
+        const NormalMapFormat format{.bits = 8, .green = Green::down, .dither = dither};
+        Report of_image, of_view;
+        const Image map = encode_normal_map(normals, format, of_image);
+        const Image decoded =
+            decode_normal_map(map, Green::down, FlatCode::half, of_image, FlatTexels::exact);
+        PaddedPixels<float> from(normals);
+        PaddedPixels<std::uint8_t> codes(make_image(150, 90, 3, 8, ColorSpace::data));
+        encode_normal_map(from.read_only(), format, codes.view(), of_view, {.threads = 2});
+        EXPECT_EQ(part_of(codes.read_only(), {0, 0, 150, 90}).samples, map.samples);
+        PaddedPixels<float> to(make_image(150, 90, 3, 32, ColorSpace::data));
+        decode_normal_map(codes.read_only(), Green::down, FlatCode::half, to.view(), of_view,
+                          FlatTexels::exact);
+        EXPECT_EQ(part_of(to.read_only(), {0, 0, 150, 90}).samples, decoded.samples);
+        EXPECT_TRUE(codes.is_padding_unchanged());
+        EXPECT_TRUE(to.is_padding_unchanged());
+        EXPECT_EQ(text_of(of_view), text_of(of_image));
+        EXPECT_EQ(of_view.count("normal without direction"), 1U);
+    }
+    Image narrow = make_image(149, 90, 3, 8, ColorSpace::data);
+    EXPECT_EQ(test::message_of<InvalidInput>(
+                  [&] { encode_normal_map(normals, {.bits = 8}, MutableImageView(narrow)); }),
+              "the memory for the normal map has 149 x 90 texels of 3 channels with 8 bits, but "
+              "must have 150 x 90 of 3 with 8");
+    EXPECT_THROW(decode_normal_map(normals, Green::up, FlatCode::half, MutableImageView(narrow)),
+                 InvalidInput);
+}
+
+TEST(Views, ReportsAreOptional) {
+    const Mesh mesh = make_torus();
+    Report report;
+    EXPECT_EQ(vertex_normals(mesh.positions, mesh.triangles, NormalWeight::area),
+              vertex_normals(mesh.positions, mesh.triangles, NormalWeight::area, report));
+    EXPECT_EQ(
+        mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles),
+        mikktspace_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report));
 }
 
 }  // namespace

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "geometry/error_accumulator.h"
-#include "random.h"
-#include "relief/mesh/error_stats.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 #include "support/message_of.h"
 
 namespace relief {
@@ -222,6 +221,15 @@ TEST(ErrorAccumulator, CountsUndefinedAnglesApart) {
 }
 
 constexpr double clock_rounding = 1e-12;  // Ticks are integers; their sums in seconds are rounded.
+
+TEST(Quantile, InterpolatesBetweenOrderedValues) {
+    const std::vector<double> values = {1, 2, 4, 8};
+    EXPECT_EQ(quantile(values, 0.0), 1.0);
+    EXPECT_EQ(quantile(values, 0.25), 1.75);
+    EXPECT_EQ(quantile(values, 0.5), 3.0);
+    EXPECT_EQ(quantile(values, 1.0), 8.0);
+    EXPECT_EQ(quantile(std::vector{7.0}, 0.3), 7.0);
+}
 
 TEST(TimeStatistics, IsTakenBetweenMeasurements) {
     const TimeStatistics odd =

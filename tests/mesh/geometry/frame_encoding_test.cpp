@@ -11,10 +11,10 @@
 #include <set>
 #include <string>
 
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/frame_encoding.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/random_frames.h"

@@ -25,7 +25,7 @@ FramedMesh framed(const Mesh& mesh, const FrameOptions& options) {
 }
 
 FrameOptions with_tangents(NormalMode normals) {
-    return {normals, NormalMode::angle, TangentMethod::mikktspace};
+    return {normals, NormalWeight::angle, TangentMethod::mikktspace};
 }
 
 /// Checks the properties of every result: it is valid, its sources are in range, and the input
@@ -75,7 +75,7 @@ TEST(Frames, MissingNormalsAreMadeAsAsked) {
     Mesh mesh = test::cube();
     mesh.normals.clear();
     const FramedMesh smooth =
-        framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMethod::keep});
+        framed(mesh, {NormalMode::keep, NormalWeight::angle, TangentMethod::keep});
     const FramedMesh flat = framed(mesh, {NormalMode::keep, NormalMode::flat, TangentMethod::keep});
     for (std::size_t v = 0; v < 24; ++v) {
         EXPECT_LE(test::degrees_between(smooth.mesh.normals[v], mesh.positions[v]), 4e-6);
@@ -118,7 +118,7 @@ Mesh folded_sheet() {
 
 TEST(Frames, ACreaseSplitsVerticesAlongSharperEdgesAlone) {
     Report report;
-    FrameOptions options{NormalMode::max};
+    FrameOptions options{NormalWeight::max};
     options.crease_angle = 1.0;
     const FramedMesh hard = with_frames(folded_sheet(), options, report);
     expect_carried(folded_sheet(), hard);
@@ -127,7 +127,7 @@ TEST(Frames, ACreaseSplitsVerticesAlongSharperEdgesAlone) {
     EXPECT_EQ(report.findings().size(), 1U);
     options.crease_angle = 1.1;
     EXPECT_EQ(framed(folded_sheet(), options).mesh.positions.size(), 7U);
-    EXPECT_EQ(framed(folded_sheet(), {NormalMode::max}).mesh.positions.size(), 7U);
+    EXPECT_EQ(framed(folded_sheet(), {NormalWeight::max}).mesh.positions.size(), 7U);
 }
 
 TEST(Frames, SmoothingGroupsAreFollowedUnlessAllAreOffOrToldNotTo) {
@@ -155,8 +155,8 @@ TEST(Frames, EveryWeightingHasItsMode) {
     mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
     std::vector<double> slopes;
     for (const NormalMode mode :
-         {NormalMode::uniform, NormalMode::area, NormalMode::angle, NormalMode::sine,
-          NormalMode::max, NormalMode::angle_edges, NormalMode::area_angle}) {
+         {NormalWeight::uniform, NormalWeight::area, NormalWeight::angle, NormalWeight::sine,
+          NormalWeight::max, NormalWeight::angle_edges, NormalWeight::area_angle}) {
         const glm::vec3 normal = framed(mesh, {mode}).mesh.normals[0];
         slopes.push_back(normal.x / normal.z);
     }
@@ -190,9 +190,9 @@ TEST(Frames, ComputedNormalsReplaceTheTangentsMadeForOthers) {
     Mesh mesh = test::grid(1);
     mesh.tangents.assign(4, {0, 1, 0, -1});  // It differs from the tangent of the texture.
     const std::vector<glm::vec4> along_u(4, {1, 0, 0, 1});
-    EXPECT_EQ(framed(mesh, {NormalMode::area}).mesh.tangents, along_u);
+    EXPECT_EQ(framed(mesh, {NormalWeight::area}).mesh.tangents, along_u);
     EXPECT_EQ(framed(mesh, {}).mesh.tangents, mesh.tangents) << "kept with the normals";
-    EXPECT_TRUE(framed(mesh, {NormalMode::keep, NormalMode::angle, TangentMethod::none})
+    EXPECT_TRUE(framed(mesh, {NormalMode::keep, NormalWeight::angle, TangentMethod::none})
                     .mesh.tangents.empty());
     mesh.normals.clear();
     EXPECT_EQ(framed(mesh, {}).mesh.tangents, along_u) << "tangents without normals";
@@ -203,7 +203,7 @@ TEST(Frames, TangentsOfOtherNormalsWithoutTextureCoordinatesAreRemovedAndCounted
     mesh.tangents.assign(4, {1, 0, 0, 1});
     mesh.texcoords.clear();
     Report report;
-    EXPECT_TRUE(with_frames(mesh, {NormalMode::area}, report).mesh.tangents.empty());
+    EXPECT_TRUE(with_frames(mesh, {NormalWeight::area}, report).mesh.tangents.empty());
     EXPECT_EQ(report.count("tangents of other normals"), 1U);
 }
 
@@ -245,8 +245,8 @@ TEST(Frames, AnIsolatedVertexStillHasAFrame) {
 TEST(Frames, EveryHardMeshComesOutUsable) {
     for (const test::NamedMesh& hard : test::hard_meshes()) {
         SCOPED_TRACE(hard.name);
-        for (const NormalMode mode :
-             {NormalMode::keep, NormalMode::flat, NormalMode::area, NormalMode::angle}) {
+        for (const NormalMode mode : std::initializer_list<NormalMode>{
+                 NormalMode::keep, NormalMode::flat, NormalWeight::area, NormalWeight::angle}) {
             const FramedMesh result = framed(hard.mesh, with_tangents(mode));
             expect_carried(hard.mesh, result);
             std::vector<glm::vec4> at_corners;
@@ -262,7 +262,7 @@ TEST(Frames, EveryHardMeshComesOutUsable) {
 TEST(Frames, TheOrderOfTrianglesChangesNoVertex) {
     const Mesh mesh = test::sphere(16, 8);
     const auto order = test::shuffled(mesh.triangles.size());
-    for (const NormalMode mode : {NormalMode::flat, NormalMode::angle}) {
+    for (const NormalMode mode : {NormalMode::flat, NormalMode(NormalWeight::angle)}) {
         const FramedMesh one = framed(mesh, with_tangents(mode));
         const FramedMesh other =
             framed(test::with_triangle_order(mesh, order), with_tangents(mode));

@@ -188,13 +188,13 @@ TEST(Placed, NormalsStayPerpendicularWhereScalesDiffer) {
 }
 
 TEST(Placed, FramesAreThoseOfTheMovedMesh) {
-    const Mesh torus = framed(make_torus(0.4F, 24, 12), NormalMode::angle);
+    const Mesh torus = framed(make_torus(0.4F, 24, 12), NormalWeight::angle);
     for (const float mirror : {1.0F, -1.0F}) {
         const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), 0.7F, glm::vec3(1.0F, 2.0F, 3.0F));
         const Mesh moved = placed(torus, glm::scale(turn, glm::vec3(1e-6F, 1e-6F, mirror * 1e-6F)));
         Mesh again = moved;
         again.tangents.clear();
-        again = framed(std::move(again), NormalMode::angle);
+        again = framed(std::move(again), NormalWeight::angle);
         ASSERT_EQ(again.positions.size(), moved.positions.size());
         for (std::size_t v = 0; v < moved.positions.size(); ++v) {
             EXPECT_LT(degrees_between(moved.normals[v], again.normals[v]), 1e-3);

@@ -282,6 +282,20 @@ TEST(TangentBasis, UncertainCornersAreLeftOut) {
     EXPECT_EQ(identified.corners + identified.undefined, before.corners);
 }
 
+TEST(TangentBasis, TheSizeOfAMeshChangesNothing) {
+    const Mesh mesh = made_by(TangentMethod::mikktspace);
+    const IdentifiedTangents expected = identify_tangents(mesh);
+    Mesh small = mesh;
+    constexpr float scale = 0x1p-14F;  // A power of two does not round the positions.
+    for (glm::vec3& position : small.positions)
+        position *= scale;
+    const IdentifiedTangents identified = identify_tangents(small);
+    EXPECT_EQ(identified.method, TangentMethod::mikktspace);
+    EXPECT_EQ(identified.corners, expected.corners);
+    EXPECT_EQ(identified.left_out, expected.left_out);
+    EXPECT_EQ(identified.undefined, expected.undefined);
+}
+
 TEST(TangentBasis, WithoutWhatItTakesNothingIsSaid) {
     const Mesh whole = made_by(TangentMethod::mikktspace);
     for (const int missing : {0, 1, 2}) {

@@ -10,10 +10,10 @@
 #include <limits>
 
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/images.h"
 #include "support/message_of.h"
 

@@ -10,11 +10,11 @@
 #include <set>
 
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "support/angle.h"
 #include "support/images.h"
 

@@ -429,8 +429,15 @@ bool share_a_texel(const std::vector<glm::vec2>& t, const glm::uvec3& a, const g
         }
         return true;
     };
-    const glm::vec2 low = glm::min(t[a.x], glm::min(t[a.y], t[a.z])) * static_cast<float>(side);
-    const glm::vec2 high = glm::max(t[a.x], glm::max(t[a.y], t[a.z])) * static_cast<float>(side);
+    // Only texels in the boxes of both triangles can be inside both.
+    const auto low_corner = [&](const glm::uvec3& triangle) {
+        return glm::min(t[triangle.x], glm::min(t[triangle.y], t[triangle.z]));
+    };
+    const auto high_corner = [&](const glm::uvec3& triangle) {
+        return glm::max(t[triangle.x], glm::max(t[triangle.y], t[triangle.z]));
+    };
+    const glm::vec2 low = glm::max(low_corner(a), low_corner(b)) * static_cast<float>(side);
+    const glm::vec2 high = glm::min(high_corner(a), high_corner(b)) * static_cast<float>(side);
     const glm::ivec2 begin(low);
     const glm::ivec2 end = glm::min(glm::ivec2(high) + 1, side);
     for (int row = begin.y; row < end.y; ++row) {

@@ -15,7 +15,7 @@
 #include "geometry/weld.h"
 #include "mesh/topology/boundary_edges.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/subdivide.h"
+#include "relief/mesh/topology.h"
 #include "support/angle.h"
 #include "support/message_of.h"
 #include "support/shapes.h"
@@ -121,7 +121,7 @@ TEST(Subdivide, AFinerSphereIsNearerToTheSphereByTheSecondOrder) {
 TEST(Subdivide, ASeamIsSmoothInPlaceAndExactInTheTexture) {
     const Mesh sphere = test::sphere(24, 12);
     Report report;
-    const Mesh fine = subdivided(sphere, 1, {.normals = NormalMode::angle}, report);
+    const Mesh fine = subdivided(sphere, 1, {.normals = NormalWeight::angle}, report);
     EXPECT_EQ(boundary_edges(fine), 0U) << "not torn";
     // The texture of every triangle is a quarter of that of its parent.
     for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
@@ -141,9 +141,9 @@ TEST(Subdivide, ASeamIsSmoothInPlaceAndExactInTheTexture) {
     }
 }
 
-TEST(Subdivide, AHubOfManySpokesReadsNoWeightsBeyondTheTable) {
-    // The table of OpenMesh ends at 50 neighbors.
-    constexpr unsigned spokes = 200;
+// A walk around the hub for each spoke would take minutes.
+TEST(Subdivide, AHubOfManySpokesIsLinear) {
+    constexpr unsigned spokes = 100'000;
     Mesh hub;
     hub.positions.emplace_back(0.0F, 1.0F, 0.0F);
     for (unsigned i = 0; i < spokes; ++i) {

@@ -10,8 +10,8 @@
 
 #include "effects/light_rows.h"
 #include "effects/shader_source.h"
-#include "relief/shade/context.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/renderer.h"
 #include "shade/effects/feature_sets.h"
 #include "support/gl_environment.h"
 #include "support/shared_data.h"

@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "gl/resources.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 #include "support/gl_environment.h"
 
 namespace relief {

@@ -11,7 +11,7 @@
 #include "gl/cube_map.h"
 #include "gl/program.h"
 #include "gl/resources.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 #include "support/gl_environment.h"
 
 namespace {

@@ -14,8 +14,8 @@
 
 #include "gl/program.h"
 #include "gl/resources.h"
-#include "relief/mesh/frame_encoding.h"
-#include "relief/shade/context.h"
+#include "relief/mesh/frames.h"
+#include "relief/shade/renderer.h"
 #include "support/angle.h"
 #include "support/gl_environment.h"
 #include "support/images.h"

@@ -18,8 +18,8 @@
 #include "gl/api.h"
 #include "gl/resources.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/context.h"
 #include "relief/shade/image_compare.h"
+#include "relief/shade/renderer.h"
 #include "support/gl_environment.h"
 #include "support/images.h"
 

@@ -396,15 +396,23 @@ TEST_F(AgainstReference, AgreesInRandomScenes) {
     }
 }
 
-/// This test is slow. RELIEF_RANDOM_SCENES sets another number of scenes.
-TEST_F(AgainstReference, AgreesInManyRandomScenes) {
+/// These tests are slow. RELIEF_RANDOM_SCENES sets another number of scenes. They are divided among
+/// cases, which can run at the same time.
+class ManyRandomScenes : public AgainstReference, public testing::WithParamInterface<int> {};
+
+constexpr int parts = 10;
+
+TEST_P(ManyRandomScenes, AgreeWithTheReference) {
     const char* asked = std::getenv("RELIEF_RANDOM_SCENES");
     const std::uint64_t count = asked == nullptr ? 300 : std::strtoull(asked, nullptr, 10);
-    for (std::uint64_t seed = few_scenes; seed < count; ++seed) {
+    for (std::uint64_t seed = few_scenes + static_cast<std::uint64_t>(GetParam()); seed < count;
+         seed += parts) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         expect_agreement(test::random_scene(seed));
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Parts, ManyRandomScenes, testing::Range(0, parts));
 
 struct Model {
     const char* file;

@@ -14,7 +14,6 @@
 #include "effects/shader_source.h"
 #include "gl/api.h"
 #include "relief/mesh/image_file.h"
-#include "relief/shade/context.h"
 #include "relief/shade/renderer.h"
 #include "render/program_cache.h"
 #include "shade/effects/feature_sets.h"

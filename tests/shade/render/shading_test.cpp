@@ -352,6 +352,31 @@ TEST_F(FinishedPicture, BlendsLayersInLinearLightFarthestFirst) {
     }
 }
 
+TEST_F(FinishedPicture, SortsTheTrianglesOfAShearedInstanceByTheirDepthInTheWorld) {
+    // Both triangles cover the middle. The first one is green and to the right.
+    Mesh mesh;
+    mesh.positions = {{-2, -3, 0}, {3, -3, 0}, {0.5F, 3, 0},
+                      {-3, -3, 0}, {2, -3, 0}, {-0.5F, 3, 0}};
+    mesh.normals.assign(6, {0, 0, 1});
+    for (int i = 0; i < 6; ++i)
+        mesh.colors.emplace_back(i < 3 ? 0 : 1, i < 3 ? 1 : 0, 0, 1);
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+    Material material;
+    material.unlit = true;
+    material.diffuse = glm::vec3(1.0F);
+    material.alpha_mode = AlphaMode::blend;
+    material.opacity = 0.5F;
+    Scene scene = test::scene_of(mesh, material);
+    scene.background = {0, 0, 0, 1};
+    for (const float shear : {0.25F, -0.25F}) {
+        scene.instances[0].world_from_object[0].z = shear;  // z = shear * x
+        const glm::dvec4 color = pixel(render(scene, {8, 8, 1, OutputCoding::srgb}).image, 4, 4);
+        // With a positive shear, the right triangle is nearer and is drawn last.
+        EXPECT_NEAR(color.r, code(shear > 0.0F ? 0.25 : 0.5), finished_tolerance) << shear;
+        EXPECT_NEAR(color.g, code(shear > 0.0F ? 0.5 : 0.25), finished_tolerance) << shear;
+    }
+}
+
 TEST_F(FinishedPicture, BlendedOverNothingKeepsItsColourAndItsShare) {
     const Scene scene = layered({1, 0.5F, 0, 0.5F}, {0, 0, 0, 0});
     for (const int samples : {1, 4}) {

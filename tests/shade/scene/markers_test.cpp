@@ -11,7 +11,6 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
-#include "relief/shade/scene_graph.h"
 #include "support/angle.h"
 #include "support/shapes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses by hand: chains of nodes, key frames, orbits, turntables, and invalid input.
-#include "relief/shade/scene_graph.h"
+#include "relief/shade/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
+#include "support/message_of.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -245,6 +246,18 @@ std::string verdict(const std::function<void(SceneGraph&)>& spoil) {
         return error.what();
     }
     return "valid";
+}
+
+// Walking from each node to its root would take minutes.
+TEST(ValidateGraph, ALongChainOfNodesIsLinear) {
+    SceneGraph graph;
+    graph.nodes.resize(300'000);
+    for (std::size_t i = 1; i < graph.nodes.size(); ++i)
+        graph.nodes[i].parent = i - 1;
+    EXPECT_NO_THROW(validate(graph));
+    graph.nodes[0].parent = 150'000;
+    EXPECT_THAT(test::message_of<InvalidInput>([&] { validate(graph); }),
+                "node 0 is its own ancestor");
 }
 
 TEST(ValidateGraph, NamesTheFirstOffence) {

@@ -276,7 +276,7 @@ TEST_F(SceneFile, NestsNodesTwoHundredDeepAndNoMore) {
     };
     EXPECT_EQ(load(nested(200)).nodes.size(), 200U);
     EXPECT_THAT(error_of(nested(201)), HasSubstr("lies more than 200 levels deep"));
-    EXPECT_THAT(error_of(nested(20000)), HasSubstr("lies more than 200 levels deep"));
+    EXPECT_THAT(error_of(nested(20000)), HasSubstr("its JSON is nested deeper than 1024"));
 }
 
 TEST_F(SceneFile, RefusesWhatItDoesNotKnowAndSaysWhere) {

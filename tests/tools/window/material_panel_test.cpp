@@ -15,10 +15,10 @@ namespace {
 using test::Workplace;
 
 TEST(MaterialModels, CanBeChangedToEachOther) {
-    for (const MaterialModel from :
-         {MaterialModel::phong, MaterialModel::metallic_roughness, MaterialModel::unlit}) {
-        for (const MaterialModel to :
-             {MaterialModel::phong, MaterialModel::metallic_roughness, MaterialModel::unlit}) {
+    for (const ShadingModel from :
+         {ShadingModel::phong, ShadingModel::metallic_roughness, ShadingModel::unlit}) {
+        for (const ShadingModel to :
+             {ShadingModel::phong, ShadingModel::metallic_roughness, ShadingModel::unlit}) {
             Material material;
             set_model(material, from);
             set_model(material, to);
@@ -31,7 +31,7 @@ TEST(MaterialModels, ShininessAndRoughnessAreInverse) {
     for (const float shininess : {2.0F, 32.0F, 500.0F}) {
         Material material;
         material.shininess = shininess;
-        set_model(material, MaterialModel::metallic_roughness);
+        set_model(material, ShadingModel::metallic_roughness);
         GltfMaterial same;
         same.roughness = material.metallic_roughness->roughness;
         EXPECT_NEAR(phong_from_metallic_roughness(same, {}).shininess, shininess,
@@ -39,7 +39,7 @@ TEST(MaterialModels, ShininessAndRoughnessAreInverse) {
     }
     Material sharp;
     sharp.shininess = 1e6F;
-    set_model(sharp, MaterialModel::metallic_roughness);
+    set_model(sharp, ShadingModel::metallic_roughness);
     EXPECT_GE(sharp.metallic_roughness->roughness, 0.03F);
     EXPECT_LE(sharp.metallic_roughness->roughness, 0.05F);
 }
@@ -48,9 +48,9 @@ TEST(MaterialModels, RoundTripKeepsTheMaterial) {
     Material material;
     material.diffuse = {0.2F, 0.4F, 0.6F};
     material.shininess = 77.0F;
-    set_model(material, MaterialModel::metallic_roughness);
+    set_model(material, ShadingModel::metallic_roughness);
     EXPECT_EQ(material.metallic_roughness->base_color, material.diffuse);
-    set_model(material, MaterialModel::phong);
+    set_model(material, ShadingModel::phong);
     EXPECT_FALSE(material.metallic_roughness);
     EXPECT_EQ(material.diffuse, glm::vec3(0.2F, 0.4F, 0.6F));
     EXPECT_EQ(material.shininess, 77.0F);

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/accuracy/ground_truth.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/statistics.h"
 #include "tools/window/display.h"
 
 namespace relief::tools {
@@ -85,13 +85,13 @@ TEST(SceneAccuracy, ChosenMethodIsAppliedToTheScene) {
     const ViewerState before = state;
     SceneAccuracy accuracy([] {});
     accuracy.follow(state);
-    accuracy.use(Variant(NormalMode::area));
+    accuracy.use(Variant(NormalWeight::area));
     accuracy.follow(state);
     wait_for(accuracy, state);
     EXPECT_EQ(accuracy.result().error, "");
     EXPECT_GT(moved(before, state), 0.5);
-    EXPECT_TRUE(accuracy.is_used(Variant(NormalMode::area), state.options()));
-    EXPECT_FALSE(accuracy.is_used(Variant(NormalMode::max), state.options()));
+    EXPECT_TRUE(accuracy.is_used(Variant(NormalWeight::area), state.options()));
+    EXPECT_FALSE(accuracy.is_used(Variant(NormalWeight::max), state.options()));
 }
 
 TEST(SceneAccuracy, ReloadedSceneGetsTheMethodAndNoOldResults) {
@@ -101,7 +101,7 @@ TEST(SceneAccuracy, ReloadedSceneGetsTheMethodAndNoOldResults) {
     accuracy.follow(state);
     accuracy.measure(state);
     wait_for(accuracy, state);
-    accuracy.use(Variant(NormalMode::area));
+    accuracy.use(Variant(NormalWeight::area));
     accuracy.follow(state);
     wait_for(accuracy, state);
     const ViewerState chosen = state;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interactive parts of the page: tooltips, tables, filters, picture pairs and the buttons of the page.
+// The interactive parts of the page: tooltips, tables, filters, axes of plots, picture pairs and the buttons of
+// the page. The page itself holds all plots; the script shows, hides and moves their parts.
 
-// ---- Elements, as in element("button", {class: "chip"}, "text", child), and values of the JSON report.
+// ---- Elements, as in element("button", {class: "quiet"}, "text", child), and values of the JSON report.
 
-function fill(made, attributes, children) {
+function element(tag, attributes, ...children) {
+    const made = document.createElement(tag);
     for (const [name, value] of Object.entries(attributes || {})) {
         if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
         else if (value !== null && value !== undefined && value !== false)
@@ -13,12 +15,10 @@ function fill(made, attributes, children) {
     return made;
 }
 
-function element(tag, attributes, ...children) {
-    return fill(document.createElement(tag), attributes, children);
-}
-
-function drawn(tag, attributes, ...children) {
-    return fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
+// Shows or hides an element of a plot.
+function setShown(node, isShown) {
+    if (isShown) node.removeAttribute("display");
+    else node.setAttribute("display", "none");
 }
 
 // Returns the value at a path, or null: valueAt(measurement, "/cost/one_thread/median").
@@ -26,16 +26,6 @@ function valueAt(json, path) {
     let value = json;
     for (const key of path.split("/").slice(1)) value = value?.[key];
     return value ?? null;
-}
-
-function isNumber(value) {
-    return typeof value === "number" && Number.isFinite(value);
-}
-
-let countedIds = 0;
-function newId(kind) {
-    countedIds += 1;
-    return `${kind}-${countedIds}`;
 }
 
 // ---- The tooltip of all plots appears on hover and keyboard focus, and Escape hides it. The Tab key selects
@@ -49,7 +39,7 @@ function showTip(target, title, rows) {
         [element("dt", null, name), element("dd", null, text)]));
     tip.replaceChildren(element("strong", null, title), list);
     tip.hidden = false;
-    const mark = target.getBoundingClientRect();
+    const mark = target.querySelector(".reach").getBoundingClientRect();
     const box = tip.getBoundingClientRect();
     const across = document.documentElement.clientWidth;
     let left = mark.right + 12;
@@ -69,28 +59,45 @@ function hideTip() {
 }
 document.addEventListener("keydown", (event) => { if (event.key === "Escape") hideTip(); });
 
-// Adds tooltips to points: [{node, title, rows()}], in the order of the arrow keys.
-function addTips(points) {
-    points.forEach((point, index) => {
-        const show = () => showTip(point.node, point.title, point.rows());
-        const rows = point.rows();
-        point.node.setAttribute("role", "img");
-        point.node.setAttribute("tabindex", index === 0 ? "0" : "-1");
-        point.node.setAttribute("aria-label", `${point.title}: ` +
-            rows.map(([name, text]) => `${name} ${text}`).join(", "));
-        point.node.addEventListener("pointerenter", show);
-        point.node.addEventListener("pointerleave", hideTip);
-        point.node.addEventListener("focus", show);
-        point.node.addEventListener("blur", hideTip);
-        point.node.addEventListener("keydown", (event) => {
-            const to = keyTarget(event.key, index, points.length);
+// Turns the titles of a plot's points into tooltips. A title has a line for the point and a line for each value,
+// "RMS: 0.1 degrees". The arrow keys follow the order of the document.
+function addTips(svg) {
+    for (const node of svg.querySelectorAll(".point")) {
+        const title = node.querySelector("title");
+        const [name, ...lines] = title.textContent.split("\n");
+        title.remove();
+        const rows = lines.map((line) => {
+            const colon = line.indexOf(": ");
+            return [line.slice(0, colon), line.slice(colon + 2)];
+        });
+        const show = () => showTip(node, name, rows);
+        node.setAttribute("role", "img");
+        node.setAttribute("aria-label",
+                          `${name}: ` + rows.map(([head, text]) => `${head} ${text}`).join(", "));
+        node.addEventListener("pointerenter", show);
+        node.addEventListener("pointerleave", hideTip);
+        node.addEventListener("focus", show);
+        node.addEventListener("blur", hideTip);
+        node.addEventListener("keydown", (event) => {
+            const points = shownPoints(svg);
+            const to = keyTarget(event.key, points.indexOf(node), points.length);
             if (to === null) return;
             event.preventDefault();
-            point.node.setAttribute("tabindex", "-1");
-            points[to].node.setAttribute("tabindex", "0");
-            points[to].node.focus();
+            node.setAttribute("tabindex", "-1");
+            points[to].setAttribute("tabindex", "0");
+            points[to].focus();
         });
-    });
+    }
+    setTabStop(svg);
+}
+
+function shownPoints(svg) {
+    return [...svg.querySelectorAll(".point:not([display])")];
+}
+
+// The Tab key selects the first point.
+function setTabStop(svg) {
+    shownPoints(svg).forEach((node, index) => node.setAttribute("tabindex", index === 0 ? "0" : "-1"));
 }
 
 function keyTarget(key, index, count) {
@@ -101,13 +108,6 @@ function keyTarget(key, index, count) {
         case "End": return count - 1;
         default: return null;
     }
-}
-
-// Returns the names and texts of a row, without its first cell and empty cells.
-function rowWords(table, row) {
-    const heads = [...table.tHead.rows[0].cells].map((cell) => cell.dataset.name || cell.textContent);
-    return [...row.cells].slice(1).map((cell, index) => [heads[index + 1], cell.textContent.trim()])
-        .filter(([, text]) => text !== "" && text !== "–");
 }
 
 // ---- Tables are sorted by a click on a column head, and filtered together with their plot.
@@ -142,52 +142,136 @@ function rowOf(table, index) {
     return table.querySelector(`tr[data-index="${index}"]`);
 }
 
-// ---- Filters: check boxes with the colors and shapes of the plot, which are also its legend.
+// ---- Error against cost: switches of the axes, and filters of the methods, which are also the legend.
 
-// Returns the choices with more than one value: [{name, values}].
-function varyingChoices(measurements) {
-    const names = [...new Set(measurements.flatMap((one) => Object.keys(one.choices || {})))];
-    return names.map((name) => ({
-        name,
-        values: [...new Set(measurements.map((one) => one.choices?.[name] ?? "–"))],
-    })).filter((choice) => choice.values.length > 1);
+const LABEL_PLACES = [[9, -7, "start"], [9, 15, "start"], [-9, 15, "end"], [-9, -7, "end"]];
+
+function makeScatter(figure, experiment, table) {
+    const svg = figure.querySelector(".plot svg");
+    const points = [...svg.querySelectorAll(".point")].map((node) => ({
+        node, index: Number(node.dataset.index), measurement: experiment.measurements[node.dataset.index],
+        x: node.dataset.x.split(" ").map(Number), y: node.dataset.y.split(" ").map(Number),
+    }));
+    addTips(svg);
+    const update = () => drawView(svg, points, {
+        cost: chosenAxis(figure, "x"), error: chosenAxis(figure, "y"), isShown: filterOf(figure),
+    }, table);
+    figure.querySelectorAll("input").forEach((input) => input.addEventListener("change", update));
+    for (const chip of figure.querySelectorAll(".chip")) {
+        const name = chip.closest(".choice").querySelector("legend").textContent;
+        const value = chip.querySelector("input").value;
+        const emphasise = (isOn) => points.forEach(({node, measurement}) =>
+            node.classList.toggle("dim", isOn && valueOfChoice(measurement, name) !== value));
+        chip.addEventListener("pointerenter", () => emphasise(true));
+        chip.addEventListener("pointerleave", () => emphasise(false));
+    }
+    const filters = figure.querySelector(".filters");
+    if (filters) filters.open = matchMedia("(min-width: 40rem)").matches;
 }
 
-function valueOfChoice(measurement, choice) {
-    return measurement.choices?.[choice.name] ?? "–";
+// Returns the index of the checked button, or 0 without a switch.
+function chosenAxis(figure, axis) {
+    const buttons = [...figure.querySelectorAll(`.switch[data-axis="${axis}"] input`)];
+    return Math.max(0, buttons.findIndex((button) => button.checked));
 }
 
-// looks: {color(index), shape(index)} by choice. onchange(isShown, hovered) gets two predicates.
-function makeFilters(choices, looks, onchange) {
-    const hidden = new Map(choices.map((choice) => [choice.name, new Set()]));
-    const isShown = (measurement) => choices.every((choice) =>
-        !hidden.get(choice.name).has(valueOfChoice(measurement, choice)));
-    const chip = (choice, look, value, index) => {
-        const box = element("input", {type: "checkbox", checked: true, onchange: (event) => {
-            hidden.get(choice.name)[event.target.checked ? "delete" : "add"](value);
-            onchange(isShown, null);
-        }});
-        const emphasise = () => onchange(isShown, (one) => valueOfChoice(one, choice) === value);
-        return element("label", {class: "chip", onpointerenter: emphasise,
-                                 onpointerleave: () => onchange(isShown, null)},
-                       box, look ? swatch(look.shape(index), look.color(index)) : null,
-                       element("span", null, value));
-    };
-    const groups = choices.map((choice) => element("fieldset", {class: "choice"},
-        element("legend", null, choice.name), element("div", {class: "chips"},
-        ...choice.values.map((value, index) => chip(choice, looks.get(choice.name), value, index)))));
-    return element("details", {class: "filters", open: matchMedia("(min-width: 40rem)").matches},
-                   element("summary", null, "Legend and filter"), ...groups);
+function valueOfChoice(measurement, name) {
+    return measurement.choices?.[name] ?? "–";
 }
 
-// Returns a row of radio buttons. options: [{value, label}].
-function makeSwitch(name, options, chosen, onchange) {
-    const group = newId("switch");
-    return element("fieldset", {class: "switch"}, element("legend", null, name),
-        ...options.map(({value, label}) => element("label", null,
-            element("input", {type: "radio", name: group, value, checked: value === chosen,
-                              onchange: () => onchange(value)}),
-            element("span", null, label))));
+// Returns whether the check boxes show a method.
+function filterOf(figure) {
+    const choices = [...figure.querySelectorAll(".choice")].map((choice) => ({
+        name: choice.querySelector("legend").textContent,
+        shown: new Set([...choice.querySelectorAll("input:checked")].map((input) => input.value)),
+    }));
+    return (measurement) => choices.every(({name, shown}) => shown.has(valueOfChoice(measurement, name)));
+}
+
+// Shows the chosen axes, moves the points, and marks the efficient methods of those that are shown.
+function drawView(svg, points, {cost, error, isShown}, table) {
+    hideTip();
+    const axes = [[".x-axis", cost], [".y-axis", error]].map(([kind, chosen]) => {
+        const groups = [...svg.querySelectorAll(kind)];
+        groups.forEach((group, index) => setShown(group, index === chosen));
+        return groups[chosen];
+    });
+    const errors = svg.querySelectorAll(".y-axis").length;
+    points.sort((a, b) => a.x[cost] - b.x[cost] || a.index - b.index);
+    for (const {node, index, measurement, x, y} of points) {
+        node.setAttribute("transform", `translate(${x[cost]},${y[error]})`);
+        setShown(node, isShown(measurement));
+        rowOf(table, index).hidden = !isShown(measurement);
+        node.querySelectorAll(".whisker").forEach((bar) =>
+            setShown(bar, Number(bar.dataset.cost) === cost));
+        svg.append(node);
+    }
+    const shown = points.filter(({measurement}) => isShown(measurement));
+    const efficient = frontierOf(shown, axes[0].dataset.path, axes[1].dataset.path);
+    for (const {node} of points) {
+        const place = LABEL_PLACES[node.dataset.labels[cost * errors + error]];
+        const label = node.querySelector(".point-label");
+        const isEfficient = efficient.some((one) => one.node === node);
+        node.classList.toggle("efficient", isEfficient);
+        setShown(label, isEfficient && place);
+        if (place) ["x", "y", "text-anchor"].forEach((name, i) => label.setAttribute(name, place[i]));
+    }
+    const line = svg.querySelector(".frontier");
+    line.setAttribute("d", efficient.map(({x, y}, index) => index === 0 ?
+        `M${x[cost]},${line.dataset.top}V${y[error]}` : `H${x[cost]}V${y[error]}`).join("") +
+        (efficient.length === 0 ? "" : `H${line.dataset.right}`));
+    const [along, up] = axes.map((axis) => axis.querySelector(".axis-name").textContent);
+    const names = efficient.map(({measurement}) => measurement.method);
+    svg.setAttribute("aria-label", `${up.slice(2)} against ${along.slice(0, -2)}: ` +
+        `${shown.length} of ${points.length} methods. ` +
+        (names.length === 0 ? "" : `Efficient: ${names.join("; ")}. `));
+    setTabStop(svg);
+}
+
+// Returns the efficient methods, fastest first, by the rule of relief/accuracy/experiment.h: all cheaper methods
+// have a larger error. Equal methods are all efficient or not.
+function frontierOf(points, costPath, errorPath) {
+    if (costPath === "") return [];
+    const known = points.map((point) => ({
+        point, cost: valueAt(point.measurement, costPath), error: valueAt(point.measurement, errorPath),
+    })).filter(({point, cost, error}) => cost !== null && error !== null &&
+        !(costPath === "/cost/stored_bytes" && cost === 0) &&
+        !valueAt(point.measurement, "/error/undefined"));
+    known.sort((a, b) => a.cost - b.cost || a.error - b.error);
+    const efficient = [];
+    for (const one of known) {
+        const last = efficient.at(-1);
+        const isEqual = last && one.error === last.error && one.cost === last.cost;
+        if (!last || isEqual || one.error < last.error) efficient.push(one);
+    }
+    return efficient.map(({point}) => point);
+}
+
+// ---- Error curves: check boxes show and hide the curves.
+
+function makeChart(figure) {
+    addTips(figure.querySelector(".plot svg"));
+    [...figure.querySelectorAll(".chip")].forEach((chip, index) => {
+        const curve = figure.querySelectorAll(`.plot [data-curve="${index}"]`);
+        const others = figure.querySelectorAll(`.plot .curve:not([data-curve="${index}"])`);
+        chip.querySelector("input").addEventListener("change", (event) => {
+            curve.forEach((node) => setShown(node, event.target.checked));
+            setTabStop(figure.querySelector(".plot svg"));
+        });
+        const emphasise = (isOn) => others.forEach((node) => node.classList.toggle("dim", isOn));
+        chip.addEventListener("pointerenter", () => emphasise(true));
+        chip.addEventListener("pointerleave", () => emphasise(false));
+    });
+}
+
+// ---- The switch of the colors.
+
+function makeColorSwitch(chosen) {
+    return element("fieldset", {class: "switch"}, element("legend", null, "Colors"),
+        ...["auto", "light", "dark"].map((theme) => element("label", null,
+            element("input", {type: "radio", name: "colors", value: theme, checked: theme === chosen,
+                              onchange: () => setTheme(theme)}),
+            element("span", null, theme))));
 }
 
 // ---- Picture pairs with a movable divider and a difference view.
@@ -270,9 +354,7 @@ function addPageButtons(report) {
         link.click();
         setTimeout(() => URL.revokeObjectURL(link.href), 1000);
     }}, "Save numbers (JSON)");
-    const colors = makeSwitch("Colors", [{value: "auto", label: "auto"},
-        {value: "light", label: "light"}, {value: "dark", label: "dark"}], storedTheme(), setTheme);
-    document.querySelector(".page-buttons").append(colors, save);
+    document.querySelector(".page-buttons").append(makeColorSwitch(storedTheme()), save);
 }
 
 // Copies the text, or selects it if the browser does not allow copying.
@@ -299,13 +381,12 @@ function addCopyButtons() {
 function makeExperiment(article, experiment) {
     const table = article.querySelector("table.measurements");
     if (table) {
-        const scatter = makeScatter(experiment, table);
-        table.closest(".scrolled").before(scatter);
+        makeScatter(article.querySelector("figure.scatter"), experiment, table);
         sortable(table, experiment.measurements);
     }
     for (const figure of article.querySelectorAll("figure.chart")) {
         figure.querySelector("details").open = false;
-        makeChart(experiment.charts[figure.dataset.chart], figure);
+        makeChart(figure);
     }
     article.querySelectorAll("figure.pair").forEach(makePair);
 }
@@ -359,8 +440,5 @@ document.addEventListener("DOMContentLoaded", () => {
     for (const article of articles)
         makeExperiment(article, report.experiments[article.dataset.experiment]);
     followReading();
-    // Plots are drawn after layout, so they are complete when the next frame begins.
-    requestAnimationFrame(() => requestAnimationFrame(() => {
-        document.documentElement.dataset.ready = "true";
-    }));
+    document.documentElement.dataset.ready = "true";
 });

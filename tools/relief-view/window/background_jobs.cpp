@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "effect_options.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 

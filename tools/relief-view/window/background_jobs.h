@@ -20,7 +20,7 @@
 
 #include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/renderer.h"

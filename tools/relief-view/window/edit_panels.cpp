@@ -331,15 +331,15 @@ float roughness_of(float shininess) {
 
 }  // namespace
 
-MaterialModel model_of(const Material& material) {
-    if (material.unlit) return MaterialModel::unlit;
-    return material.metallic_roughness ? MaterialModel::metallic_roughness : MaterialModel::phong;
+ShadingModel model_of(const Material& material) {
+    if (material.unlit) return ShadingModel::unlit;
+    return material.metallic_roughness ? ShadingModel::metallic_roughness : ShadingModel::phong;
 }
 
-void set_model(Material& material, MaterialModel model) {
-    material.unlit = model == MaterialModel::unlit;
-    if (model == MaterialModel::phong) material.metallic_roughness.reset();
-    if (model != MaterialModel::metallic_roughness || material.metallic_roughness) return;
+void set_model(Material& material, ShadingModel model) {
+    material.unlit = model == ShadingModel::unlit;
+    if (model == ShadingModel::phong) material.metallic_roughness.reset();
+    if (model != ShadingModel::metallic_roughness || material.metallic_roughness) return;
     material.metallic_roughness = {.base_color = glm::min(material.diffuse, glm::vec3(1.0F)),
                                    .metallic = 0.0F,
                                    .roughness = roughness_of(material.shininess),
@@ -480,7 +480,7 @@ bool edit_reflection(Material& material) {
 }
 
 bool edit_model(Material& material) {
-    MaterialModel model = model_of(material);
+    ShadingModel model = model_of(material);
     bool changed = choose("Model", model);
     if (changed) set_model(material, model);
     if (material.metallic_roughness) {
@@ -561,7 +561,7 @@ void edit_all(ViewerState& state) {
                 material.interpolation = interpolation;
         });
     }
-    MaterialModel model = model_of(first);
+    ShadingModel model = model_of(first);
     if (choose("Model of all", model)) {
         state.edit([&](Scene& scene) {
             for (Material& material : scene.materials)

@@ -82,30 +82,30 @@ class LightRows {
 
 // Materials.
 
-enum class MaterialModel { phong, metallic_roughness, unlit };
+enum class ShadingModel { phong, metallic_roughness, unlit };
 
 }  // namespace relief::tools
 
 namespace relief {
 
 template <>
-inline constexpr auto enum_names<tools::MaterialModel> =
-    std::to_array<EnumName<tools::MaterialModel>>(
-        {{"phong", tools::MaterialModel::phong},
-         {"metallic_roughness", tools::MaterialModel::metallic_roughness, "Metallic-roughness"},
-         {"unlit", tools::MaterialModel::unlit}});
+inline constexpr auto enum_names<tools::ShadingModel> =
+    std::to_array<EnumName<tools::ShadingModel>>(
+        {{"phong", tools::ShadingModel::phong},
+         {"metallic_roughness", tools::ShadingModel::metallic_roughness, "Metallic-roughness"},
+         {"unlit", tools::ShadingModel::unlit}});
 
 }  // namespace relief
 
 namespace relief::tools {
 
-MaterialModel model_of(const Material& material);
+ShadingModel model_of(const Material& material);
 
 /// Changes the model and keeps the appearance similar. Phong to metallic-roughness: the base color
 /// is the diffuse color, metallic is 0, and the roughness is the inverse of
 /// phong_from_metallic_roughness (scene_file.h). Metallic-roughness to Phong: the material keeps
 /// its Phong values, which the file reader or an earlier change has set.
-void set_model(Material& material, MaterialModel model);
+void set_model(Material& material, ShadingModel model);
 
 /// An image of a material, such as its normal map. Images are decoded when a picture needs them.
 struct MapSlot {

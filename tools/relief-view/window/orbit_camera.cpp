@@ -119,10 +119,10 @@ void fit(OrbitCamera& orbit, const BoundingSphere& sphere, float aspect) {
 }
 
 std::string degrees_text(float radians) {
-    constexpr int default_digits = 6;
+    constexpr int fewest_digits = 6;
     constexpr int digits_of_double = 17;
     const double degrees = glm::degrees(static_cast<double>(radians));
-    for (int digits = default_digits;; ++digits) {
+    for (int digits = fewest_digits;; ++digits) {
         const std::string text = fmt::format("{:.{}g}", degrees, digits);
         const auto again = static_cast<float>(glm::radians(std::stod(text)));
         if (again == radians || digits == digits_of_double) return text;

@@ -91,7 +91,7 @@ AccuracyResult measured(const Scene& scene, const ViewOptions& view) {
     bump.strength = view.strength.value_or(bump.strength);
     options.file = view.height_map->filename().string();
     const Image height = height_field(read_image(*view.height_map, ImageUse::data));
-    found.kernel = displayed_kernel(view);
+    found.kernel = displayed_kernel(scene_heights(view));
     found.topics.push_back(topic_of(measure_asset_heights(height, bump, options)));
     return found;
 }
@@ -240,7 +240,7 @@ void draw_topic(const PanelInput& input, const AccuracyTopic& topic, PanelReques
         ImGui::PushTextWrapPos(30.0F * ImGui::GetFontSize());
         ImGui::TextUnformatted((experiment.question + "\n" + experiment.input +
                                 "\n\nGround truth: " + experiment.ground_truth + "\n\n" +
-                                topic.own.recommendation.words)
+                                topic.own.recommendation.description)
                                    .c_str());
         ImGui::PopTextWrapPos();
         ImGui::EndTooltip();

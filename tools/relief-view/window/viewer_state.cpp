@@ -412,7 +412,7 @@ void ViewerState::set_environment(const std::filesystem::path& file) {
         Environment environment = environment_of(options);
         environment.lights = std::any_of(
             scene.materials.begin(), scene.materials.end(), [](const Material& material) {
-                return model_of(material) == MaterialModel::metallic_roughness;
+                return model_of(material) == ShadingModel::metallic_roughness;
             });
         if (scene.environment) {
             environment.intensity = scene.environment->intensity;

@@ -16,7 +16,6 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
-#include "relief/shade/scene_graph.h"
 #include "scene_options.h"
 #include "window/background_jobs.h"
 #include "window/edit_panels.h"

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "relief/mesh/report.h"
-#include "relief/shade/context.h"
+#include "relief/shade/renderer.h"
 
 struct GLFWwindow;
 

@@ -13,9 +13,9 @@
 
 #include "relief/export.h"
 #include "relief/mesh/bump.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
 

@@ -20,6 +20,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/enum_names.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/map_convention.h"
@@ -77,7 +78,7 @@ struct LayerBounds {
 /// An image on a mesh. It is sampled at full resolution, bilinearly or nearest, as `filter` says; a
 /// map that is coarser than the image needs several samples per texel.
 struct SurfaceTexture {
-    const Image* image = nullptr;  ///< One to four channels; it must outlive the bake.
+    std::shared_ptr<const Image> image;  ///< One to four channels.
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
     TextureFilter filter = TextureFilter::linear;
@@ -149,8 +150,8 @@ struct BakeMapOptions {
     int height = 0;
     MapRegion placement{};
     /// The triangles of the low mesh that the map shows, ascending: those of a material or a tile.
-    /// If absent, all. The span must outlive the call.
-    std::optional<std::span<const std::uint32_t>> triangles{};
+    /// If absent, all.
+    std::optional<std::vector<std::uint32_t>> triangles{};
     /// Bakes only these rows, so that several maps can be computed in parallel. There is no padding
     /// then. Findings about triangles are reported only with row 0.
     std::optional<BakeRowRange> rows;
@@ -179,8 +180,12 @@ struct BakeMapOptions {
     BakeLayers layers{};
 };
 
-/// The options that all maps of a Baker share, and the options of one map.
-struct BakeOptions : BakeMapOptions {
+/// The options that all maps of a Baker share.
+struct BakeOptions {
+    /// The options of the map of bake_normals(). A Baker, whose bake() has its own, uses only
+    /// `layers` (those that maps can have), `sample_angle` (whether maps sample adaptively) and the
+    /// numbers of texels and samples, to estimate how much preparation is worthwhile.
+    BakeMapOptions map{};
     VectorSpace space = VectorSpace::tangent;
     RayDirections directions = RayDirections::averaged;
     /// For RayDirections::averaged: the interpolation weight from the smoothed normals (0) to the
@@ -188,7 +193,7 @@ struct BakeOptions : BakeMapOptions {
     double hardness = 0.0;
     /// A cage: the low mesh, moved outwards, with the same triangles. Rays then run from the cage
     /// to the low mesh, and `directions`, `hardness` and `offset` are ignored.
-    const Mesh* cage = nullptr;
+    std::shared_ptr<const Mesh> cage;
     /// The distance from the low mesh at which rays begin outside, and end inside, in the unit of
     /// the meshes. If absent, automatic_distances() decides; with a cage, the inner distance equals
     /// that of the cage.
@@ -204,8 +209,8 @@ struct BakeOptions : BakeMapOptions {
     /// Except in tangent space: the transform from the space of the meshes to that of the map.
     /// Results are normalized.
     glm::dmat3 output_from_mesh{1.0};
-    /// The materials of high meshes, for those that have them. The span must outlive the bake.
-    std::span<const HighMaterials> details;
+    /// The materials of high meshes, for those that have them.
+    std::vector<HighMaterials> materials;
 };
 
 /// The origin of a texel's value.
@@ -273,7 +278,8 @@ struct LayerCoding {
 /// \param report       counts values outside the range, which are clamped
 std::vector<std::byte> encode_layer(std::span<const float> values,
                                     std::span<const TexelState> states, const LayerCoding& coding,
-                                    bool has_alpha, std::size_t first_texel, Report& report);
+                                    bool has_alpha, std::size_t first_texel,
+                                    Report& report = IgnoredReport());
 
 struct BakeDistances {
     double offset = 0.0;        ///< Outside of the low mesh.
@@ -398,21 +404,22 @@ class Baker {
     /// \param high  in the same space as `low`; missing normals are averaged (frames.h)
     /// \param low  with texture coordinates; missing normals are averaged and missing tangents are
     ///         computed by MikkTSpace, as renderers do
-    /// \param options  all options except those of a map
+    /// \param options  see BakeOptions::map for the options of a map
     /// \param report  counts problems of the meshes
     /// \throws InvalidInput if an option is out of range, a mesh is not valid, `low` has no texture
     ///         coordinates, or the triangles of the cage differ from those of `low`; BakeMismatch
     ///         if the boxes of high and low meshes do not match. This is checked before the
     ///         acceleration structure is built, unless the low mesh has no finite triangle
     ///
-    /// The high meshes and the cage must outlive the Baker.
-    Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options, Report& report);
+    /// The high meshes must outlive the Baker.
+    Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
+          Report& report = IgnoredReport());
 
     /// Prepares parts that do not see each other, each with its own distances. A part may have no
     /// high mesh; its texels are missed. BakeMismatch describes a single part.
     /// \throws InvalidInput also if a triangle of `low` is not in exactly one part
     Baker(std::span<const BakePart> parts, const Mesh& low, const BakeOptions& options,
-          Report& report);
+          Report& report = IgnoredReport());
 
     ~Baker();
     Baker(Baker&&) noexcept;
@@ -441,9 +448,12 @@ class Baker {
     ///         surface, or are covered by several triangles; triangles that cover no texel; rays
     ///         without a direction, which use the face normal; and high vertices without a normal,
     ///         which use the face normal
-    /// \throws InvalidInput if a size or an option is out of range, or a triangle does not exist
+    /// \param execution  threads, progress and cancellation; the map does not depend on it
+    /// \throws InvalidInput if a size or an option is out of range, or a triangle does not exist;
+    ///         Cancelled
     BakeResult bake(const BakeMapOptions& map,
-                    const std::function<void(const BakedRows& rows)>& take, Report& report) const;
+                    const std::function<void(const BakedRows& rows)>& take,
+                    Report& report = IgnoredReport(), const ExecutionOptions& execution = {}) const;
 
   private:
     struct Implementation;
@@ -452,6 +462,7 @@ class Baker {
 
 /// Bakes one normal map: creates a Baker and calls its bake().
 BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
-                        const std::function<void(const BakedRows& rows)>& take, Report& report);
+                        const std::function<void(const BakedRows& rows)>& take,
+                        Report& report = IgnoredReport(), const ExecutionOptions& execution = {});
 
 }  // namespace relief

@@ -1,27 +1,122 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Measures the error of a finished normal map, texel by texel, against the surface that it was
-/// baked from, and the errors and times of bakes with other sample counts and formats. Part of the
-/// library relief::bake.
-/// Tests: tests/mesh/bake/bake_check_test.cpp, tests/accuracy/asset_maps_test.cpp.
+/// Checks before and after a bake: pairs parts of the models by name, finds the likely cause if
+/// they do not fit, estimates missed texels, and measures the error of a finished normal map. Part
+/// of the library relief::bake.
+/// Tests: tests/tools/relief_bake_models_test.cpp, tests/mesh/bake/bake_check_test.cpp,
+/// tests/accuracy/asset_maps_test.cpp.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "relief/export.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/map_convention.h"
+#include "relief/mesh/model.h"
 #include "relief/mesh/normal_map.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
+
+// Pairs high and low parts by name, states the likely cause if the models do not fit, and
+// estimates the texels whose rays hit nothing.
+
+enum class BakeSide { high, low };
+
+/// Returns the name that a part shares with its counterparts, in lower case.
+///
+/// It is the text before the last separate word "high" (for a high part) or "low" (for a low part).
+/// Words are separated by '_', '-', '.' or a space. The text after the word is ignored:
+/// "Bolt_high", "bolt_high.001" and "bolt-high-cap" all give "bolt". Absent if there is no such
+/// word, or no text before it.
+std::optional<std::string> pair_name(const std::string& name, BakeSide side);
+
+/// The names by which a part can be paired.
+struct BakePartName {
+    std::string object;  ///< The name of its object (glTF: node); may be empty.
+    std::string file;    ///< The stem of its file; used if the object's name gives no pair name.
+};
+
+/// The parts with one pair name.
+struct BakeNameGroup {
+    std::string name;                    ///< Empty: parts without a pair name.
+    std::vector<std::size_t> high, low;  ///< Indices of parts, ascending.
+
+    /// Returns whether it has a name and parts on both sides.
+    [[nodiscard]] bool is_pair() const { return !name.empty() && !high.empty() && !low.empty(); }
+};
+
+/// Groups parts by pair name. \return the groups, sorted by name
+std::vector<BakeNameGroup> group_by_pair_name(std::span<const BakePartName> high,
+                                              std::span<const BakePartName> low);
+
+/// The high parts that each low part sees.
+enum class PartMatching {
+    automatic,  ///< By name if the low model has several names and all parts have counterparts.
+    name,       ///< By name.
+    all,        ///< All high parts.
+};
+
+/// A file and its parts.
+struct NamedModel {
+    std::filesystem::path file;
+    const MapModel* model = nullptr;
+};
+
+/// Triangles of one part of a high model.
+struct HighPiece {
+    std::size_t model = 0;
+    std::size_t part = 0;
+    std::vector<std::uint32_t> triangles;
+};
+
+/// The high and low triangles with one name.
+struct ModelPair {
+    std::string name;
+    std::vector<HighPiece> high;
+    std::vector<std::uint32_t> low;  ///< Triangles of the joined low model, ascending.
+};
+
+struct ModelPairs {
+    std::vector<ModelPair> pairs;  ///< Sorted by name; empty: every low part sees all high parts.
+    Report report;                 ///< High parts that no low part sees.
+    /// The names without a counterpart that prevent automatic pairs.
+    std::vector<std::string> unpaired;
+    /// With PartMatching::name, the low parts without a counterpart, which are in no pair.
+    std::vector<std::string> unmatched_low;
+};
+
+/// Pairs parts by pair_name(). A part is named by its object (glTF: node; OBJ: o, else g) if that
+/// has a pair name, else by its file. High parts without a counterpart are counted.
+ModelPairs pair_parts(std::span<const NamedModel> high, const NamedModel& low,
+                      PartMatching matching);
+
+/// Returns the likely cause of models that do not fit, as a question or a remark: different units,
+/// a different up axis, or a missing transform. Empty if the boxes show none.
+std::string likely_cause(const BakeFit& fit);
+
+/// The result of a bake at a reduced size.
+struct MissedEstimate {
+    int width = 0;
+    int height = 0;
+    BakeResult result;
+};
+
+/// The number of texels of the reduced map in estimate_missed().
+inline constexpr double estimate_texels = 65536.0;
+
+/// Estimates which texels of a map are missed by their rays. The map is baked with one sample per
+/// texel and with at most `estimate_texels` texels.
+MissedEstimate estimate_missed(const Baker& baker, const BakeMapOptions& map);
 
 // Measures the error of a finished normal map, texel by texel, against the surface that it was
 // baked from, as a renderer shows it, and splits the error by cause. Part of the library
@@ -46,7 +141,7 @@ inline constexpr std::size_t bake_stage_count = 5;
 
 /// The error of one stage.
 struct StageError {
-    double rms = 0.0;  ///< The RMS angle of this stage alone, in degrees.
+    ErrorStats error;  ///< The angle of this stage alone, in degrees; for `basis` only its RMS.
     /// Its share of the mean squared error; the shares add up to 1. It is the projection of the
     /// stage's error vector onto the total error vector, and negative if the stage compensates
     /// another one.
@@ -115,83 +210,60 @@ struct BakeCheck {
 /// 200 bytes for each texel of a strip of a million texels.
 BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOptions& options,
                      const std::function<void(int first_row, std::span<const float> degrees)>& take,
-                     Report& report);
+                     Report& report = IgnoredReport());
 
-// Measures the errors and times of bakes with several sample counts and formats, without writing
-// maps. Part of the library relief::bake.
+// The parts of check_bake(), for comparisons of several bakes with one reference. Part of the
+// library relief::bake.
 
-/// The number of samples per texel.
-struct BakeSampling {
-    int samples = 1;
-    /// Adaptive sampling: BakeMapOptions::sample_angle in degrees.
-    std::optional<double> sample_degrees{};
-};
-
-/// The errors and times of one bake in several formats.
-struct BakeMeasurement {
-    std::vector<ErrorStats> errors;  ///< By format, against the mean normal over the texel.
-    /// By format, the error of rounding to codes alone, which more samples do not reduce.
-    std::vector<ErrorStats> quantization;
-    ErrorStats sampling;             ///< The error of sampling alone, which no format reduces.
-    std::vector<ErrorStats> center;  ///< By format, against the normal at the texel's center.
+/// A bake of the texels of a BakeReference, row by row.
+struct BakedTexels {
+    std::vector<float> normals;  ///< Three per texel.
+    std::vector<TexelState> states;
     std::size_t rays = 0;
-    double cast_seconds = 0.0;         ///< The time of the bake without encoding.
-    std::vector<double> code_seconds;  ///< The time of encoding, by format.
 };
 
 /// The reference for a map or some of its bands, with which any number of bakes can be compared.
 ///
-/// Memory: 17 bytes per measured texel, and four times that during a measurement.
-class BakeBenchmark {
+/// Memory: 34 bytes per texel, and 29 bytes for each bake that the caller compares.
+class BakeReference {
   public:
     /// Computes the reference.
     ///
-    /// \param texels  minimum number of texels to measure, in evenly spaced bands of 64 rows; all
+    /// \param map  its samples do not matter. The baker must outlive the reference
+    /// \param texels  minimum number of texels to compare, in evenly spaced bands of 64 rows; all
     ///         if the map has fewer
-    /// \param reference_samples  per texel of the reference; 0: 256, or the maximum for the size of
-    ///         the map. Bakes of 256 samples need a reference of 1024; otherwise they are compared
-    ///         with themselves
-    BakeBenchmark(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
-                  int reference_samples = 0);
-    ~BakeBenchmark();
-    BakeBenchmark(const BakeBenchmark&) = delete;
-    BakeBenchmark& operator=(const BakeBenchmark&) = delete;
+    /// \param samples  per texel of the reference; 0: 256, or the maximum for the size of the map.
+    ///         Bakes of 256 samples need a reference of 1024; otherwise they are compared with
+    ///         themselves
+    BakeReference(const Baker& baker, const BakeMapOptions& map, std::size_t texels,
+                  int samples = 0);
+    ~BakeReference();
+    BakeReference(const BakeReference&) = delete;
+    BakeReference& operator=(const BakeReference&) = delete;
 
-    /// Bakes and encodes in memory, and compares the result as check_bake() does.
-    [[nodiscard]] BakeMeasurement measure(const BakeSampling& way,
-                                          std::span<const NormalMapFormat> formats) const;
+    /// Bakes the same texels, with BakeMapOptions::samples and sample_angle.
+    [[nodiscard]] BakedTexels bake(int samples, std::optional<double> sample_angle) const;
 
-    /// Computes BakeMeasurement::errors for each texel: one float channel in degrees, NaN without a
-    /// reference. If only bands were measured, they are stacked.
-    [[nodiscard]] Image error_map(const BakeSampling& way, const NormalMapFormat& format) const;
+    /// Encodes and decodes the normals of a bake. \return three values per texel
+    [[nodiscard]] std::vector<float> coded(const BakedTexels& bake,
+                                           const NormalMapFormat& format) const;
 
-    [[nodiscard]] std::size_t texels() const;  ///< Number of measured texels, covered or not.
+    /// Compares a bake in a format with the reference, as check_bake() does.
+    ///
+    /// \param coded    of this bake
+    /// \param degrees  one per texel; receives the errors, NaN without a reference
+    BakeCheck compare(const BakedTexels& bake, std::span<const float> coded,
+                      std::span<float> degrees) const;
+
+    [[nodiscard]] int width() const;           ///< Of the map.
+    [[nodiscard]] std::size_t texels() const;  ///< Number of texels of the bands, covered or not.
     [[nodiscard]] bool is_whole() const;
-    [[nodiscard]] int reference_samples() const;
-    [[nodiscard]] std::size_t reference_rays() const;
+    [[nodiscard]] int samples() const;
+    [[nodiscard]] std::size_t rays() const;
 
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
-
-/// Returns 1, 4, 16 and 64 samples, and 16 adaptive samples with thresholds of 8, 2 and 0.5
-/// degrees.
-std::span<const BakeSampling> default_bake_samplings();
-
-/// Returns variants of `format`: 8 bits, 8 bits with blue-noise dithering, 16 bits, and float.
-std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format);
-
-struct TimedBakeMeasurement {
-    BakeMeasurement trial;
-    /// By format and round: the time of the bake and its encoding.
-    std::vector<std::vector<double>> seconds;
-};
-
-/// Measures all ways, interleaved. \throws Cancelled between bakes if cancellation was requested
-std::vector<TimedBakeMeasurement> measure_interleaved(const BakeBenchmark& trials,
-                                                      std::span<const BakeSampling> ways,
-                                                      std::span<const NormalMapFormat> formats,
-                                                      const Repeats& repeats);
 
 }  // namespace relief

@@ -125,10 +125,10 @@ struct BumpOptions {
 /// Fills in all absent options from the map, in the same way for every conversion and tool.
 ///
 /// \param height  as for normals_from_height()
-/// \return absent kernels (with radius) by choose_kernel() (kernel_choice.h), absent wraps by
+/// \return absent kernels (with radius) by choose_kernel() (height_map.h), absent wraps by
 ///         detect_tiling() (height_map.h); the other options unchanged
 /// \throws InvalidInput as normals_from_height() does
-BumpOptions resolve_options(const Image& height, BumpOptions options);
+BumpOptions resolve_options(const ImageView& height, BumpOptions options);
 
 /// Computes the unit normals of a height field in tangent space: x points right, y up in the image,
 /// z out of it.
@@ -145,7 +145,8 @@ BumpOptions resolve_options(const Image& height, BumpOptions options);
 ///         texel or the radius is out of range
 ///
 /// Source: [Blinn 1978]; for the kernels see Kernel.
-Image normals_from_height(const Image& height, const BumpOptions& options, Report& report);
+Image normals_from_height(const Image& height, const BumpOptions& options,
+                          Report& report = IgnoredReport());
 
 /// Computes a normal map in its stored format directly, at the speed of memory.
 ///
@@ -155,13 +156,27 @@ Image normals_from_height(const Image& height, const BumpOptions& options, Repor
 /// rounded to float; for float32 they differ by at most one code of 16 bits, and mostly not at all.
 /// Blocks with slopes above 1e15, whose squares overflow float32, use float64.
 void normal_map_from_height(const Image& height, const BumpOptions& options,
-                            const NormalMapFormat& format, Image& result, Report& report);
+                            const NormalMapFormat& format, Image& result,
+                            Report& report = IgnoredReport());
 Image normal_map_from_height(const Image& height, const BumpOptions& options,
-                             const NormalMapFormat& format, Report& report);
+                             const NormalMapFormat& format, Report& report = IgnoredReport());
+
+/// Writes the normal map into the caller's memory, from heights in the caller's memory.
+///
+/// \param height  one channel. It is copied only if a height is not finite; if `options` have no
+///         kernel, at most nine squares of 128 texels are copied to choose one
+/// \param result  three channels with the size of `height` and the bits of `format`
+/// \param execution  threads, progress and cancellation; the map does not depend on it
+/// \throws InvalidInput also if `result` has another format; Cancelled
+void normal_map_from_height(const ImageView& height, const BumpOptions& options,
+                            const NormalMapFormat& format, const MutableImageView& result,
+                            Report& report = IgnoredReport(),
+                            const ExecutionOptions& execution = {});
 
 /// Computes slopes instead of normals: two float channels, dh/dx to the right and dh/dy upwards.
 ///
 /// Otherwise like normals_from_height(). Slopes beyond the range of float become +-infinity.
-Image slopes_from_height(const Image& height, const BumpOptions& options, Report& report);
+Image slopes_from_height(const Image& height, const BumpOptions& options,
+                         Report& report = IgnoredReport());
 
 }  // namespace relief

@@ -131,6 +131,7 @@ struct BumpFileTimes {
 ///         maps in memory
 BumpFileTimes write_bump_file(const HeightMapFile& source, const BumpOptions& options,
                               const std::filesystem::path& file, const BumpFileFormat& format,
-                              Report& report, const std::function<void(double)>& progress = {});
+                              Report& report = IgnoredReport(),
+                              const std::function<void(double)>& progress = {});
 
 }  // namespace relief

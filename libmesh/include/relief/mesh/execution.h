@@ -34,7 +34,8 @@ inline constexpr auto enum_names<Arithmetic> = std::to_array<EnumName<Arithmetic
 // Limits the number of threads of parallel loops.
 
 /// Sets the maximum number of threads of relief's parallel loops in this process, including the
-/// calling thread. Results do not depend on it.
+/// calling thread. Results do not depend on it. Programs call it once, when they start; the limit
+/// of a single operation is an argument (ExecutionOptions).
 ///
 /// \param count  at least 1; 0 means the number of hardware threads
 void set_thread_limit(unsigned count);
@@ -50,10 +51,11 @@ void set_thread_limit(unsigned count);
 //     show(progress.state());
 //     progress.cancel();
 //
-// Functions have no parameter of type Progress: everything that a thread calls during the lifetime
-// of a ProgressScope reports to it, including parallel loops. Without a scope nothing is counted,
-// and nothing is slower. Readers of meshes, glTF and images, normals, tangents, and the
-// preparation of a Renderer report progress.
+// The functions that compute on the caller's memory have an argument of type ExecutionOptions. For
+// all others, everything that a thread calls during the lifetime of a ProgressScope or an
+// ExecutionScope obeys it, including parallel loops. Without a scope nothing is counted, and
+// nothing is slower. Readers of meshes, glTF and images, normals, tangents, and the preparation of
+// a Renderer report progress.
 
 /// Thrown after Progress::cancel(). The operation has no effect: nothing is written, and existing
 /// data is unchanged.
@@ -135,6 +137,32 @@ class ProgressScope {
 
   private:
     Progress* before_;
+};
+
+/// The execution of one operation. Operations with different options may run at the same time; the
+/// results do not depend on the options.
+struct ExecutionOptions {
+    /// The maximum number of threads, including the calling one. 0: no limit but that of the
+    /// process (set_thread_limit()) and of enclosing scopes.
+    unsigned threads = 0;
+    /// Receives the progress and can cancel the operation, which then throws Cancelled. It must
+    /// live until the operation returns. Null: that of the enclosing scope, if there is one.
+    Progress* progress = nullptr;
+};
+
+/// Applies options to everything that this thread calls during its lifetime. In nested scopes, the
+/// smallest limit and the innermost Progress apply. Only the acceleration structures of bakes,
+/// which Embree builds, ignore the limit of threads.
+class ExecutionScope {
+  public:
+    explicit ExecutionScope(const ExecutionOptions& options);
+    ~ExecutionScope();
+    ExecutionScope(const ExecutionScope&) = delete;
+    ExecutionScope& operator=(const ExecutionScope&) = delete;
+
+  private:
+    unsigned limit_before_;
+    Progress* progress_before_;
 };
 
 }  // namespace relief

@@ -14,6 +14,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -203,6 +204,13 @@ struct GltfCompression {
                               ///< both are written unchanged.
 };
 
+/// A lower level of detail of a mesh.
+struct GltfLevel {
+    std::size_t mesh = 0;
+    /// The part of the screen, 0 to 1, below which the level replaces the one before.
+    double max_coverage = 0.0;
+};
+
 class GltfDocument {
   public:
     /// Reads a .gltf or .glb file; the content decides which it is.
@@ -220,7 +228,7 @@ class GltfDocument {
     ///         index, count, offset or length is out of range; if nodes form a cycle or share a
     ///         child; if the file requires an extension that relief can neither keep nor decode; if
     ///         compressed data is damaged; or if a buffer is missing or outside the folder
-    static GltfDocument read(const std::filesystem::path& file, Report& report);
+    static GltfDocument read(const std::filesystem::path& file, Report& report = IgnoredReport());
 
     /// Creates a document with one mesh: a primitive for each material range with its own vertices,
     /// and materials converted from MTL. Kd and d become the base color (within [0,1]), roughness
@@ -306,7 +314,7 @@ class GltfDocument {
     /// \return the new number of vertices of the primitive
     /// \throws InvalidInput as above, or if a target's displacements have the wrong type
     std::size_t set_frames(GltfPrimitiveId id, const FramedMesh& framed,
-                           const FrameOptions& options, Report& report);
+                           const FrameOptions& options, Report& report = IgnoredReport());
 
     /// Replaces the mesh of a primitive, as floats: positions, normals, tangents, texture
     /// coordinates (set 0) and colors. The material stays.
@@ -314,6 +322,20 @@ class GltfDocument {
     ///         joints and weights, further texture coordinates), or if the mesh is not valid or has
     ///         no triangle
     void set_geometry(GltfPrimitiveId id, const Mesh& mesh);
+
+    /// Appends a copy of a mesh, which no node uses. It shares all data until one of them changes.
+    /// \return its index
+    /// \throws InvalidInput if there is no such mesh
+    std::size_t copy_mesh(std::size_t mesh);
+
+    /// Gives each node of a mesh lower levels of detail (MSFT_lod, with MSFT_screencoverage in the
+    /// node's extras). The nodes of the levels are copies of the node. If it has children, a camera
+    /// or animations, its mesh moves to a new child first.
+    ///
+    /// \param levels      other meshes, from fine to coarse
+    /// \param with_names  appends _LOD0, _LOD1, ... to the names of the nodes
+    /// \throws InvalidInput if a node has levels already, or extras that are not an object
+    void set_levels_of_detail(std::size_t mesh, std::span<const GltfLevel> levels, bool with_names);
 
     /// Returns the document as a scene.
     /// \throws InvalidInput if instance attributes have a wrong type or differ in length
@@ -324,7 +346,7 @@ class GltfDocument {
     /// \param report  counts channels that are left out: those of morph weights or of extensions,
     ///         and those of nodes with a matrix, which glTF does not animate; also those with times
     ///         or values that are not finite, of the wrong number, or of the wrong type
-    [[nodiscard]] std::vector<KeyAnimation> animations(Report& report) const;
+    [[nodiscard]] std::vector<KeyAnimation> animations(Report& report = IgnoredReport()) const;
 
     /// Returns the compression of the file, one entry for each extension; empty if there is none.
     [[nodiscard]] std::vector<GltfCompression> compression() const;

@@ -5,10 +5,12 @@
 /// Tests: tests/mesh/image/image_test.cpp, tests/mesh/image/normal_map_test.cpp.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -60,6 +62,85 @@ struct Image {
     template <typename T>
     std::span<const T> as() const&& = delete;
 };
+
+/// An image in the caller's memory: 8 or 16-bit integers or floats, row 0 at the top. Functions
+/// read and write it in place, without a copy. Images convert implicitly.
+///
+///     const ImageView heights(frame.pixels, frame.width, frame.height, 1, frame.bytes_per_row);
+template <bool is_const>
+class BasicImageView {
+    using Byte = std::conditional_t<is_const, const std::byte, std::byte>;
+    using ImageType = std::conditional_t<is_const, const Image, Image>;
+    template <typename Sample>
+    using Access = std::conditional_t<is_const, const Sample, Sample>;
+
+  public:
+    int width = 0;
+    int height = 0;
+    int channels = 0;  ///< As in Image.
+
+    BasicImageView() = default;
+
+    /// \param first  the first sample of row 0: std::uint8_t, std::uint16_t or float
+    /// \param row_stride  distance between rows in bytes, a multiple of the size of a sample.
+    ///         Negative if the bottom row is the first one in memory; 0 if rows are contiguous
+    template <typename Sample>
+    requires(is_const || !std::is_const_v<Sample>)
+        BasicImageView(Sample* first, int columns, int rows, int samples_per_texel = 1,
+                       std::ptrdiff_t row_stride = 0)
+        : width(columns),
+          height(rows),
+          channels(samples_per_texel),
+          first_(reinterpret_cast<Byte*>(first)),
+          row_stride_(row_stride != 0 ? row_stride
+                                      : static_cast<std::ptrdiff_t>(sizeof(Sample)) * columns *
+                                            samples_per_texel),
+          bits_(static_cast<int>(8 * sizeof(Sample))) {
+        using Value = std::remove_const_t<Sample>;
+        static_assert(std::is_same_v<Value, std::uint8_t> || std::is_same_v<Value, std::uint16_t> ||
+                      std::is_same_v<Value, float>);
+        assert(row_stride % static_cast<std::ptrdiff_t>(sizeof(Sample)) == 0);
+    }
+
+    BasicImageView(ImageType& image)  // NOLINT: implicit, so that an Image can be passed.
+        : BasicImageView(std::visit(
+              [&image](auto& samples) {
+                  return BasicImageView(samples.data(), image.width, image.height, image.channels);
+              },
+              image.samples)) {}
+
+    [[nodiscard]] bool empty() const { return width == 0 || height == 0; }
+    /// Bits per sample: 8, 16 or 32.
+    [[nodiscard]] int bits() const { return bits_; }
+
+    /// The samples of a row. \param y  0 to height - 1
+    template <typename Sample>
+    [[nodiscard]] Access<Sample>* row(int y) const {
+        assert(y >= 0 && y < height && bits_ == static_cast<int>(8 * sizeof(Sample)));
+        return reinterpret_cast<Access<Sample>*>(first_ + y * row_stride_);
+    }
+    /// The samples of a texel. \param index  row * width + column
+    template <typename Sample>
+    [[nodiscard]] Access<Sample>* texel(std::size_t index) const {
+        const auto columns = static_cast<std::size_t>(width);
+        return row<Sample>(static_cast<int>(index / columns)) +
+               (index % columns) * static_cast<std::size_t>(channels);
+    }
+    /// The samples of all texels if rows are contiguous, else null.
+    template <typename Sample>
+    [[nodiscard]] Access<Sample>* contiguous() const {
+        const bool is_contiguous =
+            row_stride_ == static_cast<std::ptrdiff_t>(sizeof(Sample)) * width * channels;
+        return is_contiguous ? row<Sample>(0) : nullptr;
+    }
+
+  private:
+    Byte* first_ = nullptr;
+    std::ptrdiff_t row_stride_ = 0;
+    int bits_ = 8;
+};
+using ImageView = BasicImageView<true>;
+using MutableImageView = BasicImageView<false>;
 
 /// Creates an image of zeros. \throws InvalidInput if a size is not positive or bits is not 8, 16
 /// or 32
@@ -141,6 +222,7 @@ struct ImagePart {
 /// Extracts a rectangle as an image of the same format.
 /// \throws InvalidInput if the rectangle is empty or not inside of the image
 Image part_of(const Image& image, const ImagePart& part);
+Image part_of(const ImageView& image, const ImagePart& part);
 
 // Computes the mip levels of an image.
 

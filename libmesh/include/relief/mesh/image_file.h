@@ -4,8 +4,10 @@
 /// OpenImageIO.
 ///
 /// Common PNG and JPEG files are decoded directly. OpenImageIO is in a module that is loaded by the
-/// first image that needs it, because loading it takes 0.2 s and 120 MB. The module is searched in
-/// $RELIEF_MODULE_DIR, then in the tree of the library or the program, wherever it is moved.
+/// first image that needs it, because loading it takes 0.2 s and 120 MB. Files are decoded with it
+/// in another process, relief-image-decoder, with limits of memory and time: a file that crashes or
+/// exceeds it gives a FileError. Both are searched in $RELIEF_MODULE_DIR, then in the tree of the
+/// library or the program, wherever it is moved.
 #pragma once
 
 #include <cstddef>
@@ -59,7 +61,8 @@ inline constexpr std::size_t max_image_samples = std::size_t{1} << 31;
 /// divided; CMYK and YCbCr become RGB. First subimage, first mip level; for EXR the data window,
 /// independent of the display window. gAMA, iCCP, Exif and the like have no effect.
 /// \throws FileError if the file is missing, damaged, truncated, empty or a volume, has more than 4
-///         channels or max_image_samples, or announces more samples than its bytes can hold
+///         channels or max_image_samples, announces more samples than its bytes can hold, or ends
+///         its decoder by a crash or a limit
 Image read_image(const std::filesystem::path& file, ImageUse use);
 
 /// The same from memory, for images that are embedded in glTF files. `name` is for messages.

@@ -56,7 +56,7 @@ struct ConvertedNormals {
 /// Computed in double precision; the same for any number of threads. This is the basis that
 /// [Mikkelsen 2008] specifies, so maps that were baked for it reproduce the baked surface.
 ConvertedNormals object_from_tangent(const Image& normals, const Mesh& mesh,
-                                     const MapRegion& placement, Report& report);
+                                     const MapRegion& placement, Report& report = IgnoredReport());
 
 /// Converts an object-space map to tangent space: the components in the basis (t, b, n) above,
 /// normalized.
@@ -64,7 +64,7 @@ ConvertedNormals object_from_tangent(const Image& normals, const Mesh& mesh,
 /// \param report  counts as above, and texels whose normal lies behind the surface (unchanged),
 ///         which do not occur if the map belongs to the mesh
 ConvertedNormals tangent_from_object(const Image& normals, const Mesh& mesh,
-                                     const MapRegion& placement, Report& report);
+                                     const MapRegion& placement, Report& report = IgnoredReport());
 
 // Finds the convention (axes, tangent basis, orientation, coding) with which a normal map matches
 // known normals of a mesh. Part of the library relief::bake.
@@ -129,6 +129,7 @@ struct ConventionFit {
     std::vector<ConventionPart> changes;
 };
 
+/// The known facts of a search. The meshes must live until find_convention() returns.
 struct ConventionSearch {
     const Mesh* low = nullptr;    ///< With the tangent frames of the renderer.
     const Mesh* given = nullptr;  ///< The low mesh as it was read, with its own tangents, if any.

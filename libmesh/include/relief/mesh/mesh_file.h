@@ -40,6 +40,12 @@ struct MtlMaterial {
     /// Further statements of the file: "map_Ka", "map_Ns", "disp", "refl"; and "-s", "-o" if a map
     /// above has a scale or an offset.
     std::vector<std::string> more;
+    /// The maps above that lie outside of the folder of the OBJ file, unless the limits of the
+    /// process permit them (limits.h). Their paths are kept, but the images are not read.
+    std::vector<std::filesystem::path> outside_maps{};
+
+    /// Returns whether the image of a map may be read.
+    [[nodiscard]] bool may_read(const std::filesystem::path& map) const;
 };
 
 /// A mesh and the materials that its ranges name.
@@ -75,12 +81,13 @@ struct MeshFile {
 ///
 /// \param report  counts faces of fewer than three corners (left out), polygons without an ear (cut
 ///         as fans), corners without attributes that others have (completed), points, lines and
-///         other parts that are left out, unknown materials, and unreadable MTL files
+///         other parts that are left out, unknown materials, and MTL files that are unreadable or
+///         outside of the folder of the OBJ file (limits.h)
 /// \return a valid mesh (mesh.h). Non-manifold, degenerate and non-finite parts are kept. A
 /// material that no MTL file defines has its name and default values
 /// \throws FileError if the file is missing, unreadable or malformed, names a missing vertex, or
 ///         has no triangle
-MeshFile read_mesh(const std::filesystem::path& file, Report& report);
+MeshFile read_mesh(const std::filesystem::path& file, Report& report = IgnoredReport());
 
 /// Writes OBJ (with MTL if there are materials) or binary PLY, by extension.
 ///

@@ -10,6 +10,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -93,6 +94,10 @@ struct ChangedModel {
 /// \throws InvalidInput if there are no triangles, or if none of a mesh file is left
 ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleChange& change);
 
+/// The same for some meshes of a document, given by their indices.
+ChangedModel change_triangles(GltfDocument& document, std::span<const std::size_t> meshes,
+                              NormalMode normals, const TriangleChange& change);
+
 // Models for maps: the meshes, objects and materials that a bake or a conversion of a map needs.
 
 /// object: each primitive of a document once, in object space. world: each instance in the scene.
@@ -133,7 +138,7 @@ struct MapModel {
 /// scene have tangents, the others get those of MikkTSpace, as in a renderer. Other files without
 /// normals get none.
 /// \throws InvalidInput if the document is not valid
-MapModel map_model(Model model, ModelSpace space, Report& report);
+MapModel map_model(Model model, ModelSpace space, Report& report = IgnoredReport());
 
 /// Joins the parts in their order to one mesh with their material ranges and the attributes that
 /// all of them have. Colors are kept if any part has them; the other parts are white, as in glTF.

@@ -17,6 +17,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/enum_names.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
@@ -91,7 +92,18 @@ struct NormalMapFormat {
 ///         codes, or both alternately with dithering
 /// \throws InvalidInput if the image is empty or not three float channels, or bits is not 8, 16 or
 ///         32
-Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Report& report);
+Image encode_normal_map(const ImageView& normals, const NormalMapFormat& format,
+                        Report& report = IgnoredReport());
+
+/// Writes the codes into the caller's memory.
+///
+/// \param map  three channels with the size of `normals` and the bits of `format`; must not overlap
+///         `normals`
+/// \param execution  threads, progress and cancellation; the codes do not depend on it
+/// \throws InvalidInput also if `map` has another format; Cancelled
+void encode_normal_map(const ImageView& normals, const NormalMapFormat& format,
+                       const MutableImageView& map, Report& report = IgnoredReport(),
+                       const ExecutionOptions& execution = {});
 
 /// Decodes a normal map to three float channels, unit, y up.
 ///
@@ -101,8 +113,18 @@ Image encode_normal_map(const Image& normals, const NormalMapFormat& format, Rep
 /// \param report  counts texels that decode to zero or to values that are not finite; they become
 ///         flat
 /// \throws InvalidInput if the image is empty or has fewer than three channels
-Image decode_normal_map(const Image& map, Green green, FlatCode flat, Report& report,
-                        FlatTexels texels = FlatTexels::as_coded);
+Image decode_normal_map(const ImageView& map, Green green, FlatCode flat,
+                        Report& report = IgnoredReport(), FlatTexels texels = FlatTexels::as_coded);
+
+/// Writes the normals into the caller's memory.
+///
+/// \param normals  three float channels with the size of `map`; must not overlap it
+/// \param execution  threads, progress and cancellation; the normals do not depend on it
+/// \throws InvalidInput also if `normals` has another format; Cancelled
+void decode_normal_map(const ImageView& map, Green green, FlatCode flat,
+                       const MutableImageView& normals, Report& report = IgnoredReport(),
+                       FlatTexels texels = FlatTexels::as_coded,
+                       const ExecutionOptions& execution = {});
 
 /// Finds the codes of x and y that stand for exactly flat in a map with FlatCode::half: the pair of
 /// codes around zero, 127 or 128 each, that at least three quarters of the nearly flat texels have.
@@ -111,14 +133,14 @@ Image decode_normal_map(const Image& map, Green green, FlatCode flat, Report& re
 ///
 /// \param x,y  channels
 /// \throws InvalidInput if the image is empty or has no such channels
-std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const Image& map, int x = 0,
+std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const ImageView& map, int x = 0,
                                                              int y = 1);
 
 /// Returns the code of zero that the metadata names, else FlatCode::half, as in glTF and engines.
 /// It cannot be found from the texels: flat ones contain 128 in both kinds of maps.
 ///
 /// \throws InvalidInput if the image is empty or has fewer than three channels
-FlatCode detect_flat_code(const Image& map,
+FlatCode detect_flat_code(const ImageView& map,
                           const std::map<std::string, std::string>& metadata = {});
 
 /// Returns text entries that describe a map: "relief:content", "relief:green" = "up" or "down",
@@ -149,7 +171,8 @@ inline constexpr AxisMapping same_axes = {{{0, false}, {1, false}, {2, false}}};
 ///
 /// Except for these, a mapping followed by its inverse restores every code; float samples are
 /// restored within 2^-24.
-void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat, Report& report);
+void map_axes(Image& map, const AxisMapping& mapping, FlatCode flat,
+              Report& report = IgnoredReport());
 
 /// The same for decoded normals, without rounding: three float channels.
 void map_normal_axes(Image& normals, const AxisMapping& mapping);
@@ -167,8 +190,8 @@ struct XyChannels {
 ///         becomes 0, and they are normalized), and texels that are not finite (read as flat)
 /// \return three float channels, unit, y up
 /// \throws InvalidInput if the image is empty or lacks one of the channels
-Image decode_xy_map(const Image& map, const XyChannels& channels, Green green, FlatCode flat,
-                    Report& report, FlatTexels texels = FlatTexels::as_coded);
+Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green green, FlatCode flat,
+                    Report& report = IgnoredReport(), FlatTexels texels = FlatTexels::as_coded);
 
 /// The lengths of the vectors of a map.
 struct LengthRange {
@@ -184,7 +207,7 @@ struct LengthRange {
 ///         the map's codes causes (sqrt(3) codes; 0.001 for float, because of half floats)
 /// \return statistics of finite lengths
 /// \throws InvalidInput if the image is empty or has fewer than three channels
-LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report);
+LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report = IgnoredReport());
 
 /// Multiplies the slopes of unit normals, in place, as if the heights had been multiplied.
 ///
@@ -193,7 +216,7 @@ LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report);
 /// \param report  counts normals whose z is not positive, which have no slope: their x and y are
 ///         multiplied anyway; and results without direction, which become flat
 /// \throws InvalidInput if the image is not three float channels, or the strength is out of range
-void scale_slopes(Image& normals, double strength, Report& report);
+void scale_slopes(Image& normals, double strength, Report& report = IgnoredReport());
 
 /// The maximum slope, 89.94 degrees; useful height maps have no steeper ones.
 inline constexpr double largest_slope = 1024.0;
@@ -204,10 +227,10 @@ inline constexpr double largest_slope = 1024.0;
 /// \param report  counts normals that are steeper than largest_slope or do not face outwards: their
 ///         slope keeps its direction and gets the maximum length (or 0 for (0,0,-1))
 /// \throws InvalidInput if the image is not three float channels
-Image slopes_from_normals(const Image& normals, Report& report);
+Image slopes_from_normals(const Image& normals, Report& report = IgnoredReport());
 
 /// Converts slopes to unit normals. \throws InvalidInput if the image is not two float channels
-Image normals_from_slopes(const Image& slopes, Report& report);
+Image normals_from_slopes(const Image& slopes, Report& report = IgnoredReport());
 
 // Blends a detail normal map into a base normal map. docs/normal-maps.md has the error of each
 // method.
@@ -248,7 +271,8 @@ inline constexpr NormalBlend all_normal_blends[] = {
 /// A flat detail does not change the base, up to rounding, except for `linear` and `overlay`. A
 /// flat base gives the detail, except for these two and `udn`, whose result is steeper than the
 /// detail.
-void blend_normals(Image& base, const Image& detail, NormalBlend method, Report& report);
+void blend_normals(Image& base, const Image& detail, NormalBlend method,
+                   Report& report = IgnoredReport());
 
 // Computes mip levels of normal maps, and converts the shortening of averaged normals to slope
 // variance and roughness.
@@ -267,7 +291,7 @@ std::vector<Image> normal_mip_levels(const Image& normals);
 /// \param report  counts vectors of length 0 (below 1e-6, because of rounding), such as those of a
 ///         peak whose sides cancel: they become flat
 /// \return their previous lengths, from 0 to 1: one float channel
-Image split_lengths(Image& means, Report& report);
+Image split_lengths(Image& means, Report& report = IgnoredReport());
 
 /// Returns the slope variance per axis (the mean of both axes) of unit normals whose mean has this
 /// length: (1 / length^2 - 1) / 2. It is exact if all normals have the same angle to the mean, and
@@ -338,7 +362,7 @@ struct ResizeOptions {
 ///
 /// At the same size and with one repetition, the result is bitwise equal to the input.
 Image resize_normals(const Image& normals, int width, int height, const ResizeOptions& options,
-                     Report& report);
+                     Report& report = IgnoredReport());
 
 /// Resizes any float samples, channel by channel, such as the alpha that belongs to normals.
 /// \throws InvalidInput as resize_normals() does. options.domain is ignored
@@ -348,6 +372,6 @@ Image resize_samples(const Image& image, int width, int height, const ResizeOpti
 /// `options.repeat` times across the base. The result is one period if the base's size is a
 /// multiple of it, else the whole area. It always wraps around; options.wrap is ignored.
 Image fitted_detail(const Image& detail, int base_width, int base_height,
-                    const ResizeOptions& options, Report& report);
+                    const ResizeOptions& options, Report& report = IgnoredReport());
 
 }  // namespace relief

@@ -144,8 +144,9 @@ struct NormalMapCheck {
 
 /// Checks a map for all conditions. The map is not changed.
 ///
-/// \param map  any number of channels and bits
-/// \param metadata  text entries of its file; "relief:green" and "relief:flat" are compared with
+/// \param map  any number of channels and bits; it is read in place, one channel at a time is
+/// copied \param metadata  text entries of its file; "relief:green" and "relief:flat" are compared
+/// with
 ///         the texels
 /// \param color_tag  the result of color_tag() for its file (image_file.h)
 /// \throws InvalidInput if the image is empty
@@ -153,7 +154,7 @@ struct NormalMapCheck {
 /// Conditions that require a surface (green, alpha) are checked only for tangent-space normals. The
 /// result is the same for any number of threads. The criterion for green is integrability, after
 /// [Frankot and Chellappa 1988]; here it is only measured.
-NormalMapCheck check_normal_map(const Image& map,
+NormalMapCheck check_normal_map(const ImageView& map,
                                 const std::map<std::string, std::string>& metadata = {},
                                 std::string_view color_tag = {});
 

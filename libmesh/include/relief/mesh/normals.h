@@ -9,6 +9,7 @@
 /// tests/mesh/geometry/curvature_test.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -19,6 +20,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/buffers.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
@@ -35,6 +37,16 @@ enum class NormalWeight {
     angle_edges,  ///< a |e1| |e2|.
     area_angle,   ///< a times its area.
 };
+
+template <>
+inline constexpr auto enum_names<NormalWeight> =
+    std::to_array<EnumName<NormalWeight>>({{"uniform", NormalWeight::uniform},
+                                           {"area", NormalWeight::area},
+                                           {"angle", NormalWeight::angle},
+                                           {"sine", NormalWeight::sine},
+                                           {"max", NormalWeight::max},
+                                           {"angle-edges", NormalWeight::angle_edges},
+                                           {"area-angle", NormalWeight::area_angle}});
 
 struct NormalOptions {
     NormalWeight weight = NormalWeight::angle;
@@ -67,20 +79,22 @@ struct NormalOptions {
 /// normals.
 std::vector<glm::vec3> vertex_normals(StridedSpan<const glm::vec3> positions,
                                       TriangleSpan triangles, const NormalOptions& options,
-                                      Report& report);
+                                      Report& report = IgnoredReport());
 
 /// Writes the normals into the caller's memory, for example into an interleaved vertex buffer.
 ///
 /// \param normals  one per position; must not overlap the inputs
-/// \param report  may be null
-/// \throws InvalidInput also if there are not as many normals as positions
+/// \param execution  threads, progress and cancellation; the normals do not depend on it
+/// \throws InvalidInput also if there are not as many normals as positions; Cancelled, and then the
+///         normals are undefined
 void vertex_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                     const NormalOptions& options, StridedSpan<glm::vec3> normals,
-                    Report* report = nullptr);
+                    Report& report = IgnoredReport(), const ExecutionOptions& execution = {});
 
 /// The same with a weighting and default options.
 std::vector<glm::vec3> vertex_normals(StridedSpan<const glm::vec3> positions,
-                                      TriangleSpan triangles, NormalWeight weight, Report& report);
+                                      TriangleSpan triangles, NormalWeight weight,
+                                      Report& report = IgnoredReport());
 
 /// Normals with automatic weighting.
 struct ChosenNormals {
@@ -100,9 +114,10 @@ struct ChosenNormals {
 /// \return as vertex_normals()
 /// \throws as vertex_normals()
 ChosenNormals chosen_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
-                             const NormalOptions& options, Report& report);
+                             const NormalOptions& options, Report& report = IgnoredReport());
 
-/// The edges across which a surface is not smooth. By default there are none.
+/// The edges across which a surface is not smooth. By default there are none. The groups are not
+/// copied: they must be valid until the call with these edges returns.
 struct HardEdges {
     /// In radians, 0 to pi: edges whose triangle normals differ by a larger angle are hard. A
     /// tolerance of 1e-5 makes edges exactly at the limit smooth, independent of rounding.
@@ -131,7 +146,7 @@ struct CornerNormals {
 /// as for vertex_normals().
 CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                              std::optional<NormalWeight> weight, const NormalOptions& options,
-                             const HardEdges& hard_edges, Report& report);
+                             const HardEdges& hard_edges, Report& report = IgnoredReport());
 
 /// Computes the unit normal of every triangle by the right-hand rule.
 ///
@@ -139,7 +154,7 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
 ///         corner
 /// \throws InvalidInput if a triangle names a vertex that does not exist
 std::vector<glm::vec3> triangle_normals(StridedSpan<const glm::vec3> positions,
-                                        TriangleSpan triangles, Report& report);
+                                        TriangleSpan triangles, Report& report = IgnoredReport());
 
 // Estimates reference normals of a mesh without a known formula: the normals of a smooth surface
 // that is fitted through its vertices.
@@ -220,6 +235,7 @@ InferredCreases inferred_creases(const Mesh& mesh);
 /// triangulation. Computed in double precision; the same bits for any order of triangles and number
 /// of threads. A million triangles take about 0.1 s on two threads.
 std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
-                                   std::span<const glm::uvec3> triangles, Report& report);
+                                   std::span<const glm::uvec3> triangles,
+                                   Report& report = IgnoredReport());
 
 }  // namespace relief

@@ -42,8 +42,8 @@ class FileError : public Error {
 // Reports the problems that library functions find in their input, and the fallbacks that they
 // use.
 //
-// Functions with fallbacks have a parameter of type Report& and add to it. Results are usable even
-// if the caller ignores the report.
+// Functions with fallbacks have a parameter of type Report& and add to it. It may be left out:
+// results are usable even if the caller ignores the report.
 
 /// A problem of one kind, over all affected elements.
 struct Finding {
@@ -81,6 +81,15 @@ class Report {
     Finding& finding(std::string_view kind, std::string_view element, std::string_view outcome);
 
     std::vector<Finding> findings_;
+};
+
+/// A report that nobody reads: the default argument of functions that add to a Report.
+class IgnoredReport {
+  public:
+    operator Report&() && { return report_; }  // NOLINT: implicit, as a default argument.
+
+  private:
+    Report report_;
 };
 
 /// Formats a finding as one line: "2 degenerate triangles (triangle 3, 17): do not contribute ...".

@@ -16,9 +16,10 @@
 #include "relief/export.h"
 #include "relief/mesh/buffers.h"
 #include "relief/mesh/enum_names.h"
-#include "relief/mesh/error_stats.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
 
@@ -88,7 +89,8 @@ constexpr bool computes_tangents(TangentMethod method) {
 std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> positions,
                                            StridedSpan<const glm::vec3> normals,
                                            StridedSpan<const glm::vec2> texcoords,
-                                           TriangleSpan triangles, Report& report);
+                                           TriangleSpan triangles,
+                                           Report& report = IgnoredReport());
 
 /// Writes one tangent per vertex into the caller's memory, for meshes whose vertices are already
 /// split where the texture is mirrored or has a seam.
@@ -97,12 +99,13 @@ std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> position
 ///         differ, it is the most frequent one (ties: the first by value), and the vertex is
 ///         reported: split such vertices by frames.h instead. Vertices without a triangle get a
 ///         tangent perpendicular to their normal with w = -1
-/// \param report  may be null
+/// \param execution  threads, progress and cancellation; the tangents do not depend on it
 /// \throws InvalidInput as mikktspace_tangents(), and if there are not as many tangents as
-///         positions
+///         positions; Cancelled
 void vertex_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const glm::vec3> normals,
                      StridedSpan<const glm::vec2> texcoords, TriangleSpan triangles,
-                     StridedSpan<glm::vec4> tangents, Report* report = nullptr);
+                     StridedSpan<glm::vec4> tangents, Report& report = IgnoredReport(),
+                     const ExecutionOptions& execution = {});
 
 /// Computes the same frames with weights by the area of a triangle instead of its angle at the
 /// corner: thin bevels, whose corners have angles like any other, then do not affect large adjacent
@@ -112,7 +115,8 @@ void vertex_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const g
 std::vector<glm::vec4> area_weighted_tangents(StridedSpan<const glm::vec3> positions,
                                               StridedSpan<const glm::vec3> normals,
                                               StridedSpan<const glm::vec2> texcoords,
-                                              TriangleSpan triangles, Report& report);
+                                              TriangleSpan triangles,
+                                              Report& report = IgnoredReport());
 
 /// Computes the same, but averages all triangles of the same handedness at a vertex, adjacent or
 /// not, weighted by the stretch of the texture along u: the sum of the gradients of position along
@@ -123,7 +127,7 @@ std::vector<glm::vec4> area_weighted_tangents(StridedSpan<const glm::vec3> posit
 std::vector<glm::vec4> lengyel_tangents(StridedSpan<const glm::vec3> positions,
                                         StridedSpan<const glm::vec3> normals,
                                         StridedSpan<const glm::vec2> texcoords,
-                                        TriangleSpan triangles, Report& report);
+                                        TriangleSpan triangles, Report& report = IgnoredReport());
 
 // Identifies the method with which the stored tangents of a mesh were computed.
 //

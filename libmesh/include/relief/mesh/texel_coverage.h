@@ -92,9 +92,8 @@ struct CoverageOptions {
     /// Samples along each side of a texel: 1, 2, 4, 8, 16 or 32. If there are several, "texel" in
     /// this header means sample, but findings count each texel once by its index.
     int samples_across = 1;
-    /// The triangles to rasterize, ascending, with unchanged indices. If absent, all. The span must
-    /// outlive the functions and objects that receive these options.
-    std::optional<std::span<const std::uint32_t>> only{};
+    /// The triangles to rasterize, ascending, with unchanged indices. If absent, all.
+    std::optional<std::vector<std::uint32_t>> only{};
 };
 
 /// Numbers of texels over the whole map.
@@ -145,7 +144,7 @@ Coverage cover_texels(
     std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
     const CoverageOptions& options,
     const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
-    Report& report);
+    Report& report = IgnoredReport());
 
 /// The same in several calls, for bands of rows in any order.
 class TexelRasterizer {
@@ -157,7 +156,7 @@ class TexelRasterizer {
     /// \param texcoords, triangles, options, report  as above; spans must outlive this object. The
     ///         report receives findings about triangles
     TexelRasterizer(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> triangles,
-                    const CoverageOptions& options, Report& report);
+                    const CoverageOptions& options, Report& report = IgnoredReport());
     ~TexelRasterizer();
     TexelRasterizer(const TexelRasterizer&) = delete;
     TexelRasterizer& operator=(const TexelRasterizer&) = delete;
@@ -167,7 +166,7 @@ class TexelRasterizer {
     Coverage cover(
         int first_row, int last_row,
         const std::function<void(int first_row, std::span<const CoveredTexel> texels)>& take,
-        Report& report) const;
+        Report& report = IgnoredReport()) const;
 
   private:
     struct Implementation;

@@ -21,6 +21,7 @@
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
+#include "require_memory.h"
 
 namespace relief {
 namespace {
@@ -187,6 +188,7 @@ PackedElements packed_elements(const GltfContents& contents, std::size_t accesso
             return elements;
         }
     }
+    require_memory(count, size);
     elements.copy.resize(count * size);
     for (std::size_t i = 0; !bytes.empty() && i < count; ++i) {
         check_cancelled(i);

@@ -597,6 +597,10 @@ void check_elements(const Json& root, const std::string& what, const Json& holde
     const std::size_t number = size_in(holder, "bufferView");
     const Json& view = root["bufferViews"][number];
     const std::size_t stride = size_in(view, "byteStride", element_size);
+    if (stride < element_size) {
+        fail_gltf("{} has elements of {} bytes, but bufferViews[{}].byteStride is {}", what,
+                  element_size, number, stride);
+    }
     const std::size_t view_length = size_in(view, "byteLength");
     const std::size_t length = count == 0 ? 0 : (count - 1) * stride + element_size;
     // Counts below 2^53 and strides below 2^8 cannot overflow 64 bits.
@@ -654,6 +658,16 @@ void check_primitives(const Json& root) {
             if (size_in(primitives[k], "mode", 4) > 6) {
                 fail_gltf("meshes[{}].primitives[{}].mode is {}, more than 6", i, k,
                           size_in(primitives[k], "mode"));
+            }
+            constexpr std::size_t unsigned_int = 5125;
+            const Json* position = find(primitives[k], "attributes", "POSITION");
+            if (position == nullptr) continue;
+            const Json& accessor = root["accessors"][position->get<std::size_t>()];
+            if (size_in(accessor, "componentType") == unsigned_int) {
+                fail_gltf(
+                    "meshes[{}].primitives[{}].attributes.POSITION has integers of 32 bits, "
+                    "which no extension permits",
+                    i, k);
             }
         }
     }

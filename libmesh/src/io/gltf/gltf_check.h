@@ -41,4 +41,9 @@ inline constexpr std::size_t max_zero_elements = std::size_t{1} << 24U;
 ///         that relief does not support
 void check_gltf(const Json& root);
 
+/// Reports values that have no meaning: colors and weights that are not finite or out of range,
+/// joints that a skin does not have, rotations without unit length, and integer positions and
+/// directions without KHR_mesh_quantization. Replaces wrong bounds of positions.
+void check_values(GltfContents& contents, Report& report);
+
 }  // namespace relief

@@ -22,6 +22,7 @@
 #include "io/gltf/gltf_check.h"
 #include "io/gltf/gltf_compression.h"
 #include "io/gltf/gltf_uri.h"
+#include "json_cursor.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
@@ -101,33 +102,11 @@ Container parse_container(std::string bytes, const std::filesystem::path& file, 
     return container;
 }
 
-/// Limits the depth of nesting, which recursion would turn into a stack overflow.
-void check_depth(std::string_view text, const std::filesystem::path& file) {
-    std::size_t depth = 0;
-    bool is_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (is_string) {
-            if (c == '\\') ++i;
-            if (c == '"') is_string = false;
-        } else if (c == '"') {
-            is_string = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > deepest_json) {
-                throw FileError(file,
-                                fmt::format("its JSON is nested deeper than {}", deepest_json));
-            }
-        } else if ((c == '}' || c == ']') && depth > 0) {
-            --depth;
-        }
-    }
-}
-
 Json parse_json(std::string_view text, const std::filesystem::path& file) {
     // GLB pads its JSON with blanks, and some writers with zeros.
     while (text.ends_with('\0'))
         text.remove_suffix(1);
-    check_depth(text, file);
+    require_json_depth(text, deepest_json);
     try {
         return Json::parse(text);
     } catch (const Json::exception& error) {
@@ -158,7 +137,7 @@ GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents
         }
         result.size = result.storage.size();
     } else {
-        const auto path = path_inside(contents.folder, uri->get_ref<const std::string&>());
+        const auto path = readable_path(contents.folder, uri->get_ref<const std::string&>());
         if (!path) {
             throw FileError(file, fmt::format("{}.uri '{}' lies outside the document's folder",
                                               name(), uri->get<std::string>()));
@@ -192,7 +171,7 @@ void check_images(const GltfContents& contents, Report& report) {
             }
             continue;
         }
-        const auto path = path_inside(contents.folder, uri);
+        const auto path = readable_path(contents.folder, uri);
         std::error_code ignored;
         if (!path && !uri.empty()) {
             report.add("image outside the document's folder", "image", i, "kept by name, not read");
@@ -236,6 +215,7 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
         }
         unpack_meshopt(contents);
         unpack_draco(contents, report);
+        check_values(contents, report);
         check_images(contents, report);
         count_position_uses(contents);
         return contents;

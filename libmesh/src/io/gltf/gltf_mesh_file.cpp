@@ -188,15 +188,20 @@ void DocumentBuilder::add_texture(Json& holder, const char* key, const char* tex
                                   const MtlMaterial& material, std::size_t index) {
     if (!image) return;
     std::error_code ignored;
-    if (report_ == nullptr || std::filesystem::is_regular_file(*image, ignored)) {
+    const bool may_read = material.may_read(*image);
+    if (may_read && (report_ == nullptr || std::filesystem::is_regular_file(*image, ignored))) {
         holder[key] = texture_info(*image);
         return;
     }
+    constexpr const char* outside = "lies outside of the model's folder";
+    if (report_ == nullptr) throw FileError(*image, outside);
     const bool exists = std::filesystem::exists(*image, ignored);
     report_->add(fmt::format("unreadable {} of material '{}'", texture, material.name), "material",
                  index,
                  fmt::format("left out: {}: {}", image->string(),
-                             exists ? "is not a file" : "no such file"));
+                             !may_read ? outside
+                             : exists  ? "is not a file"
+                                       : "no such file"));
 }
 
 void DocumentBuilder::add_material(const MtlMaterial& material, std::size_t index) {

@@ -20,6 +20,7 @@
 #include "io/gltf/gltf_edit.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
+#include "require_memory.h"
 
 namespace relief {
 namespace {
@@ -336,6 +337,7 @@ void unfilter(const PackedView& view, std::string& elements) {
 std::string unpacked_bytes(const PackedView& view, std::size_t length) {
     check_stride(view);
     check_length(view, length);
+    require_memory(length, 1);
     std::string elements(length, '\0');
     if (length == 0) return elements;
     if (!decode_view(view, elements)) fail_gltf("its data is damaged");

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "relief/mesh/limits.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -116,6 +117,17 @@ std::optional<std::filesystem::path> path_inside(const std::filesystem::path& fo
         return as_written;
     }
     return path;
+}
+
+std::optional<std::filesystem::path> readable_path(const std::filesystem::path& folder,
+                                                   std::string_view uri) {
+    if (auto path = path_inside(folder, uri)) return path;
+    const std::string name = percent_decoded(uri);
+    if (!input_limits().outside_files || name.empty() || has_scheme(uri) ||
+        name.find('\0') != name.npos) {
+        return std::nullopt;
+    }
+    return (folder / name).lexically_normal();
 }
 
 std::string uri_of(const std::string& file_name) {

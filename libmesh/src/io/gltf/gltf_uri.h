@@ -31,6 +31,11 @@ bool has_scheme(std::string_view uri);
 std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder,
                                                  std::string_view uri);
 
+/// The same for a file that is read: if the limits of the process permit it (relief/mesh/limits.h),
+/// the path may lead out of the folder.
+std::optional<std::filesystem::path> readable_path(const std::filesystem::path& folder,
+                                                   std::string_view uri);
+
 /// Encodes a file name as a URI: all bytes except letters, digits and -._~ are percent-encoded.
 std::string uri_of(const std::string& file_name);
 

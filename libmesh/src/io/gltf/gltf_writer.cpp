@@ -414,12 +414,15 @@ void append_word(std::string& bytes, std::uint32_t word) {
     bytes.append(reinterpret_cast<const char*>(&word), sizeof(word));
 }
 
-/// The path of an image that is a readable file in the folder; otherwise nullopt.
+/// The path of an image that is a readable file; otherwise nullopt.
+/// \param path_of  path_inside() or readable_path()
+template <typename PathOf>
 std::optional<std::filesystem::path> image_file(const Json& image,
-                                                const std::filesystem::path& folder) {
+                                                const std::filesystem::path& folder,
+                                                const PathOf& path_of) {
     const std::string uri = text_in(image, "uri");
     if (uri.empty() || is_data_uri(uri)) return std::nullopt;
-    const auto path = path_inside(folder, uri);
+    const auto path = path_of(folder, uri);
     std::error_code ignored;
     if (!path || !std::filesystem::is_regular_file(*path, ignored)) return std::nullopt;
     return path;
@@ -445,14 +448,14 @@ void embed_images(GltfLayout& layout, const GltfContents& contents,
     Json& images = layout.root["images"];
     for (std::size_t i = 0; i < images.size(); ++i) {
         Json& image = images[i];
-        check_inside_folder(image, i, contents, file);
         const std::string uri = text_in(image, "uri");
+        if (!readable_path(contents.folder, uri)) check_inside_folder(image, i, contents, file);
         std::string media_type = text_in(image, "mimeType");
         if (is_data_uri(uri)) {
             DataUri data = decode_data_uri(uri);
             if (media_type.empty()) media_type = data.media_type;
             storage.push_back(std::move(data.bytes));
-        } else if (const auto path = image_file(image, contents.folder)) {
+        } else if (const auto path = image_file(image, contents.folder, readable_path)) {
             storage.push_back(read_file(*path));
         } else {
             continue;
@@ -524,7 +527,7 @@ void copy_images(const GltfContents& contents, const std::filesystem::path& file
     const Json& images = array_in(contents.root, "images");
     for (std::size_t i = 0; i < images.size(); ++i) {
         check_inside_folder(images[i], i, contents, file);
-        const auto source = image_file(images[i], contents.folder);
+        const auto source = image_file(images[i], contents.folder, path_inside);
         if (!source || folder == contents.folder) continue;
         const std::string bytes = read_file(*source);
         const std::filesystem::path target = folder / source->lexically_relative(contents.folder);

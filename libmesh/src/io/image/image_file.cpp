@@ -96,14 +96,19 @@ std::optional<Image> image_of(const Header& header, std::optional<Samples> sampl
 
 }  // namespace
 
-std::optional<Image> read_directly(const ImageContainer& container) {
+std::optional<Image> read_directly(const ImageContainer& container,
+                                   const std::filesystem::path& name) {
     const std::string_view format = container.format;
     if (format == "png") {
-        if (const auto png = open_plain_png(container.stripped))
+        if (const auto png = open_plain_png(container.stripped)) {
+            require_image_fits({png->width, png->height, png->channels, png->bits(), {}}, name);
             return image_of(*png, decode(*png));
+        }
     } else if (format == "jpeg") {
-        if (const auto jpeg = open_plain_jpeg(container.stripped))
+        if (const auto jpeg = open_plain_jpeg(container.stripped)) {
+            require_image_fits({jpeg->width, jpeg->height, jpeg->channels, 8, {}}, name);
             return image_of(*jpeg, decode(*jpeg, container.stripped));
+        }
     }
     return std::nullopt;
 }
@@ -142,15 +147,15 @@ std::string read_bytes(const std::filesystem::path& file) {
 }
 
 Image read_encoded(std::span<const std::byte> bytes, const std::filesystem::path& name) {
-    ImageContainer container = examine_image(bytes, name);
-    if (std::optional<Image> image = read_directly(container)) return std::move(*image);
-    return read_all(*module_rows(std::move(container), bytes, name), name);
+    const ImageContainer container = examine_image(bytes, name);
+    if (std::optional<Image> image = read_directly(container, name)) return std::move(*image);
+    return read_all(*module_rows(container, bytes, name), name);
 }
 
 ImageInfo info_of(std::span<const std::byte> bytes, const std::filesystem::path& name) {
-    ImageContainer container = examine_image(bytes, name);
+    const ImageContainer container = examine_image(bytes, name);
     if (std::optional<ImageInfo> info = read_info_directly(container)) return std::move(*info);
-    return module_rows(std::move(container), bytes, name)->info();
+    return module_rows(container, bytes, name)->info();
 }
 
 /// Below this size, reading and inflating a PNG at once is faster.
@@ -203,13 +208,6 @@ namespace {
 
 constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n";
 
-std::uint32_t big32(const char* bytes) {
-    std::uint32_t value = 0;
-    for (int i = 0; i < 4; ++i)
-        value = value << 8 | static_cast<unsigned char>(bytes[i]);
-    return value;
-}
-
 /// Returns the color tag in a chunk; empty for most chunks.
 std::string tag_of(std::string_view type, std::istream& file) {
     if (type == "sRGB") return "sRGB";
@@ -218,7 +216,7 @@ std::string tag_of(std::string_view type, std::istream& file) {
     if (type != "gAMA") return "";
     std::array<char, 4> stored{};
     if (!file.read(stored.data(), stored.size())) return "";
-    const std::uint32_t gamma = big32(stored.data());
+    const std::uint32_t gamma = big32(std::as_bytes(std::span(stored)));
     return gamma == 100000 ? "" : fmt::format("gamma {:g}", gamma / 100000.0);
 }
 
@@ -237,7 +235,7 @@ std::string color_tag(const std::filesystem::path& file) {
         if (type == "IDAT" || type == "IEND") return "";
         const std::string tag = tag_of(type, stream);
         if (!tag.empty()) return tag;
-        next += 12 + static_cast<std::streamoff>(big32(head.data()));
+        next += 12 + static_cast<std::streamoff>(big32(std::as_bytes(std::span(head))));
     }
     return "";
 }

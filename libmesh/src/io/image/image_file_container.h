@@ -74,6 +74,8 @@ bool check_exr(std::span<const std::byte> start, std::uint64_t size,
 /// Decodes common PNG and JPEG files without the image module, which takes 0.2 s to load; nullopt
 /// for other kinds and damaged files, which are left to the module. The caller sets the color
 /// space.
-std::optional<Image> read_directly(const ImageContainer& container);
+/// \throws FileError if the image exceeds a limit of the process
+std::optional<Image> read_directly(const ImageContainer& container,
+                                   const std::filesystem::path& name);
 
 }  // namespace relief

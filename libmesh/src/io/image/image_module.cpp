@@ -10,11 +10,15 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <dlfcn.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -105,6 +109,8 @@ template <typename Result, typename Body>
 Result guarded(const ImageModuleFailure& failure, Result otherwise, Body body) {
     try {
         return body();
+    } catch (const std::bad_alloc&) {
+        fail(failure, "takes more memory than is permitted");
     } catch (const std::exception& error) {
         fail(failure, error.what());
     } catch (...) {
@@ -149,6 +155,41 @@ void hand_out_text(const OIIO::ImageSpec& spec, const ImageModuleText& text) {
     }
 }
 
+/// Reads a file by its descriptor, which OpenImageIO's own class cannot do without a name.
+class Descriptor final : public OIIO::Filesystem::IOProxy {
+  public:
+    explicit Descriptor(int descriptor) : IOProxy("", Read), descriptor_(descriptor) {
+        struct stat facts {};
+        if (::fstat(descriptor, &facts) == 0) size_ = static_cast<std::size_t>(facts.st_size);
+    }
+    [[nodiscard]] const char* proxytype() const override { return "file"; }
+    bool seek(std::int64_t offset) override {
+        m_pos = offset;
+        return true;
+    }
+    std::size_t read(void* bytes, std::size_t size) override {
+        const std::size_t got = pread(bytes, size, m_pos);
+        m_pos += static_cast<std::int64_t>(got);
+        return got;
+    }
+    std::size_t pread(void* bytes, std::size_t size, std::int64_t offset) override {
+        std::size_t done = 0;
+        while (done < size) {
+            const ssize_t got = ::pread(descriptor_, static_cast<char*>(bytes) + done, size - done,
+                                        offset + static_cast<std::int64_t>(done));
+            if (got < 0 && errno == EINTR) continue;
+            if (got <= 0) break;
+            done += static_cast<std::size_t>(got);
+        }
+        return done;
+    }
+    [[nodiscard]] std::size_t size() const override { return size_; }
+
+  private:
+    int descriptor_;
+    std::size_t size_ = 0;
+};
+
 /// Opens an image from a proxy.
 ImageModuleReader* open_proxy(const char* format, std::unique_ptr<OIIO::Filesystem::IOProxy> bytes,
                               ImageModuleHeader* header, ImageModuleText text,
@@ -183,13 +224,10 @@ ImageModuleReader* open(const char* format, const void* bytes, std::size_t size,
     });
 }
 
-ImageModuleReader* open_file(const char* format, const char* path, ImageModuleHeader* header,
-                             ImageModuleText text, ImageModuleFailure failure) {
-    return guarded<ImageModuleReader*>(failure, nullptr, [&]() -> ImageModuleReader* {
-        auto file =
-            std::make_unique<OIIO::Filesystem::IOFile>(path, OIIO::Filesystem::IOProxy::Read);
-        if (!file->opened()) return fail(failure, file->error()), nullptr;
-        return open_proxy(format, std::move(file), header, text, failure);
+ImageModuleReader* open_descriptor(const char* format, int descriptor, ImageModuleHeader* header,
+                                   ImageModuleText text, ImageModuleFailure failure) {
+    return guarded<ImageModuleReader*>(failure, nullptr, [&] {
+        return open_proxy(format, std::make_unique<Descriptor>(descriptor), header, text, failure);
     });
 }
 
@@ -306,8 +344,16 @@ void release(ImageModuleWriter* writer) {
     }
 }
 
-constexpr ImageModule table{
-    image_module_version, open, open_file, row_grain, read, close, create, write, finish, release};
+constexpr ImageModule table{image_module_version,
+                            open,
+                            open_descriptor,
+                            row_grain,
+                            read,
+                            close,
+                            create,
+                            write,
+                            finish,
+                            release};
 
 }  // namespace
 }  // namespace relief

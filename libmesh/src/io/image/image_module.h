@@ -14,7 +14,9 @@ namespace relief {
 
 /// The version of this interface; it changes with every change here. Modules of other versions are
 /// refused.
-inline constexpr std::uint32_t image_module_version = 3;
+inline constexpr std::uint32_t image_module_version = 4;
+
+inline constexpr const char* image_module_name = "relief_image.so";
 
 /// The name of the module's only exported function: `const ImageModule* relief_image_module()`.
 inline constexpr const char* image_module_entry = "relief_image_module";
@@ -66,9 +68,10 @@ struct ImageModule {
                                ImageModuleHeader* header, ImageModuleText text,
                                ImageModuleFailure failure);
 
-    /// Opens a file.
-    ImageModuleReader* (*open_file)(const char* format, const char* path, ImageModuleHeader* header,
-                                    ImageModuleText text, ImageModuleFailure failure);
+    /// Opens a file by its descriptor, which must stay open as long as the reader.
+    ImageModuleReader* (*open_descriptor)(const char* format, int descriptor,
+                                          ImageModuleHeader* header, ImageModuleText text,
+                                          ImageModuleFailure failure);
 
     /// The row granularity of read(): 1, or the height of a tile.
     std::int64_t (*row_grain)(ImageModuleReader* reader);

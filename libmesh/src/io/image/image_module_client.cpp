@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds and loads the image module, and implements the decoder and encoder of rows with it.
+// Finds and loads the image module, and implements the decoder and encoder of rows with it. The
+// encoder uses the module in this process; the decoder uses it in another one.
 #include "io/image/image_module_client.h"
 
 #include <dlfcn.h>
@@ -20,55 +21,64 @@
 #include <vector>
 
 #include "file_bytes.h"
+#include "io/image/decoder_process.h"
 #include "relief/mesh/report.h"
+#include "require_memory.h"
 
 namespace relief {
 namespace {
 
-constexpr const char* module_name = "relief_image.so";
+/// Returns the file of the shared library that contains this function. It is empty in a program.
+std::filesystem::path shared_library() {
+    Dl_info info;
+    link_map* map = nullptr;
+    const bool is_known = ::dladdr1(reinterpret_cast<void*>(&shared_library), &info,
+                                    reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0;
+    return is_known && map->l_name != nullptr ? map->l_name : "";
+}
 
 /// Returns the file of the shared library or program that contains this function. It is empty if it
 /// is unknown.
 std::filesystem::path this_library() {
-    Dl_info info;
-    link_map* map = nullptr;
-    if (::dladdr1(reinterpret_cast<void*>(&this_library), &info, reinterpret_cast<void**>(&map),
-                  RTLD_DL_LINKMAP) != 0 &&
-        map->l_name != nullptr && *map->l_name != '\0')
-        return map->l_name;
+    std::filesystem::path library = shared_library();
+    if (!library.empty()) return library;
     std::error_code error;
     return std::filesystem::read_symlink("/proc/self/exe", error);
 }
 
-/// Returns the files to try: in $RELIEF_MODULE_DIR, beside the shared library, and in the tree of
-/// the program. The last one has no folder, so the loader searches the run path of the program,
-/// which programs get that link the installed static library.
-std::vector<std::filesystem::path> candidates() {
-    std::vector<std::filesystem::path> places;
-    const char* named = std::getenv("RELIEF_MODULE_DIR");
-    if (named != nullptr && *named != '\0')
-        places.push_back(std::filesystem::path(named) / module_name);
-    if (const std::filesystem::path library = this_library(); !library.empty()) {
-        const std::filesystem::path folder = library.parent_path();
-        places.push_back(folder / "relief" / module_name);
-        places.push_back(folder.parent_path() / RELIEF_MODULE_DIRECTORY / module_name);
+/// Returns the run path of the shared library or program that contains this function, without the
+/// folders of the system.
+std::vector<std::filesystem::path> run_path() {
+    const std::filesystem::path library = shared_library();
+    void* const program =
+        ::dlopen(library.empty() ? nullptr : library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
+    Dl_serinfo size{};
+    if (program == nullptr || ::dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return {};
+    std::vector<std::max_align_t> memory(size.dls_size / sizeof(std::max_align_t) + 1);
+    auto* const info = reinterpret_cast<Dl_serinfo*>(memory.data());
+    std::vector<std::filesystem::path> folders;
+    if (::dlinfo(program, RTLD_DI_SERINFOSIZE, info) == 0 &&
+        ::dlinfo(program, RTLD_DI_SERINFO, info) == 0) {
+        const Dl_serpath* const paths = info->dls_serpath;
+        for (unsigned i = 0; i < info->dls_cnt; ++i) {
+            if ((paths[i].dls_flags & LA_SER_DEFAULT) == 0) folders.emplace_back(paths[i].dls_name);
+        }
     }
-    places.emplace_back(module_name);
-    return places;
+    ::dlclose(program);
+    return folders;
 }
 
 /// Loads the module from one folder. If this fails, the result is null and `reasons` gets the
 /// reason.
 const ImageModule* loaded_from(const std::filesystem::path& place, std::string& reasons) {
     std::error_code error;
-    if (place.has_parent_path() && !std::filesystem::exists(place, error)) {
+    if (!std::filesystem::exists(place, error)) {
         reasons += fmt::format("; not at {}", place.string());
         return nullptr;
     }
     void* library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
-        if (place.has_parent_path())
-            reasons += fmt::format("; {} does not load: {}", place.string(), ::dlerror());
+        reasons += fmt::format("; {} does not load: {}", place.string(), ::dlerror());
         return nullptr;
     }
     using Entry = const ImageModule* (*)();
@@ -82,35 +92,48 @@ const ImageModule* loaded_from(const std::filesystem::path& place, std::string& 
 
 }  // namespace
 
+std::vector<std::filesystem::path> image_module_folders() {
+    std::vector<std::filesystem::path> folders;
+    const char* named = std::getenv("RELIEF_MODULE_DIR");
+    if (named != nullptr && *named != '\0') folders.emplace_back(named);
+    if (const std::filesystem::path library = this_library(); !library.empty()) {
+        const std::filesystem::path folder = library.parent_path();
+        folders.push_back(folder / "relief");
+        folders.push_back(folder.parent_path() / RELIEF_MODULE_DIRECTORY);
+    }
+    for (std::filesystem::path& folder : run_path()) {
+        if (std::find(folders.begin(), folders.end(), folder) == folders.end())
+            folders.push_back(std::move(folder));
+    }
+    return folders;
+}
+
 const ImageModule& image_module(const std::filesystem::path& file) {
     static std::mutex mutex;
     static const ImageModule* module = nullptr;
     const std::lock_guard lock(mutex);
     if (module != nullptr) return *module;
     std::string reasons;
-    for (const std::filesystem::path& place : candidates()) {
-        module = loaded_from(place, reasons);
+    for (const std::filesystem::path& folder : image_module_folders()) {
+        module = loaded_from(folder / image_module_name, reasons);
         if (module != nullptr) return *module;
     }
     throw FileError(file, fmt::format("relief's image module {} was not found{}; set "
                                       "RELIEF_MODULE_DIR to its folder",
-                                      module_name, reasons));
+                                      image_module_name, reasons));
 }
 
 namespace {
 
 using Metadata = std::map<std::string, std::string>;
 
-/// Collects text entries of the file. OpenImageIO adds entries about the encoding, which are
-/// skipped. relief reads the text of PNG itself, and other formats have none worth keeping.
-ImageModuleText text_into(Metadata& metadata) {
-    return {&metadata, [](void* receiver, const char* key, const char* value) {
-                for (const std::string_view coding : {"compression", "textureformat", "wrapmodes",
-                                                      "ResolutionUnit", "planarconfig"}) {
-                    if (key == coding) return;
-                }
-                static_cast<Metadata*>(receiver)->emplace(key, value);
-            }};
+/// Returns the text entries of the file without those that OpenImageIO adds about the encoding.
+/// relief reads the text of PNG itself, and other formats have none worth keeping.
+Metadata text_of_file(Metadata text) {
+    for (const char* coding :
+         {"compression", "textureformat", "wrapmodes", "ResolutionUnit", "planarconfig"})
+        text.erase(coding);
+    return text;
 }
 
 /// TIFF has no custom entries: relief stores them in the description, one per line.
@@ -140,37 +163,23 @@ ImageInfo info_from(const ImageModuleHeader& header, const std::filesystem::path
             {}};
 }
 
-struct CloseReader {
-    const ImageModule* module = nullptr;
-    void operator()(ImageModuleReader* reader) const { module->close(reader); }
-};
-using Reader = std::unique_ptr<ImageModuleReader, CloseReader>;
-
 class ModuleSource final : public RowSource {
   public:
-    /// \param open  opens the reader and fills the header, the text and the reason
-    template <typename Open>
-    ModuleSource(const char* format, std::filesystem::path name, ImageContainer container,
-                 bool is_streamed, Open open)
-        : name_(std::move(name)), container_(std::move(container)), is_streamed_(is_streamed) {
-        const ImageModule& module = image_module(name_);
-        ImageModuleHeader header;
-        Metadata text;
-        std::string reason;
-        reader_ = {open(module, container_, &header, text_into(text), failure_into(reason)),
-                   CloseReader{&module}};
-        if (reader_ == nullptr) throw FileError(name_, reason);
-        info_ = info_from(header, name_);
-        check_streamed_size(info_, name_);
-        const std::string_view kind = format;
-        if (kind == "png") info_.metadata = container_.text;
-        if (kind == "openexr" || kind == "tiff") info_.metadata = text;
-        if (kind == "tiff") split_description(info_.metadata);
-        row_bytes_ = row_bytes_of(info_);
-        // Whole tiles, otherwise a multiple of 64 rows, which compressed formats decode together.
-        const auto tile = static_cast<std::size_t>(module.row_grain(reader_.get()));
-        grain_ = tile > 1 ? tile : 64;
-        band_rows_ = std::max<std::size_t>(module_bytes_per_band / row_bytes_ / grain_, 1) * grain_;
+    ModuleSource(const char* format, const RandomAccessFile& file)
+        : name_(file.path()),
+          is_streamed_(true),
+          decoded_(format, file.descriptor(), file.size(), name_) {
+        prepare(format, {});
+    }
+
+    ModuleSource(const ImageContainer& container, std::span<const std::byte> bytes,
+                 std::filesystem::path name)
+        : name_(std::move(name)),
+          is_streamed_(false),
+          // PNG and JPEG without chunks that do not define samples.
+          decoded_(container.format,
+                   container.stripped.empty() ? bytes : std::span(container.stripped), name_) {
+        prepare(container.format, container.text);
     }
 
     [[nodiscard]] const ImageInfo& info() const override { return info_; }
@@ -190,6 +199,19 @@ class ModuleSource final : public RowSource {
     void skip(std::size_t count) override { next_ += count; }
 
   private:
+    void prepare(std::string_view kind, const Metadata& png_text) {
+        info_ = info_from(decoded_.header(), name_);
+        check_streamed_size(info_, name_);
+        if (kind == "png") info_.metadata = png_text;
+        if (kind == "openexr" || kind == "tiff") info_.metadata = text_of_file(decoded_.text());
+        if (kind == "tiff") split_description(info_.metadata);
+        row_bytes_ = row_bytes_of(info_);
+        // Whole tiles, otherwise a multiple of 64 rows, which compressed formats decode together.
+        const auto tile = static_cast<std::size_t>(decoded_.row_grain());
+        grain_ = tile > 1 ? tile : 64;
+        band_rows_ = std::max<std::size_t>(module_bytes_per_band / row_bytes_ / grain_, 1) * grain_;
+    }
+
     std::size_t copy_from_band(std::byte* rows, std::size_t count) {
         const std::size_t taken = std::min(count, band_end_ - next_);
         std::memcpy(rows, band_.data() + (next_ - band_first_) * row_bytes_, taken * row_bytes_);
@@ -206,7 +228,8 @@ class ModuleSource final : public RowSource {
             decode_to(rows, first, end);
             return end - first;
         }
-        band_.resize(band_rows_ * row_bytes_);
+        require_memory_for(name_, row_bytes_, end - first);
+        band_.resize((end - first) * row_bytes_);
         decode_to(band_.data(), first, end);
         band_first_ = first;
         band_end_ = end;
@@ -214,20 +237,12 @@ class ModuleSource final : public RowSource {
     }
 
     void decode_to(std::byte* rows, std::size_t first, std::size_t end) {
-        std::string reason;
-        if (reader_.get_deleter().module->read(reader_.get(), static_cast<std::int64_t>(first),
-                                               static_cast<std::int64_t>(end), rows,
-                                               failure_into(reason))) {
-            return;
-        }
-        throw FileError(name_, fmt::format("rows {} to {} of {} are damaged: {}", first, end - 1,
-                                           info_.height, reason));
+        decoded_.read(first, end, std::span(rows, (end - first) * row_bytes_));
     }
 
     std::filesystem::path name_;
-    ImageContainer container_;
     bool is_streamed_;
-    Reader reader_;  ///< May refer to `container_`.
+    DecodedImage decoded_;
     ImageInfo info_;
     std::size_t row_bytes_ = 0;
     std::size_t grain_ = 1;
@@ -239,47 +254,31 @@ class ModuleSource final : public RowSource {
 };
 
 /// Reads as much of an EXR's beginning as its check needs.
-void check_exr_file(const std::filesystem::path& path) {
-    const RandomAccessFile file(path);
+void check_exr_file(const RandomAccessFile& file) {
     std::vector<std::byte> start;
     for (std::uint64_t size = 1 << 16;; size *= 4) {
         start.resize(static_cast<std::size_t>(std::min(size, file.size())));
         file.read(0, start);
-        if (check_exr(start, file.size(), path)) return;
+        if (check_exr(start, file.size(), file.path())) return;
     }
 }
 
 }  // namespace
 
 std::unique_ptr<RowSource> open_module_rows(const std::filesystem::path& file) {
+    const RandomAccessFile opened(file);
     std::array<std::byte, 16> start{};
-    {
-        const RandomAccessFile opened(file);
-        opened.read(0, std::span(start).first(std::min<std::size_t>(opened.size(), start.size())));
-    }
+    opened.read(0, std::span(start).first(std::min<std::size_t>(opened.size(), start.size())));
     const char* const format =
         format_by_signature({reinterpret_cast<const char*>(start.data()), start.size()});
-    if (std::string_view(format) == "openexr") check_exr_file(file);
-    return std::make_unique<ModuleSource>(
-        format, file, ImageContainer{}, true,
-        [&](const ImageModule& module, const ImageContainer&, ImageModuleHeader* header,
-            ImageModuleText text, ImageModuleFailure failure) {
-            return module.open_file(format, file.c_str(), header, text, failure);
-        });
+    if (std::string_view(format) == "openexr") check_exr_file(opened);
+    return std::make_unique<ModuleSource>(format, opened);
 }
 
-std::unique_ptr<RowSource> module_rows(ImageContainer container, std::span<const std::byte> bytes,
+std::unique_ptr<RowSource> module_rows(const ImageContainer& container,
+                                       std::span<const std::byte> bytes,
                                        const std::filesystem::path& name) {
-    const char* const format = container.format;
-    return std::make_unique<ModuleSource>(
-        format, name, std::move(container), false,
-        [&](const ImageModule& module, const ImageContainer& held, ImageModuleHeader* header,
-            ImageModuleText text, ImageModuleFailure failure) {
-            // PNG and JPEG without chunks that do not define samples.
-            const std::span<const std::byte> encoded =
-                held.stripped.empty() ? bytes : std::span(held.stripped);
-            return module.open(format, encoded.data(), encoded.size(), header, text, failure);
-        });
+    return std::make_unique<ModuleSource>(container, bytes, name);
 }
 
 Image read_by_module(const std::filesystem::path& file) {

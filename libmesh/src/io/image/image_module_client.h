@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/image/image_file_container.h"
 #include "io/image/image_module.h"
@@ -17,13 +18,19 @@
 
 namespace relief {
 
+/// Returns the folders of the image module and of the decoder program, in the order of the search:
+/// $RELIEF_MODULE_DIR, beside the shared library, in the tree of the program, and in the run path
+/// of the library or program, which a program gets that links the installed static library.
+std::vector<std::filesystem::path> image_module_folders();
+
 /// Returns the module, which is loaded by the first call and stays loaded until the program ends.
 ///
-/// It is searched in $RELIEF_MODULE_DIR, then relative to the library or the program. A
-/// failure is not remembered: the next call tries again.
+/// It is only used to write files; files are read in another process (decoder_process.h). A failure
+/// is not remembered: the next call tries again.
 ///
 /// \param file  the file that needs the module, for messages
-/// \throws FileError if the module is in neither folder, cannot be loaded, or has another version
+/// \throws FileError if the module is in none of the folders, cannot be loaded, or has another
+/// version
 const ImageModule& image_module(const std::filesystem::path& file);
 
 /// Bytes that are exchanged with the module in one call.
@@ -44,7 +51,8 @@ std::unique_ptr<RowSource> open_module_rows(const std::filesystem::path& file);
 
 /// Rows of an encoded image of any format in memory, which must outlive them.
 /// \param container  the result of examine_image()
-std::unique_ptr<RowSource> module_rows(ImageContainer container, std::span<const std::byte> bytes,
+std::unique_ptr<RowSource> module_rows(const ImageContainer& container,
+                                       std::span<const std::byte> bytes,
                                        const std::filesystem::path& name);
 
 /// Reads a whole image with the module only; the reference for the other decoders.

@@ -24,6 +24,7 @@
 #include "io/png/png_decoder.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
+#include "require_memory.h"
 
 namespace relief {
 namespace {
@@ -164,10 +165,24 @@ std::size_t row_bytes_of(const ImageInfo& info) {
            static_cast<std::size_t>(info.channels * info.bits / 8);
 }
 
+void require_image_fits(const ImageInfo& info, const std::filesystem::path& name) {
+    const auto width = static_cast<std::size_t>(info.width);
+    const auto height = static_cast<std::size_t>(info.height);
+    require_pixels(name, info.width, info.height);
+    if (width > max_image_samples / height / static_cast<std::size_t>(info.channels)) {
+        throw FileError(name, fmt::format("has {} x {} texels of {} channels; relief reads up to "
+                                          "{} samples",
+                                          width, height, info.channels, max_image_samples));
+    }
+    require_memory_for(name, row_bytes_of(info), height);
+}
+
 void check_streamed_size(const ImageInfo& info, const std::filesystem::path& name) {
     const std::size_t row =
         static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.channels);
     const auto height = static_cast<std::size_t>(info.height);
+    require_pixels(name, info.width, info.height);
+    require_memory_for(name, row_bytes_of(info));
     if (row <= max_image_samples && row <= max_streamed_samples / height) return;
     throw FileError(name,
                     fmt::format("has {} x {} texels of {} channels; relief reads up to {} "
@@ -177,13 +192,7 @@ void check_streamed_size(const ImageInfo& info, const std::filesystem::path& nam
 
 Image read_all(RowSource& rows, const std::filesystem::path& name) {
     const ImageInfo& info = rows.info();
-    const auto width = static_cast<std::size_t>(info.width);
-    const auto height = static_cast<std::size_t>(info.height);
-    if (width > max_image_samples / height / static_cast<std::size_t>(info.channels)) {
-        throw FileError(name, fmt::format("has {} x {} texels of {} channels; relief reads up to "
-                                          "{} samples",
-                                          width, height, info.channels, max_image_samples));
-    }
+    require_image_fits(info, name);
     Image image{info.width, info.height, info.channels, ColorSpace::data, {}};
     if (info.bits == 8)
         image.samples = all_samples<std::uint8_t>(rows);

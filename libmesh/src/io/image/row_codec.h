@@ -28,6 +28,10 @@ class RowSource {
 /// Bytes of a row of samples.
 std::size_t row_bytes_of(const ImageInfo& info);
 
+/// Checks the size of an image that is decoded as a whole. \throws FileError if it has more than
+/// max_image_samples or exceeds a limit of the process (relief/mesh/limits.h)
+void require_image_fits(const ImageInfo& info, const std::filesystem::path& name);
+
 /// \throws FileError if an image is too large to be read by rows
 void check_streamed_size(const ImageInfo& info, const std::filesystem::path& name);
 

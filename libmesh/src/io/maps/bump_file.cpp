@@ -23,9 +23,9 @@
 #include "image/texel_loops.h"
 #include "io/maps/height_bands.h"
 #include "parallel.h"
-#include "relief/mesh/kernel_choice.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief {
 namespace {

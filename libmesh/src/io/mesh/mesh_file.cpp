@@ -166,13 +166,86 @@ MeshFile read_with_local_origin(const std::filesystem::path& file, const MeshRea
     return best;
 }
 
+namespace {
+
+/// Returns the bytes of the first character of a text in UTF-8 [RFC 3629]; 0 if it is none.
+std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(0);
+    if (first < 0x80) return 1;
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    if (first < 0xC2 || first > 0xF4 || length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0U) != 0x80) return 0;
+    }
+    // No second form of a shorter character, no surrogate, nothing above U+10FFFF.
+    const unsigned second = byte(1);
+    const bool is_wrong = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+                          (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
+    return is_wrong ? 0 : length;
+}
+
+bool is_utf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
+/// Converts a name that is not UTF-8 from Latin-1, whose codes are those of Unicode.
+void convert_name(std::string& name, std::size_t number, Report& report) {
+    if (is_utf8(name)) return;
+    std::string converted;
+    for (const char letter : name) {
+        const auto code = static_cast<unsigned char>(letter);
+        if (code < 0x80) {
+            converted += letter;
+        } else {
+            converted += static_cast<char>(0xC0 | code >> 6);
+            converted += static_cast<char>(0x80 | (code & 0x3F));
+        }
+    }
+    name = std::move(converted);
+    report.add("name that is not UTF-8", "name", number, "is read as Latin-1");
+}
+
+/// Converts names to UTF-8, and replaces colors that are not finite.
+MeshFile with_valid_values(MeshFile file, Report& report) {
+    std::size_t number = 0;
+    convert_name(file.mesh.name, number++, report);
+    for (MtlMaterial& material : file.materials)
+        convert_name(material.name, number++, report);
+    for (std::string& object : file.objects)
+        convert_name(object, number++, report);
+    for (std::size_t i = 0; i < file.mesh.colors.size(); ++i) {
+        glm::vec4& color = file.mesh.colors[i];
+        const bool is_finite = std::isfinite(color.r) && std::isfinite(color.g) &&
+                               std::isfinite(color.b) && std::isfinite(color.a);
+        if (is_finite) continue;
+        color = glm::vec4(1.0F);
+        report.add("non-finite color", "vertex", i, "is white");
+    }
+    return file;
+}
+
+}  // namespace
+
+bool MtlMaterial::may_read(const std::filesystem::path& map) const {
+    return std::find(outside_maps.begin(), outside_maps.end(), map) == outside_maps.end();
+}
+
 MeshFile read_mesh(const std::filesystem::path& file, Report& report) {
     const std::string extension = lower_extension(file);
+    const auto read = [&](const MeshReader& reader) {
+        return with_valid_values(read_with_local_origin(file, reader, report), report);
+    };
     try {
-        if (extension == ".obj") return read_with_local_origin(file, read_obj, report);
-        if (extension == ".ply") return read_with_local_origin(file, read_ply, report);
-        if (extension == ".stl") return read_with_local_origin(file, read_stl, report);
-        if (extension == ".off") return read_with_local_origin(file, read_off, report);
+        if (extension == ".obj") return read(read_obj);
+        if (extension == ".ply") return read(read_ply);
+        if (extension == ".stl") return read(read_stl);
+        if (extension == ".off") return read(read_off);
     } catch (const std::bad_alloc&) {
         throw FileError(file, "needs more memory than there is");
     }

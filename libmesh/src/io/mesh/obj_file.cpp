@@ -20,6 +20,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -31,6 +32,7 @@
 #include "io/mesh/obj_parser.h"
 #include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"
+#include "relief/mesh/limits.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 
@@ -77,6 +79,25 @@ ObjObjects objects_of(const ObjStatements& statements) {
 std::filesystem::path resolved(const std::filesystem::path& folder, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     return (folder / name).lexically_normal();
+}
+
+/// Returns true if an OBJ file in a folder may name a file: it lies in the folder or below, or the
+/// limits of the process permit others. Symbolic links are followed wherever they lead.
+bool is_permitted(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    if (input_limits().outside_files) return true;
+    const auto whole = [](const std::filesystem::path& path) {
+        return std::filesystem::absolute(path.empty() ? "." : path).lexically_normal();
+    };
+    const std::filesystem::path relative = whole(file).lexically_relative(whole(folder));
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+/// Lists the maps of a material that an OBJ file in a folder may not name.
+void list_outside_maps(const std::filesystem::path& folder, MtlMaterial& material) {
+    for (const auto* map : {&material.diffuse_map, &material.specular_map, &material.emission_map,
+                            &material.opacity_map, &material.normal_map, &material.bump_map}) {
+        if (*map && !is_permitted(folder, **map)) material.outside_maps.push_back(**map);
+    }
 }
 
 /// Returns the files of one mtllib statement: the whole text if such a file exists, otherwise each
@@ -166,14 +187,19 @@ std::string with_default_illumination(std::string mtl) {
 /// \param names      as after usemtl
 /// \param libraries  as after mtllib: a file name, which may contain blanks, or several names;
 ///         relative to the folder of `file`
-/// \param report     counts MTL files that are missing or unreadable, and materials that none of
-///         them defines: these have only a name and default values
+/// \param report     counts MTL files that are missing, unreadable or outside of the folder, and
+///         materials that none of them defines: these have only a name and default values
 std::vector<MtlMaterial> read_materials(const std::filesystem::path& file,
                                         const std::vector<std::string>& names,
                                         const std::vector<std::string>& libraries, Report& report) {
     std::map<std::string, MtlMaterial> known;
     for (std::size_t i = 0; i < libraries.size(); ++i) {
         for (const auto& library : library_files(file.parent_path(), libraries[i])) {
+            if (!is_permitted(file.parent_path(), library)) {
+                report.add("MTL file outside the model's folder", "mtllib statement", i,
+                           "left out");
+                continue;
+            }
             try {
                 std::istringstream text(with_default_illumination(read_file(library)));
                 std::map<std::string, int> numbers;
@@ -193,6 +219,7 @@ std::vector<MtlMaterial> read_materials(const std::filesystem::path& file,
         const auto found = known.find(names[i]);
         if (found != known.end()) {
             result.push_back(found->second);
+            list_outside_maps(file.parent_path(), result.back());
             continue;
         }
         report.add("unknown material", "material", i, "has its name and default values");
@@ -450,12 +477,17 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
     const Mesh& mesh = contents.mesh;
     const std::vector<std::string> names = material_names(contents.materials);
     std::string text;
+    // Both files are complete before either is renamed.
+    FileReplacement obj(file);
+    std::optional<FileReplacement> materials;
     if (!names.empty()) {
         std::filesystem::path mtl_file = file;
         mtl_file.replace_extension(".mtl");
         const auto folder = std::filesystem::absolute(file).lexically_normal().parent_path();
         const std::string mtl = mtl_text(contents, names, folder);
-        replace_file(mtl_file, std::as_bytes(std::span(mtl)));
+        materials.emplace(mtl_file);
+        write_all(*materials, std::as_bytes(std::span(mtl)));
+        materials->complete();
         text += fmt::format("mtllib {}\n", mtl_file.filename().string());
     }
     if (!mesh.name.empty()) {
@@ -469,7 +501,10 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
         if (range.material) text += fmt::format("usemtl {}\n", names[*range.material]);
         add_faces(mesh, range, text);
     }
-    replace_file(file, std::as_bytes(std::span(text)));
+    write_all(obj, std::as_bytes(std::span(text)));
+    obj.complete();
+    if (materials) materials->commit();
+    obj.commit();
 }
 
 }  // namespace relief

@@ -135,6 +135,10 @@ MeshFile read_off(const std::filesystem::path& file, const glm::dvec3& origin, R
         stage.at(i);
         read_face(text, polygons);
     }
+    if (const std::string_view word = text.word(); !word.empty()) {
+        report.add("text behind the last face", "byte",
+                   static_cast<std::size_t>(word.data() - bytes.data()), "left out");
+    }
     result.mesh.name = file.stem().string();
     add_triangles(result.mesh, polygons, file, report);
     return result;

@@ -56,6 +56,7 @@ struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
     std::vector<PlyElement> elements;
     std::size_t data_begin = 0;  ///< Offset of the first byte after the header.
+    std::size_t file_size = 0;
 };
 
 PlyType type_named(std::string_view name, const TextScanner& text) {
@@ -164,6 +165,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::filesystem::path& 
     if (!has_format) throw FileError(file, "the header names no format");
     text.skip_line();
     header.data_begin = bytes.size() - text.rest().size();
+    header.file_size = bytes.size();
     return header;
 }
 
@@ -182,6 +184,8 @@ class PlyTextValues {
         text_.skip_line();
         return is_whole;
     }
+    /// The data that has not been read.
+    [[nodiscard]] std::string_view rest() const { return text_.rest(); }
     /// Upper bound of the number of remaining values, to validate counts.
     [[nodiscard]] std::uint64_t max_remaining(PlyType) const { return text_.rest().size() / 2 + 1; }
 
@@ -218,6 +222,7 @@ class PlyBinaryValues {
         return 0.0;
     }
     bool end_element() { return true; }
+    [[nodiscard]] std::string_view rest() const { return data_; }
     [[nodiscard]] std::uint64_t max_remaining(PlyType type) const {
         return data_.size() / size_of(type);
     }
@@ -330,6 +335,11 @@ class PlyElements {
             } else {
                 skip(element);
             }
+        }
+        constexpr std::string_view padding("\0 \t\r\n", 5);
+        if (values_.rest().find_first_not_of(padding) != std::string_view::npos) {
+            report_.add("data behind the last element", "byte",
+                        header.file_size - values_.rest().size(), "left out");
         }
         return std::move(data_);
     }

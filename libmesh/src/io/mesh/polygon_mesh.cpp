@@ -13,9 +13,11 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <queue>
 
 #include "geometry/weld.h"
 #include "large_memory.h"
@@ -74,6 +76,130 @@ bool quad_is_cut_from_first_to_third(std::span<const glm::vec3> positions,
              squared_distance(positions[0], positions[2]));
 }
 
+/// Returns twice the signed area of a triangle: positive if it is counter-clockwise.
+double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    const glm::dvec2 ab = b - a;
+    const glm::dvec2 ac = c - a;
+    return ab.x * ac.y - ab.y * ac.x;
+}
+
+/// Finds points in triangles: a tree of boxes whose points can be removed.
+class PointTree {
+  public:
+    using Index = std::uint32_t;
+    using Triangle = std::array<glm::dvec2, 3>;
+
+    /// \param points  must outlive the tree
+    PointTree(std::span<const glm::dvec2> points, std::vector<Index> chosen)
+        : points_(points), order_(std::move(chosen)), leaf_of_(points.size(), none) {
+        if (!order_.empty()) add_node(none, 0, order_.size());
+    }
+
+    /// Removes a point, if the tree has it.
+    void remove(Index point) {
+        if (leaf_of_[point] == none) return;
+        for (Index node = leaf_of_[point]; node != none; node = nodes_[node].parent)
+            --nodes_[node].left;
+        leaf_of_[point] = none;
+    }
+
+    /// Returns true if a point lies in a counter-clockwise triangle or on its border. Points equal
+    /// to its corners do not count.
+    /// \param steps  is increased by the number of boxes that were visited
+    bool has_point_in(const Triangle& triangle, std::size_t& steps) {
+        open_.clear();
+        if (!nodes_.empty()) open_.push_back(0);
+        while (!open_.empty()) {
+            const Node& node = nodes_[open_.back()];
+            open_.pop_back();
+            ++steps;
+            if (node.left == 0 || is_outside(node, triangle)) continue;
+            if (node.child != none) {
+                open_.push_back(node.child);
+                open_.push_back(node.other_child);
+                continue;
+            }
+            for (std::size_t i = node.begin; i < node.end; ++i) {
+                if (leaf_of_[order_[i]] != none && is_inside(points_[order_[i]], triangle))
+                    return true;
+            }
+        }
+        return false;
+    }
+
+  private:
+    static constexpr Index none = std::numeric_limits<Index>::max();
+    static constexpr std::size_t points_per_leaf = 8;
+
+    struct Node {
+        glm::dvec2 min{0.0}, max{0.0};
+        std::size_t begin = 0, end = 0;  ///< The node's part of order_.
+        std::size_t left = 0;            ///< Points that are not removed.
+        Index parent = none;
+        Index child = none, other_child = none;  ///< None in leaves.
+    };
+
+    /// The depth of recursion is the logarithm of the number of points.
+    Index add_node(Index parent, std::size_t begin, std::size_t end) {
+        const auto number = static_cast<Index>(nodes_.size());
+        Node node;
+        node.min = node.max = points_[order_[begin]];
+        for (std::size_t i = begin; i < end; ++i) {
+            node.min = glm::min(node.min, points_[order_[i]]);
+            node.max = glm::max(node.max, points_[order_[i]]);
+        }
+        node.begin = begin;
+        node.end = end;
+        node.left = end - begin;
+        node.parent = parent;
+        nodes_.push_back(node);
+        if (end - begin <= points_per_leaf) {
+            for (std::size_t i = begin; i < end; ++i)
+                leaf_of_[order_[i]] = number;
+            return number;
+        }
+        const int axis = node.max.x - node.min.x >= node.max.y - node.min.y ? 0 : 1;
+        const std::size_t middle = begin + (end - begin) / 2;
+        const auto at = [&](std::size_t i) {
+            return order_.begin() + static_cast<std::ptrdiff_t>(i);
+        };
+        std::nth_element(at(begin), at(middle), at(end), [&](Index a, Index b) {
+            return points_[a][axis] != points_[b][axis] ? points_[a][axis] < points_[b][axis]
+                                                        : a < b;
+        });
+        const Index child = add_node(number, begin, middle);
+        const Index other_child = add_node(number, middle, end);
+        nodes_[number].child = child;
+        nodes_[number].other_child = other_child;
+        return number;
+    }
+
+    /// Returns true if no point of a box is inside. The corner of the box that lies farthest to the
+    /// inside of an edge bounds all points, because rounding keeps the order of numbers.
+    static bool is_outside(const Node& node, const Triangle& triangle) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec2& a = triangle[i];
+            const glm::dvec2& b = triangle[(i + 1) % 3];
+            const glm::dvec2 inmost(b.y - a.y > 0.0 ? node.min.x : node.max.x,
+                                    b.x - a.x > 0.0 ? node.max.y : node.min.y);
+            if (turn(a, b, inmost) < 0.0) return true;
+        }
+        return false;
+    }
+
+    static bool is_inside(const glm::dvec2& p, const Triangle& triangle) {
+        const auto& [a, b, c] = triangle;
+        return p != a && p != b && p != c && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 &&
+               turn(c, a, p) >= 0.0;
+    }
+
+    std::span<const glm::dvec2> points_;
+    std::vector<Index> order_;    ///< The points, by leaf.
+    std::vector<Index> leaf_of_;  ///< None for points that are not in the tree.
+    std::vector<Node> nodes_;
+    std::vector<Index> open_;
+};
+
 /// Ear clipping of one polygon in its plane.
 class EarClipper {
   public:
@@ -83,28 +209,28 @@ class EarClipper {
     bool clip(std::vector<glm::uvec3>& triangles);
 
   private:
-    using Corner = std::uint32_t;
+    using Corner = PointTree::Index;
     enum class Kind { ear, flat, other };  ///< Flat corners are cut only if there is no ear.
+    /// The corners of a kind, and some that were of it, with the lowest first.
+    using LowestFirst = std::priority_queue<Corner, std::vector<Corner>, std::greater<>>;
 
-    double turn(Corner a, Corner b, Corner c) const {
-        const glm::dvec2 ab = points_[b] - points_[a];
-        const glm::dvec2 ac = points_[c] - points_[a];
-        return ab.x * ac.y - ab.y * ac.x;
-    }
-    bool same_point(Corner a, Corner b) const { return points_[a] == points_[b]; }
     bool blocked(Corner a, Corner b, Corner c);
     Kind kind_of(Corner corner);
+    void update(Corner corner);
+    std::optional<Corner> first_of(Kind kind, LowestFirst& corners);
     std::optional<Corner> next_to_cut();
     void remove(Corner corner);
 
-    static constexpr std::size_t max_tests = 1'000'000'000;
+    static constexpr std::size_t max_tests = 200'000'000;
 
     std::vector<glm::dvec2> points_;  ///< Projected so that the polygon is counter-clockwise.
     std::vector<Corner> previous_, next_;
     std::vector<Kind> kinds_;
-    std::vector<Corner>
-        by_x_;  ///< Corners that are not convex at first, sorted by x: only they can block an ear.
+    LowestFirst ears_, flats_;
+    /// Corners that are not convex at first: only they can block an ear.
+    std::optional<PointTree> blockers_;
     std::vector<bool> removed_;
+    Corner lowest_ = 0;  ///< The lowest remaining corner.
     std::size_t tests_ = 0;
     bool has_plane_ = false;
 };
@@ -130,37 +256,27 @@ EarClipper::EarClipper(std::span<const glm::vec3> positions) {
     removed_.assign(count, false);
     kinds_.assign(count, Kind::other);
     if (!has_plane_) return;
+    std::vector<Corner> not_convex;
     for (Corner i = 0; i < count; ++i) {
-        if (!(turn(previous_[i], i, next_[i]) > 0.0)) by_x_.push_back(i);
+        if (!(turn(points_[previous_[i]], points_[i], points_[next_[i]]) > 0.0))
+            not_convex.push_back(i);
     }
-    std::sort(by_x_.begin(), by_x_.end(), [&](Corner a, Corner b) {
-        return points_[a].x != points_[b].x ? points_[a].x < points_[b].x : a < b;
-    });
+    blockers_.emplace(points_, std::move(not_convex));
     for (Corner i = 0; i < count; ++i)
-        kinds_[i] = kind_of(i);
+        update(i);
 }
 
 /// Returns true if another corner lies in the triangle or on its border. Points equal to its
 /// corners do not count.
 bool EarClipper::blocked(Corner a, Corner b, Corner c) {
-    const double left = std::min({points_[a].x, points_[b].x, points_[c].x});
-    const double right = std::max({points_[a].x, points_[b].x, points_[c].x});
-    const auto begin = std::lower_bound(by_x_.begin(), by_x_.end(), left,
-                                        [&](Corner i, double x) { return points_[i].x < x; });
     if (tests_ >= max_tests) return true;
-    for (auto it = begin; it != by_x_.end() && points_[*it].x <= right; ++it) {
-        ++tests_;
-        const Corner p = *it;
-        if (removed_[p] || same_point(p, a) || same_point(p, b) || same_point(p, c)) continue;
-        if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return true;
-    }
-    return false;
+    return blockers_->has_point_in({points_[a], points_[b], points_[c]}, tests_);
 }
 
 EarClipper::Kind EarClipper::kind_of(Corner corner) {
     const Corner a = previous_[corner];
     const Corner c = next_[corner];
-    const double area = turn(a, corner, c);
+    const double area = turn(points_[a], points_[corner], points_[c]);
     if (area > 0.0) return blocked(a, corner, c) ? Kind::other : Kind::ear;
     // A spike that reverses direction is not flat: cutting it would uncover the area that it
     // covers.
@@ -168,31 +284,50 @@ EarClipper::Kind EarClipper::kind_of(Corner corner) {
     return area == 0.0 && goes_on ? Kind::flat : Kind::other;
 }
 
+void EarClipper::update(Corner corner) {
+    const Kind before = kinds_[corner];
+    kinds_[corner] = kind_of(corner);
+    if (kinds_[corner] == before) return;
+    if (kinds_[corner] == Kind::ear) ears_.push(corner);
+    if (kinds_[corner] == Kind::flat) flats_.push(corner);
+}
+
+/// Returns the first corner of a kind after the lowest remaining one, which is the last itself.
+std::optional<EarClipper::Corner> EarClipper::first_of(Kind kind, LowestFirst& corners) {
+    bool has_lowest = false;
+    std::optional<Corner> first;
+    while (!corners.empty() && !first) {
+        const Corner corner = corners.top();
+        const bool is_of_kind = !removed_[corner] && kinds_[corner] == kind;
+        if (is_of_kind && corner != lowest_) {
+            first = corner;
+        } else {
+            has_lowest |= is_of_kind;
+            corners.pop();
+        }
+    }
+    if (has_lowest) corners.push(lowest_);
+    return first || !has_lowest ? first : lowest_;
+}
+
 /// The first ear after the lowest remaining corner, otherwise the first flat corner, otherwise
 /// none.
 std::optional<EarClipper::Corner> EarClipper::next_to_cut() {
-    std::optional<Corner> flat;
-    Corner start = 0;
-    while (removed_[start])
-        ++start;
-    Corner corner = start;
-    do {
-        ++tests_;
-        corner = next_[corner];
-        if (kinds_[corner] == Kind::ear) return corner;
-        if (kinds_[corner] == Kind::flat && !flat) flat = corner;
-    } while (corner != start);
-    return flat;
+    while (removed_[lowest_])
+        ++lowest_;
+    const std::optional<Corner> ear = first_of(Kind::ear, ears_);
+    return ear ? ear : first_of(Kind::flat, flats_);
 }
 
 void EarClipper::remove(Corner corner) {
     removed_[corner] = true;
+    blockers_->remove(corner);
     const Corner before = previous_[corner];
     const Corner after = next_[corner];
     next_[before] = after;
     previous_[after] = before;
-    kinds_[before] = kind_of(before);
-    kinds_[after] = kind_of(after);
+    update(before);
+    update(after);
 }
 
 bool EarClipper::clip(std::vector<glm::uvec3>& triangles) {

@@ -60,14 +60,16 @@ Mesh read_binary(std::string_view bytes, std::size_t count, const glm::dvec3& or
     return mesh;
 }
 
-Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file,
-                const glm::dvec3& origin) {
+Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file, const glm::dvec3& origin,
+                Report& report) {
     TextScanner text(bytes, file);
     CornerWelder welder(bytes.size() / 256);
     Mesh mesh;
     std::vector<std::uint32_t> corners;
     ProgressStage stage("parsing", bytes.size());
     std::size_t rest = bytes.size();
+    bool is_in_facet = false;
+    bool is_in_solid = true;
     for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
         if (rest - text.rest().size() > 0x100000)
             stage.advance(rest - std::exchange(rest, text.rest().size()));
@@ -83,13 +85,19 @@ Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file,
             for (int i = 0; i < 3; ++i)
                 text.word();  // Some tools write words here: the normal is ignored.
         } else if (equal_ignoring_case(word, "solid") || equal_ignoring_case(word, "endsolid")) {
+            is_in_solid = equal_ignoring_case(word, "solid");
             text.skip_line();
-        } else if (!equal_ignoring_case(word, "facet") && !equal_ignoring_case(word, "outer") &&
-                   !equal_ignoring_case(word, "loop") && !equal_ignoring_case(word, "endfacet")) {
+        } else if (equal_ignoring_case(word, "facet") || equal_ignoring_case(word, "endfacet")) {
+            is_in_facet = equal_ignoring_case(word, "facet");
+        } else if (!equal_ignoring_case(word, "outer") && !equal_ignoring_case(word, "loop")) {
             text.fail(fmt::format("{} has no meaning in STL", quoted(word)));
         }
     }
-    if (!corners.empty()) text.fail("the file ends inside a facet");
+    if (!corners.empty() || is_in_facet) text.fail("the file ends inside a facet");
+    if (is_in_solid) {
+        report.add("solid without an end", "triangle", mesh.triangles.size(),
+                   "has the triangles before the end of the file");
+    }
     mesh.positions = std::move(welder.positions);
     return mesh;
 }
@@ -116,7 +124,7 @@ MeshFile read_stl(const std::filesystem::path& file, const glm::dvec3& origin, R
     if (bytes.size() >= header_size && binary_size == bytes.size()) {
         result.mesh = read_binary(bytes, count, origin);
     } else if (looks_like_ascii(bytes, file)) {
-        result.mesh = read_ascii(bytes, file, origin);
+        result.mesh = read_ascii(bytes, file, origin, report);
     } else if (bytes.size() >= header_size && binary_size < bytes.size()) {
         report.add("bytes behind the last triangle", "byte", binary_size, "left out");
         result.mesh = read_binary(bytes, count, origin);

@@ -31,12 +31,18 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
 /// Converts materials by the rules of GltfDocument::from_mesh().
 MapAppearance appearance_of(const std::vector<MtlMaterial>& materials) {
     MapAppearance appearance;
-    const auto texture = [&](const std::optional<std::filesystem::path>& file) {
+    const auto texture = [&](const MtlMaterial& material,
+                             const std::optional<std::filesystem::path>& file) {
         std::optional<GltfTexture> result;
         if (file) {
             result.emplace();
             result->image = appearance.images.size();
-            appearance.images.push_back({file->filename().string(), *file});
+            GltfImage image{file->filename().string(), *file};
+            if (!material.may_read(*file)) {
+                image.source = std::vector<std::byte>();
+                image.fault = file->string() + " lies outside of the model's folder";
+            }
+            appearance.images.push_back(std::move(image));
         }
         return result;
     };
@@ -44,8 +50,8 @@ MapAppearance appearance_of(const std::vector<MtlMaterial>& materials) {
         GltfMaterial converted;
         converted.name = material.name;
         converted.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), 1.0F);
-        converted.base_color_texture = texture(material.diffuse_map);
-        converted.normal_texture = texture(material.normal_map);
+        converted.base_color_texture = texture(material, material.diffuse_map);
+        converted.normal_texture = texture(material, material.normal_map);
         appearance.materials.push_back(std::move(converted));
     }
     return appearance;

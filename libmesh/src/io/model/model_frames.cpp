@@ -137,7 +137,7 @@ std::vector<FramedPart> compute_frames(Model& model, FrameOptions options,
         options.if_missing = NormalMode::flat;
         return frame_document(*document, options, texcoord_set);
     }
-    options.if_missing = NormalMode::angle;
+    options.if_missing = NormalWeight::angle;
     Mesh& mesh = std::get<MeshFile>(model).mesh;
     FramedPart part;
     part.texcoords.reason = texcoord_set ? "requested" : "the first";

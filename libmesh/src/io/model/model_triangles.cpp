@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cassert>
+#include <map>
 #include <utility>
 
 #include "relief/mesh/frames.h"
@@ -140,13 +142,12 @@ FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, Norm
     return part;
 }
 
-/// Returns the primitives of a document by mesh.
-std::vector<std::vector<GltfPrimitiveId>> primitives_by_mesh(const GltfDocument& document) {
-    std::vector<std::vector<GltfPrimitiveId>> meshes;
-    for (const GltfPrimitiveId id : document.triangle_primitives()) {
-        if (meshes.empty() || meshes.back().front().mesh != id.mesh) meshes.emplace_back();
-        meshes.back().push_back(id);
-    }
+/// Returns the primitives of a document by mesh, in its order.
+std::map<std::size_t, std::vector<GltfPrimitiveId>> primitives_by_mesh(
+    const GltfDocument& document) {
+    std::map<std::size_t, std::vector<GltfPrimitiveId>> meshes;
+    for (const GltfPrimitiveId id : document.triangle_primitives())
+        meshes[id.mesh].push_back(id);
     return meshes;
 }
 
@@ -173,11 +174,13 @@ void change_joined(GltfDocument& document, const JoinedPrimitives& joined,
     done.reports.push_back({document.describe(joined.ids().front()), std::move(report)});
 }
 
-void change_document(GltfDocument& document, NormalMode normals, const TriangleChange& change,
-                     ChangedModel& done) {
+ChangedModel change_document(GltfDocument& document,
+                             const std::map<std::size_t, std::vector<GltfPrimitiveId>>& primitives,
+                             NormalMode normals, const TriangleChange& change) {
+    ChangedModel done;
     std::vector<JoinedPrimitives> meshes;
-    for (auto& ids : primitives_by_mesh(document))
-        meshes.emplace_back(document, std::move(ids));
+    for (const auto& [mesh, ids] : primitives)
+        meshes.emplace_back(document, ids);
     if (meshes.empty()) throw InvalidInput("holds no triangles");
     for (const JoinedPrimitives& joined : meshes) {
         done.triangles_read += joined.mesh().triangles.size();
@@ -185,6 +188,7 @@ void change_document(GltfDocument& document, NormalMode normals, const TriangleC
     }
     for (const JoinedPrimitives& joined : meshes)
         change_joined(document, joined, change, normals, done.triangles_read, done);
+    return done;
 }
 
 void change_mesh(Mesh& mesh, const TriangleChange& change, ChangedModel& done) {
@@ -202,12 +206,20 @@ void change_mesh(Mesh& mesh, const TriangleChange& change, ChangedModel& done) {
 }  // namespace
 
 ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleChange& change) {
-    ChangedModel done;
     if (auto* document = std::get_if<GltfDocument>(&model))
-        change_document(*document, normals, change, done);
-    else
-        change_mesh(std::get<MeshFile>(model).mesh, change, done);
+        return change_document(*document, primitives_by_mesh(*document), normals, change);
+    ChangedModel done;
+    change_mesh(std::get<MeshFile>(model).mesh, change, done);
     return done;
+}
+
+ChangedModel change_triangles(GltfDocument& document, std::span<const std::size_t> meshes,
+                              NormalMode normals, const TriangleChange& change) {
+    auto primitives = primitives_by_mesh(document);
+    std::erase_if(primitives, [&](const auto& entry) {
+        return std::find(meshes.begin(), meshes.end(), entry.first) == meshes.end();
+    });
+    return change_document(document, primitives, normals, change);
 }
 
 }  // namespace relief

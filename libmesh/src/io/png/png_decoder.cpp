@@ -32,13 +32,6 @@ using Bytes = std::span<const std::byte>;
 
 constexpr int palette_type = 3;
 
-std::uint32_t big32_at(Bytes bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
-    return value;
-}
-
 int code_at(Bytes bytes, std::size_t at) {
     return std::to_integer<int>(bytes[at]);
 }
@@ -61,10 +54,10 @@ std::optional<Chunks> chunks_of(Bytes stripped) {
     Chunks chunks;
     chunks.packed.reserve(stripped.size());
     for (std::size_t at = signature; stripped.size() - at >= frame;) {
-        const std::size_t length = big32_at(stripped, at);
+        const std::size_t length = big32(stripped, at);
         if (length > stripped.size() - at - frame) return std::nullopt;
         const Bytes data = stripped.subspan(at + 8, length);
-        if (crc32(stripped.subspan(at + 4, length + 4)) != big32_at(stripped, at + 8 + length))
+        if (crc32(stripped.subspan(at + 4, length + 4)) != big32(stripped, at + 8 + length))
             return std::nullopt;
         const Bytes type_bytes = stripped.subspan(at + 4, 4);
         const std::string_view type(reinterpret_cast<const char*>(type_bytes.data()), 4);
@@ -147,8 +140,8 @@ std::optional<PlainPng> plain_png(const PngChunks& chunks) {
     const Bytes header = chunks.header;
     if (header.size() != 13) return std::nullopt;
     static constexpr std::array channels_of_type{1, 0, 3, 1, 2, 0, 4};
-    const std::uint64_t width = big32_at(header, 0);
-    const std::uint64_t height = big32_at(header, 4);
+    const std::uint64_t width = big32(header, 0);
+    const std::uint64_t height = big32(header, 4);
     const int type = code_at(header, 9);
     PlainPng png;
     png.stored_bits = code_at(header, 8);
@@ -254,7 +247,7 @@ std::vector<std::byte> data_of(const RandomAccessFile& file, const PngChunkPlace
                                bool& is_right) {
     std::vector<std::byte> whole(std::size_t{chunk.length} + 8);
     file.read(chunk.at + 4, whole);
-    is_right = crc32(std::span(whole).first(chunk.length + 4)) == big32_at(whole, chunk.length + 4);
+    is_right = crc32(std::span(whole).first(chunk.length + 4)) == big32(whole, chunk.length + 4);
     return {whole.begin() + 4, whole.end() - 4};
 }
 
@@ -322,7 +315,7 @@ class DataChunks {
         for (;;) {
             if (next_ + 12 > file_.size()) return false;
             file_.read(next_, start);
-            left_ = big32_at(start, 0);
+            left_ = big32(start, 0);
             at_ = next_ + 8;
             next_ = at_ + left_ + 4;
             if (std::memcmp(start.data() + 4, "IEND", 4) == 0) return false;
@@ -335,7 +328,7 @@ class DataChunks {
     bool ends_right() {
         std::array<std::byte, 4> stored{};
         file_.read(at_, stored);
-        return big32_at(stored, 0) == checksum_;
+        return big32(stored, 0) == checksum_;
     }
 
     const RandomAccessFile& file_;

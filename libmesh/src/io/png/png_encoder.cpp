@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "file_bytes.h"
 #include "file_replacement.h"
 #include "io/image/row_codec.h"
 #include "io/png/deflate_encoder.h"
@@ -69,10 +70,6 @@ void copy_row(const std::byte* samples, int bits, std::span<std::uint8_t> row) {
     std::uint8_t* const bytes = row.data();
     for (std::size_t i = 0; i < row.size(); i += 2)
         std::swap(bytes[i], bytes[i + 1]);
-}
-
-std::string_view text_of(std::span<const std::uint8_t> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// Consecutive rows with the same filter, which are deflated together.
@@ -142,7 +139,7 @@ class PngEncoder {
         deflate_piece(std::span(filtered_).subspan(from - known, to - from + known), known, effort_,
                       piece.choice.repetitions, is_last, piece.packed);
         std::string data(begin);
-        data += text_of(piece.packed);
+        data += text_of(std::as_bytes(std::span(piece.packed)));
         data += end;
         append_chunk(piece.chunk, "IDAT", data);
     }

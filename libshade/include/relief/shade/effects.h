@@ -141,7 +141,7 @@ void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& pl
 /// \param report  counts draws that have nothing to show in this view
 /// \throws InvalidInput if no draw has anything to show, with the reason
 FramePlan plan_view(const Scene& scene, const FrameSettings& settings, FramePlan plan,
-                    Report& report);
+                    Report& report = IgnoredReport());
 
 /// Removes effects that are invisible: normals without light, normal maps without normals, and so
 /// on. features_of() already returns canonical values; canonical(canonical(f)) == canonical(f).

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "relief/export.h"
-#include "relief/mesh/error_stats.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
 

@@ -61,7 +61,8 @@ struct Reference {
 ///         Material::specular_antialiasing. The same bits for any number of threads
 /// \throws InvalidInput if the scene or the settings are not valid or there is no camera; FileError
 ///         if an image of the environment, or one that is required (scene.h), cannot be read
-Reference render_reference(const Scene& scene, const ReferenceSettings& settings, Report& report);
+Reference render_reference(const Scene& scene, const ReferenceSettings& settings,
+                           Report& report = IgnoredReport());
 
 /// Converts radiance to a picture over the scene's background.
 ///

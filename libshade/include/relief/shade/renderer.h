@@ -1,23 +1,89 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Draws scenes with OpenGL, caches resources between renderers, and measures frame times.
+/// Creates OpenGL contexts without a window or wraps those of a window library, draws scenes,
+/// caches resources between renderers, and measures frame times.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "relief/export.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/timing.h"
-#include "relief/shade/context.h"
+#include "relief/mesh/statistics.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+
+// Creates OpenGL contexts without a window, or wraps those of a window library.
+
+/// OpenGL is missing, too old or out of memory, or refuses a shader. The message contains that of
+/// the driver.
+class GpuError : public Error {
+  public:
+    using Error::Error;
+};
+
+/// The library that provides the context. Libraries are loaded at run time, independently of each
+/// other.
+///
+/// OSMesa is libOSMesa.so.8, .6 or .so, EGL is libEGL.so.1, in the library path of the system;
+/// $RELIEF_OSMESA_LIBRARY and $RELIEF_EGL_LIBRARY name other files. A device that claims to be
+/// hardware but uses Mesa's rasterizer counts as software.
+enum class Backend {
+    automatic,  ///< A hardware EGL device if one exists, else OSMesa, else software EGL.
+    osmesa,
+    egl,
+};
+
+/// A function of a window library that returns OpenGL functions of the current context.
+using GlLoader = void (*(*)(const char* name))();
+
+namespace gl {
+class Api;  // The table of entry points (libshade/src/gl/api.h).
+}
+
+/// An OpenGL 3.3 core context, current on the thread that created it until it is destroyed.
+///
+/// A thread can have at most one, because OSMesa and EGL do not detect each other; any number of
+/// threads may have one each. Destroy it on the thread that created it, after all objects in it.
+/// The libraries and EGL's displays stay loaded until the process ends.
+class Context {
+  public:
+    /// Creates a context.
+    /// \throws GpuError with the reason of every backend that was tried
+    /// \throws InvalidInput if this thread has a context already
+    explicit Context(Backend backend = Backend::automatic);
+
+    /// Wraps a context that the caller has made current on this thread and keeps current for
+    /// longer.
+    ///
+    /// \param name  for backend_name()
+    /// \throws GpuError if it offers less than OpenGL 3.3
+    /// \throws InvalidInput if this thread has a context already
+    Context(GlLoader loader, std::string name);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    /// "OSMesa", "EGL (hardware)" or "EGL (software)"; the given name of a wrapped context.
+    [[nodiscard]] const std::string& backend_name() const;
+    /// "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
+    [[nodiscard]] const std::string& renderer_name() const;
+    /// Returns true if a rasterizer of Mesa draws on the CPU.
+    [[nodiscard]] bool is_software() const;
+
+    [[nodiscard]] const gl::Api& api() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
 
 // Caches the resources that renderers share, so that an edited scene is redrawn quickly.
 
@@ -108,23 +174,23 @@ class Renderer {
     ///         the environment, or one that is required (scene.h), cannot be read, GpuError if
     ///         OpenGL refuses something; errors of shaders name the file and line
     Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
-             Report& report);
+             Report& report = IgnoredReport());
 
     /// Prepares the scene with another plan: that of plan_effects() with effects added, which
     /// changes no pixel, or removed. Contradictory sets are made canonical, and a finishing pass is
     /// added if samples or blending need it.
     Renderer(const Context& context, const Scene& scene, FramePlan plan,
-             const FrameSettings& settings, Report& report);
+             const FrameSettings& settings, Report& report = IgnoredReport());
     /// The same with a cache, which provides resources and keeps new ones.
     Renderer(RenderCache& cache, const Context& context, const Scene& scene, FramePlan plan,
-             const FrameSettings& settings, Report& report);
+             const FrameSettings& settings, Report& report = IgnoredReport());
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
     [[nodiscard]] const FramePlan& plan() const;
 
-    /// Updates instances and lights from the same scene at another time (scene_graph.h); all else
+    /// Updates instances and lights from the same scene at another time (scene.h); all else
     /// stays unchanged. \throws InvalidInput if the number of instances or lights differs, or they
     /// are not valid
     void move(const Scene& scene);

@@ -17,7 +17,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/enum_names.h"
-#include "relief/shade/scene_graph.h"
+#include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
 

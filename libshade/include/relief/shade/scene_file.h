@@ -15,7 +15,6 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
-#include "relief/shade/scene_graph.h"
 
 namespace RELIEF_API relief {
 
@@ -54,13 +53,14 @@ struct SceneOptions {
 /// \throws FileError as the readers do. A missing image file is reported when it is decoded, and
 ///         only visible images are decoded
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
-                            Report& report);
+                            Report& report = IgnoredReport());
 
 /// Reads only the scene of that graph.
-Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, Report& report);
+Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
+                 Report& report = IgnoredReport());
 
 /// Reads only the scene, with the default options.
-Scene load_scene(const std::filesystem::path& file, Report& report);
+Scene load_scene(const std::filesystem::path& file, Report& report = IgnoredReport());
 
 /// The means of textures that Phong's model has no place for, colors linear; 1 without a texture.
 struct TextureMeans {

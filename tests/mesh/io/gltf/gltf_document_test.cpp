@@ -8,6 +8,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -318,6 +319,10 @@ TEST_F(GltfDocumentTest, EveryFaultIsNamedWithPlaceValueAndLimit) {
          "accessors[0].sparse.indices covers bytes 0 to 12, but bufferViews[1] has only 6"},
         {"/bufferViews/1/byteLength", 7, "bufferViews[1] covers bytes 36 to 43"},
         {"/bufferViews/0/byteStride", 2, "bufferViews[0].byteStride is 2"},
+        {"/bufferViews/0/byteStride", 4,
+         "accessors[0] has elements of 12 bytes, but bufferViews[0].byteStride is 4"},
+        {"/accessors/0/componentType", 5125,
+         "meshes[0].primitives[0].attributes.POSITION has integers of 32 bits"},
         {"/bufferViews/0/byteStride", 16, "accessors[0] covers bytes 0 to 44"},
         {"/buffers/0/byteLength", 100, "buffers[0] claims 100 bytes, but has only 44"},
         {"/buffers/0/uri", "../a.bin", "buffers[0].uri '../a.bin' lies outside"},
@@ -338,6 +343,104 @@ TEST_F(GltfDocumentTest, EveryFaultIsNamedWithPlaceValueAndLimit) {
             << fault.pointer << " = " << fault.value;
     }
     EXPECT_EQ(error_of(triangle_json(), triangle_bytes()), "no error");
+}
+
+/// A skinned triangle with colors, joints and weights behind its positions and indices.
+struct SkinnedTriangle {
+    json root = triangle_json();
+    std::vector<float> colors = std::vector<float>(12, 0.5F);
+    std::vector<std::uint8_t> joints = std::vector<std::uint8_t>(12, 1);
+    std::vector<float> weights = std::vector<float>(12, 0.25F);
+
+    SkinnedTriangle() {
+        root["buffers"][0]["byteLength"] = 152;
+        root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 44}, {"byteLength", 48}});
+        root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 92}, {"byteLength", 48}});
+        root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 140}, {"byteLength", 12}});
+        for (int i = 2; i < 5; ++i) {
+            root["accessors"].push_back({{"bufferView", i},
+                                         {"componentType", i == 4 ? 5121 : 5126},
+                                         {"count", 3},
+                                         {"type", "VEC4"}});
+        }
+        json& attributes = root["meshes"][0]["primitives"][0]["attributes"];
+        attributes["COLOR_0"] = 2;
+        attributes["WEIGHTS_0"] = 3;
+        attributes["JOINTS_0"] = 4;
+        root["nodes"] = json::parse(R"([{"mesh": 0, "skin": 0}, {}])");
+        root["skins"] = json::parse(R"([{"joints": [0, 1]}])");
+    }
+
+    [[nodiscard]] std::string bytes() const {
+        std::string all = triangle_bytes() + std::string(110, '\0');
+        std::memcpy(&all[44], colors.data(), 48);
+        std::memcpy(&all[92], weights.data(), 48);
+        std::memcpy(&all[140], joints.data(), 12);
+        return all;
+    }
+};
+
+TEST_F(GltfDocumentTest, ValuesWithoutMeaningAreReported) {
+    const auto findings = [&](const SkinnedTriangle& triangle) {
+        write_gltf_file(folder_ / "a.glb", triangle.root, triangle.bytes());
+        report_ = Report();
+        read(folder_ / "a.glb");
+        std::string text;
+        for (const Finding& finding : report_.findings())
+            text += to_string(finding) + "\n";
+        return text;
+    };
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(findings({}), "");
+    SkinnedTriangle triangle;
+    triangle.colors[5] = nan;
+    EXPECT_EQ(findings(triangle), "1 x non-finite color (accessor 2): is kept as it is\n");
+    for (const float weight : {nan, -1.0F, 5.0F, std::numeric_limits<float>::infinity()}) {
+        triangle = {};
+        triangle.weights[11] = weight;
+        EXPECT_EQ(findings(triangle),
+                  "1 x weight that is not between 0 and 1 (accessor 3): is kept as it is\n")
+            << weight;
+    }
+    triangle = {};
+    triangle.joints[7] = 2;
+    EXPECT_EQ(findings(triangle),
+              "1 x joint that its skin does not have (node 0): is kept as it is\n");
+    for (const json& rotation : {json({0, 0, 0, 0}), json({5, 0, 0, 1})}) {
+        triangle = {};
+        triangle.root["nodes"][1]["rotation"] = rotation;
+        EXPECT_EQ(findings(triangle),
+                  "1 x rotation that is not of unit length (node 1): is kept as it is\n");
+    }
+    triangle = {};
+    triangle.root["accessors"][0]["componentType"] = 5122;
+    EXPECT_EQ(findings(triangle),
+              "1 x integer vectors without KHR_mesh_quantization (accessor 0): are kept as they "
+              "are\n");
+    triangle.root["extensionsUsed"] = {"KHR_mesh_quantization"};
+    EXPECT_EQ(findings(triangle), "");
+}
+
+TEST_F(GltfDocumentTest, WrongBoundsOfPositionsAreReplaced) {
+    json root = triangle_json();
+    root["accessors"][0]["min"] = {-9, -9, -9};
+    root["accessors"][0]["max"] = {-8, -8, -8};
+    write_gltf_file(folder_ / "a.glb", root, triangle_bytes());
+    read(folder_ / "a.glb").write(folder_ / "b.glb");
+    EXPECT_EQ(report_.count("wrong bounds of positions"), 1U);
+    report_ = Report();
+    read(folder_ / "b.glb").write(folder_ / "c.gltf");
+    EXPECT_TRUE(report_.empty());
+    std::ifstream stream(folder_ / "c.gltf");
+    const json written = json::parse(stream);
+    EXPECT_EQ(written["accessors"][0]["min"], json({0.0, 0.0, 0.0}));
+    EXPECT_EQ(written["accessors"][0]["max"], json({1.0, 1.0, 0.0}));
+    // Six digits are no error.
+    root["accessors"][0]["max"] = {1.000001, 0.999999, 0};
+    root["accessors"][0]["min"] = {0, 0, 0};
+    write_gltf_file(folder_ / "a.glb", root, triangle_bytes());
+    read(folder_ / "a.glb");
+    EXPECT_TRUE(report_.empty());
 }
 
 TEST_F(GltfDocumentTest, DeepJsonAndSharedOrCyclicNodesAreRefused) {

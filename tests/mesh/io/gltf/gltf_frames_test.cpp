@@ -410,7 +410,7 @@ TEST_F(GltfFrames, NodesThatMirrorChangeNothingInObjectSpace) {
     const auto processed = [&](const char* name) {
         GltfDocument document = read(folder / name);
         const FramedMesh framed =
-            with_frames(document.mesh({0, 0}), {.normals = NormalMode::angle}, report_);
+            with_frames(document.mesh({0, 0}), {.normals = NormalWeight::angle}, report_);
         document.set_frames({0, 0}, framed);
         document.write(out_);
         return read(out_).mesh({0, 0});
@@ -470,7 +470,7 @@ TEST_F(GltfFrames, ProcessingRealModelsKeepsAllElseAndLeavesNothingDead) {
         } catch (const FileError&) {
             continue;  // gltf_document_test.cpp lists these files.
         }
-        for (const NormalMode normals : {NormalMode::flat, NormalMode::angle}) {
+        for (const NormalMode normals : {NormalMode::flat, NormalMode(NormalWeight::angle)}) {
             process_and_compare(file, out_, normals);
         }
         ++processed;

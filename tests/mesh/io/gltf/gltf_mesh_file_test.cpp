@@ -348,6 +348,11 @@ TEST_F(GltfRoundTrip, CopiesHaveEveryPropertyAndEveryValue) {
         if (has_draco(file)) {
             EXPECT_EQ(drop_bounds(before), drop_bounds(after));
         }
+        if (file.stem() == "ZeroLengthBufferView") {
+            // The file states 1, but a position of it is 2147483648.
+            EXPECT_EQ(before["accessors"][1]["max"], Json({1, 1, 0}));
+            before["accessors"][1]["max"][0] = 2147483648.0;
+        }
         EXPECT_EQ(Json::diff(before, after), Json::array());
         const GltfContents from = read_gltf(file, report_);
         const GltfContents to = read_gltf(out, report_);
@@ -481,7 +486,7 @@ TEST_F(GltfValidator, ProcessedModelsHaveNoNewErrorsOrWarnings) {
             for (const GltfPrimitiveId id : document.triangle_primitives()) {
                 const Mesh mesh = document.mesh(id);
                 FrameOptions options;
-                options.normals = count % 2 == 0 ? NormalMode::angle : NormalMode::flat;
+                options.normals = count % 2 == 0 ? NormalWeight::angle : NormalMode::flat;
                 options.tangents =
                     mesh.texcoords.empty() ? TangentMethod::none : TangentMethod::mikktspace;
                 document.set_frames(id, with_frames(mesh, options, report_), options, report_);

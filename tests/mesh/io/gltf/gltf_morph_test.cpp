@@ -120,7 +120,7 @@ TEST_F(GltfMorph, FlatNormalsOfADisplacedShapeSplitWhatIsFlatAtRest) {
 }
 
 TEST_F(GltfMorph, AveragedNormalsOfADisplacedShapeNeedNoSplit) {
-    const GltfContents written = processed(NormalMode::area, TangentMethod::none);
+    const GltfContents written = processed(NormalWeight::area, TangentMethod::none);
     EXPECT_EQ(vertices_, 4U);
     const Json& made = written.root["meshes"][0]["primitives"][0];
     const auto moved = vectors(written, made["targets"][0]["NORMAL"]);
@@ -136,13 +136,13 @@ TEST_F(GltfMorph, AveragedNormalsOfADisplacedShapeNeedNoSplit) {
 TEST_F(GltfMorph, ATargetWithoutNormalsGetsNoneWhereItsPrimitiveHadThem) {
     // The author keeps the normals.
     primitive()["attributes"]["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0, 1, 0)));
-    GltfContents written = processed(NormalMode::area, TangentMethod::mikktspace);
+    GltfContents written = processed(NormalWeight::area, TangentMethod::mikktspace);
     json after = written.root["meshes"][0]["primitives"][0]["targets"][0];
     EXPECT_FALSE(after.contains("NORMAL"));
     EXPECT_TRUE(after.contains("TANGENT"));  // The input has none.
     // If the target has displacements of normals, they are recomputed.
     target()["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(7, 7, 7)));
-    written = processed(NormalMode::area, TangentMethod::none);
+    written = processed(NormalWeight::area, TangentMethod::none);
     after = written.root["meshes"][0]["primitives"][0]["targets"][0];
     EXPECT_EQ(vectors(written, after["NORMAL"])[1], glm::vec3(0.0F));
     EXPECT_FALSE(after.contains("TANGENT"));
@@ -191,7 +191,7 @@ TEST_F(GltfMorph, HandednessThatATargetCannotTurnIsReported) {
     primitive()["indices"] = accessor<std::uint8_t>({0, 1, 2, 3, 4, 5});
     target()["POSITION"] =
         accessor<glm::vec3>({{9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-    const GltfContents written = processed(NormalMode::area, TangentMethod::mikktspace);
+    const GltfContents written = processed(NormalWeight::area, TangentMethod::mikktspace);
     EXPECT_EQ(report_.count("tangents of other handedness in a morph target"), 1U);
     const Json& attributes = written.root["meshes"][0]["primitives"][0]["attributes"];
     EXPECT_EQ(float_elements<glm::vec4>(written, attributes["TANGENT"])[3].w, 1.0F);
@@ -214,7 +214,7 @@ TEST_F(GltfMorph, RealTargetsHaveTheFramesOfTheirShapesAtEveryCorner) {
          {"AnimatedMorphCube", "MorphPrimitivesTest", "MorphStressTest", "AnimatedMorphSphere"}) {
         const auto file = models / name / "glTF-Binary" / (std::string(name) + ".glb");
         if (!std::filesystem::exists(file)) continue;
-        for (const NormalMode normals : {NormalMode::flat, NormalMode::angle}) {
+        for (const NormalMode normals : {NormalMode::flat, NormalMode(NormalWeight::angle)}) {
             SCOPED_TRACE(file);
             process(file, normals, TangentMethod::none);
             const GltfContents written = read_gltf(out_, report_);

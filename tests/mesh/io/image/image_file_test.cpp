@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
+#include <unistd.h>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -18,6 +19,7 @@
 #include "io/png/png_format.h"
 #include "mesh/io/image/module_reference.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/limits.h"
 #include "relief/mesh/report.h"
 #include "support/message_of.h"
 #include "support/shared_data.h"
@@ -28,6 +30,7 @@ namespace {
 using test::big32;
 using test::by_module;
 using test::directly;
+using test::message_of;
 using test::TemporaryDirectory;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -569,6 +572,74 @@ TEST(ImageContainer, AnExrWhoseTablesOrTilesCannotBeIsRefused) {
     for (std::size_t size = 4; size < whole.size() - 1; ++size)
         EXPECT_THAT(complaint_about(whole.substr(0, size)), HasSubstr("is cut short")) << size;
     EXPECT_THAT(complaint_about("\x76\x2F\x31\x01\2\0\0\0\0"s), HasSubstr("has no data window"));
+}
+
+/// Restores the limits of the process.
+class InputLimitsTest : public testing::Test {
+  protected:
+    ~InputLimitsTest() override { set_input_limits({}); }
+    TemporaryDirectory folder_;
+};
+
+TEST_F(InputLimitsTest, AreThreeQuartersOfTheMemoryAtMost) {
+    set_input_limits({});
+    const std::uint64_t pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+    const std::uint64_t all = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    EXPECT_LE(input_limits().memory, all / 4 * 3);
+    EXPECT_GT(input_limits().memory, 0U);
+    EXPECT_EQ(input_limits().pixels, 0U);
+}
+
+TEST_F(InputLimitsTest, RefuseWholeImagesBeforeTheyAreDecoded) {
+    const std::filesystem::path png = folder_ / "a.png";
+    const std::filesystem::path jpeg = folder_ / "a.jpg";
+    const std::filesystem::path exr = folder_ / "a.exr";
+    write_image(png, make_image(2000, 1000, 3, 8, ColorSpace::data));
+    write_image(jpeg, make_image(2000, 1000, 3, 8, ColorSpace::srgb));
+    write_image(exr, make_image(2000, 1000, 3, 32, ColorSpace::linear));
+    const auto refusal = [](const std::filesystem::path& file) {
+        return message_of<FileError>([&] { read_image(file, ImageUse::data); });
+    };
+    set_input_limits({6'000'000, 2'000'000, false});
+    EXPECT_EQ(read_image(png, ImageUse::data).width, 2000);
+    EXPECT_EQ(read_image(jpeg, ImageUse::data).width, 2000);
+    // 2000 x 1000 x 3 floats.
+    EXPECT_THAT(refusal(exr), HasSubstr("a.exr: needs 22.9 MiB of memory, but the limit is 5.7"));
+    set_input_limits({5'999'999, 0, false});
+    EXPECT_THAT(refusal(png), HasSubstr("a.png: needs 5.7 MiB of memory, but the limit is 5.7"));
+    EXPECT_THAT(refusal(jpeg), HasSubstr("a.jpg: needs 5.7 MiB of memory"));
+    set_input_limits({0, 1'999'999, false});
+    for (const auto& file : {png, jpeg, exr})
+        EXPECT_THAT(refusal(file), HasSubstr("has 2000 x 1000 texels, but the limit is 1999999"));
+}
+
+TEST_F(InputLimitsTest, CountOneRowOfImagesThatAreReadByRows) {
+    const std::filesystem::path exr = folder_ / "a.exr";
+    write_image(exr, make_image(1000, 2000, 1, 32, ColorSpace::linear));
+    const std::filesystem::path png = folder_ / "a.png";
+    write_image(png, make_image(1000, 2000, 1, 16, ColorSpace::data));
+    set_input_limits({1'000'000, 0, false});
+    EXPECT_EQ(ImageRowReader(png).info().height, 2000);
+    set_input_limits({1999, 0, false});
+    EXPECT_THAT(message_of<FileError>([&] { ImageRowReader{png}; }),
+                HasSubstr("needs 0.0 MiB of memory"));
+    set_input_limits({0, 1'999'999, false});
+    EXPECT_THAT(message_of<FileError>([&] { ImageRowReader{png}; }),
+                HasSubstr("has 1000 x 2000 texels"));
+    EXPECT_THAT(message_of<FileError>([&] { ImageRowReader{exr}; }),
+                HasSubstr("has 1000 x 2000 texels"));
+}
+
+TEST_F(InputLimitsTest, HoldForImagesThatAreMadeAndForFiles) {
+    set_input_limits({1'000'000, 0, false});
+    EXPECT_EQ(make_image(1000, 1000, 1, 8, ColorSpace::data).height, 1000);
+    EXPECT_EQ(message_of<InvalidInput>([] { make_image(1001, 1000, 1, 8, ColorSpace::data); }),
+              "needs 1.0 MiB of memory, but the limit is 1.0");
+    const std::filesystem::path large = folder_ / "large.png";
+    std::ofstream(large).close();
+    std::filesystem::resize_file(large, 1'000'001);
+    EXPECT_THAT(message_of<FileError>([&] { read_image_info(large); }),
+                HasSubstr("needs 1.0 MiB of memory"));
 }
 
 }  // namespace

@@ -109,6 +109,21 @@ TEST(ImageModule, WithoutItTheErrorNamesEveryPlaceLookedAt) {
     EXPECT_FALSE(std::filesystem::exists(folder / "a.tif"));
 }
 
+TEST(ImageModule, WithoutTheDecoderNoFileIsDecodedInThisProcess) {
+    const TemporaryDirectory folder;
+    const std::filesystem::path program = program_elsewhere(folder);
+    std::filesystem::create_directories(folder / "lib/relief");
+    std::filesystem::copy_file(
+        this_program().parent_path().parent_path() / "lib/relief/relief_image.so",
+        folder / "lib/relief/relief_image.so");
+    const std::string output = child_output(program, "", folder / "a.tif");
+    EXPECT_THAT(output, HasSubstr("mapped after a TIFF: 1"));
+    EXPECT_THAT(output, HasSubstr("failed: " + (folder / "a.tif").string() +
+                                  ": relief's image decoder relief-image-decoder was not found"));
+    EXPECT_THAT(output,
+                HasSubstr("not at " + (folder / "lib/relief/relief-image-decoder").string()));
+}
+
 TEST(ImageModule, TheVariableIsLookedAtFirst) {
     const TemporaryDirectory folder;
     const std::filesystem::path modules = this_program().parent_path().parent_path() / "lib/relief";

@@ -33,7 +33,7 @@ std::string zlib_stream(const std::string& bytes) {
 }
 
 std::optional<Image> directly(const std::string& file) {
-    return read_directly(examined(file));
+    return read_directly(examined(file), file);
 }
 
 std::optional<Image> by_module(const std::string& file) {

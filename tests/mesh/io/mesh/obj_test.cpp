@@ -14,6 +14,7 @@
 
 #include "io/mesh/obj_parser.h"
 #include "mesh/io/mesh/mesh_files.h"
+#include "relief/mesh/limits.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 #include "support/shapes.h"
@@ -215,6 +216,37 @@ TEST_F(Obj, AMissingMtlFileIsCountedAndNamesSurvive) {
     EXPECT_EQ(report_.count("unreadable MTL file"), 1U);
     ASSERT_EQ(file.materials.size(), 1U);
     EXPECT_EQ(file.materials[0].name, "steel");
+}
+
+TEST_F(Obj, NamesInLatin1BecomeUtf8) {
+    write("m.mtl",
+          "newmtl Stra\xDF"
+          "e\nKd 1 0 0\n");
+    const MeshFile file = read("mtllib m.mtl\no Geb\xE4ude\n" + three +
+                               "usemtl Stra\xDF"
+                               "e\nf 1 2 3\no \xC3\xA4\nf 3 2 1\n");
+    EXPECT_THAT(file.objects, ElementsAre("Geb\xC3\xA4ude", "\xC3\xA4"));
+    ASSERT_EQ(file.materials.size(), 1U);
+    EXPECT_EQ(file.materials[0].name,
+              "Stra\xC3\x9F"
+              "e");
+    EXPECT_EQ(file.materials[0].diffuse, glm::vec3(1, 0, 0));
+    EXPECT_EQ(report_.count("name that is not UTF-8"), 2U);
+    // A second form of '/', a surrogate, a code above U+10FFFF and a cut character are not UTF-8.
+    for (const char* name : {"\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80", "a\xE2\x82"}) {
+        report_ = {};
+        read(std::string("o ") + name + "\n" + three + "f 1 2 3\n");
+        EXPECT_EQ(report_.count("name that is not UTF-8"), 2U) << "of the mesh and of its object";
+    }
+    report_ = {};
+    read("o \xE2\x82\xAC \xF0\x9F\x98\x80\n" + three + "f 1 2 3\n");
+    EXPECT_TRUE(report_.empty());
+}
+
+TEST_F(Obj, ColorsThatAreNotFiniteAreWhite) {
+    const MeshFile file = read("v 0 0 0 0.5 nan 0\nv 1 0 0 1 0 0\nv 0 1 0 inf 0 0\nf 1 2 3\n");
+    EXPECT_THAT(file.mesh.colors, ElementsAre(glm::vec4(1), glm::vec4(1, 0, 0, 1), glm::vec4(1)));
+    EXPECT_EQ(report_.count("non-finite color"), 2U);
 }
 
 TEST_F(Obj, FloatsOfEveryMagnitudeComeBackBitForBit) {
@@ -441,6 +473,75 @@ TEST(ObjPieces, EndWhereAStatementDoes) {
     EXPECT_EQ(obj_piece_ends("", 4), (std::vector<std::size_t>{0}));
     // Without line feeds, as on old machines, there is one piece.
     EXPECT_EQ(obj_piece_ends("v 1 2 3\rv 4 5 6\r", 4), (std::vector<std::size_t>{16}));
+}
+
+TEST_F(Obj, NamesFilesInItsFolderUnlessOthersArePermitted) {
+    std::filesystem::create_directories(folder_ / "model/textures");
+    write("outside.mtl", "newmtl red\nKd 1 0 0\n");
+    write("model/inside.mtl",
+          "newmtl red\nKd 0 1 0\nmap_Kd ../a.png\nmap_Ks textures/b.png\nnorm " +
+              (folder_ / "c.png").string() + "\n");
+    const auto material = [&](const std::string& library) {
+        report_ = Report();
+        const std::string text = "mtllib " + library + "\nusemtl red\n" + three + "f 1 2 3\n";
+        return read_mesh(write("model/a.obj", text), report_).materials.at(0);
+    };
+    const std::string absolute = (folder_ / "outside.mtl").string();
+    for (const std::string& library : {std::string("../outside.mtl"), absolute}) {
+        EXPECT_EQ(material(library).diffuse, glm::vec3(0.8F)) << library;
+        EXPECT_EQ(report_.count("MTL file outside the model's folder"), 1U) << library;
+    }
+    const MtlMaterial inside = material("textures/../inside.mtl");
+    EXPECT_EQ(inside.diffuse, glm::vec3(0, 1, 0));
+    EXPECT_THAT(inside.outside_maps, ElementsAre(folder_ / "a.png", folder_ / "c.png"));
+    EXPECT_TRUE(inside.may_read(*inside.specular_map));
+    EXPECT_FALSE(inside.may_read(*inside.diffuse_map));
+
+    set_input_limits({0, 0, true});
+    EXPECT_EQ(material("../outside.mtl").diffuse, glm::vec3(1, 0, 0));
+    EXPECT_THAT(report_.findings(), IsEmpty());
+    EXPECT_THAT(material("inside.mtl").outside_maps, IsEmpty());
+    set_input_limits({});
+}
+
+class LargePolygon : public Obj {
+  protected:
+    /// Reads one polygon, and returns twice the sum of its triangles' areas.
+    double area_of(const std::vector<glm::vec2>& corners) {
+        std::string text;
+        std::string face = "f";
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            text += fmt::format("v {} {} 0\n", corners[i].x, corners[i].y);
+            face += fmt::format(" {}", i + 1);
+        }
+        const Mesh mesh = read(text + face + "\n").mesh;
+        EXPECT_EQ(mesh.triangles.size(), corners.size() - 2);
+        double area = 0.0;
+        for (const glm::uvec3& t : mesh.triangles) {
+            const glm::dvec3 a(mesh.positions[t.x]);
+            area += glm::length(glm::cross(glm::dvec3(mesh.positions[t.y]) - a,
+                                           glm::dvec3(mesh.positions[t.z]) - a));
+        }
+        return area;
+    }
+};
+
+// A search through all corners for each ear would take minutes.
+TEST_F(LargePolygon, ACombIsCutIntoEars) {
+    constexpr int teeth = 100'000;
+    std::vector<glm::vec2> corners = {{0, -1}, {teeth, -1}};
+    for (int i = teeth; i > 0; --i) {
+        corners.emplace_back(i, 0);
+        corners.emplace_back(static_cast<float>(i) - 0.5F, 100);
+    }
+    double shoelace = 0.0;  // Twice the area.
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec2 a(corners[i]);
+        const glm::dvec2 b(corners[(i + 1) % corners.size()]);
+        shoelace += a.x * b.y - a.y * b.x;
+    }
+    EXPECT_NEAR(area_of(corners) / shoelace, 1.0, 1e-9);
+    EXPECT_THAT(report_.findings(), IsEmpty());
 }
 
 }  // namespace

@@ -41,6 +41,15 @@ TEST_F(Ply, AsciiIsReadLineByLine) {
     EXPECT_EQ(report_.count("line with more values than the header names"), 2U);
 }
 
+TEST_F(Ply, DataBehindTheLastElementIsReported) {
+    const std::string complete = ascii_vertices + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    EXPECT_EQ(read(complete + "\n \n").mesh.triangles.size(), 1U);
+    EXPECT_EQ(report_.count("data behind the last element"), 0U);
+    EXPECT_EQ(read(complete + "3 2 1 0\n").mesh.triangles.size(), 1U);
+    EXPECT_EQ(report_.count("data behind the last element"), 1U);
+    EXPECT_THAT(report_.findings().back().first, ElementsAre(complete.size()));
+}
+
 TEST_F(Ply, VAndTArePointingUpInTheFileAndDownInTheMesh) {
     const Mesh mesh = read(ascii_vertices + "property float s\nproperty float t\n" + faces +
                            "0 0 0 0.5 0.25\n1 0 0 1 1\n0 1 0 0 0\n3 0 1 2\n")
@@ -218,6 +227,15 @@ TEST_F(Stl, DamagedFilesAreRefusedAndSurplusIsCounted) {
     EXPECT_THAT(error_of("solid\nfacet outer loop vertex 0 0 0 vertex 1 1 1 endloop"),
                 HasSubstr("line 2: a facet has 2 corners instead of 3"));
     EXPECT_THAT(error_of("solid\nfacet outer loop vertex 0 0 0"), HasSubstr("ends inside a facet"));
+    const std::string facet_text =
+        "solid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop";
+    EXPECT_THAT(error_of(facet_text), HasSubstr("line 2: the file ends inside a facet"));
+    EXPECT_THAT(error_of(facet_text + " endfacet facet normal 0"),
+                HasSubstr("ends inside a facet"));
+    EXPECT_EQ(read(facet_text + " endfacet\nendsolid").mesh.triangles.size(), 1U);
+    EXPECT_EQ(report_.count("solid without an end"), 0U);
+    EXPECT_EQ(read(facet_text + " endfacet").mesh.triangles.size(), 1U);
+    EXPECT_EQ(report_.count("solid without an end"), 1U);
     EXPECT_EQ(read(binary(1, one + "trailing")).mesh.triangles.size(), 1U);
     EXPECT_EQ(report_.count("bytes behind the last triangle"), 1U);
 }
@@ -234,6 +252,13 @@ class Off : public test::MeshTextTest {
   protected:
     Off() : MeshTextTest("a.off") {}
 };
+
+TEST_F(Off, TextBehindTheLastFaceIsReported) {
+    EXPECT_EQ(read("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n# end\n").mesh.triangles.size(), 1U);
+    EXPECT_EQ(report_.count("text behind the last face"), 0U);
+    EXPECT_EQ(read("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n").mesh.triangles.size(), 1U);
+    EXPECT_EQ(report_.count("text behind the last face"), 1U);
+}
 
 TEST_F(Off, PolygonsCommentsAndCountsBehindTheKeywordAreRead) {
     const Mesh mesh = read(

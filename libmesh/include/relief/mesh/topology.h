@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Changes the number of triangles of a mesh: decimation and subdivision; and measures the distance
+/// between surfaces. Part of the library
+/// relief::topology.
+/// Tests: tests/mesh/topology/decimate_test.cpp, surface_distance_test.cpp, subdivide_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "relief/export.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+
+namespace RELIEF_API relief {
+
+// Decimation reduces the number of triangles and preserves the surface and its texture mapping.
+
+/// Weights of differences of attributes relative to distances; at least 0. The error of
+/// a collapse is the root of the sum of the squared weighted differences.
+struct AttributeWeights {
+    double texcoord = 1.0;  ///< In lengths on the surface that the texture moves by.
+    /// The distance, relative to the size of the mesh, for which a difference of 1 between normals
+    /// counts. Only kept normals count.
+    double normal = 0.0;
+    double color = 0.01;  ///< The same for a difference of 1 between colors.
+};
+
+/// The limits of a decimation; at least one must be given, and the first one that is reached ends
+/// it.
+struct DecimateOptions {
+    std::optional<std::size_t> triangles;  ///< Target number of triangles, at least 1.
+    /// The maximum distance between the surfaces in both directions, in object space, at least 0.
+    /// It is measured (surface_distance()), and it holds up to the rounding of positions.
+    std::optional<double> max_error;
+    /// The frames of the result. With NormalMode::keep, the remaining vertices keep their normals,
+    /// and hard edges are preserved like seams. Other modes ignore the normals of the input. If the
+    /// input has tangents, they are recomputed unless the mode is none.
+    FrameOptions frames;
+    AttributeWeights weights = {};
+    /// The maximum angle, in radians, above 0, between a triangle that changes and the input at
+    /// each of its vertices: one of the input's triangles at the vertex must be within it.
+    std::optional<double> max_normal_error = std::nullopt;
+    bool keep_borders = false;  ///< Boundaries do not change.
+    bool keep_seams = false;    ///< Texture seams, hard edges and material borders do not change.
+};
+
+/// Removes vertices by edge collapses in order of increasing error until a limit is reached.
+///
+/// \param mesh  valid (mesh.h); vertices at equal positions count as one
+/// \param report  counts omitted elements (collapsed triangles, isolated vertices), elements that
+///         are not simplified (non-manifold edges and their ends, triangles with a non-finite
+///         corner), and a target number of triangles that could not be reached
+/// \return a subset of the vertices with all attributes, in their order, and the remaining
+///         triangles in the original order, with their material ranges and smoothing groups.
+///         `source_vertex` holds the input's index of each vertex. If `frames` does not keep
+///         normals, vertices may be split in addition
+/// \throws InvalidInput if the mesh is not valid, no limit is given or one is out of range, or as
+///         with_frames() does
+///
+/// Boundaries, texture seams, and borders between colors and materials are feature lines: they are
+/// simplified along themselves and never torn or crossed, and their junctions are kept. Closed
+/// meshes stay closed, no triangle is inverted in space or in the texture, and separate components
+/// neither merge nor vanish. The target number of triangles is met to within one unless that would
+/// violate these rules. The same input gives the same bits for any order of triangles. The time is
+/// linear for all shapes, except for sorting.
+///
+/// Source: [Garland and Heckbert 1997], [Hoppe 1999].
+FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options,
+                     Report& report = IgnoredReport());
+
+/// Measures what DecimateOptions::max_normal_error limits.
+///
+/// \param original, decimated  valid (mesh.h). Vertices at equal positions correspond
+/// \return the maximum, over the corners of `decimated`, of the angle between the triangle and the
+///         nearest normal of the original's triangles at that position, in radians; 0 if there is
+///         none. Triangles without area, non-finite ones and positions where more than 64 triangles
+///         of the original meet are ignored
+double max_corner_angle(const Mesh& original, const Mesh& decimated);
+
+/// The distances of the points of a surface from another one, and the angles between the normals
+/// of the triangles there.
+struct DistanceStats {
+    double mean = 0.0;          ///< Over area, of samples; in the unit of the meshes.
+    double rms = 0.0;           ///< Over area, of samples.
+    double max = 0.0;           ///< At the examined points, which include all vertices.
+    double mean_degrees = 0.0;  ///< Over area, of samples.
+    double max_degrees = 0.0;   ///< Of samples.
+    double area = 0.0;
+};
+
+struct SurfaceDistance {
+    DistanceStats from_a;  ///< The distances of the points of a from b.
+    DistanceStats from_b;
+};
+
+/// Measures the distance between two surfaces.
+///
+/// \param a, b  valid (mesh.h). Triangles with a non-finite corner are ignored
+/// \return zeros if one of the surfaces has no triangle. Samples are evenly spread over the area,
+///         and their number is that of the triangles, from 20,000 to 50,000. For the maximum, the
+///         distances of all vertices are computed, and triangles are divided up to 6 times (fewer
+///         if there are many) where a distance between their corners may be larger
+SurfaceDistance surface_distance(const Mesh& a, const Mesh& b);
+
+// Subdivision computes finer, smoother surfaces.
+
+/// Applies Loop subdivision: each level splits every triangle into four and smooths all positions.
+///
+/// \param mesh  valid (mesh.h); vertices at equal positions count as one
+/// \param levels  at least 1; each multiplies the number of triangles by four, which must stay
+///         below 2^32 / 3
+/// \param frames  of the result. The normals of the input are ignored, because the surface is
+///         smooth everywhere: NormalMode::keep means angle if the input has normals, and none
+///         otherwise. If the input has tangents, they are recomputed unless the mode is none
+/// \param report  counts collapsed triangles, which are omitted; triangles with a non-finite
+///         corner, which do not change; and non-manifold edges
+/// \return the input's vertices in their order, then the new vertices at edge midpoints. Triangles
+///         keep the order of their source triangles, with material ranges and smoothing groups
+/// \throws InvalidInput if the mesh is not valid, or `levels` is out of range
+///
+/// Texture coordinates and colors of a new vertex are the mean of those at the ends of its edge,
+/// separately for each side of a seam. So each triangle keeps its texture mapping, and seams
+/// neither tear nor blur, while positions are smooth across them. Boundaries become cubic splines
+/// of their own vertices. Surfaces that meet at a non-manifold edge or vertex are smoothed
+/// separately and joined at the mean of their results. The same input gives the same bits.
+///
+/// Source: [Loop 1987]; OpenMesh's subdivider.
+Mesh subdivided(const Mesh& mesh, int levels, const FrameOptions& frames,
+                Report& report = IgnoredReport());
+
+}  // namespace relief

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// The limits of the process, and the memory of the machine: the physical memory, or less if a
+// control group (version 2) limits the process.
+#include "relief/mesh/limits.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+
+#include "relief/mesh/report.h"
+#include "require_memory.h"
+
+namespace relief {
+namespace {
+
+std::atomic<std::uint64_t> memory_limit{0};
+std::atomic<std::uint64_t> pixel_limit{0};
+std::atomic<bool> permits_outside_files{false};
+
+std::uint64_t memory_of_machine() {
+    const long pages = ::sysconf(_SC_PHYS_PAGES);
+    const long page_size = ::sysconf(_SC_PAGESIZE);
+    constexpr std::uint64_t unknown = std::uint64_t{1} << 33;
+    std::uint64_t bytes = pages > 0 && page_size > 0 ? static_cast<std::uint64_t>(pages) *
+                                                           static_cast<std::uint64_t>(page_size)
+                                                     : unknown;
+    std::ifstream group("/sys/fs/cgroup/memory.max");
+    std::uint64_t of_group = 0;  // The file has the word "max" if there is no limit.
+    if (group >> of_group) bytes = std::min(bytes, of_group);
+    return bytes;
+}
+
+double mebibytes(std::uint64_t bytes) {
+    return static_cast<double>(bytes) / (1 << 20);
+}
+
+/// Returns a * b, or the largest number if that is larger.
+std::uint64_t saturated_product(std::uint64_t a, std::uint64_t b) {
+    std::uint64_t product = 0;
+    return __builtin_mul_overflow(a, b, &product) ? ~std::uint64_t{0} : product;
+}
+
+}  // namespace
+
+void set_input_limits(const InputLimits& limits) {
+    memory_limit = limits.memory;
+    pixel_limit = limits.pixels;
+    permits_outside_files = limits.outside_files;
+}
+
+InputLimits input_limits() {
+    static const std::uint64_t default_memory = memory_of_machine() / 4 * 3;
+    const std::uint64_t memory = memory_limit;
+    return {memory > 0 ? memory : default_memory, pixel_limit, permits_outside_files};
+}
+
+void require_memory(std::uint64_t count, std::uint64_t size) {
+    const std::uint64_t limit = input_limits().memory;
+    const std::uint64_t bytes = saturated_product(count, size);
+    if (bytes <= limit) return;
+    throw InvalidInput(fmt::format("needs {:.1f} MiB of memory, but the limit is {:.1f}",
+                                   mebibytes(bytes), mebibytes(limit)));
+}
+
+void require_memory_for(const std::filesystem::path& file, std::uint64_t count,
+                        std::uint64_t size) {
+    try {
+        require_memory(count, size);
+    } catch (const InvalidInput& error) {
+        throw FileError(file, error.what());
+    }
+}
+
+void require_pixels(const std::filesystem::path& file, int width, int height) {
+    const std::uint64_t limit = input_limits().pixels;
+    const std::uint64_t pixels =
+        static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (limit == 0 || pixels <= limit) return;
+    throw FileError(
+        file, fmt::format("has {} x {} texels, but the limit is {} texels", width, height, limit));
+}
+
+}  // namespace relief

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Image decoding in another process, so that a reader of OpenImageIO that crashes, never returns
+/// or allocates too much ends that process and not this one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "io/image/image_module.h"
+
+namespace relief {
+
+class DecoderProcess;
+
+/// An image that a decoder process decodes.
+///
+/// A process is started by the first image that needs one. It serves further images after this one
+/// is closed, and ends with this program. Images that are open at the same time have a process
+/// each.
+class DecodedImage {
+  public:
+    /// Decodes encoded bytes, which are copied. `format` is OpenImageIO's name for the format.
+    /// \param name  for messages
+    /// \throws FileError if the decoder is not found, refuses the image, crashes, or exceeds its
+    ///         limits of memory and time
+    DecodedImage(const char* format, std::span<const std::byte> bytes, std::filesystem::path name);
+
+    /// Decodes an open file of `size` bytes; the descriptor is used by the constructor only.
+    DecodedImage(const char* format, int descriptor, std::uint64_t size,
+                 std::filesystem::path name);
+    ~DecodedImage();
+    DecodedImage(const DecodedImage&) = delete;
+    DecodedImage& operator=(const DecodedImage&) = delete;
+
+    /// The header as the decoder sent it; only the sample size has been checked.
+    [[nodiscard]] const ImageModuleHeader& header() const { return header_; }
+    /// The height of a tile, or 1.
+    [[nodiscard]] std::int64_t row_grain() const { return row_grain_; }
+    [[nodiscard]] const std::map<std::string, std::string>& text() const { return text_; }
+
+    /// Decodes rows [first, end), as ImageModule::read() does. The header must have been checked.
+    /// \throws FileError
+    void read(std::size_t first, std::size_t end, std::span<std::byte> samples);
+
+  private:
+    void open(const char* format, int descriptor, bool in_memory, std::uint64_t size);
+
+    std::filesystem::path name_;
+    std::unique_ptr<DecoderProcess> process_;  ///< Null after a failure.
+    std::uint64_t encoded_size_ = 0;
+    ImageModuleHeader header_;
+    std::int64_t row_grain_ = 1;
+    std::map<std::string, std::string> text_;
+};
+
+}  // namespace relief

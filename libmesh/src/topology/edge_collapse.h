@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Removes vertices of a manifold surface by edge collapses in order of increasing error.
+///
+/// The error is a quadric of distance and attributes ([Garland and Heckbert 1997], [Hoppe 1999]),
+/// in squared units of length weighted by area. A collapse moves a vertex onto a neighbor, so the
+/// result uses a subset of the vertices with all their attributes.
+///
+/// The work is done in passes. A pass computes the cheapest collapse of each vertex whose cost is
+/// unknown (in parallel), takes the cheapest fraction of them as candidates, and executes these on
+/// the current surface (serially), in the order of the vertices or, in the last pass, of cost. Each
+/// collapse examines at most `max_valence` triangles around each of a few vertices, so the time is
+/// linear for all shapes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "topology/topology.h"
+
+namespace relief {
+
+/// The maximum number of attributes of a wedge: texture coordinates, normal and color.
+constexpr std::size_t max_attributes = 9;
+
+/// The input of collapse_edges(), which consumes it.
+struct CollapseInput {
+    Topology topology;
+    std::vector<glm::dvec3> points;  ///< By vertex of the topology; within [-1, 1].
+    /// For each triangle of the topology, the wedges at its corners. If those of two neighbors
+    /// differ along their edge, there is a seam. Different parts have different wedges.
+    std::vector<glm::uvec3> wedges;
+    std::size_t wedge_count = 0;
+    /// Finite attributes by wedge. The first two are texture coordinates if `has_texcoords` is set.
+    std::vector<float> attributes;
+    /// By attribute: the squared length for which a squared difference of 1 counts.
+    std::vector<double> attribute_weights;
+    bool has_texcoords = false;
+    bool keeps_borders = false;  ///< Vertices at a boundary do not move.
+    bool keeps_seams = false;    ///< Vertices at a seam or at the border of a part do not move.
+    std::optional<std::size_t> triangles;  ///< The number of triangles to stop at.
+    /// The maximum error of a collapse: the root of its cost divided by the area, in the unit of
+    /// the points.
+    std::optional<double> max_error;
+    /// The minimum cosine of the angle between the normal of a triangle that changes and the
+    /// nearest normal of the input's triangles at each of its vertices.
+    std::optional<double> min_normal_cosine;
+};
+
+/// The result of collapse_edges().
+struct Collapsed {
+    /// By triangle of the topology: whether it remains.
+    std::vector<bool> remains;
+    /// By triangle of the topology: the wedges at its corners, if it remains.
+    std::vector<glm::uvec3> wedges;
+    std::size_t triangles = 0;  ///< The number of triangles that remain.
+    std::size_t collapses = 0;
+    std::size_t passes = 0;
+    /// The number of triangles that were examined, a measure of the work.
+    std::size_t examined = 0;
+};
+
+/// Collapses edges until a limit is reached, or no collapse is possible.
+///
+/// Collapses that flip a triangle, in space or in the texture, make its area zero, change the
+/// topology of the surface or merge lines are refused. Seams, borders of parts and boundaries are
+/// lines: a vertex on a line moves only along it, and a vertex where lines meet or end does not
+/// move. Vertices with more than `max_valence` triangles do not move until collapses around them
+/// have reduced that number. Ties: the lower index of a vertex wins.
+Collapsed collapse_edges(CollapseInput input);
+
+/// The maximum number of triangles around a vertex that moves.
+constexpr std::size_t max_valence = 64;
+
+}  // namespace relief

@@ -1,0 +1,531 @@
+// SPDX-License-Identifier: Apache-2.0
+// The distance between surfaces, by closest points on a bounding volume hierarchy. The triangles of
+// the hierarchy are sorted along a curve through space and grouped in pairs, so it is a complete
+// binary tree in an array. Axis-aligned boxes of long, thin triangles overlap: in a fan, a point is
+// in the boxes of a large part of the triangles. Nodes with such triangles have a second bound, an
+// oriented prism.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geometry/direction.h"
+#include "parallel.h"
+#include "relief/mesh/topology.h"
+
+namespace relief {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// The corners of a triangle.
+using Corners = std::array<glm::dvec3, 3>;
+
+/// Returns the squared distance from a point to a triangle, by the region of the triangle's plane
+/// in which the point lies. A triangle without area counts as its edges.
+double squared_distance(const glm::dvec3& p, const Corners& corners) {
+    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double squared_normal = glm::dot(normal, normal);
+    bool is_above = squared_normal > 0.0;
+    double nearest = infinite;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
+        const glm::dvec3 offset = p - corners[i];
+        if (glm::dot(glm::cross(normal, edge), offset) < 0.0) is_above = false;
+        const double length = glm::dot(edge, edge);
+        const double along =
+            length > 0.0 ? std::clamp(glm::dot(edge, offset) / length, 0.0, 1.0) : 0.0;
+        const glm::dvec3 away = offset - along * edge;
+        nearest = std::min(nearest, glm::dot(away, away));
+    }
+    if (!is_above) return nearest;
+    const double height = glm::dot(normal, p - corners[0]);
+    return std::min(nearest, height * height / squared_normal);
+}
+
+/// Positions are in single precision, so boxes in single precision are exact.
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::infinity()};
+    glm::vec3 high{-std::numeric_limits<float>::infinity()};
+
+    void add(const glm::vec3& p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    [[nodiscard]] double squared_distance(const glm::dvec3& p) const {
+        const glm::dvec3 away =
+            glm::max(glm::max(glm::dvec3(low) - p, p - glm::dvec3(high)), glm::dvec3(0.0));
+        return glm::dot(away, away);
+    }
+};
+
+/// An infinite prism with a rectangular cross-section, along the mean direction of long triangles.
+struct Prism {
+    std::array<glm::dvec3, 2> across;  ///< Perpendicular to the prism and to each other.
+    std::array<double, 2> low{infinite, infinite};
+    std::array<double, 2> high{-infinite, -infinite};
+
+    void add(const glm::dvec3& p) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double at = glm::dot(across[i], p);
+            low[i] = std::min(low[i], at);
+            high[i] = std::max(high[i], at);
+        }
+    }
+    /// Returns a lower bound of the squared distance, which considers the rounding of `across`.
+    [[nodiscard]] double squared_distance(const glm::dvec3& p) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double at = glm::dot(across[i], p);
+            const double away = std::max({low[i] - at, at - high[i], 0.0});
+            sum += away * away;
+        }
+        return sum * (1.0 - 1e-12);
+    }
+};
+
+/// The longest edge of a triangle, and its normal with twice the area as length.
+struct Extent {
+    glm::dvec3 edge{0.0};
+    glm::dvec3 normal{0.0};
+
+    /// Returns whether the triangle is at least 8 times as long as it is wide.
+    [[nodiscard]] bool is_thin() const { return glm::dot(edge, edge) > 8.0 * glm::length(normal); }
+};
+
+Extent extent_of(const Corners& corners) {
+    Extent extent;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
+        if (glm::dot(edge, edge) > glm::dot(extent.edge, extent.edge)) extent.edge = edge;
+    }
+    extent.normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    return extent;
+}
+
+/// Returns a unit vector perpendicular to a unit vector.
+glm::dvec3 perpendicular(const glm::dvec3& unit) {
+    const glm::dvec3 away = std::abs(unit.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    return glm::normalize(glm::cross(unit, away));
+}
+
+/// The triangle that is nearest to a point.
+struct Nearest {
+    double squared = infinite;
+    std::uint32_t triangle = 0;  ///< Index in the surface.
+};
+
+/// The finite triangles of a mesh, with a hierarchy.
+class Surface {
+  public:
+    explicit Surface(const Mesh& mesh);
+
+    [[nodiscard]] std::size_t size() const { return triangles_.size(); }
+    [[nodiscard]] Corners corners(std::size_t triangle) const {
+        const auto& at = corners_[triangle];
+        return {glm::dvec3(at[0]), glm::dvec3(at[1]), glm::dvec3(at[2])};
+    }
+    [[nodiscard]] const glm::uvec3& vertices(std::size_t triangle) const {
+        return triangles_[triangle];
+    }
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+    /// A bound of the rounding of positions in single precision.
+    [[nodiscard]] double rounding() const {
+        const glm::dvec3 size = glm::dvec3(boxes_[1].high) - glm::dvec3(boxes_[1].low);
+        return 1e-7 * std::max({size.x, size.y, size.z});
+    }
+    [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t guess) const;
+
+  private:
+    void gather_corners();
+    void sort_along_curve();
+    void build();
+    void build_prisms();
+    [[nodiscard]] Prism prism_of(std::size_t begin, std::size_t end) const;
+    [[nodiscard]] double least_squared_distance(const glm::dvec3& p, const Box& box,
+                                                std::uint32_t prism) const {
+        const double distance = box.squared_distance(p);
+        return prism == no_prism ? distance
+                                 : std::max(distance, prisms_[prism].squared_distance(p));
+    }
+    [[nodiscard]] std::pair<double, std::size_t> entry(const glm::dvec3& p,
+                                                       std::size_t node) const {
+        const std::uint32_t prism = prism_of_node_.empty() ? no_prism : prism_of_node_[node];
+        return {least_squared_distance(p, boxes_[node], prism), node};
+    }
+    /// Returns a lower bound of the squared distance to a triangle: that to its box.
+    [[nodiscard]] double least_squared_distance(const glm::dvec3& p, std::size_t triangle) const {
+        const auto& at = corners_[triangle];
+        const Box box{glm::min(glm::min(at[0], at[1]), at[2]),
+                      glm::max(glm::max(at[0], at[1]), at[2])};
+        return box.squared_distance(p);
+    }
+
+    static constexpr std::size_t leaf_size = 4;
+    static constexpr std::uint32_t no_prism = std::numeric_limits<std::uint32_t>::max();
+    const Mesh& mesh_;
+    std::vector<glm::uvec3> triangles_;
+    std::vector<std::array<glm::vec3, 3>> corners_;  ///< By triangle.
+    std::size_t leaves_ = 1;                         ///< A power of two.
+    std::vector<Box> boxes_;  ///< Children of node i are 2i and 2i + 1; leaves begin at leaves_.
+    std::vector<Prism> prisms_;
+    std::vector<std::uint32_t> prism_of_node_;  ///< Empty if there is no prism.
+};
+
+Surface::Surface(const Mesh& mesh) : mesh_(mesh) {
+    for (const glm::uvec3& t : mesh.triangles) {
+        if (is_finite(mesh.positions[t.x]) && is_finite(mesh.positions[t.y]) &&
+            is_finite(mesh.positions[t.z]))
+            triangles_.push_back(t);
+    }
+    if (triangles_.empty()) return;
+    gather_corners();
+    sort_along_curve();
+    gather_corners();
+    build();
+}
+
+void Surface::gather_corners() {
+    corners_.resize(triangles_.size());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        for (int i = 0; i < 3; ++i)
+            corners_[t][static_cast<std::size_t>(i)] = mesh_.positions[triangles_[t][i]];
+    }
+}
+
+void Surface::sort_along_curve() {
+    const Bounds bounds = bounds_of(mesh_);
+    const glm::dvec3 low(bounds.min);
+    const glm::dvec3 size = glm::dvec3(bounds.max) - low;
+    const double longest = std::max({size.x, size.y, size.z, 1e-300});
+    const auto spread = [&](double x) {
+        std::uint64_t code = 0;
+        const auto bits =
+            static_cast<std::uint64_t>(std::clamp(x / longest * 1048575.0, 0.0, 1048575.0));
+        for (unsigned bit = 0; bit < 20; ++bit)
+            code |= ((bits >> bit) & 1U) << (3 * bit);
+        return code;
+    };
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(triangles_.size());
+    parallel_for(keys.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const Corners at = corners(t);
+            const glm::dvec3 center = (at[0] + at[1] + at[2]) / 3.0 - low;
+            keys[t] = {spread(center.x) | (spread(center.y) << 1) | (spread(center.z) << 2),
+                       static_cast<std::uint32_t>(t)};
+        }
+    });
+    std::sort(keys.begin(), keys.end());
+    std::vector<glm::uvec3> sorted;
+    sorted.reserve(keys.size());
+    for (const auto& key : keys)
+        sorted.push_back(triangles_[key.second]);
+    triangles_ = std::move(sorted);
+}
+
+void Surface::build() {
+    leaves_ = std::bit_ceil((triangles_.size() + leaf_size - 1) / leaf_size);
+    boxes_.resize(2 * leaves_);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        Box& box = boxes_[leaves_ + t / leaf_size];
+        for (const glm::vec3& corner : corners_[t])
+            box.add(corner);
+    }
+    for (std::size_t node = leaves_ - 1; node > 0; --node) {
+        for (const std::size_t child : {2 * node, 2 * node + 1}) {
+            boxes_[node].low = glm::min(boxes_[node].low, boxes_[child].low);
+            boxes_[node].high = glm::max(boxes_[node].high, boxes_[child].high);
+        }
+    }
+    build_prisms();
+}
+
+/// Builds prisms for the nodes that have thin triangles and are not too large, so that the time is
+/// linear.
+void Surface::build_prisms() {
+    constexpr std::size_t max_leaves = 256;
+    std::vector<std::uint8_t> is_thin(leaves_, 0);
+    parallel_for(leaves_, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+            const std::size_t last = std::min((leaf + 1) * leaf_size, size());
+            for (std::size_t t = leaf * leaf_size; t < last; ++t)
+                is_thin[leaf] |= static_cast<std::uint8_t>(extent_of(corners(t)).is_thin());
+        }
+    });
+    struct Piece {
+        std::size_t node, begin, end;
+    };
+    std::vector<Piece> pieces;
+    for (std::size_t leaves = 1; leaves <= std::min(max_leaves, leaves_); leaves *= 2) {
+        for (std::size_t first = 0; first < leaves_; first += leaves) {
+            const auto begin = is_thin.begin() + static_cast<std::ptrdiff_t>(first);
+            if (std::find(begin, begin + static_cast<std::ptrdiff_t>(leaves), 1) ==
+                begin + static_cast<std::ptrdiff_t>(leaves))
+                continue;
+            pieces.push_back({(leaves_ + first) / leaves, first * leaf_size,
+                              std::min((first + leaves) * leaf_size, size())});
+        }
+    }
+    if (pieces.empty()) return;
+    prism_of_node_.assign(2 * leaves_, no_prism);
+    prisms_.resize(pieces.size());
+    parallel_for(pieces.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            prism_of_node_[pieces[i].node] = static_cast<std::uint32_t>(i);
+            prisms_[i] = prism_of(pieces[i].begin, pieces[i].end);
+        }
+    });
+}
+
+Prism Surface::prism_of(std::size_t begin, std::size_t end) const {
+    glm::dvec3 along(0.0);
+    glm::dvec3 normal(0.0);
+    for (std::size_t t = begin; t < end; ++t) {
+        const Extent extent = extent_of(corners(t));
+        along += glm::dot(extent.edge, along) < 0.0 ? -extent.edge : extent.edge;
+        normal += glm::dot(extent.normal, normal) < 0.0 ? -extent.normal : extent.normal;
+    }
+    const double length = glm::length(along);
+    along = length > 0.0 ? along / length : glm::dvec3(1, 0, 0);
+    normal -= glm::dot(normal, along) * along;
+    const double height = glm::length(normal);
+    Prism prism;
+    prism.across[0] = height > 0.0 ? normal / height : perpendicular(along);
+    prism.across[1] = glm::cross(along, prism.across[0]);
+    for (std::size_t t = begin; t < end; ++t) {
+        for (const glm::dvec3& corner : corners(t))
+            prism.add(corner);
+    }
+    // Projections are rounded relative to coordinates.
+    const glm::dvec3 largest =
+        glm::max(glm::abs(glm::dvec3(boxes_[1].low)), glm::abs(glm::dvec3(boxes_[1].high)));
+    const double margin = 1e-14 * (largest.x + largest.y + largest.z);
+    for (std::size_t i = 0; i < 2; ++i) {
+        prism.low[i] -= margin;
+        prism.high[i] += margin;
+    }
+    return prism;
+}
+
+/// Finds the nearest triangle; a good guess makes it faster. Ties: the lowest index wins.
+Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess) const {
+    Nearest best{squared_distance(p, corners(guess)), guess};
+    std::array<std::pair<double, std::size_t>, 64> stack;
+    std::size_t height = 0;
+    stack[height++] = entry(p, 1);
+    while (height > 0) {
+        const auto [distance, node] = stack[--height];
+        if (distance > best.squared) continue;
+        if (node >= leaves_) {
+            const std::size_t first = (node - leaves_) * leaf_size;
+            const std::size_t last = std::min(first + leaf_size, triangles_.size());
+            for (std::size_t t = first; t < last; ++t) {
+                if (least_squared_distance(p, t) > best.squared) continue;
+                const double here = squared_distance(p, corners(t));
+                const auto index = static_cast<std::uint32_t>(t);
+                if (here < best.squared || (here == best.squared && index < best.triangle))
+                    best = {here, index};
+            }
+            continue;
+        }
+        std::pair<double, std::size_t> near = entry(p, 2 * node);
+        std::pair<double, std::size_t> far = entry(p, 2 * node + 1);
+        if (far.first < near.first) std::swap(near, far);
+        if (far.first <= best.squared) stack[height++] = far;
+        if (near.first <= best.squared) stack[height++] = near;
+    }
+    return best;
+}
+
+glm::dvec3 normal_of(const Corners& corners) {
+    return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+}
+
+/// Visits the pieces of a parallel loop with fixed borders, so that sums do not depend on the
+/// number of threads.
+template <typename Value, typename Measure>
+std::vector<Value> measured_in_pieces(std::size_t count, const Measure& measure) {
+    constexpr std::size_t piece = 4096;
+    std::vector<Value> values((count + piece - 1) / piece);
+    parallel_for(values.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            values[i] = measure(i * piece, std::min(count, (i + 1) * piece));
+    });
+    return values;
+}
+
+/// Computes means over samples at equal steps of area, and the maximum over them.
+void measure_samples(const Surface& from, const Surface& to, DistanceStats& stats) {
+    std::vector<double> areas;
+    areas.reserve(from.size());
+    for (std::size_t t = 0; t < from.size(); ++t) {
+        stats.area += glm::length(normal_of(from.corners(t))) / 2.0;
+        areas.push_back(stats.area);
+    }
+    if (!(stats.area > 0.0)) return;
+    const std::size_t count =
+        std::clamp<std::size_t>(std::max(from.size(), to.size()), 20'000, 50'000);
+    using Sums = DistanceStats;
+    const std::vector<Sums> pieces =
+        measured_in_pieces<Sums>(count, [&](std::size_t begin, std::size_t end) {
+            Sums sums;
+            std::uint32_t guess = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+                const auto found = std::lower_bound(areas.begin(), areas.end(), at * stats.area);
+                const auto t =
+                    std::min(static_cast<std::size_t>(found - areas.begin()), from.size() - 1);
+                // A sequence with low discrepancy places the sample within its triangle.
+                constexpr double step_u = 0.7548776662466927;
+                constexpr double step_v = 0.5698402909980532;
+                double u = static_cast<double>(i) * step_u;
+                double v = static_cast<double>(i) * step_v;
+                u -= std::floor(u);
+                v -= std::floor(v);
+                if (u + v > 1.0) {
+                    u = 1.0 - u;
+                    v = 1.0 - v;
+                }
+                const Corners c = from.corners(t);
+                const Nearest nearest =
+                    to.nearest(c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]), guess);
+                guess = nearest.triangle;
+                sums.mean += std::sqrt(nearest.squared);
+                sums.rms += nearest.squared;
+                sums.max = std::max(sums.max, nearest.squared);
+                const glm::dvec3 a = normal_of(c);
+                const glm::dvec3 b = normal_of(to.corners(nearest.triangle));
+                const double degrees = angle_between(a, b) * 180.0 / std::numbers::pi;
+                sums.mean_degrees += degrees;
+                sums.max_degrees = std::max(sums.max_degrees, degrees);
+            }
+            return sums;
+        });
+    for (const Sums& piece : pieces) {
+        stats.mean += piece.mean;
+        stats.rms += piece.rms;
+        stats.max = std::max(stats.max, piece.max);
+        stats.mean_degrees += piece.mean_degrees;
+        stats.max_degrees = std::max(stats.max_degrees, piece.max_degrees);
+    }
+    stats.mean /= static_cast<double>(count);
+    stats.rms = std::sqrt(stats.rms / static_cast<double>(count));
+    stats.max = std::sqrt(stats.max);
+    stats.mean_degrees /= static_cast<double>(count);
+}
+
+/// A point of a surface with the nearest triangle of the other one.
+struct Probe {
+    glm::dvec3 point;
+    Nearest nearest;
+};
+
+/// Returns the largest squared distance at the corners of a piece of a triangle and of its parts.
+/// The distance from one triangle is convex, so the largest one at the corners bounds it. The piece
+/// is divided while that bound is above `known`.
+double largest_distance(const Surface& to, const std::array<Probe, 3>& piece, double known,
+                        int depth) {
+    constexpr double slack = 1.004;  // Of squares: 0.2 %.
+    double corner = 0.0;
+    for (const Probe& probe : piece)
+        corner = std::max(corner, probe.nearest.squared);
+    const auto is_bounded_by = [&](std::uint32_t candidate) {
+        const Corners triangle = to.corners(candidate);
+        const double allowed = std::max(known, corner) * slack;
+        return std::all_of(piece.begin(), piece.end(), [&](const Probe& probe) {
+            return squared_distance(probe.point, triangle) <= allowed;
+        });
+    };
+    for (const Probe& probe : piece) {
+        if (is_bounded_by(probe.nearest.triangle)) return corner;
+    }
+    const glm::dvec3 center = (piece[0].point + piece[1].point + piece[2].point) / 3.0;
+    const Nearest of_center = to.nearest(center, piece[0].nearest.triangle);
+    corner = std::max(corner, of_center.squared);
+    if (depth == 0 || is_bounded_by(of_center.triangle)) return corner;
+    std::array<Probe, 3> middle;
+    for (std::size_t i = 0; i < 3; ++i) {
+        middle[i].point = (piece[(i + 1) % 3].point + piece[(i + 2) % 3].point) / 2.0;
+        middle[i].nearest = to.nearest(middle[i].point, of_center.triangle);
+        corner = std::max(corner, middle[i].nearest.squared);
+    }
+    known = std::max(known, corner);
+    double largest = std::max(corner, largest_distance(to, middle, known, depth - 1));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::array<Probe, 3> part = {piece[i], middle[(i + 2) % 3], middle[(i + 1) % 3]};
+        largest =
+            std::max(largest, largest_distance(to, part, std::max(known, largest), depth - 1));
+    }
+    return largest;
+}
+
+/// \param sampled  the maximum distance of samples
+double max_distance(const Surface& from, const Surface& to, double sampled) {
+    const std::vector<glm::vec3>& positions = from.mesh().positions;
+    std::vector<bool> is_used(positions.size(), false);
+    for (std::size_t t = 0; t < from.size(); ++t) {
+        for (int i = 0; i < 3; ++i)
+            is_used[from.vertices(t)[i]] = true;
+    }
+    std::vector<Nearest> nearest(positions.size());
+    const auto of_vertices =
+        measured_in_pieces<double>(positions.size(), [&](std::size_t begin, std::size_t end) {
+            double largest = 0.0;
+            std::uint32_t guess = 0;
+            for (std::size_t v = begin; v < end; ++v) {
+                if (!is_used[v]) continue;
+                nearest[v] = to.nearest(glm::dvec3(positions[v]), guess);
+                guess = nearest[v].triangle;
+                largest = std::max(largest, nearest[v].squared);
+            }
+            return largest;
+        });
+    const double of_all =
+        std::max(*std::max_element(of_vertices.begin(), of_vertices.end()), sampled * sampled);
+    // Distances below the rounding of positions are not told apart.
+    const double known = std::max(of_all, to.rounding() * to.rounding());
+    constexpr std::size_t max_pieces = 500'000;
+    int depth = 1;
+    while (depth < 6 && (from.size() << (2 * depth + 2)) <= max_pieces)
+        ++depth;
+    const auto of_triangles =
+        measured_in_pieces<double>(from.size(), [&](std::size_t begin, std::size_t end) {
+            double largest = of_all;
+            for (std::size_t t = begin; t < end; ++t) {
+                std::array<Probe, 3> piece;
+                const Corners corners = from.corners(t);
+                for (std::size_t i = 0; i < 3; ++i)
+                    piece[i] = {corners[i], nearest[from.vertices(t)[static_cast<int>(i)]]};
+                largest = std::max(largest, largest_distance(to, piece, known, depth));
+            }
+            return largest;
+        });
+    return std::sqrt(*std::max_element(of_triangles.begin(), of_triangles.end()));
+}
+
+DistanceStats distances(const Surface& from, const Surface& to) {
+    DistanceStats stats;
+    measure_samples(from, to, stats);
+    stats.max = max_distance(from, to, stats.max);
+    return stats;
+}
+
+}  // namespace
+
+SurfaceDistance surface_distance(const Mesh& a, const Mesh& b) {
+    validate(a);
+    validate(b);
+    const Surface surface_a(a);
+    const Surface surface_b(b);
+    if (surface_a.size() == 0 || surface_b.size() == 0) return {};
+    return {distances(surface_a, surface_b), distances(surface_b, surface_a)};
+}
+
+}  // namespace relief

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Numpy arrays as views of relief's types, results as arrays without a copy, names of enumerators,
+/// findings as dictionaries, and calls without the interpreter's lock (GIL).
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "relief/mesh/buffers.h"
+#include "relief/mesh/enum_names.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
+
+namespace relief::python {
+
+namespace py = pybind11;
+
+// Each function adds the functions of a topic to the module.
+void add_errors(py::module_& module);
+void add_execution(py::module_& module);
+void add_meshes(py::module_& module);
+void add_images(py::module_& module);
+void add_bake(py::module_& module);
+void add_scenes(py::module_& module);
+
+/// Calls `work` without the GIL, so that other Python threads run meanwhile.
+template <typename Work>
+auto without_gil(Work&& work) {
+    const py::gil_scoped_release release;
+    return std::forward<Work>(work)();
+}
+
+// Input arrays.
+
+/// Rows of numbers in an array: n rows of equal length at equal distances.
+struct RowView {
+    void* data = nullptr;
+    std::size_t size = 0;
+    std::size_t stride = 0;  ///< In bytes.
+};
+
+/// Views an array of float32 and shape (n, columns). The values of a row must be adjacent; rows may
+/// have any distance, as in an interleaved vertex buffer.
+/// \param name  for messages
+/// \throws TypeError for another type, InvalidInput for another shape or layout, with the remedy
+RowView float_rows(const py::handle& value, const char* name, int columns, bool is_output = false);
+
+/// The same as a span of vectors.
+template <typename Vector>
+StridedSpan<const Vector> rows_of(const py::handle& value, const char* name) {
+    const RowView rows = float_rows(value, name, Vector::length());
+    return {static_cast<const Vector*>(rows.data), rows.size, rows.stride};
+}
+template <typename Vector>
+StridedSpan<Vector> output_rows(const py::handle& value, const char* name) {
+    const RowView rows = float_rows(value, name, Vector::length(), true);
+    return {static_cast<Vector*>(rows.data), rows.size, rows.stride};
+}
+
+/// Views an array of uint16 or uint32 and shape (m, 3), without gaps.
+TriangleSpan triangles_of(const py::handle& value, const char* name = "triangles");
+
+/// Copies such an array.
+std::vector<glm::uvec3> copied_triangles(const py::handle& value, const char* name = "triangles");
+
+/// Views an array of uint32 and shape (n), without gaps; empty for None.
+std::span<const std::uint32_t> indices_of(const py::handle& value, const char* name);
+
+/// Copies rows of floats; empty for None.
+template <typename Vector>
+std::vector<Vector> copied_rows(const py::handle& value, const char* name) {
+    std::vector<Vector> values;
+    if (value.is_none()) return values;
+    const StridedSpan<const Vector> rows = rows_of<Vector>(value, name);
+    values.reserve(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        values.push_back(rows[i]);
+    return values;
+}
+
+// Results.
+
+/// Creates an array on the memory of a vector, which it then owns.
+template <typename Scalar, typename Value>
+py::array_t<Scalar> array_of(std::vector<Value>&& values, std::vector<py::ssize_t> shape) {
+    auto* owner = new std::vector<Value>(std::move(values));
+    const py::capsule capsule(
+        owner, [](void* memory) { delete static_cast<std::vector<Value>*>(memory); });
+    return py::array_t<Scalar>(std::move(shape), reinterpret_cast<Scalar*>(owner->data()), capsule);
+}
+
+/// The same for vectors of GLM: shape (n, columns).
+template <typename Vector>
+py::array_t<typename Vector::value_type> array_of(std::vector<Vector>&& values) {
+    const auto size = static_cast<py::ssize_t>(values.size());
+    return array_of<typename Vector::value_type>(std::move(values), {size, Vector::length()});
+}
+
+// Images.
+
+/// Copies an array of uint8, uint16 or float32 and shape (height, width) or (height, width,
+/// channels). \throws TypeError, InvalidInput
+Image image_of(const py::handle& value, const char* name,
+               ColorSpace color_space = ColorSpace::data);
+
+/// Creates an array on the memory of an image. Images of one channel have the shape (height,
+/// width).
+py::array array_of(Image&& image);
+
+// Options and reports.
+
+/// The error for a name that is not one of an enumeration.
+[[noreturn]] void refuse_name(const char* option, const std::string& name,
+                              const std::vector<std::string>& valid);
+
+/// Returns the enumerator with the name that command lines use.
+template <typename Enum, typename Names = decltype(enum_names<Enum>)>
+Enum value_of(const std::string& name, const char* option, const Names& names = enum_names<Enum>) {
+    std::vector<std::string> valid;
+    for (const EnumName<Enum>& entry : names) {
+        if (entry.name == name) return entry.value;
+        valid.emplace_back(entry.name);
+    }
+    refuse_name(option, name, valid);
+}
+
+/// Returns the value of a name, or nothing for None and "auto".
+template <typename Enum>
+std::optional<Enum> optional_value(const std::optional<std::string>& name, const char* option) {
+    if (!name || *name == "auto") return std::nullopt;
+    return value_of<Enum>(*name, option);
+}
+
+/// Receives findings as dictionaries, if the caller passes a list.
+using FindingList = std::optional<py::list>;
+
+/// Converts findings to dictionaries with the keys of the tools' JSON, without "where".
+py::list to_list(const Report& report);
+
+void append(const Report& report, const FindingList& list);
+
+/// Converts statistics with the keys of the tools' JSON.
+/// \param element  the key of the count: "corners"
+py::dict to_dict(const ErrorStats& errors, const char* element);
+
+}  // namespace relief::python

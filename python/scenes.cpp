@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes and their pictures.
+// Tests: tests/python/test_command_line.py.
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <tuple>
+
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.h"
+#include "mesh_type.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/renderer.h"
+#include "relief/shade/scene.h"
+#include "relief/shade/scene_file.h"
+
+namespace relief::python {
+namespace {
+
+using Text = std::optional<std::string>;
+using Color = std::tuple<float, float, float>;
+using ColorAndAlpha = std::tuple<float, float, float, float>;
+
+glm::vec3 vector_of(const Color& color) {
+    return {std::get<0>(color), std::get<1>(color), std::get<2>(color)};
+}
+
+float radians(double degrees) {
+    return static_cast<float>(degrees * std::numbers::pi / 180.0);
+}
+
+/// A scene, and the size of pictures that its file states.
+struct SceneObject {
+    Scene scene;
+    std::optional<glm::ivec2> size;
+};
+
+/// Loads a scene with the background that relief-view draws.
+SceneObject load(const std::filesystem::path& file, const FindingList& report) {
+    Report findings;
+    SceneObject loaded = without_gil([&] {
+        SceneGraph graph = load_scene_graph(file, SceneOptions{}, findings);
+        if (file.extension() != ".json") graph.scene.background = default_background;
+        return SceneObject{std::move(graph.scene), graph.picture_size};
+    });
+    append(findings, report);
+    return loaded;
+}
+
+SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color& specular,
+                      float shininess, const Text& material, const py::object& normal_map,
+                      const std::string& green, const std::string& normal_space) {
+    constexpr auto spaces = std::to_array<EnumName<NormalSpace>>(
+        {{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}});
+    Material surface;
+    if (material) {
+        const std::optional<Material> named = material_by_name(*material);
+        if (!named) refuse_name("material", *material, material_names());
+        surface = *named;
+    } else {
+        surface.diffuse = vector_of(diffuse);
+        surface.ambient = surface.diffuse;
+        surface.specular = vector_of(specular);
+        surface.shininess = shininess;
+    }
+    SceneObject result;
+    Scene& scene = result.scene;
+    if (!normal_map.is_none()) {
+        scene.images.push_back(
+            {.name = "normal map", .source = Shared(image_of(normal_map, "normal_map"))});
+        NormalMap map;
+        map.texture.image = 0;
+        map.green = value_of<Green>(green, "green");
+        map.space = value_of<NormalSpace>(normal_space, "normal_space", spaces);
+        surface.normal_map = map;
+    }
+    surface.double_sided = true;
+    Mesh copy = mesh;
+    if (copy.normals.empty()) {
+        Report unused;
+        FrameOptions options;
+        options.normals = NormalWeight::angle;
+        copy = with_frames(std::move(copy), options, unused).mesh;
+    }
+    copy.material_ranges = {
+        {.triangle_count = static_cast<std::uint32_t>(copy.triangles.size()), .material = 0}};
+    scene.meshes.emplace_back(std::move(copy));
+    scene.materials.push_back(std::move(surface));
+    scene.instances.push_back({.mesh = 0, .name = mesh.name});
+    scene.background = default_background;
+    return result;
+}
+
+/// The view of a picture, as the options of relief-view.
+struct ViewRequest {
+    std::optional<std::pair<int, int>> size;
+    int samples = 4;
+    std::string output;
+    std::optional<std::tuple<double, double, double>> camera;  ///< Degrees, degrees, factor.
+    std::optional<double> fov_degrees;
+    std::string backend;
+};
+
+Camera camera_of(const Scene& scene, const ViewRequest& view, float aspect) {
+    if (scene.camera && !view.camera) {
+        Camera camera = *scene.camera;
+        if (view.fov_degrees) camera.vertical_fov = radians(*view.fov_degrees);
+        return camera;
+    }
+    const float fov = view.fov_degrees ? radians(*view.fov_degrees) : default_vertical_fov;
+    if (!view.camera) return framed(scene, default_azimuth, default_elevation, fov, aspect);
+    const auto& [azimuth, elevation, factor] = *view.camera;
+    return framed(scene, radians(azimuth), radians(elevation), fov, aspect,
+                  static_cast<float>(factor));
+}
+
+Image draw(const SceneObject& object, const ViewRequest& view, Report& report) {
+    constexpr auto backends = std::to_array<EnumName<Backend>>(
+        {{"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}});
+    constexpr auto codings =
+        std::to_array<EnumName<OutputCoding>>({{"srgb", OutputCoding::srgb},
+                                               {"linear", OutputCoding::linear},
+                                               {"clamped", OutputCoding::clamped}});
+    FrameSettings settings;
+    if (view.size) {
+        settings.width = view.size->first;
+        settings.height = view.size->second;
+    } else if (object.size) {
+        settings.width = object.size->x;
+        settings.height = object.size->y;
+    }
+    settings.samples = view.samples;
+    settings.output = value_of<OutputCoding>(view.output, "output", codings);
+    const Backend backend = value_of<Backend>(view.backend, "backend", backends);
+    Scene scene = object.scene;  // Meshes and images are shared.
+    const Camera camera = camera_of(
+        scene, view, static_cast<float>(settings.width) / static_cast<float>(settings.height));
+    const bool has_light = !scene.directional_lights.empty() || !scene.point_lights.empty() ||
+                           !scene.spot_lights.empty() ||
+                           (scene.environment && scene.environment->lights);
+    if (!has_light) add_default_lights(scene, camera);
+    const Context context(backend);
+    Renderer renderer(context, scene, settings, report);
+    Image picture = renderer.draw(camera).image;
+    if (scene.background.a == 1.0F) drop_alpha(picture);
+    return picture;
+}
+
+py::array py_render(const SceneObject& scene, std::optional<std::pair<int, int>> size, int samples,
+                    const std::string& output,
+                    std::optional<std::tuple<double, double, double>> camera,
+                    std::optional<double> fov_degrees, const std::string& backend,
+                    const FindingList& report) {
+    const ViewRequest view{size, samples, output, camera, fov_degrees, backend};
+    Report findings;
+    Image picture = without_gil([&] { return draw(scene, view, findings); });
+    append(findings, report);
+    return array_of(std::move(picture));
+}
+
+py::list py_effects(const SceneObject& object) {
+    const FramePlan plan = without_gil([&] { return plan_effects(object.scene, FrameSettings{}); });
+    py::list draws;
+    for (const DrawPlan& draw : plan.draws) {
+        py::list effects;
+        for (const EffectReason& effect : draw.reasons) {
+            py::dict entry;
+            entry["effect"] = effect.effect;
+            entry["on"] = effect.on;
+            entry["reason"] = effect.reason;
+            effects.append(std::move(entry));
+        }
+        draws.append(std::move(effects));
+    }
+    return draws;
+}
+
+}  // namespace
+
+void add_scenes(py::module_& module) {
+    using py::arg;
+    const py::object none = py::none();
+    py::class_<SceneObject>(module, "Scene", "Meshes, materials, lights, and a camera to draw.")
+        .def(py::init(&new_scene), arg("mesh"), py::kw_only(),
+             arg("diffuse") = Color(0.8F, 0.8F, 0.8F), arg("specular") = Color(0.0F, 0.0F, 0.0F),
+             arg("shininess") = 32.0F, arg("material") = none, arg("normal_map") = none,
+             arg("green") = "up", arg("normal_space") = "tangent",
+             "Create a scene of one mesh with a Phong material, or one of the classic table.\n\n"
+             "Colors are linear. The normal map is a stored map, as from bump().")
+        .def_static("load", &load, arg("file"), py::kw_only(), arg("report") = none,
+                    "Load a model (.glb .gltf .obj .ply .stl .off) or a scene file (.json).")
+        .def_property(
+            "ambient",
+            [](const SceneObject& object) {
+                const glm::vec3& color = object.scene.ambient;
+                return Color(color.x, color.y, color.z);
+            },
+            [](SceneObject& object, const Color& color) {
+                object.scene.ambient = vector_of(color);
+            },
+            "The constant radiance from all directions, linear.")
+        .def_property(
+            "background",
+            [](const SceneObject& object) {
+                const glm::vec4& color = object.scene.background;
+                return ColorAndAlpha(color.x, color.y, color.z, color.w);
+            },
+            [](SceneObject& object, const ColorAndAlpha& color) {
+                const auto& [red, green, blue, alpha] = color;
+                object.scene.background = {red, green, blue, alpha};
+            },
+            "The color behind the model: linear RGB, and alpha. Pictures of an opaque background\n"
+            "have three channels.")
+        .def_property(
+            "exposure", [](const SceneObject& object) { return object.scene.exposure; },
+            [](SceneObject& object, float exposure) { object.scene.exposure = exposure; },
+            "The factor of the radiance before tone mapping.")
+        .def(
+            "add_light",
+            [](SceneObject& object, const Color& direction, const Color& irradiance) {
+                object.scene.directional_lights.push_back(
+                    {.direction_world = vector_of(direction), .irradiance = vector_of(irradiance)});
+            },
+            arg("direction"), py::kw_only(), arg("irradiance") = Color(1.0F, 1.0F, 1.0F),
+            "Add light that travels in a direction. A white surface that faces it has the\n"
+            "radiance `irradiance`. Scenes without a light get a key and a fill light.")
+        .def("render", &py_render, py::kw_only(), arg("size") = none, arg("samples") = 4,
+             arg("output") = "srgb", arg("camera") = none, arg("fov_degrees") = none,
+             arg("backend") = "auto", arg("report") = none,
+             "Draw the scene to an array of shape (height, width, 3 or 4), as relief-view does.\n\n"
+             "`size` is (width, height). `output` is srgb (uint8), linear or clamped (float32).\n"
+             "`camera` is (azimuth, elevation, distance factor), in degrees.")
+        .def("effects", &py_effects,
+             "Return for each draw which effects the scene needs, and why the others are off.");
+}
+
+}  // namespace relief::python

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of bakes with several samples and formats: they equal those of check_bake(), and the error
+// of sampling is separate from that of rounding.
+#include "relief/accuracy/bake_accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mesh/bake/bake_support.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/bake_check.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
+
+namespace relief {
+namespace {
+
+using test::sized;
+
+struct WavyBake {
+    Mesh high = test::waves(256, 20.0);
+    BakeOptions options = sized(64, 192);
+    Report report;
+    Baker baker{std::span(&high, 1), make_quad(), options, report};
+    std::vector<NormalMapFormat> formats = {{.bits = 8}, {.bits = 16}};
+
+    BakeCheck check_of(int samples, const NormalMapFormat& format) {
+        BakeMapOptions map = options.map;
+        map.samples = samples;
+        Image normals = make_image(64, 192, 3, 32, ColorSpace::data);
+        std::size_t at = 0;
+        baker.bake(
+            map,
+            [&](const BakedRows& rows) {
+                for (const float value : rows.normals)
+                    normals.as<float>()[at++] = value;
+            },
+            report);
+        BakeCheckOptions check;
+        check.map = map;
+        check.reference_samples = 64;
+        return check_bake(baker, encode_normal_map(normals, format, report), check, {}, report);
+    }
+};
+
+/// The bakes that several tests measure.
+WavyBake& shared_bake() {
+    static WavyBake bake;
+    return bake;
+}
+
+/// All texels with 256 samples as the reference, the default.
+const BakeReference& whole_map() {
+    static const BakeReference reference(shared_bake().baker, shared_bake().options.map, 64 * 192);
+    return reference;
+}
+
+TEST(BakeAccuracy, EqualsACheckOfTheWholeMap) {
+    WavyBake& all = shared_bake();
+    const BakeReference reference(all.baker, all.options.map, 64 * 192, 64);
+    EXPECT_TRUE(reference.is_whole());
+    EXPECT_EQ(reference.texels(), 64U * 192U);
+    EXPECT_EQ(reference.samples(), 64);
+    for (const int samples : {1, 4}) {
+        const BakeMeasurement measured = measure_bake(reference, {samples}, all.formats);
+        EXPECT_GE(measured.rays, static_cast<std::size_t>(samples) * 64U * 192U);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const BakeCheck check = all.check_of(samples, all.formats[i]);
+            EXPECT_NEAR(measured.errors[i].rms, check.error.rms, 1e-9);
+            EXPECT_EQ(measured.errors[i].max, check.error.max);
+            const auto codes = static_cast<std::size_t>(BakeStage::quantization);
+            EXPECT_NEAR(measured.quantization[i].rms, check.stages.at(codes).error.rms, 1e-6);
+        }
+    }
+}
+
+TEST(BakeAccuracy, MoreSamplesAndBitsHaveSmallerErrors) {
+    const WavyBake& all = shared_bake();
+    const BakeReference& reference = whole_map();
+    EXPECT_EQ(reference.samples(), 256);
+    const BakeMeasurement one = measure_bake(reference, {1}, all.formats);
+    const BakeMeasurement four = measure_bake(reference, {4}, all.formats);
+    EXPECT_LT(four.errors[1].rms, one.errors[1].rms / 2.0);
+    EXPECT_LT(four.errors[1].rms, four.errors[0].rms);
+    EXPECT_LT(four.quantization[1].rms, 0.001);
+    EXPECT_GT(four.quantization[0].rms, 0.05);
+    // A map with one sample at the center is exact there.
+    EXPECT_LT(one.center[1].max, 0.002);
+}
+
+TEST(BakeAccuracy, ErrorMapsHoldTheErrorsOfEachTexel) {
+    const WavyBake& all = shared_bake();
+    const BakeReference part(all.baker, all.options.map, 1);
+    for (const BakeReference* reference : {&whole_map(), &part}) {
+        const BakeMeasurement measured = measure_bake(*reference, {4}, all.formats);
+        const Image map = bake_error_map(*reference, {4}, all.formats[0]);
+        EXPECT_EQ(map.width, 64);
+        EXPECT_EQ(static_cast<std::size_t>(map.height), reference->texels() / 64);
+        const std::span<const float> texel_errors = map.as<float>();
+        const ErrorStats all_errors = error_stats({texel_errors.begin(), texel_errors.end()});
+        EXPECT_EQ(all_errors.count, measured.errors[0].count);
+        EXPECT_NEAR(all_errors.rms, measured.errors[0].rms, 1e-6);
+        EXPECT_NEAR(all_errors.max, measured.errors[0].max, 1e-6);
+    }
+}
+
+TEST(BakeAccuracy, APartHasNearlyTheErrorsOfTheWhole) {
+    const WavyBake& all = shared_bake();
+    const BakeReference part(all.baker, all.options.map, 1);
+    EXPECT_FALSE(part.is_whole());
+    EXPECT_EQ(part.texels(), 64U * 64U);
+    EXPECT_NEAR(measure_bake(part, {1}, all.formats).errors[1].rms,
+                measure_bake(whole_map(), {1}, all.formats).errors[1].rms, 0.01);
+}
+
+TEST(BakeAccuracy, SeparatesSamplingFromRoundingUpTo256Samples) {
+    WavyBake& all = shared_bake();
+    const BakeReference reference(all.baker, all.options.map, 64, 1024);
+    EXPECT_EQ(reference.samples(), 1024);
+    const BakeMeasurement few = measure_bake(reference, {16}, all.formats);
+    const BakeMeasurement many = measure_bake(reference, {256}, all.formats);
+    // A map is not compared with its own samples. Four times as many samples per side are better.
+    EXPECT_GT(many.sampling.rms, 0.0);
+    EXPECT_LT(many.sampling.rms, 0.5 * few.sampling.rms);
+    // Rounding and sampling are independent, and their sum is the error.
+    EXPECT_NEAR(many.errors[0].rms, std::hypot(many.sampling.rms, many.quantization[0].rms),
+                0.05 * many.errors[0].rms);
+    // Larger maps have no memory for this number of samples, even if their charts are small.
+    BakeMapOptions large = all.options.map;
+    large.width = 2112;
+    large.height = 64;
+    Mesh low = make_quad();
+    for (glm::vec2& texcoord : low.texcoords)
+        texcoord *= 0.1F;
+    const Baker baker(std::span(&all.high, 1), low, all.options, all.report);
+    EXPECT_EQ(BakeReference(baker, large, 64, 1024).samples(), 256);
+}
+
+}  // namespace
+}  // namespace relief

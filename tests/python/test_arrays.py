@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays in and out: views without copies, types and shapes that are refused, exceptions, reports and threads."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+import relief
+
+DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+
+
+def grid(side, dtype="uint32"):
+    """A wave over the unit square: positions, texture coordinates and triangles."""
+    v, u = numpy.meshgrid(numpy.linspace(0, 1, side), numpy.linspace(0, 1, side), indexing="ij")
+    positions = numpy.stack([u, 1 - v, 0.1 * numpy.sin(6 * u + 4 * v)], axis=-1).reshape(-1, 3)
+    first = (numpy.arange(side - 1)[:, None] * side + numpy.arange(side - 1)).reshape(-1)
+    corners = [first, first + side, first + side + 1, first, first + side + 1, first + 1]
+    texcoords = numpy.stack([u, v], axis=-1).reshape(-1, 2)
+    return (positions.astype("float32"), texcoords.astype("float32"),
+            numpy.stack(corners, axis=-1).reshape(-1, 3).astype(dtype))
+
+
+class Views(unittest.TestCase):
+    """Arrays are read and written where they are."""
+
+    def test_interleaved_buffer(self):
+        positions, texcoords, triangles = grid(33, "uint16")
+        vertices = numpy.zeros(len(positions), dtype=[("position", "f4", 3), ("normal", "f4", 3),
+                                                      ("tangent", "f4", 4), ("texcoord", "f4", 2)])
+        vertices["position"], vertices["texcoord"] = positions, texcoords
+        result = relief.vertex_normals(vertices["position"], triangles, out=vertices["normal"])
+        self.assertTrue(numpy.shares_memory(result, vertices))
+        relief.vertex_tangents(vertices["position"], vertices["normal"], vertices["texcoord"], triangles,
+                               out=vertices["tangent"])
+        packed = relief.vertex_normals(positions, triangles.astype("uint32"))
+        numpy.testing.assert_array_equal(vertices["normal"], packed)
+        numpy.testing.assert_array_equal(
+            vertices["tangent"], relief.vertex_tangents(positions, packed, texcoords, triangles))
+        numpy.testing.assert_array_equal(vertices["position"], positions)
+
+    def test_mesh_attributes_are_views(self):
+        positions, texcoords, triangles = grid(5)
+        mesh = relief.Mesh(positions, triangles, texcoords=texcoords)
+        mesh.positions[:, 2] = 2.0
+        self.assertEqual(mesh.positions[7, 2], 2.0)
+        self.assertNotEqual(positions[7, 2], 2.0)
+        self.assertIsNone(mesh.normals)
+        view = mesh.positions
+        del mesh  # The view keeps the memory.
+        self.assertEqual(view[24, 2], 2.0)
+
+    def test_input_is_not_copied(self):
+        # A process of its own, because peak memory never decreases.
+        script = """
+import numpy, resource, relief
+def peak(): return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+positions = numpy.random.default_rng(1).random((8_000_000, 3), dtype=numpy.float32)
+triangles = numpy.zeros((1, 3), dtype=numpy.uint32)
+relief.triangle_normals(positions[:9], triangles)
+before = peak()
+relief.triangle_normals(positions, triangles)
+print((peak() - before) / positions.nbytes)
+"""
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+        self.assertLess(float(done.stdout), 0.1)
+
+    def test_result_owns_its_memory(self):
+        positions, _, triangles = grid(9)
+        normals = relief.triangle_normals(positions, triangles)
+        before = normals.copy()
+        for _ in range(20):
+            relief.triangle_normals(positions + 1.0, triangles)
+        numpy.testing.assert_array_equal(normals, before)
+        self.assertTrue(normals.flags.writeable)
+
+
+class Refusals(unittest.TestCase):
+    """Wrong arrays and options give errors that name the argument, the value and the remedy."""
+
+    def setUp(self):
+        self.positions, self.texcoords, self.triangles = grid(5)
+
+    def test_types(self):
+        with self.assertRaisesRegex(TypeError, r"positions: float64 of shape \(25, 3\), expected float32 of shape "
+                                               r"\(n, 3\) \(convert it: positions.astype\(numpy.float32\)\)"):
+            relief.vertex_normals(self.positions.astype("float64"), self.triangles)
+        with self.assertRaisesRegex(TypeError, "triangles: int64 .*astype"):
+            relief.vertex_normals(self.positions, self.triangles.astype("int64"))
+        with self.assertRaisesRegex(TypeError, "positions: expected a numpy array .*, not list"):
+            relief.vertex_normals(self.positions.tolist(), self.triangles)
+        with self.assertRaisesRegex(TypeError, "positions: >f4|positions: float32"):
+            relief.vertex_normals(self.positions.astype(">f4"), self.triangles)
+        with self.assertRaisesRegex(TypeError, "height: float64"):
+            relief.bump(numpy.zeros((4, 4)))
+
+    def test_shapes(self):
+        with self.assertRaisesRegex(relief.InvalidInput, r"positions: float32 of shape \(25, 2\), expected"):
+            relief.vertex_normals(self.texcoords, self.triangles)
+        with self.assertRaisesRegex(ValueError, r"triangles: uint32 of shape \(96,\)"):
+            relief.vertex_normals(self.positions, self.triangles.reshape(-1))
+        with self.assertRaisesRegex(relief.InvalidInput, "out: 24 rows for 25 positions"):
+            relief.vertex_normals(self.positions, self.triangles, out=numpy.zeros((24, 3), "float32"))
+        with self.assertRaisesRegex(relief.InvalidInput, "1 to 4 channels"):
+            relief.decode_normals(numpy.zeros((4, 4, 5), "uint8"))
+        with self.assertRaisesRegex(relief.InvalidInput, "normals: .* \\(4,\\)"):
+            relief.encode_normals(numpy.zeros(4, "float32"))
+
+    def test_layouts(self):
+        with self.assertRaisesRegex(relief.InvalidInput, "reverse order .*ascontiguousarray"):
+            relief.vertex_normals(self.positions[::-1], self.triangles)
+        with self.assertRaisesRegex(relief.InvalidInput, "not adjacent"):
+            relief.vertex_normals(numpy.asfortranarray(self.positions), self.triangles)
+        with self.assertRaisesRegex(relief.InvalidInput, "triangles: the indices have gaps"):
+            relief.vertex_normals(self.positions, self.triangles[::2])
+        unaligned = numpy.zeros(25, dtype=[("flag", "u1"), ("position", "f4", 3)])["position"]
+        with self.assertRaisesRegex(relief.InvalidInput, "not aligned"):
+            relief.vertex_normals(unaligned, self.triangles)
+        frozen = numpy.zeros_like(self.positions)
+        frozen.flags.writeable = False
+        with self.assertRaisesRegex(relief.InvalidInput, "out: the array is read-only"):
+            relief.vertex_normals(self.positions, self.triangles, out=frozen)
+        with self.assertRaisesRegex(relief.InvalidInput, "also the input"):
+            relief.vertex_normals(self.positions, self.triangles, out=self.positions)
+
+    def test_values(self):
+        with self.assertRaisesRegex(relief.InvalidInput, "triangle 0 names vertex 5, but there are only 5"):
+            relief.vertex_normals(self.positions[:5], self.triangles)
+        with self.assertRaisesRegex(relief.InvalidInput, "weight: 'heavy' is not one of auto, uniform"):
+            relief.vertex_normals(self.positions, self.triangles, weight="heavy")
+        with self.assertRaisesRegex(relief.InvalidInput, "tolerance"):
+            relief.vertex_normals(self.positions, self.triangles, weld_tolerance=float("nan"))
+        with self.assertRaises(relief.InvalidInput):
+            relief.resize_normals(numpy.ones((4, 4, 3), "float32"), -1, 4)
+        with self.assertRaises(TypeError):
+            relief.split_vertices(-1, self.triangles, numpy.zeros((32, 3, 3), "float32"))
+        mesh = relief.Mesh(self.positions, self.triangles, texcoords=self.texcoords)
+        with self.assertRaisesRegex(relief.InvalidInput, "size: -4 x 4 texels"):
+            relief.bake(mesh, mesh, (-4, 4))
+
+    def test_files(self):
+        with self.assertRaisesRegex(relief.FileError, "missing.obj: no such file") as caught:
+            relief.read_mesh("missing.obj")
+        self.assertIsInstance(caught.exception, OSError)
+        self.assertIsInstance(caught.exception, relief.Error)
+        with self.assertRaises(relief.ToolError) as failed:
+            relief.run("relief-mesh", "check", "--unknown")
+        self.assertEqual(failed.exception.exit_code, 2)
+        with self.assertRaisesRegex(relief.FileError, "relief-none: not found"):
+            relief.run("relief-none")
+
+    def test_far_apart_meshes(self):
+        low = relief.Mesh(self.positions, self.triangles, texcoords=self.texcoords)
+        high = relief.Mesh(self.positions + numpy.float32(50), self.triangles)
+        with self.assertRaises(relief.BakeMismatch):
+            relief.bake(high, low, (8, 8))
+
+
+class Reports(unittest.TestCase):
+    def test_findings(self):
+        positions, _, triangles = grid(5)
+        positions[7] = numpy.nan
+        report = []
+        normals = relief.vertex_normals(positions, triangles, report=report)
+        self.assertTrue(numpy.isfinite(normals).all())
+        kinds = {finding["kind"]: finding for finding in report}
+        self.assertGreater(len(kinds), 0)
+        for finding in report:
+            self.assertEqual(list(finding), ["kind", "element", "count", "first", "outcome"])
+        self.assertIn(7, [index for finding in report if finding["element"] == "vertex" for index in finding["first"]])
+
+    def test_list_is_needed(self):
+        positions, _, triangles = grid(5)
+        with self.assertRaises(TypeError):
+            relief.vertex_normals(positions, triangles, report={})
+
+
+class Threads(unittest.TestCase):
+    def test_other_threads_run_meanwhile(self):
+        positions, texcoords, triangles = grid(700)
+        normals = relief.vertex_normals(positions, triangles)
+        running, ticks = threading.Event(), []
+
+        def work():
+            running.set()
+            relief.corner_tangents(positions, normals, texcoords, triangles)
+            running.clear()
+
+        worker = threading.Thread(target=work)
+        worker.start()
+        running.wait()
+        while running.is_set():  # With the GIL held, this thread would not run before the end.
+            ticks.append(time.monotonic())
+            time.sleep(0.001)
+        worker.join()
+        self.assertGreater(len(ticks), 5)
+
+    def test_two_calls_at_once_are_correct(self):
+        positions, _, triangles = grid(300)
+        expected = relief.vertex_normals(positions, triangles)
+        results = [None] * 4
+
+        def work(index):
+            results[index] = relief.vertex_normals(positions, triangles)
+
+        workers = [threading.Thread(target=work, args=(index,)) for index in range(4)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        for result in results:
+            numpy.testing.assert_array_equal(result, expected)
+
+    def test_number_of_threads_changes_nothing(self):
+        positions, _, triangles = grid(200)
+        expected = relief.vertex_normals(positions, triangles)
+        relief.set_thread_limit(1)
+        try:
+            numpy.testing.assert_array_equal(relief.vertex_normals(positions, triangles), expected)
+        finally:
+            relief.set_thread_limit(0)
+
+    def test_execution_limits_threads_and_reports_progress(self):
+        positions, texcoords, triangles = grid(300)
+        normals = relief.vertex_normals(positions, triangles)
+        expected = relief.corner_tangents(positions, normals, texcoords, triangles)
+        told = []
+        with relief.Execution(threads=1, progress=lambda stage, part: told.append((stage, part))) as execution:
+            tangents = relief.corner_tangents(positions, normals, texcoords, triangles)
+            self.assertEqual(execution.state, ("", None))
+        numpy.testing.assert_array_equal(tangents, expected)
+        self.assertEqual(told[0], ("tangents", 0.0))
+        self.assertEqual(told, sorted(told, key=lambda entry: entry[1]))
+        self.assertGreater(told[-1][1], 0.5)
+        count = len(told)
+        relief.corner_tangents(positions, normals, texcoords, triangles)
+        self.assertEqual(len(told), count)  # After the block, nothing is reported.
+
+    def test_execution_ends_operations(self):
+        positions, texcoords, triangles = grid(300)
+        normals = relief.vertex_normals(positions, triangles)
+
+        def stop(stage, part):
+            raise KeyError(stage)
+
+        with self.assertRaisesRegex(KeyError, "tangents"), relief.Execution(progress=stop):
+            relief.corner_tangents(positions, normals, texcoords, triangles)
+            self.fail("the operation went on")
+        cancelled = relief.Execution()
+        with self.assertRaises(relief.Cancelled), cancelled:
+            cancelled.cancel()
+            relief.corner_tangents(positions, normals, texcoords, triangles)
+        with self.assertRaises(relief.Cancelled), cancelled:  # It stays cancelled.
+            self.fail("the block was entered")
+        with relief.Execution() as outer, self.assertRaisesRegex(relief.InvalidInput, "not finished"), outer:
+            pass
+        relief.corner_tangents(positions, normals, texcoords, triangles)
+
+    def test_progress_can_end_a_bake(self):
+        positions, texcoords, triangles = grid(9)
+        mesh = relief.Mesh(positions, triangles, texcoords=texcoords)
+        fractions = []
+        relief.bake(mesh, mesh, (64, 256), progress=fractions.append)
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertEqual(fractions[-1], 1.0)
+
+        def stop(fraction):
+            raise KeyError(fraction)
+
+        with self.assertRaises(KeyError):
+            relief.bake(mesh, mesh, (64, 256), progress=stop)
+
+
+class Files(unittest.TestCase):
+    def test_images_keep_their_samples(self):
+        random = numpy.random.default_rng(3)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, image in {"a.png": random.integers(0, 256, (5, 7, 3), dtype=numpy.uint8),
+                                "b.png": random.integers(0, 65536, (5, 7), dtype=numpy.uint16),
+                                "c.exr": random.random((5, 7, 4), dtype=numpy.float32)}.items():
+                file = pathlib.Path(folder) / name
+                relief.write_image(file, image, metadata={"Author": "relief"})
+                stored, metadata = relief.read_image(file)
+                self.assertEqual(stored.dtype, image.dtype)
+                numpy.testing.assert_array_equal(stored, image)
+                self.assertEqual(metadata["Author"], "relief")
+            # Any memory layout is an image.
+            relief.write_image(file, image[::-1, ::2])
+            numpy.testing.assert_array_equal(relief.read_image(file)[0], image[::-1, ::2])
+
+    def test_meshes(self):
+        mesh = relief.read_mesh(DATA / "vase.obj")
+        with tempfile.TemporaryDirectory() as folder:
+            relief.write_mesh(pathlib.Path(folder) / "vase.ply", mesh)
+            again = relief.read_mesh(pathlib.Path(folder) / "vase.ply")
+        numpy.testing.assert_array_equal(again.positions, mesh.positions)
+        numpy.testing.assert_array_equal(again.triangles, mesh.triangles)
+        self.assertEqual(mesh.origin, (0.0, 0.0, 0.0))

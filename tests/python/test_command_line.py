@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results on arrays equal those of the command line on files, bit for bit."""
+import json
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import numpy
+import relief
+
+DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+WEIGHTS = ("auto", "uniform", "area", "angle", "sine", "max", "angle-edges", "area-angle")
+
+
+class CommandLineCase(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_tool(self, tool, *arguments):
+        return relief.run(tool, *map(str, arguments))
+
+    def assert_equal_meshes(self, a, b, *attributes):
+        for name in ("positions", "triangles", *attributes):
+            numpy.testing.assert_array_equal(getattr(a, name), getattr(b, name), name)
+
+
+class MeshTools(CommandLineCase):
+    def test_normals_of_each_weight(self):
+        urn = relief.read_mesh(DATA / "urn-high.ply")
+        out = self.folder / "out.ply"
+        for weight in WEIGHTS:
+            with self.subTest(weight):
+                self.run_tool("relief-mesh", "process", DATA / "urn-high.ply", out, "--normals", weight)
+                stored = relief.read_mesh(out)
+                normals = relief.vertex_normals(urn.positions, urn.triangles, weight=weight)
+                numpy.testing.assert_array_equal(normals, stored.normals)
+        self.run_tool("relief-mesh", "process", DATA / "urn-high.ply", out, "--normals", "area", "--weld", "0.01")
+        numpy.testing.assert_array_equal(
+            relief.vertex_normals(urn.positions, urn.triangles, weight="area", weld_tolerance=0.01),
+            relief.read_mesh(out).normals)
+
+    def test_hard_edges_and_splits(self):
+        mesh = relief.read_mesh(DATA / "urn-low.obj")
+        out = self.folder / "out.ply"
+        self.run_tool("relief-mesh", "process", DATA / "urn-low.obj", out, "--normals", "angle", "--crease", "30",
+                      "--ignore-smoothing-groups")
+        stored = relief.read_mesh(out)
+        corners = relief.corner_normals(mesh.positions, mesh.triangles, crease_degrees=30.0)
+        source, triangles = relief.split_vertices(len(mesh.positions), mesh.triangles, corners)
+        numpy.testing.assert_array_equal(mesh.positions[source], stored.positions)
+        numpy.testing.assert_array_equal(triangles, stored.triangles)
+        normals = numpy.empty_like(stored.normals)
+        normals[triangles.reshape(-1)] = corners.reshape(-1, 3)
+        numpy.testing.assert_array_equal(normals, stored.normals)
+        framed, copied = relief.with_frames(mesh, normals="angle", crease_degrees=30.0, smoothing_groups=False)
+        self.assert_equal_meshes(framed, stored, "normals")
+        numpy.testing.assert_array_equal(copied, source)
+        self.assertGreater(len(source), len(mesh.positions))
+
+    def test_tangents(self):
+        mesh = relief.read_mesh(DATA / "vase.obj")
+        out = self.folder / "out.glb"
+        for method in ("mikktspace", "area-weighted", "lengyel"):
+            with self.subTest(method):
+                self.run_tool("relief-mesh", "process", DATA / "vase.obj", out, "--normals", "angle", "--tangents",
+                              method)
+                stored = relief.read_mesh(out, space="object")
+                framed, _ = relief.with_frames(mesh, normals="angle", tangents=method)
+                self.assert_equal_meshes(framed, stored, "normals", "texcoords", "tangents")
+                normals = relief.vertex_normals(mesh.positions, mesh.triangles)
+                corners = relief.corner_tangents(mesh.positions, normals, mesh.texcoords, mesh.triangles,
+                                                 method=method)
+                numpy.testing.assert_array_equal(corners, stored.tangents[stored.triangles])
+        self.run_tool("relief-mesh", "process", DATA / "vase.obj", out, "--normals", "angle", "--tangents",
+                      "mikktspace")
+        stored = relief.read_mesh(out, space="object")
+        numpy.testing.assert_array_equal(
+            relief.vertex_tangents(stored.positions, stored.normals, stored.texcoords, stored.triangles),
+            stored.tangents)
+
+    def test_flat_normals(self):
+        urn = relief.read_mesh(DATA / "urn-low.obj")
+        out = self.folder / "out.ply"
+        self.run_tool("relief-mesh", "process", DATA / "urn-low.obj", out, "--normals", "flat")
+        stored = relief.read_mesh(out)
+        faces = relief.triangle_normals(urn.positions, urn.triangles)
+        for corner in range(3):
+            numpy.testing.assert_array_equal(stored.normals[stored.triangles[:, corner]], faces)
+
+    def test_decimate_and_subdivide(self):
+        mesh = relief.read_mesh(DATA / "vase.obj")
+        out = self.folder / "out.ply"
+        self.run_tool("relief-mesh", "decimate", DATA / "vase.obj", out, "--triangles", "1000")
+        coarse, source = relief.decimate(mesh, triangles=1000)
+        self.assert_equal_meshes(coarse, relief.read_mesh(out))
+        numpy.testing.assert_array_equal(coarse.positions, mesh.positions[source])
+        numpy.testing.assert_array_equal(coarse.texcoords, mesh.texcoords[source])
+        self.run_tool("relief-mesh", "decimate", DATA / "vase.obj", out, "--triangles", "1000", "--max-error", "0.02",
+                      "--max-normal-error", "30", "--keep-borders", "--keep-seams", "--weights", "texcoords=2,normals=0.1")
+        limited, _ = relief.decimate(mesh, triangles=1000, max_error=0.02, max_normal_degrees=30.0, keep_borders=True,
+                                     keep_seams=True, weights={"texcoords": 2.0, "normals": 0.1})
+        self.assert_equal_meshes(limited, relief.read_mesh(out))
+        self.assertGreater(len(limited.triangles), len(coarse.triangles))
+        with self.assertRaisesRegex(relief.InvalidInput, "weights: 'uv' is not one of texcoords, normals, colors"):
+            relief.decimate(mesh, triangles=1000, weights={"uv": 1.0})
+        self.run_tool("relief-mesh", "subdivide", DATA / "vase.obj", out, "--levels", "2")
+        fine, stored = relief.subdivide(mesh, 2), relief.read_mesh(out)
+        self.assert_equal_meshes(fine, stored)
+        numpy.testing.assert_allclose(fine.texcoords, stored.texcoords, atol=6e-8)  # PLY stores 1 - v.
+
+    def test_check(self):
+        out = self.folder / "vase.glb"
+        self.run_tool("relief-mesh", "process", DATA / "vase.obj", out, "--normals", "angle", "--tangents", "lengyel")
+        for file in (DATA / "urn-high.ply", DATA / "urn-low.obj", out):
+            for options, words in (({}, []), ({"for_baking": True}, ["--for-baking"])):
+                with self.subTest(file.name, **options):
+                    expected = self.run_tool("relief-mesh", "check", file, "--json", *words)["files"][0]
+                    result = relief.check_mesh(relief.read_mesh(file, space="object"), **options)
+                    part = expected["primitives"][0]
+                    if part["tangents"] is not None:  # A mesh in memory has one set of texture coordinates.
+                        del part["tangents"]["texcoord_set"], part["tangents"]["texcoord_set_of_material"]
+                    del part["name"], result["name"]
+                    self.assertEqual(json.loads(json.dumps(result)), part)
+                    self.assertEqual(list(result), list(part))
+
+    def test_compare(self):
+        a, b = self.folder / "a.glb", self.folder / "b.glb"
+        self.run_tool("relief-mesh", "process", DATA / "vase.obj", a, "--normals", "angle", "--tangents", "mikktspace")
+        self.run_tool("relief-mesh", "process", DATA / "vase.obj", b, "--normals", "area", "--tangents", "lengyel")
+        expected = self.run_tool("relief-mesh", "compare", a, b, "--json")
+        result = relief.compare_meshes(*(relief.read_mesh(file, space="object") for file in (a, b)))
+        self.assertGreater(result["normals"]["max"], 0.0)
+        for name in ("worst_normals", "worst_tangents"):
+            for corner in expected[name]:
+                del corner["primitive"]
+        self.assertEqual({name: expected[name] for name in result}, json.loads(json.dumps(result)))
+
+
+class MapTools(CommandLineCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.heights, _ = relief.read_image(DATA / "bricks-height.png")
+        cls.map, cls.metadata = relief.read_image(DATA / "scenes" / "bricks-normal.png")
+
+    def bump(self, name, *options):
+        file = self.folder / name
+        self.run_tool("relief-bake", "bump", DATA / "bricks-height.png", file, *options)
+        return relief.read_image(file)[0]
+
+    def convert(self, file, name, *options):
+        out = self.folder / name
+        self.run_tool("relief-bake", "convert", file, out, *options)
+        return relief.read_image(out)[0]
+
+    def test_bump(self):
+        numpy.testing.assert_array_equal(relief.bump(self.heights), self.bump("auto.png"))
+        for kernel in ("forward", "sobel3", "scharr5", "central7", "gaussian"):
+            with self.subTest(kernel):
+                numpy.testing.assert_array_equal(
+                    relief.bump(self.heights, kernel=kernel, strength=24.0, wrap="clamp", bits=8, green="down",
+                                zero_code="128", dither="blue-noise"),
+                    self.bump("map.png", "--kernel", kernel, "--strength", "24", "--wrap", "clamp", "--bits", "8",
+                              "--green", "down", "--zero-code", "128", "--dither", "blue-noise"))
+        numpy.testing.assert_array_equal(
+            relief.bump(self.heights, kernel="sobel5", wrap="repeat,mirror", bits=32, arithmetic="float32"),
+            self.bump("map.exr", "--kernel", "sobel5", "--wrap", "repeat,mirror", "--precision", "float32"))
+
+    def test_slopes(self):
+        options = {"kernel": "central5", "wrap": "repeat", "strength": 8.0}
+        slopes = relief.slopes(self.heights, **options)
+        normals = 2 * relief.bump(self.heights, bits=32, **options) - 1
+        numpy.testing.assert_allclose(slopes, -normals[:, :, :2] / normals[:, :, 2:], atol=2e-5)
+        self.assertGreater(numpy.abs(slopes).max(), 0.5)
+
+    def test_heights(self):
+        out = self.folder / "heights.exr"
+        file = DATA / "scenes" / "bricks-normal.png"
+        self.run_tool("relief-bake", "heights", file, out, "--kernel", "central5", "--wrap", "repeat")
+        normals = relief.decode_normals(self.map, exact_flat=True)
+        heights, details = relief.heights(normals, kernel="central5", wrap="repeat")
+        stored, _ = relief.read_image(out)
+        numpy.testing.assert_array_equal(heights / numpy.float32(1), stored)
+        self.assertGreater(details["highest"], 0.0)
+
+    def test_convert(self):
+        file = DATA / "scenes" / "bricks-normal.png"
+        numpy.testing.assert_array_equal(relief.flip_green(self.map), self.convert(file, "flip.png", "--flip", "green"))
+        normals = relief.decode_normals(self.map, exact_flat=True)
+        bits = 8 * self.map.itemsize
+        numpy.testing.assert_array_equal(relief.encode_normals(relief.scale_slopes(normals, 2.0), bits=bits),
+                                         self.convert(file, "strong.png", "--strength", "2"))
+        for filter_name in ("best", "box", "lanczos"):
+            for domain in ("slopes", "vectors"):
+                with self.subTest(filter_name, domain=domain):
+                    smaller = relief.resize_normals(normals, 100, 60, filter=filter_name, domain=domain)
+                    numpy.testing.assert_array_equal(
+                        relief.encode_normals(smaller, bits=16),
+                        self.convert(file, "small.png", "--resize", "100x60", "--resize-filter", filter_name,
+                                     "--resize-of", domain, "--bits", "16", "--wrap", "repeat"))
+        for blend in ("reoriented", "partial-derivative", "whiteout", "udn", "unity", "linear", "overlay"):
+            with self.subTest(blend):
+                numpy.testing.assert_array_equal(
+                    relief.encode_normals(relief.blend_normals(normals, normals, blend=blend), bits=16),
+                    self.convert(file, "blend.png", "--detail", file, "--blend", blend, "--bits", "16"))
+
+    def test_spaces(self):
+        model = self.folder / "vase.glb"
+        self.run_tool("relief-mesh", "process", DATA / "vase.obj", model, "--normals", "angle", "--tangents",
+                      "mikktspace")
+        mesh = relief.read_mesh(model, space="object")
+        file = DATA / "scenes" / "bricks-normal.png"
+        stored = self.convert(file, "object.exr", "--to-object", model, "--input-green", "up")
+        tangent = relief.decode_normals(self.map, exact_flat=True)
+        normals = relief.convert_space(tangent, mesh, to="object")
+        numpy.testing.assert_array_equal(relief.encode_normals(normals, bits=32), stored)
+        back = relief.convert_space(normals, mesh, to="tangent")
+        covered = (normals != (0, 0, 1)).any(axis=-1)
+        self.assertGreater(covered.mean(), 0.5)
+        self.assertLess(numpy.abs(back - tangent)[covered].max(), 1e-5)
+
+    def test_check(self):
+        for file in (DATA / "scenes" / "bricks-normal.png", DATA / "bricks-height.png", DATA / "bricks-diffuse.png"):
+            with self.subTest(file.name):
+                expected = self.run_tool("relief-bake", "check", file, "--json")["files"][0]
+                image, metadata = relief.read_image(file)
+                result = relief.check_normal_map(image, metadata=metadata, color_tag=expected["color_tag"])
+                for finding in expected["trouble"] + expected["remarks"]:
+                    del finding["remedy"]
+                self.assertEqual({name: expected[name] for name in result}, json.loads(json.dumps(result)))
+
+
+class Bakes(CommandLineCase):
+    def test_bake(self):
+        high, low = DATA / "urn-high.ply", DATA / "urn-low.obj"
+        out = self.folder / "map.png"
+        layers = {"heights": "height", "occlusion": "occlusion", "curvature": "curvature"}
+        words = [word for name in layers.values() for word in (f"--{name}-map", str(self.folder / f"{name}.exr"))]
+        report = relief.run("relief-bake", "mesh", high, low, out, "--size", "128x96", "--samples", "4",
+                            "--occlusion-rays", "16", *words, report=True)
+        baked = relief.bake(relief.read_mesh(high), relief.read_mesh(low), (128, 96), samples=4, occlusion_rays=16,
+                            layers=["normals", *layers])
+        numpy.testing.assert_array_equal(relief.encode_normals(baked.normals), relief.read_image(out)[0])
+        for name, file in layers.items():
+            numpy.testing.assert_array_equal(getattr(baked, name),
+                                             relief.read_image(self.folder / f"{file}.exr")[0], name)
+        self.assertIsNone(baked.colors)
+        self.assertEqual(baked.states.shape, (96, 128))
+        for name in ("offset", "max_distance", "least_height", "greatest_height", "texels_baked", "texels_missed",
+                     "samples", "rays", "occlusion_rays"):
+            self.assertEqual(baked.report[name], report[name], name)
+        self.assertEqual(baked.report["texels_baked"], int((baked.states == 2).sum()))
+
+    def test_several_high_meshes(self):
+        high, low = relief.read_mesh(DATA / "urn-high.ply"), relief.read_mesh(DATA / "urn-low.obj")
+        alone = relief.bake(high, low, (64, 64), padding=0)
+        twice = relief.bake([high, high], low, (64, 64), padding=0)
+        numpy.testing.assert_array_equal(alone.normals, twice.normals)
+
+
+class Pictures(CommandLineCase):
+    def test_render(self):
+        model = self.folder / "vase.glb"
+        self.run_tool("relief-mesh", "process", DATA / "vase.obj", model, "--normals", "angle", "--tangents",
+                      "mikktspace")
+        for file in (model, DATA / "vase.obj"):
+            for options, words in (({}, []), ({"samples": 1, "camera": (-20.0, 40.0, 1.5)},
+                                              ["--samples", "1", "--camera=-20,40,1.5"])):
+                with self.subTest(file.name, **options):
+                    out = self.folder / "out.png"
+                    self.run_tool("relief-view", file, "--output", out, "--size", "96x64", *words)
+                    picture = relief.Scene.load(file).render(size=(96, 64), **options)
+                    numpy.testing.assert_array_equal(picture, relief.read_image(out)[0])
+        out = self.folder / "out.exr"
+        scene = self.folder / "scene.json"
+        self.run_tool("relief-view", model, "--output", out, "--size", "96x64", "--material", "gold", "--light",
+                      "point:2,2,2,4", "--normal-map", DATA / "scenes" / "bricks-normal.png", "--save-scene", scene)
+        picture = relief.Scene.load(scene).render(output="linear")
+        self.assertEqual(picture.shape, (64, 96, 3))
+        numpy.testing.assert_array_equal(picture, relief.read_image(out)[0])
+
+    def test_scene_of_arrays(self):
+        mesh, _ = relief.with_frames(relief.read_mesh(DATA / "vase.obj"), normals="angle", tangents="mikktspace")
+        scene = relief.Scene(mesh, diffuse=(0.5, 0.5, 0.5))
+        scene.add_light((0.0, 0.0, -1.0))
+        scene.background = (0.0, 0.0, 0.0, 0.0)
+        picture = scene.render(size=(65, 65), output="linear", camera=(0.0, 0.0, 1.0))
+        self.assertEqual(picture.shape, (65, 65, 4))
+        self.assertLessEqual(picture[..., :3].max(), 0.5 + 1e-3)  # The light comes from the camera.
+        self.assertGreater(picture[..., :3].max(), 0.45)
+        names = {effect["effect"]: effect for effect in scene.effects()[0]}
+        self.assertFalse(names["normal map"]["on"])
+        with self.assertRaisesRegex(relief.InvalidInput, "material: 'butter' is not one of"):
+            relief.Scene(mesh, material="butter")
+
+    def test_compare(self):
+        a, b = self.folder / "a.png", self.folder / "b.png"
+        self.run_tool("relief-view", DATA / "vase.obj", "--output", a, "--size", "64x64")
+        report = self.run_tool("relief-view", DATA / "vase.obj", "--output", b, "--size", "64x64", "--exposure", "0.1",
+                               "--reference", a, "--max-difference", "255", "--json")["comparison"]
+        result = relief.compare_images(relief.read_image(a)[0], relief.read_image(b)[0])
+        self.assertGreater(result["flip_mean"], 0.0)
+        self.assertEqual(result.pop("flip_map").shape, (64, 64))
+        self.assertEqual({name: report[name] for name in result}, result)
+
+    def test_compare_normals(self):
+        map_, _ = relief.read_image(DATA / "scenes" / "bricks-normal.png")
+        exact = relief.decode_normals(map_)
+        coarse = relief.decode_normals(relief.encode_normals(exact, bits=8))
+        errors, degrees = relief.compare_normals(exact, coarse)
+        self.assertEqual(degrees.shape, exact.shape[:2])
+        self.assertLess(errors["max"], 0.7)
+        self.assertAlmostEqual(errors["max"], float(degrees.max()), places=5)
+
+
+class Experiments(unittest.TestCase):
+    def test_accuracy(self):
+        report = relief.accuracy("storage", times=False)
+        self.assertEqual(report["format"], "relief-accuracy")
+        self.assertFalse(report["settings"]["timed"])
+        self.assertIn("storage/normals", [experiment["id"] for experiment in report["experiments"]])
