@@ -306,6 +306,16 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                                          "relief-view"),
                          test_name);
 
+TEST(Site, HasNoBrokenLinkAndFitsAPhone) {
+    const Workplace workplace;
+    const ProgramResult result =
+        run_shell("'" + (source_directory() / "scripts/site").string() + "' --check --output site",
+                  workplace.path());
+    constexpr int program_missing = 77;
+    if (result.exit_code == program_missing) GTEST_SKIP() << result.error;
+    EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
+}
+
 /// Collects the citations of a text with the file that contains them.
 void collect(const std::string& text, const std::string& place,
              std::map<std::string, std::string>& citations) {

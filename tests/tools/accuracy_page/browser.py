@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A browser without a window, driven as by hands: WebDriver [W3C 2018] spoken to chromedriver, by the
-standard library alone. Used by report_page_test.py.
+standard library alone. Used by report_page_test.py and scripts/site.
 """
 import base64
 import json
@@ -70,7 +70,10 @@ class Browser:
             raise RuntimeError(json.load(error)["value"]["message"]) from None
 
     def open(self, file):
-        self._call("POST", "/url", {"url": file.resolve().as_uri()})
+        self.open_address(file.resolve().as_uri())
+
+    def open_address(self, address):
+        self._call("POST", "/url", {"url": address})
 
     def run(self, script, *arguments):
         """What a JavaScript function body returns; `arguments` are its own."""
