@@ -110,7 +110,13 @@ class Interface : public testing::Test {
         json first = window->wait_for_rest();
         EXPECT_EQ(first["layout"]["scale"], 1.0);
         window->click_on("Lights");
+        window->wait_for("the open panel", [](const json& now) {
+            return now["layout"]["open"].value("Lights", false);
+        });
         window->click_on("Scene");
+        window->wait_for("the closed panel", [](const json& now) {
+            return !now["layout"]["open"].value("Scene", true);
+        });
         window->key("ctrl+equal");
         window->wait_for("larger letters",
                          [](const json& now) { return now["layout"]["scale"] == 1.25; });
