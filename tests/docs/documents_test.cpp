@@ -19,6 +19,7 @@
 
 #include "support/shared_data.h"
 #include "tools/help_pages.h"
+#include "tools/linked_tools.h"
 
 namespace relief::test {
 namespace {
