@@ -308,10 +308,9 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                          test_name);
 
 TEST(Site, HasNoBrokenLinkAndFitsAPhone) {
-    const Workplace workplace;
-    const ProgramResult result =
-        run_shell("'" + (source_directory() / "scripts/site").string() + "' --check --output site",
-                  workplace.path());
+    const TemporaryDirectory folder;
+    const std::string script = "'" + (source_directory() / "scripts/site").string() + "'";
+    const ProgramResult result = run_shell(script + " --check --output site", folder.path());
     constexpr int program_missing = 77;
     if (result.exit_code == program_missing) GTEST_SKIP() << result.error;
     EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
