@@ -11,6 +11,7 @@ Command add_process_command(CLI::App& tool);
 Command add_decimate_command(CLI::App& tool);
 Command add_lods_command(CLI::App& tool);
 Command add_subdivide_command(CLI::App& tool);
+Command add_material_command(CLI::App& tool);
 Command add_info_command(CLI::App& tool);
 Command add_check_command(CLI::App& tool);
 Command add_compare_command(CLI::App& tool);
@@ -18,10 +19,13 @@ Command add_conformance_command(CLI::App& tool);
 
 /// The whole tool, for main() and for tests that run it in their own process.
 inline Tool relief_mesh() {
-    return {"relief-mesh",
-            "Computes normals and tangents, decimates, subdivides, inspects and compares models.",
-            {add_process_command, add_decimate_command, add_lods_command, add_subdivide_command,
-             add_info_command, add_check_command, add_compare_command, add_conformance_command}};
+    return {
+        "relief-mesh",
+        "Computes normals and tangents, decimates, subdivides, inspects and compares models, and "
+        "stores maps in them.",
+        {add_process_command, add_decimate_command, add_lods_command, add_subdivide_command,
+         add_material_command, add_info_command, add_check_command, add_compare_command,
+         add_conformance_command}};
 }
 
 }  // namespace relief::tools

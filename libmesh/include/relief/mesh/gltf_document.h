@@ -211,6 +211,12 @@ struct GltfLevel {
     double max_coverage = 0.0;
 };
 
+/// The textures of a material.
+enum class GltfTextureSlot { base_color, metallic_roughness, normal, occlusion, emissive };
+
+/// The place of an image: in the document, or in a file beside it.
+enum class GltfImageStorage { embedded, external };
+
 class GltfDocument {
   public:
     /// Reads a .gltf or .glb file; the content decides which it is.
@@ -336,6 +342,29 @@ class GltfDocument {
     /// \param with_names  appends _LOD0, _LOD1, ... to the names of the nodes
     /// \throws InvalidInput if a node has levels already, or extras that are not an object
     void set_levels_of_detail(std::size_t mesh, std::span<const GltfLevel> levels, bool with_names);
+
+    /// Appends a material with glTF's defaults, and assigns it to all primitives without one.
+    /// \return its index
+    std::size_t add_material(const std::string& name);
+
+    /// Sets a texture of a material to an image file; the bytes of the file are kept.
+    ///
+    /// The sampler, the texture coordinate set, the transform and the factors stay. If nothing else
+    /// uses the old texture, its entry changes, and its image is left out when the document is
+    /// written. A file that is used for several textures is stored once. If the material emits no
+    /// light, an emissive map sets the emissive factor to 1.
+    ///
+    /// \param image    PNG or JPEG
+    /// \param storage  external: write() copies the file beside a .gltf; a .glb embeds all images
+    /// \param report   counts properties of the material that hide or transform the map
+    /// \throws FileError if the image cannot be read, is neither PNG nor JPEG, or has the name of
+    ///         another external image; InvalidInput if there is no such material
+    void set_texture(std::size_t material, GltfTextureSlot slot, const std::filesystem::path& image,
+                     GltfImageStorage storage, Report& report = IgnoredReport());
+
+    /// Sets the factor of the x and y of a material's normal map.
+    /// \throws InvalidInput if there is no such material, or if it has no normal map
+    void set_normal_scale(std::size_t material, double scale);
 
     /// Returns the document as a scene.
     /// \throws InvalidInput if instance attributes have a wrong type or differ in length

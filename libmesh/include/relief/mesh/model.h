@@ -64,6 +64,11 @@ struct FramedPart {
 std::vector<FramedPart> compute_frames(Model& model, FrameOptions options,
                                        std::optional<int> texcoord_set = std::nullopt);
 
+/// Computes MikkTSpace tangents of the primitives of a material that have none, as a renderer does
+/// for a normal map. Normals stay; a primitive without normals gets flat ones, as glTF requires.
+/// \return the changed primitives
+std::vector<FramedPart> add_tangents(GltfDocument& document, std::size_t material);
+
 /// Returns a mesh with other triangles. `source_vertex` of the result is empty if its vertices are
 /// not copies of the given ones. `all_triangles` is the number of triangles of the whole model.
 using TriangleChange =

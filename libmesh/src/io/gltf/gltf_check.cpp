@@ -460,9 +460,7 @@ void visit_references(Json& root,
     struct : Visitor {
         const std::function<void(std::string_view, Json&)>* visit = nullptr;
         void index(const ValuePath&, std::string_view target, Json& value) override {
-            if (target == "accessors" || target == "bufferViews" || target == "buffers") {
-                (*visit)(target, value);
-            }
+            (*visit)(target, value);
         }
     } visitor;
     visitor.visit = &visit;

@@ -19,8 +19,8 @@ namespace relief {
 ///         only 3 accessors"
 void check_schema(const Json& root);
 
-/// Calls `visit` for each index into "accessors", "bufferViews" or "buffers"; it may change the
-/// index. The document must have passed check_schema().
+/// Calls `visit` for each index into an array of the document, "accessors" for example; it may
+/// change the index. The document must have passed check_schema().
 void visit_references(Json& root,
                       const std::function<void(std::string_view target, Json& index)>& visit);
 

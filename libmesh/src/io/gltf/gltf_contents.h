@@ -122,7 +122,12 @@ struct GltfContents {
     /// Replaced accessors and buffer views. The writer leaves them out if nothing refers to them.
     std::set<std::size_t> retired_accessors;
     std::set<std::size_t> retired_views;
+    std::set<std::size_t> retired_images;   ///< Likewise.
     std::vector<GltfExtent> retired_bytes;  ///< Compressed data that has been decoded.
+    /// The entries of image files that were added, by canonical path.
+    std::map<std::pair<std::filesystem::path, GltfImageStorage>, std::size_t> stored_images;
+    /// The files of added external images, by URI. They need not be in the document's folder.
+    std::map<std::string, std::filesystem::path> image_files;
     /// Number of decoded buffer views or primitives, by extension.
     std::map<std::string, std::size_t> unpacked;
     /// Index of the buffer for added data; -1 until data is added.

@@ -106,6 +106,7 @@ class UnusedData {
         : root_(root), unused_(contents.buffers.size()), used_(contents.buffers.size()) {
         for (const GltfBuffer& buffer : contents.buffers)
             sizes_.push_back(buffer.size);
+        drop_images(contents);
         drop_accessors(contents);
         drop_views(contents);
         for (const GltfExtent& extent : contents.retired_bytes)
@@ -119,6 +120,7 @@ class UnusedData {
     std::vector<std::vector<Extent>> clear(std::size_t alignment);
 
   private:
+    void drop_images(const GltfContents& contents);
     void drop_accessors(const GltfContents& contents);
     void drop_views(const GltfContents& contents);
     void collect_used();
@@ -133,11 +135,21 @@ class UnusedData {
     }
 
     Json& root_;
-    std::set<std::size_t> dropped_accessors_, dropped_views_;
-    std::set<std::size_t> touched_views_;  ///< Views that lost an accessor.
+    std::set<std::size_t> dropped_images_, dropped_accessors_, dropped_views_;
+    std::set<std::size_t> touched_views_;  ///< Views that lost an accessor or an image.
     std::vector<std::vector<Extent>> unused_, used_;
     std::vector<std::size_t> sizes_;  ///< Sizes of the buffers.
 };
+
+void UnusedData::drop_images(const GltfContents& contents) {
+    const auto counts = reference_counts(root_, "images", "images");
+    for (const std::size_t i : contents.retired_images) {
+        if (counts[i] > 0) continue;
+        dropped_images_.insert(i);
+        const auto view = index_in(root_["images"][i], "bufferView");
+        if (view) touched_views_.insert(*view);
+    }
+}
 
 void UnusedData::drop_accessors(const GltfContents& contents) {
     const auto counts = reference_counts(root_, "accessors", "accessors");
@@ -158,7 +170,11 @@ void UnusedData::drop_accessors(const GltfContents& contents) {
 
 void UnusedData::drop_views(const GltfContents& contents) {
     auto counts = reference_counts(root_, "bufferViews", "bufferViews");
-    // References from dropped accessors do not count.
+    // References from dropped images and accessors do not count.
+    for (const std::size_t i : dropped_images_) {
+        const auto view = index_in(root_["images"][i], "bufferView");
+        if (view) --counts[*view];
+    }
     for (const std::size_t i : dropped_accessors_) {
         const Json& accessor = root_["accessors"][i];
         if (const auto view = index_in(accessor, "bufferView")) --counts[*view];
@@ -248,6 +264,7 @@ std::vector<std::vector<Extent>> UnusedData::clear(std::size_t alignment) {
             if (extent.end > extent.begin) cuts[buffer].push_back(extent);
         }
     }
+    erase_entries(root_, "images", dropped_images_);
     erase_entries(root_, "accessors", dropped_accessors_);
     erase_entries(root_, "bufferViews", dropped_views_);
     return cuts;
@@ -377,7 +394,8 @@ GltfLayout layout_of(const GltfContents& contents) {
         find(layout.root, "extensions", "EXT_structural_metadata", "propertyTables") != nullptr;
     const std::size_t alignment = has_metadata ? 8 : 4;
     std::vector<std::vector<Extent>> cuts(contents.buffers.size());
-    const bool has_retired = !contents.retired_accessors.empty() ||
+    const bool has_retired = !contents.retired_images.empty() ||
+                             !contents.retired_accessors.empty() ||
                              !contents.retired_views.empty() || !contents.retired_bytes.empty();
     if (has_retired && !has_unknown_extension(layout.root)) {
         cuts = UnusedData(layout.root, contents).clear(alignment);
@@ -417,12 +435,13 @@ void append_word(std::string& bytes, std::uint32_t word) {
 /// The path of an image that is a readable file; otherwise nullopt.
 /// \param path_of  path_inside() or readable_path()
 template <typename PathOf>
-std::optional<std::filesystem::path> image_file(const Json& image,
-                                                const std::filesystem::path& folder,
+std::optional<std::filesystem::path> image_file(const Json& image, const GltfContents& contents,
                                                 const PathOf& path_of) {
     const std::string uri = text_in(image, "uri");
     if (uri.empty() || is_data_uri(uri)) return std::nullopt;
-    const auto path = path_of(folder, uri);
+    const auto added = contents.image_files.find(uri);
+    if (added != contents.image_files.end()) return added->second;
+    const auto path = path_of(contents.folder, uri);
     std::error_code ignored;
     if (!path || !std::filesystem::is_regular_file(*path, ignored)) return std::nullopt;
     return path;
@@ -455,7 +474,7 @@ void embed_images(GltfLayout& layout, const GltfContents& contents,
             DataUri data = decode_data_uri(uri);
             if (media_type.empty()) media_type = data.media_type;
             storage.push_back(std::move(data.bytes));
-        } else if (const auto path = image_file(image, contents.folder, readable_path)) {
+        } else if (const auto path = image_file(image, contents, readable_path)) {
             storage.push_back(read_file(*path));
         } else {
             continue;
@@ -527,10 +546,12 @@ void copy_images(const GltfContents& contents, const std::filesystem::path& file
     const Json& images = array_in(contents.root, "images");
     for (std::size_t i = 0; i < images.size(); ++i) {
         check_inside_folder(images[i], i, contents, file);
-        const auto source = image_file(images[i], contents.folder, path_inside);
-        if (!source || folder == contents.folder) continue;
+        const auto source = image_file(images[i], contents, path_inside);
+        const bool is_added = contents.image_files.contains(text_in(images[i], "uri"));
+        if (!source || (folder == contents.folder && !is_added)) continue;
         const std::string bytes = read_file(*source);
-        const std::filesystem::path target = folder / source->lexically_relative(contents.folder);
+        const std::filesystem::path target =
+            folder / (is_added ? source->filename() : source->lexically_relative(contents.folder));
         if (std::filesystem::exists(target)) {
             if (read_file(target) == bytes) continue;
             throw FileError(target, fmt::format("is in the way of images[{}] of {}, which is "

@@ -112,10 +112,10 @@ void frame_primitive(GltfDocument& document, GltfPrimitiveId id, std::optional<i
     part.vertices_written = document.set_frames(id, framed, options, part.report);
 }
 
-std::vector<FramedPart> frame_document(GltfDocument& document, const FrameOptions& options,
-                                       std::optional<int> texcoord_set) {
-    const std::vector<GltfPrimitiveId> ids = document.triangle_primitives();
-    if (ids.empty()) throw InvalidInput("holds no triangles");
+std::vector<FramedPart> frame_primitives(GltfDocument& document,
+                                         const std::vector<GltfPrimitiveId>& ids,
+                                         const FrameOptions& options,
+                                         std::optional<int> texcoord_set) {
     std::vector<FramedPart> parts;
     for (const GltfPrimitiveId id : ids) {
         FramedPart& part = parts.emplace_back();
@@ -135,7 +135,9 @@ std::vector<FramedPart> compute_frames(Model& model, FrameOptions options,
                                        std::optional<int> texcoord_set) {
     if (auto* document = std::get_if<GltfDocument>(&model)) {
         options.if_missing = NormalMode::flat;
-        return frame_document(*document, options, texcoord_set);
+        const std::vector<GltfPrimitiveId> ids = document->triangle_primitives();
+        if (ids.empty()) throw InvalidInput("holds no triangles");
+        return frame_primitives(*document, ids, options, texcoord_set);
     }
     options.if_missing = NormalWeight::angle;
     Mesh& mesh = std::get<MeshFile>(model).mesh;
@@ -143,6 +145,20 @@ std::vector<FramedPart> compute_frames(Model& model, FrameOptions options,
     part.texcoords.reason = texcoord_set ? "requested" : "the first";
     mesh = framed_part(std::move(mesh), options, part).mesh;
     return {std::move(part)};
+}
+
+std::vector<FramedPart> add_tangents(GltfDocument& document, std::size_t material) {
+    std::vector<GltfPrimitiveId> ids;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        const Mesh mesh = document.mesh(id);
+        if (mesh.tangents.empty() && !mesh.material_ranges.empty() &&
+            mesh.material_ranges.front().material == material)
+            ids.push_back(id);
+    }
+    const FrameOptions options{.normals = NormalMode::keep,
+                               .if_missing = NormalMode::flat,
+                               .tangents = TangentMethod::mikktspace};
+    return frame_primitives(document, ids, options, std::nullopt);
 }
 
 }  // namespace relief

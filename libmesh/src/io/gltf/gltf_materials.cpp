@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures of materials: an image entry is added, a texture entry is changed or added, and the old
+// image is retired. Samplers, texture coordinate sets and transforms stay.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "file_bytes.h"
+#include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_contents.h"
+#include "io/gltf/gltf_edit.h"
+#include "io/gltf/gltf_uri.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+namespace {
+
+/// Extensions whose `source` takes precedence over that of a texture.
+constexpr std::array source_extensions = {"KHR_texture_basisu", "EXT_texture_webp",
+                                          "EXT_texture_avif", "MSFT_texture_dds"};
+
+/// The member of a material that holds a texture.
+struct SlotMember {
+    const char* parent;  ///< The object that has the member; null for the material itself.
+    const char* key;
+};
+
+SlotMember member_of(GltfTextureSlot slot) {
+    switch (slot) {
+        case GltfTextureSlot::base_color:
+            return {"pbrMetallicRoughness", "baseColorTexture"};
+        case GltfTextureSlot::metallic_roughness:
+            return {"pbrMetallicRoughness", "metallicRoughnessTexture"};
+        case GltfTextureSlot::normal:
+            return {nullptr, "normalTexture"};
+        case GltfTextureSlot::occlusion:
+            return {nullptr, "occlusionTexture"};
+        case GltfTextureSlot::emissive:
+            break;
+    }
+    return {nullptr, "emissiveTexture"};
+}
+
+/// Returns the number of objects below `json` that use a texture: "baseColorTexture", those of
+/// material extensions, and "texture" of extensions.
+std::size_t texture_uses(const Json& json, std::size_t texture) {
+    std::size_t count = 0;
+    if (!json.is_structured()) return count;
+    for (const auto& [key, value] : json.items()) {
+        const bool is_use = json.is_object() && value.is_object() && key.ends_with("exture");
+        if (is_use && find(value, "index") != nullptr && value["index"] == texture) ++count;
+        count += texture_uses(value, texture);
+    }
+    return count;
+}
+
+/// Returns whether extensions may use textures or images in a form that is not known here.
+bool has_hidden_uses(const Json& root) {
+    constexpr std::array harmless = {"KHR_lights_punctual", "KHR_materials_variants",
+                                     "KHR_xmp_json_ld"};
+    if (has_unknown_extension(root)) return true;
+    const Json* extensions = find(root, "extensions");
+    if (extensions == nullptr) return false;
+    return std::any_of(
+        extensions->items().begin(), extensions->items().end(), [&](const auto& entry) {
+            return std::find(harmless.begin(), harmless.end(), entry.key()) == harmless.end();
+        });
+}
+
+/// Retires the images of a texture, and removes the extensions that name them.
+void retire_images(GltfContents& contents, Json& texture) {
+    if (const auto image = index_in(texture, "source")) contents.retired_images.insert(*image);
+    for (const char* extension : source_extensions) {
+        const Json* other = find(texture, "extensions", extension);
+        if (other == nullptr) continue;
+        if (const auto image = index_in(*other, "source")) contents.retired_images.insert(*image);
+        erase_extension(texture, extension);
+    }
+}
+
+/// Returns the entry of an image file. A file that was stored before is not stored again.
+std::size_t image_entry(GltfContents& contents, const std::filesystem::path& file,
+                        GltfImageStorage storage) {
+    const auto known =
+        contents.stored_images.find({std::filesystem::weakly_canonical(file), storage});
+    if (known != contents.stored_images.end()) return known->second;
+    const std::string bytes = read_file(file);
+    const std::string media_type = image_media_type(bytes);
+    if (media_type != "image/png" && media_type != "image/jpeg")
+        throw FileError(file, "is neither PNG nor JPEG, which is all that glTF holds");
+    Json image = {{"name", file.stem().string()}};
+    if (storage == GltfImageStorage::embedded) {
+        image["bufferView"] = add_view(contents, bytes);
+        image["mimeType"] = media_type;
+    } else {
+        const std::string uri = uri_of(file.filename().string());
+        const auto [entry, is_new] =
+            contents.image_files.emplace(uri, std::filesystem::absolute(file));
+        if (!is_new && read_file(entry->second) != bytes) {
+            throw FileError(
+                file, fmt::format("has the name of another image, {}", entry->second.string()));
+        }
+        image["uri"] = uri;
+    }
+    Json& images = contents.root["images"];
+    images.push_back(std::move(image));
+    contents.stored_images.emplace(std::pair(std::filesystem::weakly_canonical(file), storage),
+                                   images.size() - 1);
+    return images.size() - 1;
+}
+
+/// Returns a texture of an image with a sampler, or without one.
+std::size_t texture_entry(Json& root, std::size_t image, const Json* sampler) {
+    Json wanted = {{"source", image}};
+    if (sampler != nullptr) wanted["sampler"] = *sampler;
+    Json& textures = root["textures"];
+    if (textures.is_null()) textures = Json::array();
+    const auto known = std::find(textures.begin(), textures.end(), wanted);
+    if (known != textures.end()) return static_cast<std::size_t>(known - textures.begin());
+    textures.push_back(std::move(wanted));
+    return textures.size() - 1;
+}
+
+/// Reports properties that hide a new texture, or that change where it is.
+void report_slot(const Json& material, std::size_t index, GltfTextureSlot slot, const Json& info,
+                 Report& report) {
+    const auto add = [&](const std::string& what, const std::string& outcome) {
+        report.add(what, "material", index, outcome);
+    };
+    const bool is_color = slot == GltfTextureSlot::base_color;
+    if (!is_color && find(material, "extensions", "KHR_materials_unlit") != nullptr)
+        add("map in a material with KHR_materials_unlit", "is not visible");
+    if ((is_color || slot == GltfTextureSlot::metallic_roughness) &&
+        find(material, "extensions", "KHR_materials_pbrSpecularGlossiness") != nullptr) {
+        add("map in a material with KHR_materials_pbrSpecularGlossiness",
+            "is ignored by renderers that know the extension");
+    }
+    if (find(info, "extensions", "KHR_texture_transform") != nullptr)
+        add("map with the KHR_texture_transform of the replaced one", "is transformed by it");
+    if (size_in(info, "texCoord") != 0)
+        add("map on another texture coordinate set than the first", "keeps that set");
+}
+
+}  // namespace
+
+std::size_t GltfDocument::add_material(const std::string& name) {
+    Json& root = contents_->data.root;
+    Json& materials = root["materials"];
+    if (materials.is_null()) materials = Json::array();
+    const std::size_t index = materials.size();
+    materials.push_back({{"name", name}});
+    if (!root.contains("meshes")) return index;
+    for (Json& mesh : root["meshes"]) {
+        for (Json& primitive : mesh["primitives"]) {
+            if (!primitive.contains("material")) primitive["material"] = index;
+        }
+    }
+    return index;
+}
+
+void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
+                               const std::filesystem::path& image, GltfImageStorage storage,
+                               Report& report) {
+    GltfContents& contents = contents_->data;
+    Json& root = contents.root;
+    const std::size_t count = array_in(root, "materials").size();
+    if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
+    const std::size_t new_image = image_entry(contents, image, storage);
+    Json& json = root["materials"][material];
+    const SlotMember member = member_of(slot);
+    Json& parent = member.parent == nullptr ? json : json[member.parent];
+    Json& info = parent[member.key];
+    if (const auto old = index_in(info, "index")) {
+        Json& texture = root["textures"][*old];
+        if (texture_uses(root, *old) == 1 && !has_hidden_uses(root)) {
+            retire_images(contents, texture);
+            texture["source"] = new_image;
+        } else {
+            const Json old_texture = texture;
+            info["index"] = texture_entry(root, new_image, find(old_texture, "sampler"));
+        }
+    } else {
+        info["index"] = texture_entry(root, new_image, nullptr);
+    }
+    for (const char* extension : source_extensions)
+        remove_unused_extension(root, extension);
+    if (slot == GltfTextureSlot::emissive) {
+        constexpr glm::vec3 black(0.0F);
+        if (vector_in(json, "emissiveFactor", black) == black) {
+            json["emissiveFactor"] = {1, 1, 1};
+            report.add("emissive map of a material that emits no light", "material", material,
+                       "gets the emissive factor 1");
+        }
+    }
+    report_slot(json, material, slot, info, report);
+}
+
+void GltfDocument::set_normal_scale(std::size_t material, double scale) {
+    Json& root = contents_->data.root;
+    const std::size_t count = array_in(root, "materials").size();
+    if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
+    Json& json = root["materials"][material];
+    if (!json.contains("normalTexture")) fail_gltf("material {} has no normal map", material);
+    json["normalTexture"]["scale"] = scale;
+}
+
+}  // namespace relief
