@@ -15,11 +15,11 @@ if(RELIEF_WERROR)
     target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()
 # The libraries, which do the work, have the full optimization of the build type. Tools call them and tests check
-# them: with -O1 they compile in 60 % of the time. (If a library and a test both hold an inline function that was
+# them: with -Og they compile in 60 % of the time. (If a library and a test both hold an inline function that was
 # not inlined, the linker takes either.)
 set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
 set(is_tool $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tools,$<TARGET_PROPERTY:SOURCE_DIR>>)
-target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,$<OR:${is_test},${is_tool}>>:-O1>)
+target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,$<OR:${is_test},${is_tool}>>:-Og>)
 if(RELIEF_SANITIZE)
     # Instrumented code is slow to compile, and two thirds of it was the tests' own. Tests are therefore
     # compiled with AddressSanitizer only, without optimization and line numbers, and the tools, which are thin,

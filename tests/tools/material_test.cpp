@@ -133,6 +133,7 @@ TEST_F(MaterialCommand, ReplacesImagesOfTextureExtensions) {
 }
 
 TEST_F(MaterialCommand, WritesImagesBesideAGltf) {
+    std::filesystem::create_directory(workplace_ / "maps");
     workplace_.write("maps/a.png", workplace_.read(normal_map));
     const json after = stored(
         "data/vase.obj out/after.gltf --normal maps/a.png --occlusion maps/a.png "
@@ -183,6 +184,7 @@ TEST_F(MaterialCommand, RefusesWhatItCannotStore) {
     std::filesystem::rename(workplace_ / "out/vase.gltf", workplace_ / "vase.gltf");
     std::filesystem::rename(workplace_ / "out/vase.bin", workplace_ / "vase.bin");
     workplace_.write("text.png", "no image");
+    std::filesystem::create_directory(workplace_ / "maps");
     workplace_.write("maps/bricks-normal.png", workplace_.read(color_map));
     const std::string normal = " --normal " + normal_map;
     const std::string vase = "relief-mesh material data/vase.obj out/old.glb";
@@ -205,7 +207,7 @@ TEST_F(MaterialCommand, RefusesWhatItCannotStore) {
           "vase.gltf: has 2 materials 'glass' (rename them first)"},
          {"relief-mesh material vase.gltf out/new.gltf --material bricks" + normal +
               " --occlusion maps/bricks-normal.png",
-          1, "has the name of another image"}});
+          1, "maps/bricks-normal.png: has the name of another image"}});
 }
 
 }  // namespace

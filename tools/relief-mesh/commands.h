@@ -21,8 +21,7 @@ Command add_conformance_command(CLI::App& tool);
 inline Tool relief_mesh() {
     return {
         "relief-mesh",
-        "Computes normals and tangents, decimates, subdivides, inspects and compares models, and "
-        "stores maps in them.",
+        "Computes normals and tangents, reshapes, inspects and compares models, and stores maps.",
         {add_process_command, add_decimate_command, add_lods_command, add_subdivide_command,
          add_material_command, add_info_command, add_check_command, add_compare_command,
          add_conformance_command}};
