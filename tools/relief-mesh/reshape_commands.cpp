@@ -65,6 +65,7 @@ void add_distances(DistanceStats& all, const DistanceStats& one) {
     all.mean_degrees += one.mean_degrees * one.area;
     all.max = std::max(all.max, one.max);
     all.max_degrees = std::max(all.max_degrees, one.max_degrees);
+    all.omitted += one.omitted;
 }
 
 /// Joins the distances of several meshes. Means are over area.
@@ -130,12 +131,16 @@ Json distance_json(const DistanceStats& stats) {
             {"rms", stats.rms},
             {"max", stats.max},
             {"mean_degrees", stats.mean_degrees},
-            {"max_degrees", stats.max_degrees}};
+            {"max_degrees", stats.max_degrees},
+            {"omitted", stats.omitted}};
 }
 
 void add_distance(Summary& summary, const SurfaceDistance& distance, double corner_angle) {
     const auto length = [](const DistanceStats& stats) {
-        return fmt::format("mean {:.3g}, max {:.3g}", stats.mean, stats.max);
+        const std::string omitted =
+            stats.omitted == 0 ? ""
+                               : fmt::format(" without {} vertices and triangles", stats.omitted);
+        return fmt::format("mean {:.3g}, max {:.3g}{}", stats.mean, stats.max, omitted);
     };
     const auto angle = [](const DistanceStats& stats) {
         return fmt::format("mean {:.3g}, max {:.3g}", stats.mean_degrees, stats.max_degrees);

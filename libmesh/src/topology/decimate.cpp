@@ -74,14 +74,23 @@ UnitSpace unit_space(const Mesh& mesh) {
     return space;
 }
 
-/// Returns the index of the material range of each triangle.
-std::vector<std::uint32_t> parts_of(const Mesh& mesh) {
+/// The index of the material range of each triangle; empty if there is at most one.
+struct Parts {
+    std::vector<std::uint32_t> of_triangle;
+
+    [[nodiscard]] std::uint32_t operator[](std::size_t triangle) const {
+        return of_triangle.empty() ? 0 : of_triangle[triangle];
+    }
+};
+
+Parts parts_of(const Mesh& mesh) {
+    if (mesh.material_ranges.size() <= 1) return {};
     std::vector<std::uint32_t> parts(mesh.triangles.size(), 0);
     for (std::uint32_t r = 0; r < mesh.material_ranges.size(); ++r) {
         const MaterialRange& range = mesh.material_ranges[r];
         std::fill_n(parts.begin() + range.first_triangle, range.triangle_count, r);
     }
-    return parts;
+    return {std::move(parts)};
 }
 
 /// Compares the numbers of two vectors; a NaN is ordered by its bits, and -0 equals +0.
@@ -125,15 +134,15 @@ struct Wedges {
 };
 
 /// Joins equal wedges at the same position; the one with the lowest index remains.
-Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> classes,
-                 std::span<const std::uint32_t> parts, bool with_normals) {
+Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> classes, const Parts& parts,
+                 bool with_normals) {
     Wedges wedges;
     const std::size_t vertices = mesh.positions.size();
     wedges.vertex.resize(vertices);
     std::iota(wedges.vertex.begin(), wedges.vertex.end(), 0U);
     if (mesh.material_ranges.size() > 1) {
         wedges.first_part.assign(vertices, no_corner);
-        for (std::size_t t = 0; t < parts.size(); ++t) {
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             for (int i = 0; i < 3; ++i) {
                 const std::uint32_t v = mesh.triangles[t][i];
                 if (wedges.first_part[v] == no_corner) wedges.first_part[v] = parts[t];
@@ -227,8 +236,7 @@ void radix_sort(std::vector<KeyedIndex>& values) {
 
 /// Returns the triangles in an order that depends only on their values.
 std::vector<std::uint32_t> canonical_order(const Mesh& mesh, const UnitSpace& space,
-                                           std::span<const std::uint32_t> parts,
-                                           bool with_normals) {
+                                           const Parts& parts, bool with_normals) {
     std::vector<KeyedIndex> keyed(mesh.triangles.size());
     parallel_for(keyed.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
@@ -274,7 +282,10 @@ double texture_scale_of(const Mesh& mesh, const CollapseInput& input,
     double area = 0.0;
     double texture_area = 0.0;
     for (std::size_t t = 0; t < input.wedges.size(); ++t) {
-        const auto at = [&](int i) { return input.points[input.topology.triangles[t][i]]; };
+        const auto at = [&](int i) {
+            const glm::dvec3 p(input.positions[input.topology.triangles[t][i]]);
+            return (p - input.center) * input.scale;
+        };
         const auto texcoord = [&](int i) {
             return glm::dvec2(mesh.texcoords[vertex_of_wedge[input.wedges[t][i]]]);
         };
@@ -315,66 +326,116 @@ void set_attributes(CollapseInput& input, const Mesh& mesh, const DecimateOption
     }
 }
 
-/// The remaining triangles, at the indices of the input.
+/// The remaining triangles.
 struct Remains {
-    std::vector<std::optional<glm::uvec3>> triangles;  ///< By triangle of the input.
-    std::size_t count = 0;
+    std::vector<std::uint32_t> sources;  ///< Triangles of the input, ascending.
+    std::vector<glm::uvec3> triangles;   ///< Their vertices, of the input.
+
+    [[nodiscard]] std::size_t count() const { return triangles.size(); }
 };
 
-Remains remains_of(const Mesh& mesh, const DecimateOptions& options, Report& report) {
-    const std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
-    const UnitSpace space = unit_space(mesh);
-    const std::vector<std::uint32_t> parts = parts_of(mesh);
-    const bool with_normals = options.frames.normals == NormalMode::keep;
-    const Wedges wedges = wedges_of(mesh, classes, parts, with_normals);
+/// Gathers what remains in the order of the input.
+///
+/// \param sources    for each triangle of the surface, that of the input
+/// \param set_aside  triangles of the input that remain as they are
+Remains gathered_remains(const Mesh& mesh, const Collapsed& collapsed,
+                         std::span<const std::uint32_t> sources,
+                         std::span<const std::uint32_t> set_aside,
+                         std::span<const std::uint32_t> vertex_of_wedge) {
+    std::vector<std::pair<std::uint32_t, glm::uvec3>> all;
+    all.reserve(collapsed.remaining.size() + set_aside.size());
+    for (std::size_t i = 0; i < collapsed.remaining.size(); ++i) {
+        const glm::uvec3& wedges = collapsed.wedges[i];
+        all.emplace_back(sources[collapsed.remaining[i]],
+                         glm::uvec3(vertex_of_wedge[wedges.x], vertex_of_wedge[wedges.y],
+                                    vertex_of_wedge[wedges.z]));
+    }
+    for (const std::uint32_t t : set_aside)
+        all.emplace_back(t, mesh.triangles[t]);
+    std::sort(all.begin(), all.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    Remains remains;
+    remains.sources.reserve(all.size());
+    remains.triangles.reserve(all.size());
+    for (const auto& [source, triangle] : all) {
+        remains.sources.push_back(source);
+        remains.triangles.push_back(triangle);
+    }
+    return remains;
+}
 
+/// The surface of a mesh for edge collapses, and the way back from it.
+struct Prepared {
     CollapseInput input;
+    std::vector<std::uint32_t> sources;  ///< For each triangle of the surface, that of the mesh.
+    std::vector<std::uint32_t> set_aside;
+    std::vector<std::uint32_t> vertex_of_wedge;
+};
+
+/// Arrays are freed as soon as they are not needed, because the memory for the input is the largest
+/// part of that for decimation.
+Prepared prepared(const Mesh& mesh, const DecimateOptions& options, Report& report) {
+    const UnitSpace space = unit_space(mesh);
+    const Parts parts = parts_of(mesh);
+    const bool with_normals = options.frames.normals == NormalMode::keep;
+    Prepared result;
+    CollapseInput& input = result.input;
+    std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
+    Wedges wedges = wedges_of(mesh, classes, parts, with_normals);
     input.topology =
         topology_of(mesh, classes, report, canonical_order(mesh, space, parts, with_normals));
+    free_memory(classes);
+    result.sources = std::move(input.topology.source_triangle);
+    result.set_aside = std::move(input.topology.set_aside);
+    input.center = space.center;
+    input.scale = space.scale;
+    input.positions.reserve(input.topology.position_vertex.size());
     for (const std::uint32_t vertex : input.topology.position_vertex)
-        input.points.push_back(space(mesh.positions[vertex]));
-    for (const std::uint32_t source : input.topology.source_triangle) {
+        input.positions.push_back(mesh.positions[vertex]);
+    free_memory(input.topology.position_vertex);
+    input.wedges.reserve(result.sources.size());
+    for (const std::uint32_t source : result.sources) {
         const glm::uvec3& triangle = mesh.triangles[source];
         const std::uint32_t part = parts[source];
         input.wedges.emplace_back(wedges.at(triangle.x, part), wedges.at(triangle.y, part),
                                   wedges.at(triangle.z, part));
     }
     input.wedge_count = wedges.vertex.size();
-    set_attributes(input, mesh, options, wedges.vertex);
+    result.vertex_of_wedge = std::move(wedges.vertex);
+    wedges = {};
+    set_attributes(input, mesh, options, result.vertex_of_wedge);
     input.keeps_borders = options.keep_borders;
     input.keeps_seams = options.keep_seams;
-    const std::vector<std::uint32_t> set_aside = input.topology.set_aside;
-    const std::vector<std::uint32_t> source_triangle = input.topology.source_triangle;
     if (options.triangles)
-        input.triangles = *options.triangles - std::min(*options.triangles, set_aside.size());
+        input.triangles =
+            *options.triangles - std::min(*options.triangles, result.set_aside.size());
     if (options.max_error) input.max_error = *options.max_error * space.scale;
     if (options.max_normal_error) input.min_normal_cosine = std::cos(*options.max_normal_error);
+    return result;
+}
 
-    const Collapsed collapsed = collapse_edges(std::move(input));
-    Remains remains{std::vector<std::optional<glm::uvec3>>(mesh.triangles.size()),
-                    collapsed.triangles + set_aside.size()};
-    for (std::size_t t = 0; t < source_triangle.size(); ++t) {
-        if (!collapsed.remains[t]) continue;
-        const glm::uvec3& triangle = collapsed.wedges[t];
-        remains.triangles[source_triangle[t]] = glm::uvec3(
-            wedges.vertex[triangle.x], wedges.vertex[triangle.y], wedges.vertex[triangle.z]);
-    }
-    for (const std::uint32_t t : set_aside)
-        remains.triangles[t] = mesh.triangles[t];
-    return remains;
+Remains remains_of(const Mesh& mesh, const DecimateOptions& options, Report& report) {
+    Prepared surface = prepared(mesh, options, report);
+    const Collapsed collapsed = collapse_edges(std::move(surface.input));
+    return gathered_remains(mesh, collapsed, surface.sources, surface.set_aside,
+                            surface.vertex_of_wedge);
 }
 
 /// Returns the larger of the maximum distances in both directions.
-double distance_from(const Mesh& mesh, const Remains& remains) {
+///
+/// \param report  counts vertices and triangles that were not examined
+double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
     Mesh before;
     Mesh after;
     before.positions = mesh.positions;
     before.triangles = mesh.triangles;
     after.positions = mesh.positions;
-    for (const auto& triangle : remains.triangles) {
-        if (triangle) after.triangles.push_back(*triangle);
-    }
+    after.triangles = remains.triangles;
     const SurfaceDistance distance = surface_distance(before, after);
+    if (const std::size_t omitted = distance.from_a.omitted + distance.from_b.omitted) {
+        report.add("distance of crossing triangles", "mesh", 0,
+                   fmt::format("is not measured at {} vertices and triangles", omitted));
+    }
     return std::max(distance.from_a.max, distance.from_b.max);
 }
 
@@ -395,15 +456,15 @@ Remains remains_within(const Mesh& mesh, const DecimateOptions& options, Report&
     for (int i = 0; i < max_attempts; ++i) {
         Report found;
         Remains remains = remains_of(mesh, attempt, found);
-        const double distance = distance_from(mesh, remains);
+        const double distance = distance_from(mesh, remains, found);
         const double limit = *attempt.max_error;
         const bool is_within = distance <= allowed;
-        if (is_within && (!best || remains.count <= best->count)) {
+        if (is_within && (!best || remains.count() <= best->count())) {
             best = std::move(remains);
             best_report = found;
         }
         (is_within ? good : bad) = limit;
-        const bool has_reached = options.triangles && best && best->count <= *options.triangles;
+        const bool has_reached = options.triangles && best && best->count() <= *options.triangles;
         if (has_reached || limit == 0.0) break;
         if (is_within && distance >= well_used * *options.max_error) break;
         // The distance is nearly proportional to the limit. Steps are at most a factor of 4.
@@ -431,10 +492,9 @@ std::vector<std::uint32_t> used_vertices(const Mesh& mesh, const Remains& remain
             was_used[triangle[i]] = true;
     }
     std::vector<bool> is_used(mesh.positions.size(), false);
-    for (const auto& triangle : remains.triangles) {
-        if (!triangle) continue;
+    for (const glm::uvec3& triangle : remains.triangles) {
         for (int i = 0; i < 3; ++i)
-            is_used[(*triangle)[i]] = true;
+            is_used[triangle[i]] = true;
     }
     std::vector<std::uint32_t> vertices;
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
@@ -451,15 +511,15 @@ FramedMesh gathered(const Mesh& mesh, const Remains& remains, Report& report) {
         place[left.source_vertex[i]] = i;
     std::vector<MaterialRange> ranges = mesh.material_ranges;
     std::vector<std::uint32_t> groups;
-    const std::vector<std::uint32_t> parts = parts_of(mesh);
+    const Parts parts = parts_of(mesh);
     for (MaterialRange& range : ranges)
         range.triangle_count = 0;
-    for (std::size_t t = 0; t < remains.triangles.size(); ++t) {
-        const auto& triangle = remains.triangles[t];
-        if (!triangle) continue;
-        left.triangles.emplace_back(place[triangle->x], place[triangle->y], place[triangle->z]);
-        if (!mesh.smoothing_groups.empty()) groups.push_back(mesh.smoothing_groups[t]);
-        if (!ranges.empty()) ++ranges[parts[t]].triangle_count;
+    for (std::size_t i = 0; i < remains.count(); ++i) {
+        const glm::uvec3& triangle = remains.triangles[i];
+        const std::uint32_t source = remains.sources[i];
+        left.triangles.emplace_back(place[triangle.x], place[triangle.y], place[triangle.z]);
+        if (!mesh.smoothing_groups.empty()) groups.push_back(mesh.smoothing_groups[source]);
+        if (!ranges.empty()) ++ranges[parts[source]].triangle_count;
     }
     std::uint32_t first = 0;
     for (MaterialRange& range : ranges) {
@@ -501,10 +561,10 @@ FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& r
     const Remains remains = options.max_error ? remains_within(mesh, options, report)
                                               : remains_of(mesh, options, report);
     // One interior move removes two triangles, so the result may be one less than requested.
-    if (options.triangles && !options.max_error && remains.count > *options.triangles) {
+    if (options.triangles && !options.max_error && remains.count() > *options.triangles) {
         report.add("number of triangles out of reach", "mesh", 0,
                    fmt::format("{} are left: seams, hard edges, borders and shape allow no fewer",
-                               remains.count));
+                               remains.count()));
     }
     return framed(mesh, gathered(mesh, remains, report), options.frames, report);
 }

@@ -23,13 +23,22 @@
 
 namespace relief {
 
+/// Frees the memory of a vector, which an assignment of {} would keep.
+template <typename T>
+void free_memory(std::vector<T>& values) {
+    std::vector<T>().swap(values);
+}
+
 /// The maximum number of attributes of a wedge: texture coordinates, normal and color.
 constexpr std::size_t max_attributes = 9;
 
 /// The input of collapse_edges(), which consumes it.
 struct CollapseInput {
     Topology topology;
-    std::vector<glm::dvec3> points;  ///< By vertex of the topology; within [-1, 1].
+    std::vector<glm::vec3> positions;  ///< By vertex of the topology.
+    /// (position - center) * scale is within [-1, 1]; the points below are in this space.
+    glm::dvec3 center{0.0};
+    double scale = 1.0;
     /// For each triangle of the topology, the wedges at its corners. If those of two neighbors
     /// differ along their edge, there is a seam. Different parts have different wedges.
     std::vector<glm::uvec3> wedges;
@@ -52,11 +61,10 @@ struct CollapseInput {
 
 /// The result of collapse_edges().
 struct Collapsed {
-    /// By triangle of the topology: whether it remains.
-    std::vector<bool> remains;
-    /// By triangle of the topology: the wedges at its corners, if it remains.
-    std::vector<glm::uvec3> wedges;
-    std::size_t triangles = 0;  ///< The number of triangles that remain.
+    std::vector<std::uint32_t>
+        remaining;                   ///< The triangles of the topology that remain, ascending.
+    std::vector<glm::uvec3> wedges;  ///< The wedges at the corners of each of these.
+    std::size_t triangles = 0;       ///< Their number.
     std::size_t collapses = 0;
     std::size_t passes = 0;
     /// The number of triangles that were examined, a measure of the work.

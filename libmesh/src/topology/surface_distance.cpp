@@ -3,7 +3,10 @@
 // the hierarchy are sorted along a curve through space and grouped in pairs, so it is a complete
 // binary tree in an array. Axis-aligned boxes of long, thin triangles overlap: in a fan, a point is
 // in the boxes of a large part of the triangles. Nodes with such triangles have a second bound, an
-// oriented prism.
+// oriented prism. If they cross each other in all directions, prisms do not help; then the
+// triangles are divided into slabs with boxes of their own, which refer to the whole triangle. The
+// time is limited: the work of a search is measured first, and if all searches together would
+// exceed the limit, fewer points are examined, and the others are counted.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -116,6 +119,16 @@ glm::dvec3 perpendicular(const glm::dvec3& unit) {
     return glm::normalize(glm::cross(unit, away));
 }
 
+/// The work of a search: the number of examined boxes, a triangle counting as four.
+using Work = std::uint64_t;
+
+/// The mean work of a search that needs no limit: that on a surface without thin triangles is about
+/// 150.
+constexpr Work little_work = 500;
+
+/// Beyond that, the work for all vertices, which takes one to six seconds of processor time.
+constexpr Work max_work = 200'000'000;
+
 /// The triangle that is nearest to a point.
 struct Nearest {
     double squared = infinite;
@@ -141,11 +154,23 @@ class Surface {
         const glm::dvec3 size = glm::dvec3(boxes_[1].high) - glm::dvec3(boxes_[1].low);
         return 1e-7 * std::max({size.x, size.y, size.z});
     }
-    [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t guess) const;
+    [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) const;
+    /// Divides long triangles into up to `more` additional slabs, and builds the hierarchy of
+    /// these. The results of searches do not change.
+    void divide(std::size_t more);
 
   private:
+    /// A part of a triangle.
+    struct Slab {
+        Box box;
+        std::uint32_t triangle;
+    };
+
     void gather_corners();
     void sort_along_curve();
+    [[nodiscard]] double slab_length(std::size_t more) const;
+    void add_slabs(std::uint32_t triangle, double length);
+    void sort_slabs();
     void build();
     void build_prisms();
     [[nodiscard]] Prism prism_of(std::size_t begin, std::size_t end) const;
@@ -160,12 +185,15 @@ class Surface {
         const std::uint32_t prism = prism_of_node_.empty() ? no_prism : prism_of_node_[node];
         return {least_squared_distance(p, boxes_[node], prism), node};
     }
-    /// Returns a lower bound of the squared distance to a triangle: that to its box.
-    [[nodiscard]] double least_squared_distance(const glm::dvec3& p, std::size_t triangle) const {
-        const auto& at = corners_[triangle];
-        const Box box{glm::min(glm::min(at[0], at[1]), at[2]),
-                      glm::max(glm::max(at[0], at[1]), at[2])};
-        return box.squared_distance(p);
+    /// The leaves hold the triangles, or the slabs if there are any.
+    [[nodiscard]] std::size_t items() const { return slabs_.empty() ? size() : slabs_.size(); }
+    [[nodiscard]] std::uint32_t triangle_of(std::size_t item) const {
+        return slabs_.empty() ? static_cast<std::uint32_t>(item) : slabs_[item].triangle;
+    }
+    [[nodiscard]] Box box_of(std::size_t item) const {
+        if (!slabs_.empty()) return slabs_[item].box;
+        const auto& at = corners_[item];
+        return {glm::min(glm::min(at[0], at[1]), at[2]), glm::max(glm::max(at[0], at[1]), at[2])};
     }
 
     static constexpr std::size_t leaf_size = 4;
@@ -173,7 +201,8 @@ class Surface {
     const Mesh& mesh_;
     std::vector<glm::uvec3> triangles_;
     std::vector<std::array<glm::vec3, 3>> corners_;  ///< By triangle.
-    std::size_t leaves_ = 1;                         ///< A power of two.
+    std::vector<Slab> slabs_;
+    std::size_t leaves_ = 1;  ///< A power of two.
     std::vector<Box> boxes_;  ///< Children of node i are 2i and 2i + 1; leaves begin at leaves_.
     std::vector<Prism> prisms_;
     std::vector<std::uint32_t> prism_of_node_;  ///< Empty if there is no prism.
@@ -200,11 +229,8 @@ void Surface::gather_corners() {
     }
 }
 
-void Surface::sort_along_curve() {
-    const Bounds bounds = bounds_of(mesh_);
-    const glm::dvec3 low(bounds.min);
-    const glm::dvec3 size = glm::dvec3(bounds.max) - low;
-    const double longest = std::max({size.x, size.y, size.z, 1e-300});
+/// Returns the key of a point along a curve through space, with 20 bits for each axis.
+std::uint64_t curve_key(const glm::dvec3& offset, double longest) {
     const auto spread = [&](double x) {
         std::uint64_t code = 0;
         const auto bits =
@@ -213,30 +239,141 @@ void Surface::sort_along_curve() {
             code |= ((bits >> bit) & 1U) << (3 * bit);
         return code;
     };
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(triangles_.size());
-    parallel_for(keys.size(), 16384, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            const Corners at = corners(t);
-            const glm::dvec3 center = (at[0] + at[1] + at[2]) / 3.0 - low;
-            keys[t] = {spread(center.x) | (spread(center.y) << 1) | (spread(center.z) << 2),
-                       static_cast<std::uint32_t>(t)};
-        }
+    return spread(offset.x) | (spread(offset.y) << 1) | (spread(offset.z) << 2);
+}
+
+/// Returns an order of things along the curve through their centers.
+template <typename Center>
+std::vector<std::uint32_t> order_along_curve(const Mesh& mesh, std::size_t count,
+                                             const Center& center) {
+    const Bounds bounds = bounds_of(mesh);
+    const glm::dvec3 low(bounds.min);
+    const glm::dvec3 size = glm::dvec3(bounds.max) - low;
+    const double longest = std::max({size.x, size.y, size.z, 1e-300});
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(count);
+    parallel_for(count, 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            keys[i] = {curve_key(center(i) - low, longest), static_cast<std::uint32_t>(i)};
     });
     std::sort(keys.begin(), keys.end());
-    std::vector<glm::uvec3> sorted;
-    sorted.reserve(keys.size());
+    std::vector<std::uint32_t> order;
+    order.reserve(count);
     for (const auto& key : keys)
-        sorted.push_back(triangles_[key.second]);
+        order.push_back(key.second);
+    return order;
+}
+
+void Surface::sort_along_curve() {
+    const auto order = order_along_curve(mesh_, size(), [&](std::size_t t) {
+        const Corners at = corners(t);
+        return (at[0] + at[1] + at[2]) / 3.0;
+    });
+    std::vector<glm::uvec3> sorted;
+    sorted.reserve(order.size());
+    for (const std::uint32_t t : order)
+        sorted.push_back(triangles_[t]);
     triangles_ = std::move(sorted);
 }
 
+/// Returns the length of slabs at which their number is limited.
+double Surface::slab_length(std::size_t more) const {
+    double longest = 0.0;
+    for (std::size_t t = 0; t < size(); ++t)
+        longest = std::max(longest, glm::length(extent_of(corners(t)).edge));
+    const auto count = [&](double length) {
+        double sum = 0.0;
+        for (std::size_t t = 0; t < size(); ++t)
+            sum += std::ceil(glm::length(extent_of(corners(t)).edge) / length);
+        return sum;
+    };
+    constexpr int max_halvings = 12;
+    double length = longest;
+    for (int i = 0; i < max_halvings; ++i) {
+        if (!(length > 0.0) || count(length / 2.0) > static_cast<double>(size() + more)) break;
+        length /= 2.0;
+    }
+    return length;
+}
+
+/// Adds the parts of a triangle between planes across its longest edge.
+void Surface::add_slabs(std::uint32_t triangle, double length) {
+    Corners at = corners(triangle);
+    // The longest edge is that from corner 0 to corner 1.
+    const auto edge = [&](std::size_t i) { return at[(i + 1) % 3] - at[i]; };
+    std::size_t first = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+        if (glm::dot(edge(i), edge(i)) > glm::dot(edge(first), edge(first))) first = i;
+    }
+    std::rotate(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(first), at.end());
+    const glm::dvec3 along = edge(0);
+    const double squared = glm::dot(along, along);
+    const auto count = static_cast<std::size_t>(
+        std::max(1.0, length > 0.0 ? std::ceil(std::sqrt(squared) / length) : 1.0));
+    const double apex =
+        squared > 0.0 ? std::clamp(glm::dot(at[2] - at[0], along) / squared, 0.0, 1.0) : 0.0;
+    const glm::dvec3 largest =
+        glm::max(glm::abs(at[0]), glm::max(glm::abs(at[1]), glm::abs(at[2])));
+    const double margin = 1e-12 * (largest.x + largest.y + largest.z);
+    // The point on the two other edges, at a part of the longest edge.
+    const auto beside = [&](double part) {
+        if (part < apex) return at[0] + (part / apex) * (at[2] - at[0]);
+        return apex < 1.0 ? at[2] + ((part - apex) / (1.0 - apex)) * (at[1] - at[2]) : at[2];
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        const double begin = static_cast<double>(i) / static_cast<double>(count);
+        const double end = static_cast<double>(i + 1) / static_cast<double>(count);
+        glm::dvec3 low(infinite);
+        glm::dvec3 high(-infinite);
+        const auto add = [&](const glm::dvec3& p) {
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        };
+        add(at[0] + begin * along);
+        add(at[0] + end * along);
+        add(beside(begin));
+        add(beside(end));
+        if (begin <= apex && apex <= end) add(at[2]);
+        // Rounding to single precision must not make the box smaller.
+        constexpr float limit = std::numeric_limits<float>::infinity();
+        Slab slab{{}, triangle};
+        for (int k = 0; k < 3; ++k) {
+            slab.box.low[k] = std::nextafter(static_cast<float>(low[k] - margin), -limit);
+            slab.box.high[k] = std::nextafter(static_cast<float>(high[k] + margin), limit);
+        }
+        slabs_.push_back(slab);
+    }
+}
+
+void Surface::sort_slabs() {
+    const auto order = order_along_curve(mesh_, slabs_.size(), [&](std::size_t i) {
+        return (glm::dvec3(slabs_[i].box.low) + glm::dvec3(slabs_[i].box.high)) / 2.0;
+    });
+    std::vector<Slab> sorted;
+    sorted.reserve(order.size());
+    for (const std::uint32_t i : order)
+        sorted.push_back(slabs_[i]);
+    slabs_ = std::move(sorted);
+}
+
+void Surface::divide(std::size_t more) {
+    const double length = slab_length(more);
+    slabs_.clear();
+    for (std::uint32_t t = 0; t < size(); ++t)
+        add_slabs(t, length);
+    sort_slabs();
+    prisms_.clear();
+    prism_of_node_.clear();
+    build();
+}
+
 void Surface::build() {
-    leaves_ = std::bit_ceil((triangles_.size() + leaf_size - 1) / leaf_size);
-    boxes_.resize(2 * leaves_);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        Box& box = boxes_[leaves_ + t / leaf_size];
-        for (const glm::vec3& corner : corners_[t])
-            box.add(corner);
+    leaves_ = std::bit_ceil((items() + leaf_size - 1) / leaf_size);
+    boxes_.assign(2 * leaves_, Box());
+    for (std::size_t i = 0; i < items(); ++i) {
+        Box& box = boxes_[leaves_ + i / leaf_size];
+        const Box of_item = box_of(i);
+        box.add(of_item.low);
+        box.add(of_item.high);
     }
     for (std::size_t node = leaves_ - 1; node > 0; --node) {
         for (const std::size_t child : {2 * node, 2 * node + 1}) {
@@ -244,7 +381,7 @@ void Surface::build() {
             boxes_[node].high = glm::max(boxes_[node].high, boxes_[child].high);
         }
     }
-    build_prisms();
+    if (slabs_.empty()) build_prisms();
 }
 
 /// Builds prisms for the nodes that have thin triangles and are not too large, so that the time is
@@ -315,7 +452,8 @@ Prism Surface::prism_of(std::size_t begin, std::size_t end) const {
 }
 
 /// Finds the nearest triangle; a good guess makes it faster. Ties: the lowest index wins.
-Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess) const {
+Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) const {
+    constexpr Work of_triangle = 4;
     Nearest best{squared_distance(p, corners(guess)), guess};
     std::array<std::pair<double, std::size_t>, 64> stack;
     std::size_t height = 0;
@@ -325,16 +463,19 @@ Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess) const {
         if (distance > best.squared) continue;
         if (node >= leaves_) {
             const std::size_t first = (node - leaves_) * leaf_size;
-            const std::size_t last = std::min(first + leaf_size, triangles_.size());
-            for (std::size_t t = first; t < last; ++t) {
-                if (least_squared_distance(p, t) > best.squared) continue;
-                const double here = squared_distance(p, corners(t));
-                const auto index = static_cast<std::uint32_t>(t);
+            const std::size_t last = std::min(first + leaf_size, items());
+            for (std::size_t i = first; i < last; ++i) {
+                ++work;
+                if (box_of(i).squared_distance(p) > best.squared) continue;
+                work += of_triangle;
+                const std::uint32_t index = triangle_of(i);
+                const double here = squared_distance(p, corners(index));
                 if (here < best.squared || (here == best.squared && index < best.triangle))
                     best = {here, index};
             }
             continue;
         }
+        work += 2;
         std::pair<double, std::size_t> near = entry(p, 2 * node);
         std::pair<double, std::size_t> far = entry(p, 2 * node + 1);
         if (far.first < near.first) std::swap(near, far);
@@ -342,6 +483,19 @@ Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess) const {
         if (near.first <= best.squared) stack[height++] = near;
     }
     return best;
+}
+
+/// Returns the mean work of searching for points of another surface, which is at least 1.
+Work mean_work(const Surface& from, const Surface& to) {
+    constexpr std::size_t most = 256;
+    const std::size_t count = std::min(most, from.size());
+    Work work = 0;
+    std::uint32_t guess = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Corners at = from.corners(i * from.size() / count);
+        guess = to.nearest((at[0] + at[1] + at[2]) / 3.0, guess, work).triangle;
+    }
+    return 1 + work / count;
 }
 
 glm::dvec3 normal_of(const Corners& corners) {
@@ -362,7 +516,10 @@ std::vector<Value> measured_in_pieces(std::size_t count, const Measure& measure)
 }
 
 /// Computes means over samples at equal steps of area, and the maximum over them.
-void measure_samples(const Surface& from, const Surface& to, DistanceStats& stats) {
+///
+/// \param most  the maximum number of samples
+void measure_samples(const Surface& from, const Surface& to, std::size_t most,
+                     DistanceStats& stats) {
     std::vector<double> areas;
     areas.reserve(from.size());
     for (std::size_t t = 0; t < from.size(); ++t) {
@@ -371,11 +528,12 @@ void measure_samples(const Surface& from, const Surface& to, DistanceStats& stat
     }
     if (!(stats.area > 0.0)) return;
     const std::size_t count =
-        std::clamp<std::size_t>(std::max(from.size(), to.size()), 20'000, 50'000);
+        std::min(most, std::clamp<std::size_t>(std::max(from.size(), to.size()), 20'000, 50'000));
     using Sums = DistanceStats;
     const std::vector<Sums> pieces =
         measured_in_pieces<Sums>(count, [&](std::size_t begin, std::size_t end) {
             Sums sums;
+            Work work = 0;
             std::uint32_t guess = 0;
             for (std::size_t i = begin; i < end; ++i) {
                 const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
@@ -395,7 +553,7 @@ void measure_samples(const Surface& from, const Surface& to, DistanceStats& stat
                 }
                 const Corners c = from.corners(t);
                 const Nearest nearest =
-                    to.nearest(c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]), guess);
+                    to.nearest(c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]), guess, work);
                 guess = nearest.triangle;
                 sums.mean += std::sqrt(nearest.squared);
                 sums.rms += nearest.squared;
@@ -427,11 +585,20 @@ struct Probe {
     Nearest nearest;
 };
 
+/// Searches the interior of triangles for the largest distance.
+struct InteriorSearch {
+    const Surface& to;
+    Work work = 0;
+    Work most;
+    bool was_stopped = false;  ///< The work has exceeded `most`.
+
+    double largest(const std::array<Probe, 3>& piece, double known, int depth);
+};
+
 /// Returns the largest squared distance at the corners of a piece of a triangle and of its parts.
 /// The distance from one triangle is convex, so the largest one at the corners bounds it. The piece
 /// is divided while that bound is above `known`.
-double largest_distance(const Surface& to, const std::array<Probe, 3>& piece, double known,
-                        int depth) {
+double InteriorSearch::largest(const std::array<Probe, 3>& piece, double known, int depth) {
     constexpr double slack = 1.004;  // Of squares: 0.2 %.
     double corner = 0.0;
     for (const Probe& probe : piece)
@@ -446,75 +613,140 @@ double largest_distance(const Surface& to, const std::array<Probe, 3>& piece, do
     for (const Probe& probe : piece) {
         if (is_bounded_by(probe.nearest.triangle)) return corner;
     }
+    if (work > most) {
+        was_stopped = true;
+        return corner;
+    }
     const glm::dvec3 center = (piece[0].point + piece[1].point + piece[2].point) / 3.0;
-    const Nearest of_center = to.nearest(center, piece[0].nearest.triangle);
+    const Nearest of_center = to.nearest(center, piece[0].nearest.triangle, work);
     corner = std::max(corner, of_center.squared);
     if (depth == 0 || is_bounded_by(of_center.triangle)) return corner;
     std::array<Probe, 3> middle;
     for (std::size_t i = 0; i < 3; ++i) {
         middle[i].point = (piece[(i + 1) % 3].point + piece[(i + 2) % 3].point) / 2.0;
-        middle[i].nearest = to.nearest(middle[i].point, of_center.triangle);
+        middle[i].nearest = to.nearest(middle[i].point, of_center.triangle, work);
         corner = std::max(corner, middle[i].nearest.squared);
     }
     known = std::max(known, corner);
-    double largest = std::max(corner, largest_distance(to, middle, known, depth - 1));
+    double most_found = std::max(corner, largest(middle, known, depth - 1));
     for (std::size_t i = 0; i < 3; ++i) {
         const std::array<Probe, 3> part = {piece[i], middle[(i + 2) % 3], middle[(i + 1) % 3]};
-        largest =
-            std::max(largest, largest_distance(to, part, std::max(known, largest), depth - 1));
+        most_found = std::max(most_found, largest(part, std::max(known, most_found), depth - 1));
     }
-    return largest;
+    return most_found;
 }
 
-/// \param sampled  the maximum distance of samples
-double max_distance(const Surface& from, const Surface& to, double sampled) {
+/// The largest squared distance of some points, and the number of those that were left out.
+struct Largest {
+    double squared = 0.0;
+    std::size_t omitted = 0;
+};
+
+/// Computes the distances of the used vertices.
+///
+/// \param step  only each vertex at a multiple of this index is examined
+Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t step,
+                            std::vector<Nearest>& nearest) {
     const std::vector<glm::vec3>& positions = from.mesh().positions;
     std::vector<bool> is_used(positions.size(), false);
     for (std::size_t t = 0; t < from.size(); ++t) {
         for (int i = 0; i < 3; ++i)
             is_used[from.vertices(t)[i]] = true;
     }
-    std::vector<Nearest> nearest(positions.size());
-    const auto of_vertices =
-        measured_in_pieces<double>(positions.size(), [&](std::size_t begin, std::size_t end) {
-            double largest = 0.0;
+    nearest.resize(positions.size());
+    const auto pieces =
+        measured_in_pieces<Largest>(positions.size(), [&](std::size_t begin, std::size_t end) {
+            Largest largest;
+            Work work = 0;
             std::uint32_t guess = 0;
             for (std::size_t v = begin; v < end; ++v) {
                 if (!is_used[v]) continue;
-                nearest[v] = to.nearest(glm::dvec3(positions[v]), guess);
+                if (v % step != 0) {
+                    ++largest.omitted;
+                    continue;
+                }
+                nearest[v] = to.nearest(glm::dvec3(positions[v]), guess, work);
                 guess = nearest[v].triangle;
-                largest = std::max(largest, nearest[v].squared);
+                largest.squared = std::max(largest.squared, nearest[v].squared);
             }
             return largest;
         });
-    const double of_all =
-        std::max(*std::max_element(of_vertices.begin(), of_vertices.end()), sampled * sampled);
+    Largest all;
+    for (const Largest& piece : pieces) {
+        all.squared = std::max(all.squared, piece.squared);
+        all.omitted += piece.omitted;
+    }
+    return all;
+}
+
+/// Computes the maximum distance of vertices and of points inside the triangles.
+///
+/// \param work  the mean work of a search
+void measure_maximum(const Surface& from, const Surface& to, Work work, DistanceStats& stats) {
+    const std::size_t vertices = from.mesh().positions.size();
+    const Work excess = work > little_work ? vertices * work / max_work : 0;
+    const auto step = static_cast<std::size_t>(1 + excess);
+    std::vector<Nearest> nearest;
+    const Largest at_vertices = largest_of_vertices(from, to, step, nearest);
+    const double of_all = std::max(at_vertices.squared, stats.max * stats.max);
+    stats.max = std::sqrt(of_all);
+    stats.omitted = at_vertices.omitted;
+    if (step > 1) {
+        stats.omitted += from.size();
+        return;
+    }
     // Distances below the rounding of positions are not told apart.
     const double known = std::max(of_all, to.rounding() * to.rounding());
     constexpr std::size_t max_pieces = 500'000;
     int depth = 1;
     while (depth < 6 && (from.size() << (2 * depth + 2)) <= max_pieces)
         ++depth;
+    // The work for one triangle, on average over a piece of the loop.
+    const Work allowed = std::max<Work>(4 * max_work / from.size(), 2 * little_work);
     const auto of_triangles =
-        measured_in_pieces<double>(from.size(), [&](std::size_t begin, std::size_t end) {
-            double largest = of_all;
+        measured_in_pieces<Largest>(from.size(), [&](std::size_t begin, std::size_t end) {
+            Largest largest{of_all, 0};
+            InteriorSearch search{to, 0, allowed * (end - begin)};
             for (std::size_t t = begin; t < end; ++t) {
                 std::array<Probe, 3> piece;
                 const Corners corners = from.corners(t);
                 for (std::size_t i = 0; i < 3; ++i)
                     piece[i] = {corners[i], nearest[from.vertices(t)[static_cast<int>(i)]]};
-                largest = std::max(largest, largest_distance(to, piece, known, depth));
+                search.was_stopped = false;
+                largest.squared = std::max(largest.squared, search.largest(piece, known, depth));
+                if (search.was_stopped) ++largest.omitted;
             }
             return largest;
         });
-    return std::sqrt(*std::max_element(of_triangles.begin(), of_triangles.end()));
+    double squared = of_all;
+    for (const Largest& piece : of_triangles) {
+        squared = std::max(squared, piece.squared);
+        stats.omitted += piece.omitted;
+    }
+    stats.max = std::sqrt(squared);
+}
+
+DistanceStats distances_on(const Surface& from, const Surface& to, Work work) {
+    constexpr std::size_t min_samples = 1000;
+    DistanceStats stats;
+    const std::size_t most = std::max<std::size_t>(min_samples, max_work / work);
+    measure_samples(from, to, most, stats);
+    measure_maximum(from, to, work, stats);
+    return stats;
 }
 
 DistanceStats distances(const Surface& from, const Surface& to) {
-    DistanceStats stats;
-    measure_samples(from, to, stats);
-    stats.max = max_distance(from, to, stats.max);
-    return stats;
+    const Work work = mean_work(from, to);
+    if (work <= little_work) return distances_on(from, to, work);
+    Surface divided = to;
+    Work of_divided = work;
+    for (const std::size_t more : {500'000, 2'000'000}) {
+        divided.divide(more);
+        of_divided = mean_work(from, divided);
+        if (of_divided <= little_work) break;
+    }
+    return of_divided < work ? distances_on(from, divided, of_divided)
+                             : distances_on(from, to, work);
 }
 
 }  // namespace

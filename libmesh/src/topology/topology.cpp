@@ -79,6 +79,8 @@ class TopologyMaker {
 };
 
 void TopologyMaker::choose_triangles() {
+    welded_.reserve(mesh_.triangles.size());
+    result_.source_triangle.reserve(mesh_.triangles.size());
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
         const std::uint32_t t = order_.empty() ? i : order_[i];
         const glm::uvec3& triangle = mesh_.triangles[t];
@@ -142,6 +144,7 @@ void TopologyMaker::give_vertex(Corner first) {
 
 void TopologyMaker::find_vertices() {
     result_.position_vertex.clear();
+    result_.position_vertex.reserve(mesh_.positions.size());
     result_.triangles.assign(welded_.size(), glm::uvec3(no_corner));
     for (Corner corner = 0; corner < 3 * welded_.size(); ++corner) {
         if (vertex_of(corner, result_.triangles) == no_corner) give_vertex(corner);

@@ -422,7 +422,7 @@ Collapsed collapsed(const Mesh& mesh, std::size_t triangles) {
     CollapseInput input;
     input.topology = topology_of(mesh, classes, report);
     for (const std::uint32_t vertex : input.topology.position_vertex)
-        input.points.emplace_back(mesh.positions[vertex]);
+        input.positions.push_back(mesh.positions[vertex]);
     for (const std::uint32_t t : input.topology.source_triangle) {
         const glm::uvec3& triangle = mesh.triangles[t];
         input.wedges.emplace_back(classes[triangle.x], classes[triangle.y], classes[triangle.z]);

@@ -89,6 +89,9 @@ struct DistanceStats {
     double mean_degrees = 0.0;  ///< Over area, of samples.
     double max_degrees = 0.0;   ///< Of samples.
     double area = 0.0;
+    /// The vertices and triangles that were not examined for the maximum, because that would take
+    /// too long: more than 0 only for many long triangles that cross each other.
+    std::size_t omitted = 0;
 };
 
 struct SurfaceDistance {
@@ -102,7 +105,8 @@ struct SurfaceDistance {
 /// \return zeros if one of the surfaces has no triangle. Samples are evenly spread over the area,
 ///         and their number is that of the triangles, from 20,000 to 50,000. For the maximum, the
 ///         distances of all vertices are computed, and triangles are divided up to 6 times (fewer
-///         if there are many) where a distance between their corners may be larger
+///         if there are many) where a distance between their corners may be larger. The work has a
+///         limit: beyond it, fewer points are examined, which `omitted` counts
 SurfaceDistance surface_distance(const Mesh& a, const Mesh& b);
 
 // Subdivision computes finer, smoother surfaces.
