@@ -86,18 +86,54 @@ std::string method_rows(const ordered_json& experiment) {
     return text;
 }
 
-std::string input_line(const ordered_json& experiment) {
-    return fmt::format("`{}`, {}; errors in {}:\n\n", text_of(experiment, "id"),
-                       text_of(experiment, "input"), text_of(experiment, "error_unit"));
+/// Returns the number of characters of UTF-8 text.
+std::size_t length_of(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char byte) {
+        return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;
+    }));
 }
 
-std::string machine_line(const ordered_json& report) {
+/// Breaks a paragraph into lines of at most 120 characters, at spaces outside of code spans.
+std::string wrapped(const std::string& paragraph) {
+    constexpr std::size_t max_length = 120;
+    std::string result;
+    std::string line;
+    const auto add_word = [&](const std::string& word) {
+        if (!line.empty() && length_of(line) + 1 + length_of(word) > max_length) {
+            result += line + "\n";
+            line.clear();
+        }
+        if (!line.empty()) line += " ";
+        line += word;
+    };
+    std::string word;
+    bool is_code = false;
+    for (const char c : paragraph) {
+        if (c == '`') is_code = !is_code;
+        if (c == ' ' && !is_code) {
+            add_word(word);
+            word.clear();
+        } else {
+            word += c;
+        }
+    }
+    add_word(word);
+    return result + line + "\n";
+}
+
+std::string input_paragraph(const ordered_json& experiment) {
+    return wrapped(fmt::format("`{}`, {}; errors in {}:", text_of(experiment, "id"),
+                               text_of(experiment, "input"), text_of(experiment, "error_unit"))) +
+           "\n";
+}
+
+std::string machine_paragraph(const ordered_json& report) {
     const ordered_json& machine = report.at("machine");
-    return fmt::format(
-        "\nMeasured by `{}` on {}, {} cores, {}, {}; times are medians of {} interleaved rounds.\n",
+    return wrapped(fmt::format(
+        "Measured by `{}` on {}, {} cores, {}, {}; times are medians of {} interleaved rounds.",
         text_of(report, "command"), text_of(machine, "processor"), machine.at("cores").get<int>(),
         split_at(text_of(machine, "system"), ",").first, text_of(machine, "compiler"),
-        report.at("settings").at("repeats").get<int>());
+        report.at("settings").at("repeats").get<int>()));
 }
 
 }  // namespace
@@ -105,7 +141,7 @@ std::string machine_line(const ordered_json& report) {
 AccuracySection accuracy_results(const std::filesystem::path& folder) {
     const ordered_json report = report_in(folder);
     AccuracySection result;
-    std::string text = machine_line(report);
+    std::string text = "\n" + machine_paragraph(report);
     for (const ShownExperiment& shown : shown_experiments) {
         const ordered_json& all = report.at("experiments");
         const auto found = std::find_if(all.begin(), all.end(), [&](const ordered_json& one) {
@@ -120,11 +156,11 @@ AccuracySection accuracy_results(const std::filesystem::path& folder) {
         subject[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(subject[0])));
         const std::string title = text_of(*found, "title");
         const std::size_t colon = title.rfind(": ");
-        text += fmt::format("\n### {}: {}\n{} {}\n\n![{}]({})\n\n{}{}", subject,
-                            colon == std::string::npos ? title : title.substr(colon + 2),
-                            text_of(*found, "question"), text_of(*found, "finding"),
-                            text_of(*found, "question"), picture, input_line(*found),
-                            method_rows(*found));
+        const std::string heading = fmt::format(
+            "{}: {}", subject, colon == std::string::npos ? title : title.substr(colon + 2));
+        text += fmt::format("\n### {}\n{}\n![{}]({})\n\n{}{}", heading,
+                            wrapped(text_of(*found, "question") + " " + text_of(*found, "finding")),
+                            heading, picture, input_paragraph(*found), method_rows(*found));
     }
     result.section = {"<!-- tables: written by relief-documents -->\n", text};
     return result;
@@ -136,10 +172,11 @@ AccuracySection accuracy_of_assets(const std::vector<std::filesystem::path>& fol
         const ordered_json report = report_in(folder);
         for (const ordered_json& one : report.at("experiments")) {
             const auto [finding, command] = split_at(text_of(one, "finding"), " To do it: ");
-            text +=
-                fmt::format("\n### {}\n`{}` recommends {} To do it: `{}`\n\nReference: {}\n\n{}{}",
-                            text_of(one, "title"), text_of(one, "command"), finding, command,
-                            text_of(one, "truth"), input_line(one), method_rows(one));
+            text += fmt::format("\n### {}\n{}\n{}\n{}{}", text_of(one, "title"),
+                                wrapped(fmt::format("`{}` recommends {} To do it: `{}`",
+                                                    text_of(one, "command"), finding, command)),
+                                wrapped("Reference: " + text_of(one, "truth")),
+                                input_paragraph(one), method_rows(one));
         }
     }
     return {{"<!-- own data: written by relief-documents -->\n", text}, {}};

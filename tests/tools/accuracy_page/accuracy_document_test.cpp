@@ -30,11 +30,26 @@ std::string without_bold(std::string text) {
     return text;
 }
 
-Page numbers_of_the_page() {
+/// Returns the lines of the page. A paragraph that begins with code is joined to one line.
+std::vector<std::string> lines_of_the_page() {
     std::ifstream file(test::source_directory() / "docs/accuracy.md");
+    std::vector<std::string> lines;
+    bool continues = false;
+    for (std::string line; std::getline(file, line);) {
+        if (continues && !line.empty()) {
+            lines.back() += " " + line;
+        } else {
+            lines.push_back(line);
+            continues = line.starts_with("`");
+        }
+    }
+    return lines;
+}
+
+Page numbers_of_the_page() {
     Page page;
     std::map<std::string, PageRow>* rows = nullptr;
-    for (std::string line; std::getline(file, line);) {
+    for (const std::string& line : lines_of_the_page()) {
         if (line.starts_with("`")) rows = &page[line.substr(0, line.rfind("; errors in "))];
         if (rows == nullptr || !line.starts_with("| ") || line.starts_with("| |")) continue;
         std::istringstream cells(line.substr(2));
@@ -97,9 +112,8 @@ INSTANTIATE_TEST_SUITE_P(All, AccuracyDocumentOf,
 
 /// Returns the commands with a recommendation in the page.
 std::vector<std::string> commands_of_the_page() {
-    std::ifstream file(test::source_directory() / "docs/accuracy.md");
     std::vector<std::string> commands;
-    for (std::string line; std::getline(file, line);) {
+    for (const std::string& line : lines_of_the_page()) {
         const std::size_t end = line.find("` recommends ");
         if (line.starts_with("`relief-accuracy own ") && end != std::string::npos)
             commands.push_back(line.substr(1, end - 1));
