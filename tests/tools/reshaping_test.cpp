@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
@@ -372,7 +374,7 @@ TEST(LodsCommand, WritesLevelsAndTheSizesAtWhichTheyTakeOver) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(
         "relief-mesh lods data/vase.obj out/lods.gltf --triangles 2000,500 --error 2px --names "
-        "--report out/lods.json");
+        "--switch distance --report out/lods.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("LOD1: 2000 triangles, largest distance "));
     const json root = json::parse(workplace.read("out/lods.gltf"));
@@ -431,9 +433,11 @@ TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
     root["nodes"][0]["translation"] = {1, 2, 3};
     root["nodes"].push_back({{"name", "handle"}});
     workplace.write("out/vase.gltf", root.dump());
-    ASSERT_EQ(
-        workplace.run("relief-mesh lods out/vase.gltf out/lods.gltf --levels 1 --names").exit_code,
-        0);
+    ASSERT_EQ(workplace
+                  .run("relief-mesh lods out/vase.gltf out/lods.gltf --levels 1 --names "
+                       "--switch distance")
+                  .exit_code,
+              0);
     root = json::parse(workplace.read("out/lods.gltf"));
     ASSERT_EQ(root["nodes"].size(), 4U);
     EXPECT_EQ(root["nodes"][0]["children"], json::array({1, 2}));
@@ -443,12 +447,16 @@ TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
     EXPECT_FALSE(root["nodes"][2].contains("translation"));
     EXPECT_EQ(root["nodes"][3]["name"], "vase_LOD1");
     EXPECT_EQ(read_document(workplace / "out/lods.gltf").view().primitives.size(), 1U);
-    const auto again = workplace.run("relief-mesh lods out/lods.gltf out/again.glb");
+    const auto again =
+        workplace.run("relief-mesh lods out/lods.gltf out/again.glb --levels 1 --switch distance");
     EXPECT_EQ(again.exit_code, 1);
     EXPECT_THAT(again.error, testing::HasSubstr("already has levels of detail"));
     workplace.write("old.glb", "old");
     expect_refusals(workplace, "relief-mesh", "old.glb",
-                    {{"relief-mesh lods data/vase.obj out/old.ply", 2,
+                    {{"relief-mesh lods data/vase.obj out/old.glb --names --separate", 2,
+                      "--names: has no effect with --separate, whose files have no levels (leave "
+                      "one of them out)"},
+                     {"relief-mesh lods data/vase.obj out/old.ply", 2,
                       "out/old.ply: cannot store levels of detail (write a .glb or .gltf)"},
                      {"relief-mesh lods data/vase.obj out/old.glb --levels 2 --triangles 5", 2,
                       "--levels and --triangles contradict each other (give one of them)"},
@@ -456,6 +464,124 @@ TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
                       "--triangles: 500 is not less than 500 (give the finest level first)"},
                      {"relief-mesh lods data/vase.obj out/old.glb --error 0", 2,
                       "--error 0: not between 0.001 and 1000 pixels"}});
+}
+
+/// Runs `relief-mesh lods` and returns its report.
+json lods_report(const Workplace& workplace, const std::string& arguments) {
+    const ProgramResult result =
+        workplace.run("relief-mesh lods " + arguments + " --report out/lods.json");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return json::parse(workplace.read("out/lods.json"));
+}
+
+TEST(LodsCommand, ALevelTakesOverWhereItDiffersNoMoreThanTheMovedInput) {
+    const Workplace workplace;
+    const std::string line = "data/vase.obj out/lods.gltf --triangles 700,150";
+    const json half = lods_report(workplace, line + " --error 0.5px");
+    const json two = lods_report(workplace, line + " --error 2px");
+    const json by_distance = lods_report(workplace, line + " --error 0.5px --switch distance");
+    EXPECT_EQ(half["flip_not_measured"], nullptr);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const json& level = half["levels"][i];
+        EXPECT_GT(level["flip"], 0.0);
+        EXPECT_LE(level["flip"], level["flip_of_moved_input"]);
+        EXPECT_LT(level["flip_of_moved_input"], 0.6);
+        const double step = 4.0 * std::log2(level["pixels"].get<double>());
+        EXPECT_NEAR(step, std::round(step), 1e-6);
+        EXPECT_NEAR(
+            level["distance_pixels"].get<double>() /
+                by_distance["levels"][i]["distance_pixels"].get<double>(),
+            level["pixels"].get<double>() / by_distance["levels"][i]["pixels"].get<double>(), 1e-6);
+        EXPECT_NEAR(by_distance["levels"][i]["distance_pixels"], 0.5, 1e-6);
+        EXPECT_EQ(by_distance["levels"][i]["flip"], nullptr);
+        EXPECT_GT(two["levels"][i]["pixels"], level["pixels"]) << "a larger error is permitted";
+    }
+    EXPECT_LT(half["levels"][1]["pixels"], half["levels"][0]["pixels"]);
+}
+
+TEST(LodsCommand, WithoutOpenGLTheDistanceDecidesAndThatIsSaid) {
+    const Workplace workplace;
+    const std::string arguments = "relief-mesh lods data/vase.obj out/a.gltf --levels 1";
+    const ProgramResult result =
+        workplace.run("RELIEF_OSMESA_LIBRARY=/none RELIEF_EGL_LIBRARY=/none " + arguments +
+                      " --report out/a.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("FLIP      not measured: "));
+    EXPECT_THAT(result.out, HasSubstr("; the largest distance decides"));
+    const json report = json::parse(workplace.read("out/a.json"));
+    EXPECT_THAT(report["flip_not_measured"].get<std::string>(), HasSubstr("/none"));
+    EXPECT_EQ(report["levels"][0]["flip"], nullptr);
+    EXPECT_NEAR(report["levels"][0]["distance_pixels"], 0.5, 1e-6);
+}
+
+TEST(LodsCommand, AnErrorAloneMakesLevelsUntilOneCannotGetSmaller) {
+    const Workplace workplace;
+    write_sheet(workplace, "sheet.obj", 24);
+    const json report =
+        lods_report(workplace, "sheet.obj out/a.gltf --error 0.5px --switch distance");
+    const json root = json::parse(workplace.read("out/a.gltf"));
+    const std::size_t levels = report["levels"].size();
+    EXPECT_GT(levels, 4U);
+    EXPECT_EQ(root["meshes"].size(), levels + 1) << "the level that is too large is removed";
+    double before = 1152.0;
+    for (const json& level : report["levels"]) {
+        EXPECT_LE(level["triangles"], 0.75 * before);
+        EXPECT_GE(level["pixels"], 1.0);
+        before = level["triangles"];
+    }
+    EXPECT_LT(before, 40.0);
+    for (std::size_t a = 0; a < root["accessors"].size(); ++a) {
+        bool is_used = false;
+        for (const json& mesh : root["meshes"]) {
+            for (const json& primitive : mesh["primitives"]) {
+                is_used = is_used || primitive["indices"] == a;
+                for (const auto& [name, accessor] : primitive["attributes"].items())
+                    is_used = is_used || accessor == a;
+            }
+        }
+        EXPECT_TRUE(is_used) << "accessor " << a << " belongs to the removed level";
+    }
+    // One triangle cannot get smaller, so there is no level.
+    workplace.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(lods_report(workplace, "one.obj out/b.glb --error 1px")["levels"].size(), 0U);
+}
+
+TEST(LodsCommand, SeparateFilesHoldALevelEach) {
+    const Workplace workplace;
+    const json report =
+        lods_report(workplace, "data/vase.obj out/vase.gltf --triangles 2000,500 --separate");
+    EXPECT_EQ(workplace.outputs(),
+              "lods.json vase_LOD0.bin vase_LOD0.gltf vase_LOD1.bin vase_LOD1.gltf vase_LOD2.bin "
+              "vase_LOD2.gltf");
+    const std::array<std::size_t, 3> triangles = {5760, 2000, 500};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string file = "out/vase_LOD" + std::to_string(i) + ".gltf";
+        EXPECT_EQ(read_document(workplace / file).mesh({0, 0}).triangles.size(), triangles[i]);
+        const json root = json::parse(workplace.read(file));
+        EXPECT_EQ(root["meshes"].size(), 1U);
+        EXPECT_FALSE(root.contains("extensionsUsed"));
+    }
+    EXPECT_NE(report["levels"][1]["flip"], nullptr);
+}
+
+TEST(LodsCommand, ARiggedModelKeepsItsRigInEachLevel) {
+    RELIEF_NEEDS_SHARED(model, "data/models/gltf/CesiumMan/glTF-Binary/CesiumMan.glb");
+    const Workplace workplace;
+    lods_report(workplace, model.string() + " out/man.gltf --levels 2 --switch distance");
+    const json root = json::parse(workplace.read("out/man.gltf"));
+    ASSERT_EQ(root["meshes"].size(), 3U);
+    for (const json& mesh : root["meshes"]) {
+        const json& attributes = mesh["primitives"][0]["attributes"];
+        const auto count = [&](const char* name) {
+            return root["accessors"][attributes[name].get<std::size_t>()]["count"];
+        };
+        EXPECT_EQ(count("JOINTS_0"), count("POSITION"));
+        EXPECT_EQ(count("WEIGHTS_0"), count("POSITION"));
+    }
+    std::size_t skinned = 0;
+    for (const json& node : root["nodes"])
+        skinned += node.contains("mesh") && node.contains("skin") ? 1 : 0;
+    EXPECT_EQ(skinned, 3U);
 }
 
 }  // namespace

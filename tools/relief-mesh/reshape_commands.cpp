@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh decimate IN OUT` and `relief-mesh subdivide IN OUT` give a model other triangles;
-// `relief-mesh lods IN OUT` adds levels of detail.
+// `relief-mesh decimate IN OUT` and `relief-mesh subdivide IN OUT` give a model other triangles.
 // Tests: tests/tools/reshaping_test.cpp.
 #include <fmt/format.h>
 
@@ -24,8 +23,55 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/topology.h"
+#include "reshape.h"
 
 namespace relief::tools {
+namespace {
+
+/// Adds the distances of a mesh to those of other meshes. Means and rms stay sums over area.
+void add_distances(DistanceStats& all, const DistanceStats& one) {
+    all.area += one.area;
+    all.mean += one.mean * one.area;
+    all.rms += one.rms * one.rms * one.area;
+    all.mean_degrees += one.mean_degrees * one.area;
+    all.max = std::max(all.max, one.max);
+    all.max_degrees = std::max(all.max_degrees, one.max_degrees);
+    all.omitted += one.omitted;
+}
+
+}  // namespace
+
+Mesh without_attributes(const Mesh& mesh) {
+    Mesh surface;
+    surface.positions = mesh.positions;
+    surface.triangles = mesh.triangles;
+    return surface;
+}
+
+SurfaceDistance joined_distance(const std::vector<SurfaceDistance>& distances) {
+    SurfaceDistance all;
+    for (const SurfaceDistance& one : distances) {
+        add_distances(all.from_a, one.from_a);
+        add_distances(all.from_b, one.from_b);
+    }
+    for (DistanceStats* stats : {&all.from_a, &all.from_b}) {
+        if (!(stats->area > 0.0)) continue;
+        stats->mean /= stats->area;
+        stats->rms = std::sqrt(stats->rms / stats->area);
+        stats->mean_degrees /= stats->area;
+    }
+    return all;
+}
+
+Json distance_json(const DistanceStats& stats) {
+    return {{"mean", stats.mean},
+            {"rms", stats.rms},
+            {"max", stats.max},
+            {"mean_degrees", stats.mean_degrees},
+            {"max_degrees", stats.max_degrees},
+            {"omitted", stats.omitted}};
+}
+
 namespace {
 
 struct ReshapeRequest {
@@ -49,40 +95,6 @@ struct SurfacePair {
     Mesh before;
     Mesh after;
 };
-
-Mesh without_attributes(const Mesh& mesh) {
-    Mesh surface;
-    surface.positions = mesh.positions;
-    surface.triangles = mesh.triangles;
-    return surface;
-}
-
-/// Adds the distances of a mesh to those of other meshes. Means and rms stay sums over area.
-void add_distances(DistanceStats& all, const DistanceStats& one) {
-    all.area += one.area;
-    all.mean += one.mean * one.area;
-    all.rms += one.rms * one.rms * one.area;
-    all.mean_degrees += one.mean_degrees * one.area;
-    all.max = std::max(all.max, one.max);
-    all.max_degrees = std::max(all.max_degrees, one.max_degrees);
-    all.omitted += one.omitted;
-}
-
-/// Joins the distances of several meshes. Means are over area.
-SurfaceDistance joined_distance(const std::vector<SurfaceDistance>& distances) {
-    SurfaceDistance all;
-    for (const SurfaceDistance& one : distances) {
-        add_distances(all.from_a, one.from_a);
-        add_distances(all.from_b, one.from_b);
-    }
-    for (DistanceStats* stats : {&all.from_a, &all.from_b}) {
-        if (!(stats->area > 0.0)) continue;
-        stats->mean /= stats->area;
-        stats->rms = std::sqrt(stats->rms / stats->area);
-        stats->mean_degrees /= stats->area;
-    }
-    return all;
-}
 
 /// Selects whether the distance between IN and OUT is measured.
 enum class Measuring { off, on };
@@ -124,15 +136,6 @@ Reshaped run(const ReshapeRequest& request, const std::string& verb, const Trian
     });
     done.findings.add("", write_report);
     return done;
-}
-
-Json distance_json(const DistanceStats& stats) {
-    return {{"mean", stats.mean},
-            {"rms", stats.rms},
-            {"max", stats.max},
-            {"mean_degrees", stats.mean_degrees},
-            {"max_degrees", stats.max_degrees},
-            {"omitted", stats.omitted}};
 }
 
 void add_distance(Summary& summary, const SurfaceDistance& distance, double corner_angle) {
@@ -401,272 +404,6 @@ void add_subdivide_options(CLI::App& app, SubdivideCommand& command) {
                        "relief-mesh subdivide data/vase.obj out/vase-finer.ply --levels 2"});
 }
 
-/// The screen that the pixels of `lods` are counted on.
-constexpr double screen_width = 1920.0;
-constexpr double screen_height = 1080.0;
-
-struct LodsCommand {
-    ReshapeRequest request;
-    std::optional<int> levels;  ///< Below the input; each has half the triangles of the one before.
-    std::vector<int> triangles;  ///< By level.
-    double pixel_error = 0.5;
-    bool names = false;
-};
-
-/// A level of detail of a model.
-struct LevelResult {
-    std::size_t triangles = 0;
-    std::size_t vertices = 0;
-    SurfaceDistance distance;  ///< Of the input (a) and the level (b).
-    double pixels = 0.0;       ///< The smallest height on the screen at which a mesh switches.
-    double coverage = 1.0;     ///< The same as a part of the screen.
-};
-
-/// A mesh of a document with its levels of detail.
-struct LodMesh {
-    std::size_t mesh = 0;
-    Mesh surface;  ///< Of the input, without attributes.
-    double diameter = 0.0;
-    std::size_t last = 0;  ///< The mesh of the last level.
-    std::vector<GltfLevel> levels;
-};
-
-/// Returns the diameter of the sphere around the bounds.
-double diameter_of(const Mesh& mesh) {
-    const Bounds bounds = bounds_of(mesh);
-    if (bounds.empty()) return 0.0;
-    return glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
-}
-
-std::vector<LodMesh> lod_meshes_of(const GltfDocument& document) {
-    std::vector<LodMesh> meshes;
-    for (const GltfPrimitiveId id : document.triangle_primitives()) {
-        if (meshes.empty() || meshes.back().mesh != id.mesh) {
-            meshes.emplace_back();
-            meshes.back().mesh = id.mesh;
-            meshes.back().last = id.mesh;
-        }
-        Mesh& surface = meshes.back().surface;
-        const Mesh part = document.mesh(id);
-        const auto first = static_cast<std::uint32_t>(surface.positions.size());
-        surface.positions.insert(surface.positions.end(), part.positions.begin(),
-                                 part.positions.end());
-        for (const glm::uvec3& triangle : part.triangles)
-            surface.triangles.push_back(triangle + first);
-    }
-    for (LodMesh& mesh : meshes)
-        mesh.diameter = diameter_of(mesh.surface);
-    return meshes;
-}
-
-/// Adds the next level to each mesh.
-///
-/// \param ratio  of the triangles of the level to those of the input
-LevelResult add_level(GltfDocument& document, std::vector<LodMesh>& meshes, double ratio,
-                      double pixel_error, std::size_t level, Findings& findings) {
-    LevelResult result;
-    result.pixels = std::numeric_limits<double>::infinity();
-    std::vector<SurfaceDistance> distances;
-    for (LodMesh& mesh : meshes) {
-        const std::size_t copy = document.copy_mesh(mesh.last);
-        Mesh surface;
-        const double wanted = ratio * static_cast<double>(mesh.surface.triangles.size());
-        const ChangedModel changed = change_triangles(
-            document, std::array{copy}, NormalMode::keep,
-            [&](const Mesh& before, std::size_t, Report& report) {
-                DecimateOptions options;
-                options.triangles = static_cast<std::size_t>(std::max(1.0, std::round(wanted)));
-                FramedMesh after = decimated(before, options, report);
-                surface = without_attributes(after.mesh);
-                return after;
-            });
-        for (const PartReport& part : changed.reports)
-            findings.add(fmt::format("LOD{} of {}", level, part.part), part.report);
-        result.triangles += changed.triangles_written;
-        result.vertices += changed.vertices_written;
-        const SurfaceDistance distance = surface_distance(mesh.surface, surface);
-        const double largest = std::max(distance.from_a.max, distance.from_b.max);
-        // The height of the sphere on the screen at which the distance is `pixel_error` high.
-        const double most = mesh.levels.empty() ? 1.0 : mesh.levels.back().max_coverage;
-        const double pixels =
-            largest > 0.0 ? pixel_error * mesh.diameter / largest : screen_height * 4.0;
-        const double area = std::numbers::pi / 4.0 * pixels * pixels;
-        const double coverage = std::min(most, area / (screen_width * screen_height));
-        mesh.levels.push_back({copy, coverage});
-        mesh.last = copy;
-        result.pixels = std::min(result.pixels, pixels);
-        result.coverage = std::min(result.coverage, coverage);
-        distances.push_back(distance);
-    }
-    result.distance = joined_distance(distances);
-    return result;
-}
-
-/// Returns the number of triangles of each level.
-std::vector<double> wanted_levels(const LodsCommand& command, std::size_t all) {
-    std::vector<double> wanted;
-    for (const int triangles : command.triangles)
-        wanted.push_back(triangles);
-    double count = static_cast<double>(all);
-    const int levels = command.triangles.empty() ? command.levels.value_or(3) : 0;
-    for (int i = 0; i < levels; ++i) {
-        count /= 2.0;
-        wanted.push_back(std::round(count));
-    }
-    return wanted;
-}
-
-struct LodsResult {
-    LevelResult input;
-    std::vector<LevelResult> levels;
-    Findings findings;
-};
-
-LodsResult make_levels(const LodsCommand& command, Stages& stages) {
-    LodsResult done;
-    Report report;
-    const std::filesystem::path& input = command.request.input;
-    Model model = stages.run("read", [&] { return read_model(input, report); });
-    if (const auto* contents = std::get_if<MeshFile>(&model))
-        model = about(input, [&] { return GltfDocument::from_mesh(*contents, report); });
-    done.findings.add("", report);
-    auto& document = std::get<GltfDocument>(model);
-    stages.run("decimate", [&] {
-        about(input, [&] {
-            std::vector<LodMesh> meshes = lod_meshes_of(document);
-            if (meshes.empty()) throw InvalidInput("holds no triangles");
-            for (const LodMesh& mesh : meshes) {
-                done.input.triangles += mesh.surface.triangles.size();
-                done.input.vertices += mesh.surface.positions.size();
-            }
-            const auto all = static_cast<double>(done.input.triangles);
-            for (const double wanted : wanted_levels(command, done.input.triangles)) {
-                done.levels.push_back(add_level(document, meshes, std::min(1.0, wanted / all),
-                                                command.pixel_error, done.levels.size() + 1,
-                                                done.findings));
-            }
-            for (const LodMesh& mesh : meshes)
-                document.set_levels_of_detail(mesh.mesh, mesh.levels, command.names);
-            return 0;
-        });
-        return 0;
-    });
-    stages.run("write", [&] {
-        document.write(command.request.output);
-        return 0;
-    });
-    return done;
-}
-
-Summary lods_summary(const LodsCommand& command, const LodsResult& done, const Stages& stages) {
-    Summary summary;
-    const std::filesystem::path& input = command.request.input;
-    summary.add("read",
-                fmt::format("{}: {}, {}, {}", input.string(), format_name(readable_format(input)),
-                            counted(done.input.triangles, "triangle"),
-                            counted(done.input.vertices, "vertex", "vertices")),
-                {{"triangles_read", done.input.triangles}, {"vertices_read", done.input.vertices}});
-    std::vector<std::string> lines;
-    Json levels = Json::array();
-    for (const LevelResult& level : done.levels) {
-        const double largest = std::max(level.distance.from_a.max, level.distance.from_b.max);
-        const std::string takes_over =
-            level.coverage < 1.0 ? fmt::format("below {:.4g} pixels, {:.3g} % of the screen",
-                                               level.pixels, 100.0 * level.coverage)
-                                 : "at any size";
-        lines.push_back(fmt::format("LOD{}: {}, largest distance {:.3g}, used {}", lines.size() + 1,
-                                    counted(level.triangles, "triangle"), largest, takes_over));
-        levels.push_back({{"triangles", level.triangles},
-                          {"vertices", level.vertices},
-                          {"distance",
-                           {{"of_input", distance_json(level.distance.from_a)},
-                            {"of_output", distance_json(level.distance.from_b)}}},
-                          {"pixels", level.pixels},
-                          {"coverage", level.coverage}});
-    }
-    summary.add("levels", lines, {{"levels", std::move(levels)}});
-    summary.add_findings(done.findings);
-    summary.add_times(stages);
-    summary.add("wrote", file_and_size(command.request.output));
-    return summary;
-}
-
-ExitCode lods(const CLI::App& app, const LodsCommand& command) {
-    const ReshapeRequest& request = command.request;
-    readable_format(request.input);
-    if (!is_document(writable_format(request.output))) {
-        throw UsageError(fmt::format("{}: cannot store levels of detail", request.output.string()),
-                         "write a .glb or .gltf");
-    }
-    if (command.levels && !command.triangles.empty())
-        throw UsageError("--levels and --triangles contradict each other", "give one of them");
-    for (std::size_t i = 1; i < command.triangles.size(); ++i) {
-        if (command.triangles[i] >= command.triangles[i - 1]) {
-            throw UsageError(fmt::format("--triangles: {} is not less than {}",
-                                         command.triangles[i], command.triangles[i - 1]),
-                             "give the finest level first");
-        }
-    }
-    check(request.report, {request.input, request.output});
-    require_folder_of(request.output);
-    set_thread_limit(request.general.threads);
-    Stages stages(request.general.quiet);
-    const LodsResult done = make_levels(command, stages);
-    const Summary summary = lods_summary(command, done, stages);
-    if (!request.general.quiet) summary.print();
-    Json options = {{"error", command.pixel_error}, {"names", command.names}};
-    if (command.levels) options["levels"] = *command.levels;
-    if (!command.triangles.empty()) options["triangles"] = command.triangles;
-    Json report = {{"tool", "relief-mesh " + command_name(app)},
-                   {"version", version()},
-                   {"input", request.input.string()},
-                   {"output", request.output.string()},
-                   {"options", std::move(options)}};
-    report.update(summary.json());
-    return finish(app, request.report, request.input, done.findings, report);
-}
-
-void add_lods_options(CLI::App& app, LodsCommand& command) {
-    constexpr int max_levels = 16;
-    add_file(app, "IN", command.request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
-    add_file(app, "OUT", command.request.output, "Model to write: .glb .gltf. May be IN itself.");
-    const std::string levels = "Levels";
-    add_value(app, "--levels", "N",
-              "The number of levels below IN, 1 to 16. Each has half the triangles of the one "
-              "before. Default: 3.",
-              [&command](const std::string& subject, const std::string& text) {
-                  command.levels = parse_integer(subject, text, 1, max_levels);
-              })
-        .group(levels);
-    add_value(app, "--triangles", "A,B,...",
-              "The number of triangles of each level below IN, in descending order.",
-              [&command](const std::string& subject, const std::string& text) {
-                  for (const std::string& part : split(text, ','))
-                      command.triangles.push_back(
-                          parse_integer(subject, part, 1, std::numeric_limits<int>::max()));
-              })
-        .group(levels);
-    add_value(app, "--error", "PIXELS",
-              "A level takes over at the size on the screen at which no point of its surface is "
-              "farther than this from that of IN, in pixels of a screen of 1920 x 1080: 0.5 or "
-              "0.5px. Default: 0.5.",
-              [&command](const std::string& subject, const std::string& text) {
-                  const bool has_unit = text.ends_with("px");
-                  command.pixel_error =
-                      parse_number(subject, text.substr(0, text.size() - (has_unit ? 2 : 0)),
-                                   {0.001, 1000.0, "pixels"});
-              })
-        .group(levels);
-    add_switch(app, "--names", command.names,
-               "Append _LOD0, _LOD1, ... to the names of the nodes. Default: they keep their name.")
-        .group(levels);
-    add_report_options(app, command.request.report);
-    add_general_options(app, command.request.general);
-    set_examples(app, {"relief-mesh lods data/vase.obj out/vase-lods.glb",
-                       "relief-mesh lods data/vase.obj out/vase-lods.glb --triangles 3000,1000,300 "
-                       "--error 1px --names"});
-}
-
 }  // namespace
 
 Command add_decimate_command(CLI::App& tool) {
@@ -674,12 +411,6 @@ Command add_decimate_command(CLI::App& tool) {
         tool, "decimate",
         "Reduces the number of triangles; texture seams, materials and borders are kept.",
         add_decimate_options, decimate);
-}
-
-Command add_lods_command(CLI::App& tool) {
-    return add_command<LodsCommand>(
-        tool, "lods", "Adds levels of detail to a model, with the sizes at which they take over.",
-        add_lods_options, lods);
 }
 
 Command add_subdivide_command(CLI::App& tool) {

@@ -7,11 +7,13 @@
 // intended is counted in the report; scene_file.h has the list. Source: glTF 2.0, section 3.9.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <set>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -359,25 +361,28 @@ void report_rest(const GltfView& view, Report& report) {
     }
 }
 
-/// Adds meshes and instances. A primitive with several instances is read once.
-void add_instances(const GltfDocument& document, const GltfView& view, SceneGraph& graph,
-                   Report& report) {
-    // For a mesh without normals glTF demands flat ones and ignores its tangents; the effect plan
-    // computes tangents where it needs them.
+/// Returns the mesh of a primitive with normals. glTF demands flat ones for a mesh without normals,
+/// and ignores its tangents; the effect plan computes tangents where it needs them.
+Mesh drawable_mesh(const GltfDocument& document, GltfPrimitiveId id,
+                   const std::vector<GltfMaterial>& materials, Report& report) {
     FrameOptions options;
     options.if_missing = NormalMode::flat;
     options.tangents = TangentMethod::none;
+    Mesh mesh = mesh_from(document, id, materials);
+    return mesh.normals.empty() ? with_frames(std::move(mesh), options, report).mesh : mesh;
+}
+
+/// Adds meshes and instances. A primitive with several instances is read once.
+void add_instances(const GltfDocument& document, const GltfView& view, SceneGraph& graph,
+                   Report& report) {
     Scene& scene = graph.scene;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
     ProgressStage stage("meshes", view.primitives.size());
     for (const auto& item : view.primitives) {
         const auto key = std::pair(item.what.mesh, item.what.primitive);
         const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
-        if (is_new) {
-            Mesh mesh = mesh_from(document, item.what, view.materials);
-            if (mesh.normals.empty()) mesh = with_frames(std::move(mesh), options, report).mesh;
-            scene.meshes.push_back(std::move(mesh));
-        }
+        if (is_new)
+            scene.meshes.push_back(drawable_mesh(document, item.what, view.materials, report));
         scene.instances.push_back({entry->second, item.world_from_object, item.name});
         graph.instances.push_back({item.node, item.node_from_object});
         stage.advance(1);
@@ -454,10 +459,11 @@ void add_animations(const GltfDocument& document, SceneGraph& graph, Report& rep
 
 }  // namespace
 
-SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path& model,
-                      const SceneOptions& options, Report& report) {
-    const GltfView view = document.view();
-    SceneGraph graph;
+namespace {
+
+/// Adds the images and materials of a document.
+void add_appearance(const GltfView& view, const std::filesystem::path& model,
+                    const SceneOptions& options, Scene& scene, Report& report) {
     for (std::size_t i = 0; i < view.images.size(); ++i) {
         const GltfImage& image = view.images[i];
         ImageSource source;
@@ -468,15 +474,40 @@ SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path&
         std::visit([&](const auto& encoded) { source.source = encoded; }, image.source);
         source.origin = model.string();
         source.fault = image.fault;
-        graph.scene.images.push_back(std::move(source));
+        scene.images.push_back(std::move(source));
     }
-    graph.scene.materials = materials_from(view, options, graph.scene.images, report);
+    scene.materials = materials_from(view, options, scene.images, report);
+}
+
+}  // namespace
+
+SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path& model,
+                      const SceneOptions& options, Report& report) {
+    const GltfView view = document.view();
+    SceneGraph graph;
+    add_appearance(view, model, options, graph.scene, report);
     add_nodes(view, graph, report);
     add_instances(document, view, graph, report);
     add_lights(view, graph);
     add_camera(view, graph, report);
     add_animations(document, graph, report);
     return graph;
+}
+
+std::vector<Scene> mesh_scenes(const GltfDocument& document, std::span<const std::size_t> meshes,
+                               const std::filesystem::path& file, Report& report) {
+    const GltfView view = document.view();
+    Scene appearance;
+    add_appearance(view, file, {}, appearance, report);
+    std::vector<Scene> scenes(meshes.size(), appearance);
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        const auto place = std::find(meshes.begin(), meshes.end(), id.mesh);
+        if (place == meshes.end()) continue;
+        Scene& scene = scenes[static_cast<std::size_t>(place - meshes.begin())];
+        scene.instances.push_back({scene.meshes.size(), glm::mat4(1.0F), ""});
+        scene.meshes.push_back(drawable_mesh(document, id, view.materials, report));
+    }
+    return scenes;
 }
 
 }  // namespace relief

@@ -334,6 +334,11 @@ class GltfDocument {
     /// \throws InvalidInput if there is no such mesh
     std::size_t copy_mesh(std::size_t mesh);
 
+    /// Removes the last mesh, for example a copy that turned out to be useless. Its data is not
+    /// written unless something else uses it.
+    /// \throws InvalidInput if there is no mesh, or if a node uses it
+    void remove_last_mesh();
+
     /// Gives each node of a mesh lower levels of detail (MSFT_lod, with MSFT_screencoverage in the
     /// node's extras). The nodes of the levels are copies of the node. If it has children, a camera
     /// or animations, its mesh moves to a new child first.

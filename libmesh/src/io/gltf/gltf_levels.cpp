@@ -100,6 +100,28 @@ std::size_t GltfDocument::copy_mesh(std::size_t mesh) {
     return count;
 }
 
+void GltfDocument::remove_last_mesh() {
+    Json& root = contents_->data.root;
+    const std::size_t count = array_in(root, "meshes").size();
+    if (count == 0) fail_gltf("there is no mesh to remove");
+    for (const Json& node : array_in(root, "nodes")) {
+        if (index_in(node, "mesh") == count - 1)
+            fail_gltf("mesh {} cannot be removed: a node uses it", count - 1);
+    }
+    const auto retire = [&](const Json& attributes) {
+        for (const auto& [name, accessor] : attributes.items())
+            contents_->data.retired_accessors.insert(accessor.get<std::size_t>());
+    };
+    for (const Json& primitive : array_in(root["meshes"].back(), "primitives")) {
+        retire(primitive["attributes"]);
+        for (const Json& target : array_in(primitive, "targets"))
+            retire(target);
+        if (const auto indices = index_in(primitive, "indices"))
+            contents_->data.retired_accessors.insert(*indices);
+    }
+    root["meshes"].erase(count - 1);
+}
+
 void GltfDocument::set_levels_of_detail(std::size_t mesh, std::span<const GltfLevel> levels,
                                         bool with_names) {
     Json& root = contents_->data.root;

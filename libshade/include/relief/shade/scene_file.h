@@ -3,9 +3,12 @@
 /// Reads scenes from model files and scene files, saves edited scenes, and decodes their images.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "relief/export.h"
 #include "relief/mesh/gltf_document.h"
@@ -61,6 +64,16 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
 
 /// Reads only the scene, with the default options.
 Scene load_scene(const std::filesystem::path& file, Report& report = IgnoredReport());
+
+/// Returns meshes of a document, each in its object space as a scene without lights. All scenes
+/// have the document's materials and images.
+///
+/// \param meshes  their indices; a scene has an instance for each triangle primitive of its mesh
+/// \param file    the document's file, for messages
+/// \param report  as load_scene_graph()
+/// \throws InvalidInput if a primitive cannot be read
+std::vector<Scene> mesh_scenes(const GltfDocument& document, std::span<const std::size_t> meshes,
+                               const std::filesystem::path& file, Report& report = IgnoredReport());
 
 /// The means of textures that Phong's model has no place for, colors linear; 1 without a texture.
 struct TextureMeans {

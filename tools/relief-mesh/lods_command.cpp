@@ -1,0 +1,553 @@
+// SPDX-License-Identifier: Apache-2.0
+// `relief-mesh lods IN OUT` adds levels of detail to a model, or writes them as separate files.
+// Tests: tests/tools/reshaping_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.h"
+#include "common/command.h"
+#include "common/model_file.h"
+#include "common/options.h"
+#include "common/summary.h"
+#include "level_pictures.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/model.h"
+#include "relief/mesh/topology.h"
+#include "reshape.h"
+
+namespace relief::tools {
+namespace {
+
+constexpr int max_lod_levels = 16;
+
+/// What decides on the size at which a level takes over.
+enum class SwitchRule { flip, distance };
+
+struct LodsCommand {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    std::optional<int> levels;  ///< Below the input; each has half the triangles of the one before.
+    std::vector<int> triangles;  ///< By level.
+    std::optional<double> pixel_error;
+    SwitchRule rule = SwitchRule::flip;
+    bool names = false;
+    bool separate = false;
+    ReportOptions report;
+    GeneralOptions general;
+
+    /// Returns whether levels are added until one cannot get smaller.
+    [[nodiscard]] bool is_open_ended() const { return pixel_error && !levels && triangles.empty(); }
+    [[nodiscard]] double error() const { return pixel_error.value_or(0.5); }
+};
+
+/// A level of detail of a model.
+struct LevelResult {
+    std::size_t triangles = 0;
+    std::size_t vertices = 0;
+    SurfaceDistance distance;  ///< Of the input (a) and the level (b).
+    /// The largest distance in pixels, at the size at which the mesh switches.
+    double distance_pixels = 0.0;
+    double pixels = 0.0;         ///< The smallest size on the screen at which a mesh switches.
+    double coverage = 1.0;       ///< The same as a part of the screen.
+    std::optional<double> flip;  ///< The largest difference of a mesh at its size.
+    double moved_flip = 0.0;     ///< That of the moved input.
+    std::vector<PartReport> reports;
+};
+
+/// A mesh of a document with its levels of detail.
+struct LodMesh {
+    std::size_t mesh = 0;
+    Mesh surface;  ///< Of the input, without attributes.
+    double diameter = 0.0;
+    std::size_t last = 0;  ///< The mesh of the last level.
+    double last_pixels = std::numeric_limits<double>::infinity();
+    std::vector<GltfLevel> levels;
+};
+
+/// Returns the diameter of the sphere around the bounds.
+double diameter_of(const Mesh& mesh) {
+    const Bounds bounds = bounds_of(mesh);
+    if (bounds.empty()) return 0.0;
+    return glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
+}
+
+std::vector<LodMesh> lod_meshes_of(const GltfDocument& document) {
+    std::vector<LodMesh> meshes;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        if (meshes.empty() || meshes.back().mesh != id.mesh) {
+            meshes.emplace_back();
+            meshes.back().mesh = id.mesh;
+            meshes.back().last = id.mesh;
+        }
+        Mesh& surface = meshes.back().surface;
+        const Mesh part = document.mesh(id);
+        const auto first = static_cast<std::uint32_t>(surface.positions.size());
+        surface.positions.insert(surface.positions.end(), part.positions.begin(),
+                                 part.positions.end());
+        for (const glm::uvec3& triangle : part.triangles)
+            surface.triangles.push_back(triangle + first);
+    }
+    for (LodMesh& mesh : meshes)
+        mesh.diameter = diameter_of(mesh.surface);
+    return meshes;
+}
+
+/// Returns the part of the screen that the sphere around a mesh covers.
+double coverage_of(double pixels) {
+    const double area = std::numbers::pi / 4.0 * pixels * pixels;
+    return area / (lod_screen_width * lod_screen_height);
+}
+
+struct LodsResult {
+    LevelResult input;
+    std::vector<LevelResult> levels;
+    std::vector<std::filesystem::path> files;
+    Findings findings;
+    std::string backend;       ///< What draws the pictures; empty if nothing does.
+    std::string not_measured;  ///< The reason why FLIP was not measured for some meshes.
+};
+
+/// Makes levels, one from the other.
+class LevelMaker {
+  public:
+    LevelMaker(const LodsCommand& command, GltfDocument& document, Stages& stages,
+               LodsResult& done);
+
+    void make_all();
+
+  private:
+    void load_pictures();
+    [[nodiscard]] std::vector<double> wanted_triangles() const;
+    LevelResult make(double wanted);
+    void decimate(LodMesh& mesh, double ratio, LevelResult& level);
+    void choose_sizes(LevelResult& level);
+    [[nodiscard]] std::optional<LevelSwitch> measured_switch(std::size_t mesh, double start,
+                                                             double most);
+    void write(std::size_t level);
+    void forget_last();
+
+    const LodsCommand& command_;
+    GltfDocument& document_;
+    Stages& stages_;
+    LodsResult& done_;
+    std::vector<LodMesh> meshes_;
+    std::vector<Mesh> surfaces_;  ///< Of the new level, by mesh.
+    std::unique_ptr<LevelPictures> pictures_;
+    /// The meshes whose pictures are measured: the largest ones.
+    std::vector<std::size_t> drawn_;
+};
+
+LevelMaker::LevelMaker(const LodsCommand& command, GltfDocument& document, Stages& stages,
+                       LodsResult& done)
+    : command_(command), document_(document), stages_(stages), done_(done) {
+    meshes_ = lod_meshes_of(document);
+    if (meshes_.empty()) throw InvalidInput("holds no triangles");
+    for (const LodMesh& mesh : meshes_) {
+        done.input.triangles += mesh.surface.triangles.size();
+        done.input.vertices += mesh.surface.positions.size();
+    }
+}
+
+void LevelMaker::load_pictures() {
+    // Drawing each of many small meshes at many sizes would take long.
+    constexpr std::size_t max_drawn = 24;
+    if (command_.rule == SwitchRule::distance) return;
+    for (std::size_t i = 0; i < meshes_.size(); ++i)
+        drawn_.push_back(i);
+    std::stable_sort(drawn_.begin(), drawn_.end(), [&](std::size_t a, std::size_t b) {
+        return meshes_[a].surface.triangles.size() > meshes_[b].surface.triangles.size();
+    });
+    if (drawn_.size() > max_drawn) {
+        done_.not_measured =
+            fmt::format("only the largest {} of {} meshes are drawn", max_drawn, drawn_.size());
+        drawn_.resize(max_drawn);
+    }
+    std::vector<std::size_t> meshes;
+    for (const std::size_t i : drawn_)
+        meshes.push_back(meshes_[i].mesh);
+    try {
+        pictures_ = std::make_unique<LevelPictures>(command_.error());
+        pictures_->set_input(document_, meshes, command_.input);
+        done_.backend = pictures_->backend_name();
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        pictures_.reset();
+        done_.not_measured = error.what();
+    }
+}
+
+/// Returns the number of triangles of each level.
+std::vector<double> LevelMaker::wanted_triangles() const {
+    std::vector<double> wanted(command_.triangles.begin(), command_.triangles.end());
+    if (!wanted.empty()) return wanted;
+    auto count = static_cast<double>(done_.input.triangles);
+    constexpr int default_levels = 3;
+    const int levels =
+        command_.is_open_ended() ? max_lod_levels : command_.levels.value_or(default_levels);
+    for (int i = 0; i < levels; ++i) {
+        count /= 2.0;
+        wanted.push_back(std::round(count));
+    }
+    return wanted;
+}
+
+/// Decimates the last level of a mesh, in a copy or, for separate files, in its place.
+void LevelMaker::decimate(LodMesh& mesh, double ratio, LevelResult& level) {
+    const std::size_t target = command_.separate ? mesh.mesh : document_.copy_mesh(mesh.last);
+    const double wanted = ratio * static_cast<double>(mesh.surface.triangles.size());
+    Mesh& surface = surfaces_.emplace_back();
+    ChangedModel changed = change_triangles(
+        document_, std::array{target}, NormalMode::keep,
+        [&](const Mesh& before, std::size_t, Report& report) {
+            DecimateOptions options;
+            options.triangles = static_cast<std::size_t>(std::max(1.0, std::round(wanted)));
+            FramedMesh after = decimated(before, options, report);
+            surface = without_attributes(after.mesh);
+            return after;
+        });
+    for (PartReport& part : changed.reports)
+        level.reports.push_back(std::move(part));
+    level.triangles += changed.triangles_written;
+    level.vertices += changed.vertices_written;
+    mesh.last = target;
+}
+
+std::optional<LevelSwitch> LevelMaker::measured_switch(std::size_t mesh, double start,
+                                                       double most) {
+    const auto place = std::find(drawn_.begin(), drawn_.end(), mesh);
+    if (!pictures_ || place == drawn_.end()) return std::nullopt;
+    try {
+        return pictures_->find_switch(static_cast<std::size_t>(place - drawn_.begin()), start,
+                                      most);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        pictures_.reset();
+        done_.not_measured = error.what();
+        return std::nullopt;
+    }
+}
+
+/// Measures the level, and chooses the size at which it takes over for each mesh.
+void LevelMaker::choose_sizes(LevelResult& level) {
+    std::vector<SurfaceDistance> distances = stages_.run("measure", [&] {
+        std::vector<SurfaceDistance> measured;
+        for (std::size_t i = 0; i < meshes_.size(); ++i)
+            measured.push_back(surface_distance(meshes_[i].surface, surfaces_[i]));
+        return measured;
+    });
+    level.distance = joined_distance(distances);
+    level.pixels = std::numeric_limits<double>::infinity();
+    stages_.run("draw", [&] {
+        if (pictures_) {
+            std::vector<std::size_t> shown;
+            for (const std::size_t i : drawn_)
+                shown.push_back(meshes_[i].last);
+            pictures_->set_level(document_, shown, command_.input);
+        }
+        for (std::size_t i = 0; i < meshes_.size(); ++i) {
+            LodMesh& mesh = meshes_[i];
+            const double largest = std::max(distances[i].from_a.max, distances[i].from_b.max);
+            // The size at which the largest distance has the error on the screen.
+            double pixels = largest > 0.0 ? command_.error() * mesh.diameter / largest
+                                          : lod_screen_height * 4.0;
+            if (const auto found = measured_switch(i, pixels, mesh.last_pixels)) {
+                // Sizes beyond the screen's height are not drawn.
+                const bool is_beyond = found->flip <= found->moved_flip && pixels > found->pixels &&
+                                       2.0 * found->pixels > lod_screen_height;
+                if (!is_beyond) pixels = found->pixels;
+                if (!level.flip || found->flip > *level.flip) {
+                    level.flip = found->flip;
+                    level.moved_flip = found->moved_flip;
+                }
+            }
+            pixels = std::min(pixels, mesh.last_pixels);
+            mesh.last_pixels = pixels;
+            const double coverage = std::min(1.0, coverage_of(pixels));
+            mesh.levels.push_back({mesh.last, coverage});
+            level.pixels = std::min(level.pixels, pixels);
+            level.coverage = std::min(level.coverage, coverage);
+            if (mesh.diameter > 0.0)
+                level.distance_pixels =
+                    std::max(level.distance_pixels, largest * pixels / mesh.diameter);
+        }
+        return 0;
+    });
+}
+
+/// Returns the file of a level: OUT_LOD1.glb for OUT.glb.
+std::filesystem::path level_file(const std::filesystem::path& output, std::size_t level) {
+    std::filesystem::path file = output;
+    file.replace_filename(
+        fmt::format("{}_LOD{}{}", output.stem().string(), level, output.extension().string()));
+    return file;
+}
+
+void LevelMaker::write(std::size_t level) {
+    if (!command_.separate) return;
+    done_.files.push_back(level_file(command_.output, level));
+    stages_.run("write", [&] {
+        document_.write(done_.files.back());
+        return 0;
+    });
+}
+
+void LevelMaker::forget_last() {
+    for (std::size_t i = 0; i < meshes_.size() && !command_.separate; ++i)
+        document_.remove_last_mesh();
+}
+
+LevelResult LevelMaker::make(double wanted) {
+    LevelResult level;
+    surfaces_.clear();
+    const double ratio = std::min(1.0, wanted / static_cast<double>(done_.input.triangles));
+    stages_.run("decimate", [&] {
+        for (LodMesh& mesh : meshes_)
+            decimate(mesh, ratio, level);
+        return 0;
+    });
+    return level;
+}
+
+void LevelMaker::make_all() {
+    // Without a given number, a level must have at most this part of the triangles of the one
+    // before, and must take over at a size of at least one pixel.
+    constexpr double max_part = 0.75;
+    stages_.run("draw", [&] {
+        load_pictures();
+        return 0;
+    });
+    write(0);
+    std::size_t before = done_.input.triangles;
+    for (const double wanted : wanted_triangles()) {
+        LevelResult level = make(wanted);
+        const bool is_smaller =
+            static_cast<double>(level.triangles) <= max_part * static_cast<double>(before);
+        if (command_.is_open_ended() && !is_smaller) {
+            forget_last();
+            break;
+        }
+        choose_sizes(level);
+        if (command_.is_open_ended() && level.pixels < 1.0) {
+            for (LodMesh& mesh : meshes_)
+                mesh.levels.pop_back();
+            forget_last();
+            break;
+        }
+        before = level.triangles;
+        for (const PartReport& part : level.reports)
+            done_.findings.add(fmt::format("LOD{} of {}", done_.levels.size() + 1, part.part),
+                               part.report);
+        done_.levels.push_back(std::move(level));
+        write(done_.levels.size());
+    }
+    if (command_.separate) return;
+    for (const LodMesh& mesh : meshes_) {
+        if (!mesh.levels.empty())
+            document_.set_levels_of_detail(mesh.mesh, mesh.levels, command_.names);
+    }
+    done_.files.push_back(command_.output);
+    stages_.run("write", [&] {
+        document_.write(command_.output);
+        return 0;
+    });
+}
+
+LodsResult make_levels(const LodsCommand& command, Stages& stages) {
+    LodsResult done;
+    Report report;
+    Model model = stages.run("read", [&] { return read_model(command.input, report); });
+    if (const auto* contents = std::get_if<MeshFile>(&model))
+        model = about(command.input, [&] { return GltfDocument::from_mesh(*contents, report); });
+    done.findings.add("", report);
+    about(command.input, [&] {
+        LevelMaker(command, std::get<GltfDocument>(model), stages, done).make_all();
+        return 0;
+    });
+    return done;
+}
+
+std::string level_text(const LevelResult& level, std::size_t number) {
+    const double largest = std::max(level.distance.from_a.max, level.distance.from_b.max);
+    std::string text = fmt::format("LOD{}: {}, largest distance {:.3g}, used ", number,
+                                   counted(level.triangles, "triangle"), largest);
+    if (level.coverage < 1.0) {
+        text += fmt::format("below {:.4g} pixels, {:.3g} % of the screen", level.pixels,
+                            100.0 * level.coverage);
+    } else {
+        text += "at any size";
+    }
+    if (level.flip) text += fmt::format(", FLIP {:.3g}", *level.flip);
+    return text;
+}
+
+Summary lods_summary(const LodsCommand& command, const LodsResult& done, const Stages& stages) {
+    Summary summary;
+    summary.add("read",
+                fmt::format("{}: {}, {}, {}", command.input.string(),
+                            format_name(readable_format(command.input)),
+                            counted(done.input.triangles, "triangle"),
+                            counted(done.input.vertices, "vertex", "vertices")),
+                {{"triangles_read", done.input.triangles}, {"vertices_read", done.input.vertices}});
+    std::vector<std::string> lines;
+    Json levels = Json::array();
+    for (const LevelResult& level : done.levels) {
+        lines.push_back(level_text(level, lines.size() + 1));
+        Json json = {{"triangles", level.triangles},
+                     {"vertices", level.vertices},
+                     {"distance",
+                      {{"of_input", distance_json(level.distance.from_a)},
+                       {"of_output", distance_json(level.distance.from_b)}}},
+                     {"distance_pixels", level.distance_pixels},
+                     {"pixels", level.pixels},
+                     {"coverage", level.coverage},
+                     {"flip", or_null(level.flip)}};
+        json["flip_of_moved_input"] = level.flip ? Json(level.moved_flip) : Json(nullptr);
+        levels.push_back(std::move(json));
+    }
+    if (lines.empty()) lines.emplace_back("none: IN cannot get smaller");
+    summary.add("levels", lines, {{"levels", std::move(levels)}});
+    Json reason = nullptr;
+    if (!done.not_measured.empty()) {
+        reason = done.not_measured;
+        summary.add("FLIP",
+                    fmt::format("not measured{}: {}; the largest distance decides there",
+                                done.backend.empty() ? "" : " for all meshes", done.not_measured));
+    } else if (!done.backend.empty()) {
+        summary.add("FLIP",
+                    fmt::format("drawn by {}; a level takes over where it differs from IN no more "
+                                "than IN moved by {} pixels",
+                                done.backend, command.error()));
+    }
+    summary.add_json({{"flip_not_measured", reason}});
+    summary.add_findings(done.findings);
+    summary.add_times(stages);
+    std::vector<std::string> written;
+    for (const std::filesystem::path& file : done.files)
+        written.push_back(file_and_size(file));
+    summary.add("wrote", written);
+    return summary;
+}
+
+void check_command(const LodsCommand& command) {
+    readable_format(command.input);
+    if (!is_document(writable_format(command.output))) {
+        throw UsageError(fmt::format("{}: cannot store levels of detail", command.output.string()),
+                         "write a .glb or .gltf");
+    }
+    if (command.levels && !command.triangles.empty())
+        throw UsageError("--levels and --triangles contradict each other", "give one of them");
+    if (command.names && command.separate)
+        throw UsageError("--names: has no effect with --separate, whose files have no levels",
+                         "leave one of them out");
+    for (std::size_t i = 1; i < command.triangles.size(); ++i) {
+        if (command.triangles[i] >= command.triangles[i - 1]) {
+            throw UsageError(fmt::format("--triangles: {} is not less than {}",
+                                         command.triangles[i], command.triangles[i - 1]),
+                             "give the finest level first");
+        }
+    }
+}
+
+Json options_json(const LodsCommand& command) {
+    Json options = {{"error", command.error()},
+                    {"switch", command.rule == SwitchRule::flip ? "flip" : "distance"},
+                    {"names", command.names},
+                    {"separate", command.separate}};
+    if (command.levels) options["levels"] = *command.levels;
+    if (!command.triangles.empty()) options["triangles"] = command.triangles;
+    return options;
+}
+
+ExitCode lods(const CLI::App& app, const LodsCommand& command) {
+    check_command(command);
+    check(command.report, {command.input, command.output});
+    require_folder_of(command.output);
+    set_thread_limit(command.general.threads);
+    Stages stages(command.general.quiet);
+    const LodsResult done = make_levels(command, stages);
+    const Summary summary = lods_summary(command, done, stages);
+    if (!command.general.quiet) summary.print();
+    Json report = {{"tool", "relief-mesh " + command_name(app)},
+                   {"version", version()},
+                   {"input", command.input.string()},
+                   {"output", command.output.string()},
+                   {"options", options_json(command)}};
+    report.update(summary.json());
+    return finish(app, command.report, command.input, done.findings, report);
+}
+
+void add_lods_options(CLI::App& app, LodsCommand& command) {
+    add_file(app, "IN", command.input, "Model to read: .glb .gltf .obj .ply .stl .off");
+    add_file(app, "OUT", command.output, "Model to write: .glb .gltf. May be IN itself.");
+    const std::string levels = "Levels";
+    add_value(app, "--levels", "N",
+              "The number of levels below IN, 1 to 16. Each has half the triangles of the one "
+              "before. Default: 3, or with --error alone as many as get smaller.",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.levels = parse_integer(subject, text, 1, max_lod_levels);
+              })
+        .group(levels);
+    add_value(app, "--triangles", "A,B,...",
+              "The number of triangles of each level below IN, in descending order.",
+              [&command](const std::string& subject, const std::string& text) {
+                  for (const std::string& part : split(text, ','))
+                      command.triangles.push_back(
+                          parse_integer(subject, part, 1, std::numeric_limits<int>::max()));
+              })
+        .group(levels);
+    const std::string sizes = "Sizes";
+    add_value(app, "--error", "PIXELS",
+              "The error at which a level takes over, in pixels of a screen of 1920 x 1080: 0.5 or "
+              "0.5px. Default: 0.5.",
+              [&command](const std::string& subject, const std::string& text) {
+                  const bool has_unit = text.ends_with("px");
+                  command.pixel_error =
+                      parse_number(subject, text.substr(0, text.size() - (has_unit ? 2 : 0)),
+                                   {0.001, 1000.0, "pixels"});
+              })
+        .group(sizes);
+    add_choice(app, "--switch", command.rule,
+               Choices<SwitchRule>{{"flip", SwitchRule::flip}, {"distance", SwitchRule::distance}},
+               "A level takes over at the largest size at which its picture differs from that of "
+               "IN no more than IN moved by the error (flip), or at which no point of its surface "
+               "is farther than the error from that of IN (distance, which needs no OpenGL). "
+               "Default: flip.")
+        .group(sizes);
+    const std::string output = "Output";
+    add_switch(app, "--names", command.names,
+               "Append _LOD0, _LOD1, ... to the names of the nodes. Default: they keep their name.")
+        .group(output);
+    add_switch(app, "--separate", command.separate,
+               "Write separate files without MSFT_lod, OUT_LOD0.glb (IN), OUT_LOD1.glb, ..., "
+               "instead of OUT.glb.")
+        .group(output);
+    add_report_options(app, command.report);
+    add_general_options(app, command.general);
+    set_examples(app, {"relief-mesh lods data/vase.obj out/vase-lods.glb",
+                       "relief-mesh lods data/vase.obj out/vase-lods.glb --triangles 3000,1000,300 "
+                       "--error 1px --names",
+                       "relief-mesh lods data/vase.obj out/vase.glb --error 0.5px --separate"});
+}
+
+}  // namespace
+
+Command add_lods_command(CLI::App& tool) {
+    return add_command<LodsCommand>(
+        tool, "lods", "Adds levels of detail to a model, with the sizes at which they take over.",
+        add_lods_options, lods);
+}
+
+}  // namespace relief::tools
