@@ -12,8 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/bumpy_sphere.h"
-#include "mesh/contenders.h"
+#include "bench_support.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/statistics.h"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/file_bytes.h"
+#include "bench_support.h"
 #include "io/image/image_module_client.h"
-#include "mesh/contenders.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/bumpy_sphere.h"
+#include "bench_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/statistics.h"

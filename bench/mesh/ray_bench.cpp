@@ -9,8 +9,7 @@
 #include <numbers>
 
 #include "bake/ray_scene.h"
-#include "mesh/bumpy_sphere.h"
-#include "mesh/contenders.h"
+#include "bench_support.h"
 
 namespace relief::bench {
 namespace {
