@@ -21,7 +21,6 @@
 #include <stdexcept>
 
 #include "kit_meshes.h"
-#include "kit_shapes.h"
 #include "relief/mesh/statistics.h"
 
 extern "C" {
