@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradient noise from integer hashes (see noise.h). It uses only +, -, * and /, so that the result
-// does not depend on a mathematical library.
-#include "noise.h"
+// Gradient noise from integer hashes (see samples.h). It uses only +, -, * and /, so that the
+// result does not depend on a mathematical library.
+#include "samples.h"
 
 #include <algorithm>
 #include <array>

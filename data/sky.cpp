@@ -8,7 +8,6 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "noise.h"
 #include "samples.h"
 
 namespace relief::sample {

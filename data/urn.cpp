@@ -9,7 +9,6 @@
 #include <numbers>
 #include <vector>
 
-#include "noise.h"
 #include "samples.h"
 
 namespace relief::sample {
