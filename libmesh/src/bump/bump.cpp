@@ -21,7 +21,6 @@
 #include <optional>
 #include <type_traits>
 
-#include "bump/bump_loops.h"
 #include "bump/bump_rows.h"
 #include "image/height_holes.h"
 #include "image/texel_loops.h"

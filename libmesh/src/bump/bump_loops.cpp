@@ -5,7 +5,7 @@
 // kernels have loops that apply all weights at once, with the same operations in the same order.
 // Heights that are not finite give slopes that are not finite. Square root and division are those
 // of IEEE 754, so that every register width gives the same bits.
-#include "bump/bump_loops.h"
+#include "bump/bump_rows.h"
 
 #include <algorithm>
 #include <array>

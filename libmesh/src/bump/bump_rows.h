@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Rows of a normal map from rows of heights, which may be in an image or in a moving window of a
-/// file.
+/// file; and the vectorized loops over pieces of a row: the two passes of a separable kernel,
+/// normals from slopes, codes from normals, and a direct loop from heights to codes for 3x3
+/// kernels. Slopes are to the right and upwards. Every processor gives the same bits, because each
+/// element is the same sums in the same order.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
+#include "image/dither_tile.h"
 #include "relief/export.h"
 #include "relief/mesh/bump.h"
+#include "relief/mesh/normal_map.h"
+#include "vector_targets.h"
 
 namespace RELIEF_API relief {
 
@@ -47,5 +57,88 @@ struct BumpTarget {
 /// \return false if a height that contributes is not finite, which makes the result invalid
 bool make_bump_rows(const HeightRows& heights, const BumpOptions& options, const BumpTarget& target,
                     int first, int last);
+
+/// The number of columns of a piece, whose intermediate values fit the first-level cache.
+inline constexpr std::size_t columns_at_once = 1024;
+
+/// The weights of a kernel in the precision of its sums, without the divisor.
+template <typename Real>
+struct KernelWeights {
+    explicit KernelWeights(const GradientKernel& kernel);
+
+    struct Difference {
+        std::ptrdiff_t before, after;
+        Real weight;
+    };
+    std::vector<Difference> differences;
+    std::vector<Real> smoothing;
+    std::ptrdiff_t radius;
+};
+
+/// The rows around a row; the row k below it has index radius + k.
+template <typename Sample>
+struct RowsAround {
+    std::vector<const Sample*> steep;   ///< For differences between rows.
+    std::vector<const Sample*> across;  ///< For smoothing across rows.
+};
+
+/// Combines columns [first, first + count) of the rows.
+///
+/// \param smoothed  gets the weighted sums
+/// \param rise      gets the differences, positive if heights increase upwards in the image
+template <typename Sample, typename Real>
+void combine_rows(VectorTarget target, const RowsAround<Sample>& rows,
+                  const KernelWeights<Real>& weights, std::size_t first, std::size_t count,
+                  Real* smoothed, Real* rise);
+
+/// Slopes from the output of combine_rows(), which must extend by `radius` columns on both sides.
+///
+/// \param smoothed, rise  the first column of the slopes
+/// \param right_scale, up_scale  the factors of the sums
+template <typename Real>
+void combine_columns(VectorTarget target, const KernelWeights<Real>& weights, const Real* smoothed,
+                     const Real* rise, std::size_t count, Real right_scale, Real up_scale,
+                     Real* right, Real* up);
+
+/// Returns whether the square of any slope exceeds the range in which Real is accurate, 1e30 for
+/// float and 1e300 for double, or is not finite.
+template <typename Real>
+bool any_too_steep(VectorTarget target, const Real* right, const Real* up, std::size_t count);
+
+/// Stores normalize(-right, -up, 1) as three floats per texel. Slopes of zero give exactly (0,0,1).
+template <typename Real>
+void store_normals(VectorTarget target, const Real* right, const Real* up, std::size_t count,
+                   float* normals);
+
+/// Stores the normals of at most `columns_at_once` texels as codes or scaled floats. Sample is the
+/// type of format.bits.
+template <typename Sample, typename Real>
+void store_codes(VectorTarget target, const Real* right, const Real* up, std::size_t count,
+                 const NormalMapFormat& format, Sample* codes);
+
+/// The same with dithering, for texels of a row from column `first` on. It computes in double,
+/// which resolves fractions of 16-bit codes.
+template <typename Sample, typename Real>
+void store_dithered_codes(const Real* right, const Real* up, std::size_t count,
+                          const NormalMapFormat& format, std::size_t first,
+                          const DitherRow& thresholds, Sample* codes);
+
+/// A kernel with one difference over two texels and smoothing over at most three lines, with its
+/// scales.
+struct Weights3x3 {
+    float own, beside;  ///< Of the center line and of its neighbors.
+    float right_scale, up_scale;
+};
+
+/// Computes codes of at most `columns_at_once` texels directly from heights, in float. The order of
+/// the sums differs from combine_rows(), with fewer operations.
+///
+/// \param rows  the column before the first one
+/// \param next  heights to prefetch, `next_size` bytes per texel; they need not be valid
+/// \return whether a slope is too steep for float (any_too_steep()), which makes the codes invalid
+template <typename Code>
+bool codes_3x3(VectorTarget target, const std::array<const float*, 3>& rows,
+               const Weights3x3& weights, std::size_t count, const NormalMapFormat& format,
+               Code* codes, const void* next, std::size_t next_size);
 
 }  // namespace relief

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A small height field in double precision, with filters and noise estimators for the choice of a
-/// kernel. Heights have any unit. Tests: tests/mesh/bump/kernel_choice_test.cpp.
+/// kernel; power spectral densities of squares, noise spectra, and noise removal by spectral
+/// subtraction. Heights have any unit. Tests: tests/mesh/bump/kernel_choice_test.cpp.
 #pragma once
 
 #include <array>
+#include <complex>
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -70,5 +75,102 @@ using OctaveDeviations = std::array<double, octave_frequencies.size()>;
 /// result is the deviation of white noise with the same 20% quantile in that band. The quantile
 /// ignores edges, because noise is in all texels and edges are in few.
 OctaveDeviations octave_deviations(std::span<const HeightTile> tiles);
+
+/// Computes the two-dimensional discrete Fourier transform of a square in place.
+///
+/// \param square  `side` rows of `side` numbers
+/// \param side  a power of two
+/// \param inverse  computes the inverse transform, without the factor 1 / side^2
+void transform_square(std::vector<std::complex<double>>& square, int side, bool inverse);
+
+/// The power spectral density of isotropic noise.
+struct NoiseSpectrum {
+    int side = 1;                       ///< Side of the squares, in texels.
+    std::vector<double> rings = {0.0};  ///< Power at frequencies of 0, 1, ... periods per side.
+    /// From this frequency on, in radians per texel, the field contains only noise.
+    double min_noise_only_frequency = std::numeric_limits<double>::infinity();
+
+    /// Returns the spectrum of white noise with this standard deviation.
+    static NoiseSpectrum white(double deviation) {
+        NoiseSpectrum noise;
+        noise.rings = {deviation * deviation};
+        return noise;
+    }
+    /// Returns the power at a frequency in radians per texel, from -pi to pi. Beyond the last ring
+    /// it is constant.
+    [[nodiscard]] double at(double x, double y) const;
+    /// Returns the standard deviation of the noise.
+    [[nodiscard]] double deviation() const;
+    /// Returns the standard deviation that the mask of third order of high_pass_noise() measures in
+    /// such noise, if the noise is Gaussian and stationary. For white noise it equals deviation().
+    [[nodiscard]] double high_pass_deviation() const;
+};
+
+/// Generates periodic Gaussian noise with this spectrum on a square of `side` texels.
+std::vector<double> noise_field(const NoiseSpectrum& spectrum, int side, std::uint32_t seed);
+
+/// The power spectral density of several square tiles, in bins of frequency and direction. The
+/// scale is such that white noise of deviation 1 has the power 1 at all frequencies.
+class PowerSpectrum {
+  public:
+    /// \param tiles  squares of equal size, whose side is a power of two of at least 8
+    explicit PowerSpectrum(std::span<const HeightTile> tiles);
+
+    /// Returns the gains of the zero-phase filter for spectral subtraction. The gain of a bin is
+    /// the square root of the share of its power above the noise, or 0 if the power does not exceed
+    /// the noise significantly.
+    [[nodiscard]] std::vector<double> gains(const NoiseSpectrum& noise) const;
+    /// Returns the bin of a frequency in radians per texel, from -pi to pi.
+    [[nodiscard]] std::size_t bin_at(double x, double y) const;
+
+    /// Returns the ratio of the mean power significantly above the noise to the mean power of the
+    /// noise.
+    [[nodiscard]] double excess_over(const NoiseSpectrum& noise) const;
+
+    /// Detects grain, which is noise or fine detail that no continuous surface has. The power of a
+    /// fractal surface decreases at least with the inverse square of the frequency
+    /// [Mandelbrot 1982], and the power of grain decreases more slowly.
+    ///
+    /// \return the spectrum of the grain, extrapolated to the low frequencies where other detail is
+    ///         stronger; nullopt if the power decreases like that of a surface at all frequencies
+    [[nodiscard]] std::optional<NoiseSpectrum> grain() const;
+
+    /// Estimates the maximum power of detail that the noise can hide. It is a share of the noise at
+    /// frequencies without visible detail. Above the highest frequency with visible detail, it also
+    /// does not exceed the extrapolated decrease of that detail.
+    [[nodiscard]] NoiseSpectrum hidden_detail(const NoiseSpectrum& noise) const;
+
+    /// Returns the RMS slope of the detail along x or along y that reference_slopes() does not
+    /// resolve: the loss of its differences near the Nyquist frequency, and the same amount for
+    /// detail above that frequency.
+    [[nodiscard]] double unresolved_slope(const NoiseSpectrum& noise) const;
+
+    /// Returns the standard deviation of white noise with the median power of the highest
+    /// frequencies. Regular patterns from rounding fill few bins and do not change the median.
+    [[nodiscard]] double white_floor() const;
+
+  private:
+    /// The mean power of a range of frequencies and directions.
+    struct Bin {
+        double power = 0.0;
+        double count = 0.0;
+    };
+    /// The median power of half an octave. Periodic detail fills few bins and does not change it.
+    struct Band {
+        double frequency = 0.0;  ///< Periods per side.
+        double power = 0.0;
+    };
+    [[nodiscard]] std::vector<Band> bands() const;
+
+    int side_;
+    std::vector<Bin> bins_;
+};
+
+/// Removes noise from a tile by spectral subtraction. The result is inaccurate in some texels along
+/// the borders, where the tile is extended by reflection.
+///
+/// \param spectrum  of all tiles of the map
+HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
+                         const NoiseSpectrum& noise);
 
 }  // namespace relief

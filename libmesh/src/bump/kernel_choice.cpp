@@ -24,7 +24,6 @@
 #include <vector>
 
 #include "bump/height_tile.h"
-#include "bump/power_spectrum.h"
 #include "image/height_holes.h"
 #include "parallel.h"
 #include "portable_math.h"

@@ -2,7 +2,7 @@
 // Power spectral densities of small squares with a squared Hann window, averaged over the squares
 // and over bins of frequency and direction [Welch 1967], and spectral subtraction of noise
 // [Boll 1979]. Nothing throws. Tests: tests/mesh/bump/kernel_choice_test.cpp.
-#include "bump/power_spectrum.h"
+#include "bump/height_tile.h"
 
 #include <algorithm>
 #include <cmath>

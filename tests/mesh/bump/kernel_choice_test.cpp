@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "bump/power_spectrum.h"
+#include "bump/height_tile.h"
 #include "portable_math.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-#include "bump/power_spectrum.h"
+#include "bump/height_tile.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"

@@ -18,7 +18,6 @@
 #include "file_bytes.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
-#include "io/png/inflate.h"
 #include "io/png/png_format.h"
 #include "large_memory.h"
 #include "parallel.h"

@@ -26,7 +26,6 @@
 #include "file_replacement.h"
 #include "io/image/row_codec.h"
 #include "io/png/deflate_encoder.h"
-#include "io/png/inflate.h"
 #include "io/png/png_format.h"
 #include "parallel.h"
 #include "relief/mesh/image_file.h"

@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "io/image/image_module_client.h"
-#include "io/png/inflate.h"
 #include "io/png/png_format.h"
 #include "mesh/io/image/module_reference.h"
 #include "relief/mesh/image_file.h"

@@ -16,7 +16,6 @@
 
 #include "io/image/row_codec.h"
 #include "io/png/deflate_encoder.h"
-#include "io/png/inflate.h"
 #include "io/png/png_decoder.h"
 #include "io/png/png_format.h"
 #include "mesh/io/image/module_reference.h"
