@@ -11,7 +11,7 @@
 #include <memory>
 #include <numbers>
 
-#include "reference/shading.h"
+#include "reference/reference_parts.h"
 
 namespace relief {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Ray casting with Embree, for the baker (bake/ray_scene.h) and the reference renderer (libshade's
-/// reference/surface.h). No other part of relief uses Embree.
+/// reference/reference_parts.h). No other part of relief uses Embree.
 ///
 /// Embree traverses a tree of boxes around clusters of triangles (bake/triangle_clusters.h). The
 /// boxes are enlarged by more than the rounding errors of its floats. The hits themselves are

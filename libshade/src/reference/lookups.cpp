@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texture and environment lookups in double. Lookups in cube maps are bilinear, also across the
 // edges of faces (OpenGL's seamless cube maps).
-#include "reference/lookups.h"
+#include "reference/reference_parts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,8 +13,7 @@
 
 #include "parallel.h"
 #include "portable_math.h"
-#include "reference/shading.h"
-#include "reference/surface.h"
+#include "reference/reference_parts.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -4,7 +4,7 @@
 // double; hard cases as in shaders/README.md. Fresnel's formulas have a complex index of
 // refraction. Sources: [Born and Wolf 1999], sections 1.5.2 and 14.2; [Schlick 1994];
 // KHR_lights_punctual for ranges and cones.
-#include "reference/shading.h"
+#include "reference/reference_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "portable_math.h"
-#include "reference/surface.h"
 #include "relief/shade/scene.h"
 
 namespace relief::reference {

@@ -5,7 +5,7 @@
 // cofactors, which for a singular matrix is the limit of the inverse transpose. The basis of a map
 // is used as interpolated, neither normalized nor orthogonalized, as MikkTSpace requires [Mikkelsen
 // 2008]; heights bend the normal as in [Blinn 1978].
-#include "reference/surface.h"
+#include "reference/reference_parts.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "reference/lookups.h"
+#include "reference/reference_parts.h"
 #include "shade/render/draw_support.h"
 
 namespace relief::reference {

@@ -12,8 +12,7 @@
 #include <numbers>
 #include <vector>
 
-#include "reference/lookups.h"
-#include "reference/shading.h"
+#include "reference/reference_parts.h"
 #include "shade/reference/traced.h"
 #include "support/shapes.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reference/surface.h"
+#include "reference/reference_parts.h"
 #include "shade/reference/traced.h"
 #include "support/angle.h"
 #include "support/shapes.h"

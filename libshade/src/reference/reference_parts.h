@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The parts of the reference renderer, in double precision: lookups in images and environments,
+/// rays from the eye, a scene prepared for them, the surface at a hit, and its light. World space,
+/// linear light.
+///
+/// Lookups are those that OpenGL 3.3 (section 3.8) defines at full resolution, straight from the
+/// images: bilinear between texel centers or nearest, with all three wrap modes. Colors are decoded
+/// from sRGB before they are filtered; (0,0) is the upper left corner, v grows downwards. A
+/// coordinate that is not finite looks up NaN. The environment's images are laid out as scene.h
+/// says; faces as in environment/environment_images.h.
+///
+/// Hits have exact positions in view space: the eye is at the origin and looks along -z. The rules
+/// of bake/embree_scene.h make the result the same on every processor. The preparation computes
+/// everything that no single pixel decides: frames of meshes without frames, vertices in world and
+/// view space, decoded textures. Directions are unit, or zero if undefined; the normal of a surface
+/// without a direction is (0,0,1), and a map without a direction leaves the interpolated normal.
+/// Light follows Material's formula (material.h), term by term.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "environment/convolution.h"
+#include "relief/export.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/material.h"
+#include "relief/shade/scene.h"
+
+namespace RELIEF_API relief {
+class EmbreeScene;
+}
+
+namespace relief {
+namespace RELIEF_API reference {
+
+// Lookups
+
+/// The record of a ray on its way to a color: every discrete decision (which texel, which side of a
+/// light), and every place in a texture. Rays whose decisions differ may differ by a jump, so that
+/// rounding may decide what is seen; places that lie far apart mean a texture that OpenGL averages.
+class Trace {
+  public:
+    void decide(std::int64_t decision) {
+        constexpr std::uint64_t fnv_prime = 0x100000001B3ULL;
+        hash_ = (hash_ ^ static_cast<std::uint64_t>(decision)) * fnv_prime;
+        hash_ ^= hash_ >> 29;
+    }
+
+    /// \param texels  the place of a lookup in texels; for a cube map, a direction whose length is
+    ///                the number of texels in a radian
+    void look_up(const glm::dvec3& texels) { places_.push_back(texels); }
+
+    [[nodiscard]] bool decided_like(const Trace& other) const {
+        return hash_ == other.hash_ && places_.size() == other.places_.size();
+    }
+    [[nodiscard]] const std::vector<glm::dvec3>& places() const { return places_; }
+
+  private:
+    std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+    std::vector<glm::dvec3> places_;
+};
+
+/// An image as RGBA: gray as (g, g, g, 1), gray with alpha as (g, g, g, a), RGB as (r, g, b, 1).
+class Texels {
+  public:
+    Texels() = default;
+    explicit Texels(const Image& image);
+
+    [[nodiscard]] int width() const { return image_.width; }
+    [[nodiscard]] int height() const { return image_.height; }
+
+    [[nodiscard]] glm::dvec4 at(int x, int y) const;
+    [[nodiscard]] glm::dvec4 bilinear(const glm::dvec2& uv, Wrap u, Wrap v) const;
+    [[nodiscard]] glm::dvec4 nearest(const glm::dvec2& uv, Wrap u, Wrap v, Trace& trace) const;
+
+  private:
+    Image image_;  ///< Linear float.
+};
+
+/// Returns the index within the image of a texel index beyond its border.
+int wrapped(double index, int size, Wrap wrap);
+
+/// The images that the materials of a scene look up, decoded once for each use.
+class SceneTexels {
+  public:
+    /// Decodes a material's images. Those that cannot be read are in unreadable().
+    /// \throws FileError if an image that is required cannot be read
+    void request(const Scene& scene, const Material& material);
+
+    /// Returns the error of each unreadable image, by its index.
+    [[nodiscard]] const std::map<std::size_t, std::string>& unreadable() const {
+        return unreadable_;
+    }
+
+    [[nodiscard]] const Texels& get(std::size_t image, ImageUse use) const {
+        return texels_.at({image, use});
+    }
+    [[nodiscard]] glm::dvec4 look_up(const Texture& texture, ImageUse use, const glm::dvec2& uv,
+                                     Trace& trace) const;
+
+  private:
+    std::map<std::pair<std::size_t, ImageUse>, Texels> texels_;
+    std::map<std::size_t, std::string> unreadable_;
+};
+
+class EnvironmentLookup {
+  public:
+    /// \param report  counts samples that half floats cannot hold (storable_radiance)
+    /// \throws FileError if an image cannot be read; InvalidInput if images do not fit together
+    EnvironmentLookup(const Environment& environment, Report& report);
+
+    /// \param direction_world  of any length but 0
+    [[nodiscard]] glm::dvec3 radiance(const glm::dvec3& direction_world) const;
+
+    /// Returns the same radiance, and records the lookup in a trace.
+    [[nodiscard]] glm::dvec3 looked_up(const glm::dvec3& direction_world, Trace& trace) const;
+
+    /// Returns the reflection in a surface whose microfacets have GGX's distribution, with normal
+    /// and eye along the direction: the mean over directions l, mirrored at normals h that are
+    /// sampled from the distribution, weighted by n.l.
+    /// \param roughness  0 is a mirror
+    [[nodiscard]] glm::dvec3 blurred(const glm::dvec3& direction_world, double roughness,
+                                     Trace& trace) const;
+
+    /// Returns the irradiance over pi on a surface of this normal, by spherical harmonics of order
+    /// 2 [Ramamoorthi and Hanrahan 2001]; 0 if their sum is negative.
+    [[nodiscard]] glm::dvec3 diffuse(const glm::dvec3& normal_world) const;
+
+  private:
+    enum class Layout { faces, equirectangular, angular };
+
+    [[nodiscard]] glm::dvec3 face_texel(std::size_t face, int x, int y) const;
+    [[nodiscard]] glm::dvec3 face_radiance(const glm::dvec3& direction) const;
+    [[nodiscard]] std::vector<Image> faces() const;
+    [[nodiscard]] glm::dvec3 texel_mean(std::size_t face, int x, int y, int size) const;
+
+    Layout layout_ = Layout::faces;
+    double intensity_ = 1.0;
+    std::vector<Texels> images_;  ///< Six faces, or one image.
+    IrradianceSh irradiance_{};   ///< Multiplied by the intensity.
+};
+
+/// Returns GGX's directional albedo: x multiplies f0, y is added (environment/convolution.h).
+glm::dvec2 directional_albedo(double n_dot_v, double roughness);
+
+// Rays from the eye
+
+/// Triangles of one instance; both spans must outlive their use.
+struct ViewMesh {
+    std::span<const glm::dvec3> positions_view;
+    std::span<const glm::uvec3> triangles;
+};
+
+struct Hit {
+    std::uint32_t instance = 0;
+    std::uint32_t triangle = 0;
+    double depth = 0.0;             ///< Distance along -z.
+    glm::dvec3 barycentric{0.0};    ///< On the triangle itself, correct for perspective.
+    bool counter_clockwise = true;  ///< As the eye sees it.
+};
+
+class Visibility {
+  public:
+    /// \param near, far  the depth range of hits
+    Visibility(std::vector<ViewMesh> meshes, double near, double far);
+    ~Visibility();
+    Visibility(const Visibility&) = delete;
+    Visibility& operator=(const Visibility&) = delete;
+
+    /// Returns all hits of the ray through (x, y, -1), nearest first. If the ray hits an edge or a
+    /// vertex that triangles of an instance share, only the nearest of them is a hit; ties: the
+    /// first one.
+    [[nodiscard]] std::vector<Hit> hits(double x, double y) const;
+
+  private:
+    [[nodiscard]] bool shares_place(const Hit& a, const Hit& b) const;
+    [[nodiscard]] bool is_repeated(const std::vector<Hit>& all, std::size_t index) const;
+
+    std::vector<ViewMesh> meshes_;
+    double near_;
+    double far_;
+    std::unique_ptr<EmbreeScene> embree_;
+};
+
+// Prepared scenes and surfaces
+
+/// One instance of a mesh, by vertex.
+struct PreparedInstance {
+    const Mesh* mesh = nullptr;  ///< With normals, and with tangents if something needs them.
+    std::vector<glm::dvec3> positions_world;
+    std::vector<glm::dvec3> positions_view;
+    std::vector<glm::dvec3> normals_world;
+    std::vector<glm::dvec4> tangents_world;    ///< Empty if the mesh has none.
+    glm::dmat3 world_from_object_normal{1.0};  ///< Up to a positive factor.
+    bool mirrors = false;                      ///< The matrix reverses the winding of triangles.
+};
+
+struct PreparedScene {
+    /// \throws InvalidInput, FileError as render_reference does
+    PreparedScene(const Scene& scene, Report& report);
+
+    [[nodiscard]] const Material& material_of(std::uint32_t instance, std::uint32_t triangle) const;
+    /// Returns the index of the range in its mesh.
+    [[nodiscard]] std::size_t range_of(std::uint32_t instance, std::uint32_t triangle) const;
+    [[nodiscard]] FlatCode flat_code(const NormalMap& map) const;
+
+    const Scene& scene;
+    std::vector<Material> materials;  ///< Without the textures that cannot be read.
+    glm::dvec3 eye_world;
+    std::vector<Mesh> meshes;
+    std::vector<PreparedInstance> instances;
+    SceneTexels texels;
+    std::map<std::size_t, FlatCode> detected_flat_codes;  ///< By image.
+    std::map<std::size_t, int> normal_map_bits;           ///< By image.
+    std::optional<EnvironmentLookup> environment;
+};
+
+/// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal
+/// or bump map.
+struct Surface {
+    glm::dvec3 position_world{0.0};
+    glm::dvec3 normal_world{0.0, 0.0, 1.0};  ///< Unit, on the visible side.
+    glm::dvec3 view_world{0.0, 0.0,
+                          1.0};  ///< Unit, to the eye; the normal if the eye is at the surface.
+    glm::dvec2 texcoord{0.0};
+    glm::dvec4 color{1.0};      ///< Interpolated vertex color.
+    bool has_texcoord = false;  ///< Without them, no texture is looked up.
+};
+
+/// Tells whether the hit shows the back of its triangle.
+bool is_back(const PreparedScene& prepared, const Hit& hit);
+
+Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
+                   Trace& trace);
+
+/// Returns the surface at a corner of the triangle that was hit, for light computed at vertices. No
+/// map bends its normal.
+Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int corner);
+
+// Light
+
+/// Returns the reflectance of a smooth boundary by Fresnel's formulas for unpolarized light: the
+/// mean of both polarizations.
+///
+/// \param index   of the inside relative to the outside; n + ik for metals
+/// \param cosine  of the angle of incidence, within [0,1]
+/// \return within [0,1]; 0 for an index of 1, which is no boundary, and 1 for an index of 0
+double fresnel(std::complex<double> index, double cosine);
+
+/// Returns Material's factor F at n.v, clamped to [0,1] by channel; 0 if the reflectivity is zero.
+glm::dvec3 fresnel_factor(const Material& material, double n_dot_v);
+
+/// The light from a surface to the eye.
+struct Shaded {
+    glm::dvec3 radiance{0.0};  ///< Unrestricted, like the data of the scene.
+    double alpha = 1.0;        ///< As Material says, whatever the alpha mode.
+};
+
+Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material, Trace& trace);
+
+}  // namespace reference
+}  // namespace relief
