@@ -10,13 +10,12 @@
 #include <glm/trigonometric.hpp>
 #include <string_view>
 
-#include "bump_experiments.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
 #include "relief/accuracy/bake_accuracy.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/statistics.h"
-#include "report_names.h"
 #include "storage_experiments.h"
 
 namespace relief {

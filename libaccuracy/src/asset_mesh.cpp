@@ -12,13 +12,12 @@
 #include <numbers>
 #include <optional>
 
-#include "normals_experiments.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
-#include "report_names.h"
 #include "storage_experiments.h"
 #include "tangent_methods.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes a sphere with bumps onto a coarse sphere. The ground truth of a texel is the mean of many
 // rays.
-#include "bake_experiments.h"
+#include "experiment_parts.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,6 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
-#include "report_names.h"
 
 namespace relief {
 namespace {

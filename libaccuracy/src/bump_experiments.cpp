@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes normals from waves and fields with known normals, and compares every kernel in both
 // arithmetics with the closed form.
-#include "bump_experiments.h"
+#include "experiment_parts.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,6 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
-#include "report_names.h"
 
 namespace relief {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the angular error of every weighting on analytic surfaces, where normals are known in
 // closed form, with the convergence order over the cell size.
-#include "normals_experiments.h"
+#include "experiment_parts.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 
 #include "experiment_driver.h"
 #include "relief/mesh/statistics.h"
-#include "report_names.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures normals, tangents and bump maps while their input grows or shrinks by powers of ten. The
 // ground truth stays known in closed form. Textbook code without guards is measured for contrast.
-#include "stability_experiments.h"
+#include "experiment_parts.h"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,9 @@
 #include <map>
 #include <memory>
 
-#include "bump_experiments.h"
 #include "error_metrics.h"
 #include "experiment_driver.h"
-#include "normals_experiments.h"
 #include "relief/mesh/statistics.h"
-#include "report_names.h"
 #include "tangent_methods.h"
 
 namespace relief {

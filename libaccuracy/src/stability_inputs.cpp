@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes hard inputs for the stability experiments, and holds the textbook code that is measured
 // with them.
-#include "stability_experiments.h"
+#include "experiment_parts.h"
 
 #include <algorithm>
 #include <array>

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "experiment_parts.h"
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
-#include "report_names.h"
 
 namespace relief {
 namespace {

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "experiment_parts.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/statistics.h"
-#include "report_names.h"
 
 namespace relief {
 namespace {

@@ -10,9 +10,9 @@
 #include <numbers>
 #include <vector>
 
-#include "bump_experiments.h"
 #include "experiment_checks.h"
 #include "experiment_driver.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/report.h"

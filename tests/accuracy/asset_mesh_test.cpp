@@ -12,7 +12,7 @@
 #include "asset_report.h"
 #include "experiment_checks.h"
 #include "experiment_driver.h"
-#include "normals_experiments.h"
+#include "experiment_parts.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
 #include "support/message_of.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes of the sphere with bumps: the ground truth of the experiments against the formula of the
 // surface, and the results of the experiments.
-#include "bake_experiments.h"
+#include "experiment_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The errors of kernels against their responses in closed form, and the results of the experiments.
-#include "bump_experiments.h"
+#include "experiment_parts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

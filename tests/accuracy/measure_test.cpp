@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clocks, repeats and memory.
-#include "measure.h"
+#include "experiment_driver.h"
 
 #include <gtest/gtest.h>
 

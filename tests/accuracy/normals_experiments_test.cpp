@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of normals that are rotated by known angles, and the results of the experiments.
-#include "normals_experiments.h"
+#include "experiment_parts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,6 @@
 #include <set>
 
 #include "experiment_checks.h"
-#include "report_names.h"
 
 namespace relief::test {
 namespace {

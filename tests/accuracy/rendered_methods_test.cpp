@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "experiment_checks.h"
-#include "measure.h"
+#include "experiment_driver.h"
 #include "relief/mesh/mesh.h"
 #include "shading_experiments.h"
 #include "support/gl_environment.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sweeps computed by hand, and the values up to which methods are known to work.
-#include "stability_experiments.h"
+#include "experiment_parts.h"
 
 #include <gtest/gtest.h>
 

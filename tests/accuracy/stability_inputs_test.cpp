@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hard triangles, needles and textbook code against exact results.
-#include "stability_experiments.h"
+#include "experiment_parts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,13 +10,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "bump_experiments.h"
 #include "experiment_checks.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
-#include "stability_experiments.h"
 
 namespace relief {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "bump_experiments.h"
 #include "error_tables/error_tables.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
 #include "relief/mesh/height_map.h"
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "bake_experiments.h"
+#include "experiment_parts.h"
 
 namespace relief::test {
 

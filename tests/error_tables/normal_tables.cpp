@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "error_tables/error_tables.h"
-#include "normals_experiments.h"
-#include "report_names.h"
+#include "experiment_parts.h"
 
 namespace relief::test {
 namespace {

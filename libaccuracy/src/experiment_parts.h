@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The parts of experiments on normals, bump maps, baking and stability that asset reports, other
+/// experiments and tests use as well; and the values that experiments iterate over, with their
+/// names in reports.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiment_driver.h"
+#include "relief/accuracy/asset.h"
+#include "relief/accuracy/bake_accuracy.h"
+#include "relief/accuracy/experiment.h"
+#include "relief/accuracy/ground_truth.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/normals.h"
+#include "relief/mesh/statistics.h"
+
+namespace relief {
+
+inline constexpr std::array all_surfaces = {AnalyticSurface::sphere, AnalyticSurface::torus,
+                                            AnalyticSurface::ellipsoid, AnalyticSurface::saddle,
+                                            AnalyticSurface::cubic};
+inline constexpr std::array all_triangulations = {Triangulation::regular, Triangulation::jittered,
+                                                  Triangulation::anisotropic,
+                                                  Triangulation::folded};
+inline constexpr std::array both_arithmetics = {Arithmetic::float64, Arithmetic::float32};
+
+/// The sample format of a map: "16 bit", "float".
+inline std::string depth_name(int bits) {
+    return bits == 32 ? "float" : std::to_string(bits) + " bit";
+}
+
+inline std::string name_of(AnalyticSurface surface) {
+    constexpr std::array names = {"sphere", "torus", "ellipsoid", "saddle", "cubic"};
+    return names.at(static_cast<std::size_t>(surface));
+}
+
+inline std::string name_of(Triangulation triangulation) {
+    constexpr std::array names = {"regular", "jittered", "anisotropic", "folded"};
+    return names.at(static_cast<std::size_t>(triangulation));
+}
+
+// Vertex normals: every weighting on analytic surfaces and on the fans of [Max 1999].
+
+/// One way to compute the vertex normals of a mesh.
+struct NormalMethod {
+    std::string weighting;  ///< The name in relief-mesh: "uniform", ..., "auto".
+    Arithmetic arithmetic = Arithmetic::float64;
+    std::optional<NormalWeight> weight{};  ///< Absent: chosen per vertex.
+    /// Returns one normal per position.
+    std::function<std::vector<glm::vec3>(const Mesh&)> normals;
+
+    [[nodiscard]] std::string name() const;  ///< "max, float64"
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> choices() const;
+};
+
+/// All eight weightings, each in the given arithmetics.
+std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics);
+
+/// The angles between normals and those of the surface, at the inner vertices of the mesh.
+/// \param normals  one per position of the mesh
+ErrorStats normal_errors(std::span<const glm::vec3> normals, const AnalyticMesh& ground_truth);
+
+/// The angles at the center vertices of random fans (cubic_fan() with seeds 0 to `fans` - 1).
+ErrorStats fan_errors(const NormalMethod& method, int valence, std::uint32_t fans);
+
+// Normals from height maps: every kernel in both arithmetics, on waves and fields whose normals are
+// known in closed form.
+
+struct NamedKernel {
+    std::string name;  ///< "sobel3", "gaussian 4"
+    Kernel kernel = Kernel::sobel3;
+    int radius = 2;  ///< Only for Kernel::gaussian.
+};
+
+/// All kernels; Gaussians of radius 2, 4, 8 and 16 come last.
+std::span<const NamedKernel> named_kernels();
+
+/// The name of a kernel in named_kernels().
+std::string name_of(Kernel kernel, int gaussian_radius);
+
+/// The RMS error in degrees of the unrounded normals in double precision. Texels without a defined
+/// ground truth do not count.
+double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius);
+
+/// A field from one of the sets of ground_truth.h. \throws InvalidInput if none has that name
+const FieldRecipe& field_recipe(const std::string& name);
+
+/// A height map of one oblique wave of slope 1, with its exact normals.
+struct WaveMap {
+    Image heights;  ///< One channel.
+    BumpOptions options;
+    std::vector<glm::dvec3> normals;
+};
+
+/// Texels along each border that are not compared, because kernels need heights beyond the border.
+inline constexpr int wave_margin = 16;
+
+/// Makes a wave that runs two texels to the right for one down, a direction that favors no kernel.
+///
+/// \param bits  of the heights: 8, 16, or 32 for floats
+WaveMap oblique_wave(int side, double wavelength, int bits);
+
+/// The errors of the unrounded normals of a wave map.
+ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmetic arithmetic);
+
+/// The same surface at several resolutions: waves that tile a square of `side` texels.
+WaveMap surface_at(int side);
+
+/// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel, but
+/// without functions.
+ExperimentMethod described(const BumpMethod& method);
+
+// Baking: a sphere with bumps in closed form is baked onto a coarse sphere with several numbers of
+// rays per texel and several bit depths.
+
+/// A point of a surface with its normal.
+struct SurfacePoint {
+    glm::dvec3 position{0.0};
+    glm::dvec3 normal{0.0};  ///< Unit.
+};
+
+/// A sphere with bumps in closed form, and a mesh of it.
+class BumpySphere {
+  public:
+    /// Makes a mesh of 4 stacks^2 triangles with the positions and normals of the formula.
+    explicit BumpySphere(int stacks);
+
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+
+    /// Intersects a ray that points roughly towards the center with the exact surface.
+    /// \param inward  unit
+    [[nodiscard]] static SurfacePoint on_surface(const glm::dvec3& from, const glm::dvec3& inward);
+
+    /// Intersects such a ray with the mesh, in double; the normal is interpolated. Only triangles
+    /// near the exact intersection are tried.
+    /// \throws std::logic_error if the ray hits none of them
+    [[nodiscard]] SurfacePoint on_mesh(const glm::dvec3& from, const glm::dvec3& inward) const;
+
+  private:
+    int stacks_;
+    Mesh mesh_;
+};
+
+std::string name_of(const BakeSampling& way);  ///< "16 rays", "up to 64 rays beyond 2°"
+
+/// The high and the low mesh, ready for ray casting, and the ground truth of their map.
+class BumpyBake {
+  public:
+    static constexpr int low_slices = 46;
+    static constexpr int low_stacks = 23;
+
+    /// \param side  width and height of the map in texels
+    BumpyBake(int high_stacks, int side);
+
+    [[nodiscard]] const Baker& baker() const { return baker_; }
+    [[nodiscard]] const BakeMapOptions& map() const { return map_; }
+    [[nodiscard]] const BakeReference& reference() const { return reference_; }
+    [[nodiscard]] std::string description() const;  ///< Of the meshes and the map.
+    [[nodiscard]] double texels() const;
+
+    /// Bakes a map.
+    [[nodiscard]] Image map_by(const BakeSampling& way, const NormalMapFormat& format) const;
+    [[nodiscard]] const BumpySphere& high() const { return high_; }
+
+  private:
+    BumpySphere high_;
+    Report report_;
+    Baker baker_;
+    BakeMapOptions map_;
+    BakeReference reference_;
+};
+
+// Stability: sweeps over a growing quantity, hard inputs (degenerate triangles, needles), and
+// textbook code without guards, which is measured for contrast with the library.
+
+/// The errors of several methods while one quantity grows, and the value at which each method
+/// fails.
+class Sweeps {
+  public:
+    /// \param bound  limit of the RMS error in degrees; a method fails where it exceeds this
+    Sweeps(std::vector<std::string> methods, double bound);
+
+    /// The angular errors of a method at a value, in degrees; NaN where a direction is undefined.
+    using Errors = std::function<std::vector<float>(std::size_t method, double value)>;
+
+    /// Adds a chart over the values 10^0, 10^step, ... 10^decades. Nothing is computed yet.
+    void add(const std::string& id, const std::string& title, const std::string& x_label,
+             int decades, int step, Errors errors);
+
+    /// Computes the curves of a method in all charts.
+    /// \return the errors of all curves together
+    ErrorStats measure(std::size_t method);
+
+    /// The charts, with the curves of the measured methods.
+    [[nodiscard]] const std::vector<Chart>& charts() const { return charts_; }
+
+    /// "Larger (...): plain area fails from 1e+18 on, all others are within the limit." for each
+    /// chart.
+    [[nodiscard]] std::string breaks() const;
+
+  private:
+    struct Values {
+        int decades = 0;
+        int step = 1;
+        Errors errors;
+    };
+
+    std::vector<std::string> methods_;
+    double bound_;
+    std::vector<Chart> charts_;
+    std::vector<Values> values_;  ///< By chart.
+};
+
+/// Kinds of triangles that a mesh can have without a change of its surface.
+enum class HardTriangle {
+    collapsed,   ///< Refers to one vertex twice.
+    coinciding,  ///< Has two corners at the same position.
+    needle,      ///< Has its third corner at the middle of an edge, up to rounding.
+    nowhere,     ///< Has a corner that is not a number.
+    back,        ///< Lies on another triangle with the opposite orientation.
+};
+
+struct HardTriangleName {
+    HardTriangle kind;
+    const char* id;
+    const char* title;
+};
+inline constexpr std::array hard_triangle_names = {
+    HardTriangleName{HardTriangle::collapsed, "collapsed",
+                     "Triangles that refer to a vertex twice"},
+    HardTriangleName{HardTriangle::coinciding, "coinciding",
+                     "Triangles with two corners at the same position"},
+    HardTriangleName{HardTriangle::needle, "needle", "Needles along an edge"},
+    HardTriangleName{HardTriangle::nowhere, "nowhere", "Triangles with a corner that is NaN"},
+    HardTriangleName{HardTriangle::back, "back", "Triangles with another one on their back side"},
+};
+
+/// Adds `count` hard triangles, spread evenly over the mesh; with HardTriangle::back at most one
+/// per triangle. The vertices and triangles of the mesh keep their indices. The result has only
+/// positions and triangles.
+Mesh with_hard_triangles(const Mesh& mesh, HardTriangle kind, std::size_t count);
+
+/// Separate needle-shaped triangles with their exact normals.
+struct Needles {
+    Mesh mesh;                        ///< Positions and triangles; no two share a vertex.
+    std::vector<glm::dvec3> normals;  ///< Per vertex; unit.
+};
+
+/// Makes needles without cancellation in their exact normals: two corners lie within twice the
+/// width of the origin, where floats are fine enough, and the third corner lies at a distance of 1.
+///
+/// \param width  length of the short side, which is perpendicular to the long ones. The first
+/// corner
+///               alternates between the three.
+Needles make_needles(std::size_t count, double width, std::uint32_t seed);
+
+/// Textbook code: normalizes the sum of cross products around each vertex; 0 / 0 gives NaN.
+std::vector<glm::vec3> textbook_area_normals(const Mesh& mesh);
+
+/// Textbook code: normalizes the sum of unit normals weighted by the arc cosines of corner angles.
+std::vector<glm::vec3> textbook_angle_normals(const Mesh& mesh);
+
+/// Textbook code, [Lengyel 2001] as printed: averages tangents over all triangles of a vertex.
+/// \return three tangents per triangle
+std::vector<glm::vec4> textbook_tangents(const Mesh& mesh);
+
+/// Textbook code: Sobel differences of 3 x 3 heights, then (-dh/dx, -dh/dy, 1) normalized, y up;
+/// the border is (0, 0, 1).
+/// \param height  one float channel
+Image textbook_sobel_normals(const Image& height, float strength);
+
+}  // namespace relief
