@@ -26,7 +26,6 @@
 #include "common/options.h"
 #include "common/text.h"
 #include "file_bytes.h"
-#include "plot_parts.h"
 #include "plots.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/report.h"

@@ -11,7 +11,6 @@
 #include <span>
 #include <utility>
 
-#include "plot_parts.h"
 #include "plots.h"
 #include "relief/accuracy/experiment.h"
 #include "report_page.h"

@@ -7,7 +7,6 @@
 
 #include <cmath>
 
-#include "plot_parts.h"
 #include "tools/accuracy_page/sample_report.h"
 
 namespace relief::tools {
