@@ -17,6 +17,7 @@
 #include "commands.h"
 #include "common/command.h"
 #include "common/options.h"
+#include "common/summary.h"
 #include "common/text.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/statistics.h"
@@ -113,12 +114,12 @@ std::string line_of(const MemoryChange& change) {
                        byte_size(change.before), byte_size(change.after));
 }
 
-/// Prints at most max_lines lines and the number of others.
-void print_some(const std::string& label, std::vector<std::string> lines) {
+/// Returns at most max_lines lines, and the number of others.
+std::vector<std::string> some_of(std::vector<std::string> lines) {
     const std::size_t more = lines.size() - std::min(lines.size(), max_lines);
     lines.resize(lines.size() - more);
     if (more > 0) lines.push_back(fmt::format("and {} more (--json lists all)", more));
-    print_entry(label, lines);
+    return lines;
 }
 
 std::vector<TimeChange> times_that_are(const ReportComparison& comparison, TimeVerdict verdict) {
@@ -202,27 +203,6 @@ bool have_other_opengl(const ComparedReports& compared) {
     return before && after && *before != *after;
 }
 
-void print_times(const ReportComparison& comparison) {
-    std::vector<std::string> common;
-    if (comparison.one_thread.methods > 0) common.push_back(line_of(comparison, false));
-    if (comparison.all_threads.methods > 0) common.push_back(line_of(comparison, true));
-    if (common.empty()) common.emplace_back("none in common");
-    print_entry("times", common);
-    print_some("slower", lines_of(times_that_are(comparison, TimeVerdict::slower)));
-    print_some("faster", lines_of(times_that_are(comparison, TimeVerdict::faster)));
-}
-
-void print_memory(const ReportComparison& comparison) {
-    if (comparison.with_memory == 0) return;
-    if (comparison.memory.empty()) {
-        print_entry("memory", fmt::format("unchanged within 10 % or one megabyte, for {}",
-                                          counted(comparison.with_memory, "method")));
-    }
-    print_some("more", lines_of(memory_that(comparison, true)));
-    print_some("less", lines_of(memory_that(comparison, false)));
-    if (!comparison.memory.empty()) print_entry("", "(peak memory)");
-}
-
 /// Methods that are missing in the new report do not meet a limit.
 void add_gone(std::vector<std::string>& lines, const ReportComparison& comparison) {
     for (const std::string& name : comparison.gone)
@@ -274,32 +254,6 @@ void add_common(std::vector<std::string>& lines, const CommonChange& common, boo
                         "the ratios of the methods vary (only changes above {:.0f} % are detected)",
                         limit, threads_of(on_all_threads), percent(common.resolution)));
     }
-}
-
-void print_text(const ComparedReports& compared) {
-    const ReportComparison& comparison = compared.comparison;
-    print_entry("old", described(compared.before));
-    print_entry("new", described(compared.after));
-    const std::string difference = difference_of(compared.before, compared.after);
-    if (!difference.empty()) {
-        print_entry("machine", difference);
-        if (!compared.same_machine)
-            print_entry("", "times are compared only relative to the median of all methods");
-        if (have_other_opengl(compared))
-            print_entry("", "pictures drawn by OpenGL may differ slightly for this reason");
-    }
-    print_entry("methods", fmt::format("{} in both", comparison.methods));
-    print_some("missing", comparison.gone);
-    print_some("added", comparison.added);
-    print_some("changed", comparison.other_input);
-    if (!comparison.other_input.empty()) print_entry("", "(different input, not compared)");
-    print_times(comparison);
-    print_memory(comparison);
-    const auto worse = errors_that(comparison, true);
-    const auto better = errors_that(comparison, false);
-    if (worse.empty() && better.empty()) print_entry("errors", "all the same");
-    print_some("worse", lines_of(worse));
-    print_some("better", lines_of(better));
 }
 
 /// Returns a line per change above the limits, with method, value and limit; the largest is first.
@@ -395,38 +349,82 @@ Json json_of(const MemoryChange& change) {
 
 template <typename Change>
 Json array_of(const std::vector<Change>& changes) {
-    Json array = Json::array();
-    for (const Change& change : changes)
-        array.push_back(json_of(change));
-    return array;
+    return json_list(changes, [](const Change& change) { return json_of(change); });
 }
 
-Json json_of(const std::optional<double>& limit) {
-    return limit ? Json(*limit) : Json();
+void add_machines(Summary& summary, const ComparedReports& compared) {
+    const std::string difference = difference_of(compared.before, compared.after);
+    std::vector<std::string> lines;
+    if (!difference.empty()) {
+        lines.push_back(difference);
+        if (!compared.same_machine)
+            lines.emplace_back("times are compared only relative to the median of all methods");
+        if (have_other_opengl(compared))
+            lines.emplace_back("pictures drawn by OpenGL may differ slightly for this reason");
+    }
+    summary.add("machine", lines,
+                {{"same_machine", compared.same_machine}, {"machine", difference}});
 }
 
-Json json_of(const ComparedReports& compared, const ComparisonLimits& limits) {
-    const ReportComparison& comparison = compared.comparison;
-    return {{"tool", "relief-accuracy compare"},
-            {"version", version()},
-            {"old", compared.before.command},
-            {"new", compared.after.command},
-            {"same_machine", compared.same_machine},
-            {"machine", difference_of(compared.before, compared.after)},
-            {"methods", comparison.methods},
-            {"gone", comparison.gone},
-            {"added", comparison.added},
-            {"other_input", comparison.other_input},
-            {"one_thread", json_of(comparison.one_thread)},
-            {"all_threads", json_of(comparison.all_threads)},
-            {"times", array_of(comparison.times)},
-            {"with_memory", comparison.with_memory},
-            {"memory", array_of(comparison.memory)},
-            {"errors", array_of(comparison.errors)},
-            {"max_slower", json_of(limits.max_slower)},
-            {"max_error_growth", json_of(limits.max_error_growth)},
-            {"max_memory_growth", json_of(limits.max_memory_growth)},
-            {"beyond", above_limits(compared, limits)}};
+void add_methods(Summary& summary, const ReportComparison& comparison) {
+    summary.add("methods", fmt::format("{} in both", comparison.methods),
+                {{"methods", comparison.methods}});
+    summary.add("missing", some_of(comparison.gone), {{"gone", comparison.gone}});
+    summary.add("added", some_of(comparison.added), {{"added", comparison.added}});
+    std::vector<std::string> changed = some_of(comparison.other_input);
+    if (!changed.empty()) changed.emplace_back("(different input, not compared)");
+    summary.add("changed", changed, {{"other_input", comparison.other_input}});
+}
+
+void add_times(Summary& summary, const ReportComparison& comparison) {
+    std::vector<std::string> common;
+    if (comparison.one_thread.methods > 0) common.push_back(line_of(comparison, false));
+    if (comparison.all_threads.methods > 0) common.push_back(line_of(comparison, true));
+    if (common.empty()) common.emplace_back("none in common");
+    summary.add("times", common,
+                {{"one_thread", json_of(comparison.one_thread)},
+                 {"all_threads", json_of(comparison.all_threads)},
+                 {"times", array_of(comparison.times)}});
+    summary.add("slower", some_of(lines_of(times_that_are(comparison, TimeVerdict::slower))));
+    summary.add("faster", some_of(lines_of(times_that_are(comparison, TimeVerdict::faster))));
+}
+
+void add_memory(Summary& summary, const ReportComparison& comparison) {
+    const bool is_unchanged = comparison.with_memory > 0 && comparison.memory.empty();
+    summary.add("memory",
+                is_unchanged ? fmt::format("unchanged within 10 % or one megabyte, for {}",
+                                           counted(comparison.with_memory, "method"))
+                             : "",
+                {{"with_memory", comparison.with_memory}, {"memory", array_of(comparison.memory)}});
+    summary.add("more", some_of(lines_of(memory_that(comparison, true))));
+    summary.add("less", some_of(lines_of(memory_that(comparison, false))));
+    summary.add("", comparison.memory.empty() ? "" : "(peak memory)");
+}
+
+void add_errors(Summary& summary, const ReportComparison& comparison) {
+    const auto worse = errors_that(comparison, true);
+    const auto better = errors_that(comparison, false);
+    summary.add("errors", worse.empty() && better.empty() ? "all the same" : "",
+                {{"errors", array_of(comparison.errors)}});
+    summary.add("worse", some_of(lines_of(worse)));
+    summary.add("better", some_of(lines_of(better)));
+}
+
+Summary summary_of(const ComparedReports& compared, const ComparisonLimits& limits) {
+    Summary summary;
+    summary.add_tool("relief-accuracy compare");
+    summary.add("old", described(compared.before), {{"old", compared.before.command}});
+    summary.add("new", described(compared.after), {{"new", compared.after.command}});
+    add_machines(summary, compared);
+    add_methods(summary, compared.comparison);
+    add_times(summary, compared.comparison);
+    add_memory(summary, compared.comparison);
+    add_errors(summary, compared.comparison);
+    summary.add_json({{"max_slower", or_null(limits.max_slower)},
+                      {"max_error_growth", or_null(limits.max_error_growth)},
+                      {"max_memory_growth", or_null(limits.max_memory_growth)},
+                      {"beyond", above_limits(compared, limits)}});
+    return summary;
 }
 
 struct CompareOptions {
@@ -488,10 +486,11 @@ ExitCode run(const CLI::App& app, const CompareOptions& options) {
     if (options.json && options.quiet) throw UsageError("--json and --quiet contradict each other");
     const ComparedReports compared = compared_reports(options);
     require_common_values(options, compared);
+    const Summary summary = summary_of(compared, options.limits);
     if (options.json)
-        print_json(json_of(compared, options.limits));
+        print_json(summary.json());
     else if (!options.quiet)
-        print_text(compared);
+        summary.print();
     return judge(app, options, compared);
 }
 
