@@ -2,7 +2,7 @@
 // Accessors and primitives of a glTF document as plain arrays: object space, v downwards as in
 // glTF.
 //
-// Ranges were checked when the document was read (gltf_check.h). Errors that only the data shows
+// Ranges were checked when the document was read (gltf_contents.h). Errors that only the data shows
 // (sparse indices, vertex indices out of range, attributes of different lengths) throw
 // InvalidInput. Source: glTF 2.0 (ISO/IEC 12113), sections 3.6.2, 3.7.2 and 3.11 (fractions: c /
 // max, at least -1).

@@ -4,7 +4,7 @@
 //
 // extras are never examined. Properties that are not in the table are kept and ignored. The first
 // offense throws InvalidInput. Source: glTF 2.0 (ISO/IEC 12113), chapters 3 and 5.
-#include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_contents.h"
 
 #include <fmt/format.h>
 

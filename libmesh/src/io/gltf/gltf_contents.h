@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A glTF document in memory: its JSON, unchanged, and its buffers.
+/// A glTF document in memory: its JSON, unchanged, and its buffers; its validation; additions to it
+/// and removal of extensions; and its URIs. One table in gltf_check.cpp states the type of each
+/// property and which properties are indices. It serves for checking a document and for renumbering
+/// its references. Source of URIs: RFC 2397, RFC 3986, RFC 4648.
 ///
 /// relief does not use tinygltf 2.7 here, because it loses data: large integers in extras change,
 /// nulls, empty objects, unknown properties, minVersion and animation channels without a node
@@ -14,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -153,5 +157,112 @@ inline constexpr std::array meshopt_extensions = {"EXT_meshopt_compression",
 
 /// Name of the extension that compresses a primitive.
 inline constexpr const char* draco_extension = "KHR_draco_mesh_compression";
+
+// Validation, and the schema that it uses
+
+/// Checks the type of each property in the table and the range of each index.
+///
+/// \throws InvalidInput with the location: "meshes[0].primitives[1].indices is 7, but there are
+///         only 3 accessors"
+void check_schema(const Json& root);
+
+/// Calls `visit` for each index into an array of the document, "accessors" for example; it may
+/// change the index. The document must have passed check_schema().
+void visit_references(Json& root,
+                      const std::function<void(std::string_view target, Json& index)>& visit);
+
+/// Returns true if any object carries the extension.
+bool has_extension(const Json& root, std::string_view name);
+
+/// Returns true if any object carries an extension that the table does not know. Such an extension
+/// may hold indices that visit_references() does not see.
+bool has_unknown_extension(const Json& root);
+
+/// Largest count of an accessor without data (all zeros), for which no bytes of the file limit the
+/// count.
+inline constexpr std::size_t max_zero_elements = std::size_t{1} << 24U;
+
+/// Checks a whole document. Afterwards every index, offset, length and count in it is valid.
+///
+/// \throws InvalidInput with the location, value and limit, or the name of a required extension
+///         that relief does not support
+void check_gltf(const Json& root);
+
+/// Reports values that have no meaning: colors and weights that are not finite or out of range,
+/// joints that a skin does not have, rotations without unit length, and integer positions and
+/// directions without KHR_mesh_quantization. Replaces wrong bounds of positions.
+void check_values(GltfContents& contents, Report& report);
+
+// Additions (bytes, buffer views, accessors) and removal of extensions
+
+/// Reserves capacity for bytes that will be appended.
+void reserve_bytes(GltfContents& contents, std::size_t count);
+
+/// Appends bytes to the buffer of added data, at a multiple of 4. \return their offset
+std::size_t append_bytes(GltfContents& contents, std::string_view bytes);
+
+/// Appends bytes as a new buffer view. \return its index
+std::size_t add_view(GltfContents& contents, std::string_view bytes);
+
+/// Appends packed elements of `size` bytes as a new buffer view, with the alignment that `target`
+/// requires.
+/// \return the view's index
+std::size_t add_elements(GltfContents& contents, std::size_t size, const std::string& elements,
+                         int target);
+
+/// Adds an accessor with its own buffer view. `accessor` has all properties except location and
+/// count.
+/// \return its index
+std::size_t add_accessor(GltfContents& contents, Json accessor, const std::string& elements,
+                         int target);
+
+/// Like add_accessor(), but reuses an equal accessor that was added by this function. Primitives
+/// that shared an accessor thus share its replacement.
+std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std::string& elements,
+                                int target);
+
+/// Updates min and max, if the accessor has them. If elements are not finite, the old bounds stay,
+/// because JSON cannot hold them.
+void update_bounds(Json& accessor, const std::string& elements);
+
+/// Removes an extension from an object that may have it.
+void erase_extension(Json& holder, const char* extension);
+
+/// Removes an extension from extensionsUsed and extensionsRequired if no object has it.
+void remove_unused_extension(Json& root, std::string_view extension);
+
+// URIs (data URIs, and names of files beside the document) and media types of images
+
+/// The contents of a data URI.
+struct DataUri {
+    std::string media_type;  ///< "image/png"; empty if the URI has none.
+    std::string bytes;
+};
+
+bool is_data_uri(std::string_view uri);
+
+/// \throws InvalidInput if it is no data URI or its base64 is malformed
+DataUri decode_data_uri(std::string_view uri);
+
+/// Returns true if a URI has a scheme ("https:", "file:"), so that it does not depend on a folder.
+bool has_scheme(std::string_view uri);
+
+/// Returns the path of a relative URI below a folder; nullopt if it leads out of the folder
+/// (absolute path,
+/// "..", scheme) or has a zero byte.
+std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder,
+                                                 std::string_view uri);
+
+/// The same for a file that is read: if the limits of the process permit it (relief/mesh/limits.h),
+/// the path may lead out of the folder.
+std::optional<std::filesystem::path> readable_path(const std::filesystem::path& folder,
+                                                   std::string_view uri);
+
+/// Encodes a file name as a URI: all bytes except letters, digits and -._~ are percent-encoded.
+std::string uri_of(const std::string& file_name);
+
+/// Returns the media type of an encoded image, from its first bytes: PNG, JPEG, WebP, AVIF, KTX2 or
+/// DDS; empty for any other format.
+std::string image_media_type(std::string_view bytes);
 
 }  // namespace relief

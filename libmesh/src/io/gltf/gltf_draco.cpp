@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_edit.h"
+#include "io/gltf/gltf_contents.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 

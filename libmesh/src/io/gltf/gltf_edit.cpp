@@ -4,7 +4,7 @@
 // Added data goes into one buffer, each view at a multiple of four bytes; the writer joins it with
 // the other buffers. Replaced accessors are retired, and the writer leaves them out unless others
 // use them.
-#include "io/gltf/gltf_edit.h"
+#include "io/gltf/gltf_contents.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,6 @@
 #include <limits>
 
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_check.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

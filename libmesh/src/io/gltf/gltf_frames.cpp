@@ -21,9 +21,7 @@
 #include <utility>
 
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_check.h"
 #include "io/gltf/gltf_contents.h"
-#include "io/gltf/gltf_edit.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"

@@ -10,10 +10,7 @@
 #include <utility>
 
 #include "file_bytes.h"
-#include "io/gltf/gltf_check.h"
 #include "io/gltf/gltf_contents.h"
-#include "io/gltf/gltf_edit.h"
-#include "io/gltf/gltf_uri.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
 

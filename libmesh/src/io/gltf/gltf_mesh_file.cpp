@@ -16,8 +16,7 @@
 
 #include "file_bytes.h"
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_edit.h"
-#include "io/gltf/gltf_uri.h"
+#include "io/gltf/gltf_contents.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"

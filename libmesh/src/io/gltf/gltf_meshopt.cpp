@@ -17,7 +17,7 @@
 #include <limits>
 #include <optional>
 
-#include "io/gltf/gltf_edit.h"
+#include "io/gltf/gltf_contents.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 #include "require_memory.h"

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_check.h"
+#include "io/gltf/gltf_contents.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

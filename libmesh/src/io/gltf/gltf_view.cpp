@@ -18,7 +18,7 @@
 
 #include "geometry/direction.h"
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_uri.h"
+#include "io/gltf/gltf_contents.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -26,9 +26,7 @@
 #include "file_bytes.h"
 #include "file_replacement.h"
 #include "io/gltf/gltf_accessor.h"
-#include "io/gltf/gltf_check.h"
 #include "io/gltf/gltf_contents.h"
-#include "io/gltf/gltf_uri.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -12,7 +12,7 @@
 #include <random>
 #include <set>
 
-#include "io/gltf/gltf_uri.h"
+#include "io/gltf/gltf_contents.h"
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
