@@ -19,7 +19,6 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "storage_experiments.h"
-#include "tangent_methods.h"
 
 namespace relief {
 namespace {

@@ -12,7 +12,6 @@
 #include <numbers>
 #include <string_view>
 
-#include "error_metrics.h"
 #include "experiment_driver.h"
 #include "relief/accuracy/asset.h"
 #include "relief/mesh/bump.h"

@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "experiment_driver.h"
+#include "experiment_parts.h"
 #include "relief/mesh/statistics.h"
-#include "tangent_methods.h"
 
 namespace relief {
 namespace {

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 
-#include "error_metrics.h"
 #include "experiment_driver.h"
+#include "experiment_parts.h"
 #include "octahedral_code.h"
 #include "parallel.h"
 #include "relief/accuracy/ground_truth.h"

@@ -11,7 +11,7 @@
 #include <memory>
 #include <numbers>
 
-#include "error_metrics.h"
+#include "experiment_parts.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "rendered_methods.h"

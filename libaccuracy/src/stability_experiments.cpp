@@ -9,10 +9,8 @@
 #include <map>
 #include <memory>
 
-#include "error_metrics.h"
 #include "experiment_driver.h"
 #include "relief/mesh/statistics.h"
-#include "tangent_methods.h"
 
 namespace relief {
 namespace {

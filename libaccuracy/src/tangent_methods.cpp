@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Evaluates tangent bases at points inside triangles, as a fragment shader does, and compares them
 // with the frames of the surface in closed form.
-#include "tangent_methods.h"
+#include "experiment_parts.h"
 
 #include <cmath>
 
-#include "experiment_parts.h"
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 

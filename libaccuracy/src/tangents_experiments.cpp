@@ -8,12 +8,12 @@
 #include <memory>
 
 #include "experiment_driver.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
-#include "tangent_methods.h"
 
 namespace relief {
 namespace {

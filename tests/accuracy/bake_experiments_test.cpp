@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "error_metrics.h"
 #include "error_tables/bumpy_reference.h"
 #include "experiment_checks.h"
 #include "relief/mesh/map_convention.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Error metrics of maps and images with known errors.
-#include "error_metrics.h"
+#include "experiment_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "error_metrics.h"
 #include "experiment_checks.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"

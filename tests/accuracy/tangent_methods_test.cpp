@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tangent bases inside triangles, computed by hand, and known errors of tangent methods.
-#include "tangent_methods.h"
+#include "experiment_parts.h"
 
 #include <gtest/gtest.h>
 

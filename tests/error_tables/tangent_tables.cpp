@@ -9,11 +9,11 @@
 #include <string>
 
 #include "error_tables/error_tables.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/frames.h"
 #include "storage_experiments.h"
 #include "support/random_frames.h"
-#include "tangent_methods.h"
 
 namespace relief::test {
 namespace {
