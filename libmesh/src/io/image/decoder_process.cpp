@@ -23,7 +23,6 @@
 #include <utility>
 #include <vector>
 
-#include "io/image/decoder_protocol.h"
 #include "io/image/image_module_client.h"
 #include "relief/mesh/report.h"
 

@@ -33,7 +33,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/image/decoder_protocol.h"
+#include "io/image/decoder_process.h"
 
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 #define RELIEF_SANITIZED 1

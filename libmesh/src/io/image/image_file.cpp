@@ -24,7 +24,7 @@
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
 #include "io/image/row_codec.h"
-#include "io/png/png_decoder.h"
+#include "io/png/png_format.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

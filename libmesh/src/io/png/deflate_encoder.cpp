@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An encoder of deflate streams: prefix codes [Huffman 1952], repetitions [Ziv and Lempel 1977],
 // and blocks of both [RFC 1951].
-#include "io/png/deflate_encoder.h"
+#include "io/png/png_format.h"
 
 #include <algorithm>
 #include <array>

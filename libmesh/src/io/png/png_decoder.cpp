@@ -2,7 +2,7 @@
 // Decodes plain PNG files, at once from memory or by rows from a file. Rows are inflated and
 // unfiltered in bands, in parallel: one band is unfiltered while the next one is inflated. Source:
 // [ISO/IEC 15948].
-#include "io/png/png_decoder.h"
+#include "io/png/png_format.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,6 @@
 #include "file_bytes.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
-#include "io/png/png_format.h"
 #include "large_memory.h"
 #include "parallel.h"
 #include "relief/mesh/image_file.h"

@@ -25,7 +25,6 @@
 #include "file_bytes.h"
 #include "file_replacement.h"
 #include "io/image/row_codec.h"
-#include "io/png/deflate_encoder.h"
 #include "io/png/png_format.h"
 #include "parallel.h"
 #include "relief/mesh/image_file.h"

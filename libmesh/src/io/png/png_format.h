@@ -1,24 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Building blocks of PNG files: chunks (length, type, data, checksum; numbers are big-endian);
-/// filters, which predict bytes from their neighbors so that the rest deflates well; checksums; and
-/// decompression of zlib streams, at once (libdeflate) or in parts (ISA-L).
+/// filters, which predict bytes from their neighbors so that the rest deflates well; checksums;
+/// deflate streams, whose encoder gives the same bytes on all machines and encodes parts in
+/// parallel; and the decoder.
 ///
-/// libdeflate works only on whole blocks of memory. ISA-L is nearly as fast and twice as fast as
-/// zlib. Sources: [ISO/IEC 15948], [RFC 1950], [RFC 1951].
+/// zlib streams are decompressed at once (libdeflate) or in parts (ISA-L). libdeflate works only on
+/// whole blocks of memory. ISA-L is nearly as fast and twice as fast as zlib.
+///
+/// The decoder reads plain PNG files without loading the image module (0.2 s). A plain PNG is not
+/// interlaced, has no single transparent color, and is intact. All others, damaged ones too, are
+/// left to the module, so that only it decides about them. Samples are those of read_image(): rows
+/// from the top, 1, 2 and 4 bits widened to 8, palettes as RGB or RGBA. Sources: [ISO/IEC 15948],
+/// [RFC 1950], [RFC 1951].
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "io/png/deflate_encoder.h"
+#include "io/image/row_codec.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
 
 namespace relief {
+
+// Encoder of deflate streams [RFC 1951]
+
+/// Computes the code lengths of a shortest prefix code of limited length; 0 for symbols that do not
+/// occur.
+///
+/// \param counts  frequency of each symbol; at most 288 symbols, with a sum below 2^32
+/// \param max_length    the maximum length of a code; longer codes are shortened at the expense of
+/// as few
+///         others as possible
+///
+/// At least two symbols get a code, used or not, because some decoders refuse incomplete codes.
+/// Source: [Huffman 1952].
+void huffman_lengths(std::span<const std::uint32_t> counts, int max_length,
+                     std::span<std::uint8_t> lengths);
+
+/// Computes the codes of these lengths, with the first bit lowest, as deflate stores them.
+void huffman_codes(std::span<const std::uint8_t> lengths, std::span<std::uint16_t> codes);
+
+/// Distance to which deflate can refer back.
+inline constexpr std::size_t deflate_window = 32768;
+
+/// Tells whether to search for repetitions. In noise there are hardly any.
+enum class Repetitions { ignored, sought };
+
+/// Appends a part of a stream to `to`; it ends at a byte boundary.
+///
+/// \param bytes    the preceding bytes, of which at most a window is used, and the bytes to encode
+/// \param begin    index of the first byte to encode
+/// \param is_last  tells whether the stream ends with this part
+void deflate_piece(std::span<const std::uint8_t> bytes, std::size_t begin, WriteEffort effort,
+                   Repetitions repetitions, bool is_last, std::vector<std::uint8_t>& to);
+
+/// Estimates the number of bits from deflate_piece() without encoding. The estimate is the same on
+/// all machines.
+std::uint64_t estimated_bits(std::span<const std::uint8_t> bytes, Repetitions repetitions);
+
+// Chunks, filters, checksums and decompression
 
 void append_big16(std::string& to, std::uint32_t value);
 void append_big32(std::string& to, std::uint32_t value);
@@ -102,5 +152,38 @@ class InflateStream {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
+
+// Decoder
+
+/// The header and the palette of a plain PNG.
+struct PlainPng {
+    int width = 0;
+    int height = 0;
+    int stored_bits = 0;                ///< Of a stored sample or palette index: 1, 2, 4, 8 or 16.
+    int stored_channels = 0;            ///< 1 if there is a palette.
+    std::vector<std::uint8_t> palette;  ///< Texels of `channels` bytes; empty if there is none.
+    int channels = 0;                   ///< Of the decoded image.
+    std::vector<std::byte> packed;      ///< The zlib stream of all IDAT chunks, if it is in memory.
+
+    [[nodiscard]] int bits() const { return stored_bits == 16 ? 16 : 8; }
+    /// Bytes of a row in the stream, without the filter byte.
+    [[nodiscard]] std::size_t stored_row_size() const;
+    /// Bytes of a row of samples.
+    [[nodiscard]] std::size_t row_size() const;
+    /// Bytes between the same stored samples of neighboring texels.
+    [[nodiscard]] std::size_t step() const;
+};
+
+/// Returns the properties of a PNG; nullopt if it is not plain, or has more than max_image_samples.
+/// \param stripped  IHDR, PLTE, tRNS, IDAT and IEND chunks only (image_file_container.h)
+std::optional<PlainPng> open_plain_png(std::span<const std::byte> stripped);
+
+/// Returns the samples; nullopt if the data is damaged.
+std::optional<Image::Samples> decode(const PlainPng& png);
+
+/// Opens a plain PNG file, whose rows are decoded on demand; null if it is not plain. If damage is
+/// found in a row, the image module reads the file from its beginning and decides. \throws
+/// FileError if the file is truncated, or if its header announces more than it can hold
+std::unique_ptr<RowSource> open_png_rows(const std::filesystem::path& file);
 
 }  // namespace relief

@@ -7,7 +7,6 @@
 
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
-#include "io/png/deflate_encoder.h"
 #include "io/png/png_format.h"
 #include "relief/mesh/report.h"
 #include "support/shared_data.h"

@@ -15,8 +15,6 @@
 #include <vector>
 
 #include "io/image/row_codec.h"
-#include "io/png/deflate_encoder.h"
-#include "io/png/png_decoder.h"
 #include "io/png/png_format.h"
 #include "mesh/io/image/module_reference.h"
 #include "relief/mesh/image_file.h"
