@@ -2,7 +2,7 @@
 // Pictures of levels of detail. A mesh is drawn as a viewer sees it on the screen: at the distance
 // at which the sphere around it has the given diameter in pixels, with the materials of the file
 // and the default lights. Tests: tests/tools/reshaping_test.cpp.
-#include "level_pictures.h"
+#include "reshape.h"
 
 #include "relief/mesh/report.h"
 

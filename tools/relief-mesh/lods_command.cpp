@@ -20,7 +20,6 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
-#include "level_pictures.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/topology.h"

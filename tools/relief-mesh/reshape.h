@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The measured distances of meshes, for the commands that change triangles.
+/// For the commands that change triangles: measured distances of meshes, and pictures that compare
+/// levels of detail with the input at the sizes at which they may take over. OpenGL is loaded by
+/// the constructor of LevelPictures, so other commands do not pay for it.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "common/summary.h"
+#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/topology.h"
 
 namespace relief::tools {
@@ -19,5 +28,56 @@ SurfaceDistance joined_distance(const std::vector<SurfaceDistance>& distances);
 /// {"mean", "rms", "max", "mean_degrees", "max_degrees",
 /// "omitted"}
 Json distance_json(const DistanceStats& stats);
+
+/// The screen on which the pixels of levels of detail are counted.
+inline constexpr double lod_screen_width = 1920.0;
+inline constexpr double lod_screen_height = 1080.0;
+
+/// The size at which a level may take over: the diameter, in pixels, of the sphere around its mesh.
+struct LevelSwitch {
+    double pixels = 0.0;
+    /// The mean FLIP difference of the level from the input over the pixels that one of them
+    /// covers, in the worst view at that size.
+    double flip = 0.0;
+    /// The same of the input that is moved by the error, in the same view.
+    double moved_flip = 0.0;
+};
+
+/// Pictures of the meshes of a document and of their levels, with their materials.
+class LevelPictures {
+  public:
+    /// \param pixel_error  the input that is moved by it is what a level is compared with
+    /// \throws Error with the reason if nothing can be drawn
+    explicit LevelPictures(double pixel_error);
+    ~LevelPictures();
+    LevelPictures(const LevelPictures&) = delete;
+    LevelPictures& operator=(const LevelPictures&) = delete;
+
+    /// Sets the input: meshes as they are in the document now.
+    /// \param file  the document's file, for messages
+    void set_input(const GltfDocument& document, std::span<const std::size_t> meshes,
+                   const std::filesystem::path& file);
+    /// Sets the level: as many meshes, in the same order.
+    void set_level(const GltfDocument& document, std::span<const std::size_t> meshes,
+                   const std::filesystem::path& file);
+
+    /// Finds the largest size, up to the screen's height, at which the level of a mesh differs from
+    /// the input, in each of three views, no more than the input that is moved by the error. Sizes
+    /// are powers of 2^(1/4), at least 4 pixels.
+    ///
+    /// \param mesh   index in the lists of set_input() and set_level()
+    /// \param start  the size at which the search begins, in pixels
+    /// \param most   the largest size
+    /// \return none if the mesh has no extent or if its size exceeds the range of a camera
+    /// \throws GpuError, InvalidInput if it cannot be drawn
+    std::optional<LevelSwitch> find_switch(std::size_t mesh, double start, double most);
+
+    /// "OSMesa"
+    [[nodiscard]] const std::string& backend_name() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace relief::tools
