@@ -7,11 +7,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/normal_map_input.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/statistics.h"
 #include "support/images.h"
+#include "support/message_of.h"
 #include "support/shared_data.h"
 #include "tools/refusal.h"
 #include "tools/workplace.h"
@@ -146,6 +148,26 @@ TEST(ConvertCommand, SignedFloatMapsAreRecognized) {
               degrees_of_16_bit);
     write_map(workplace, "map.png");
     EXPECT_EQ(workplace.run("relief-bake convert map.png out/m.png --input-signed").exit_code, 2);
+}
+
+TEST(ConvertCommand, LargeMapsStayInTheirFiles) {
+    const Workplace workplace;
+    write_map(workplace, "map.png", {}, {{"relief:green", "down"}, {"relief:flat", "32768"}});
+    const InputMap whole = read_normal_map(workplace / "map.png", {});
+    const InputMap opened = open_normal_map(workplace / "map.png", {}, 64 * 64 * 6 - 1);
+    EXPECT_FALSE(whole.image.empty());
+    EXPECT_TRUE(opened.image.empty());
+    EXPECT_EQ(opened.info.bits, 16);
+    EXPECT_EQ(opened.flat, FlatCode::middle);
+    EXPECT_EQ(opened.green, Green::down);
+    EXPECT_EQ(opened.conventions, whole.conventions);
+    EXPECT_FALSE(open_normal_map(workplace / "map.png", {}, 64 * 64 * 6).image.empty());
+    MapInputOptions detect;
+    detect.detects_green = true;
+    EXPECT_FALSE(open_normal_map(workplace / "map.png", detect, 0).image.empty());
+    write_image(workplace / "signed.exr", normals_image(side, side, waves()));
+    const auto refused = [&] { open_normal_map(workplace / "signed.exr", {}, 0); };
+    EXPECT_THAT(test::message_of<FileError>(refused), HasSubstr("has samples below 0"));
 }
 
 TEST(ConvertCommand, MapsAxes) {

@@ -5,12 +5,17 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <limits>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "common/command.h"
 #include "common/options.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map_check.h"
+#include "relief/mesh/normal_map_file.h"
 
 namespace relief::tools {
 namespace {
@@ -34,40 +39,45 @@ std::string green_text(const MapInputOptions& options, const InputMap& map) {
 
 std::string zero_text(const MapInputOptions& options, const InputMap& map) {
     if (options.is_signed) return "zero is 0 (given)";
-    if (map.image.bits() == 32) return "zero is 0.5";
+    if (map.info.bits == 32) return "zero is 0.5";
     const char* source = options.flat                           ? "given"
                          : map.metadata.contains("relief:flat") ? "from its metadata"
                                                                 : "the default of glTF";
     return fmt::format("zero is {} of 255 ({})", enum_name(map.flat), source);
 }
 
-/// Returns whether more than one in a thousand float samples is negative. Fewer may be overshoots
-/// of a filter.
-bool has_negative_samples(const Image& image) {
-    std::size_t below = 0;
-    for (const float sample : image.as<float>())
-        below += sample < -0.01F ? 1 : 0;
-    return below > image.sample_count() / 1000;
+/// Counts float samples that only n has. A few may be overshoots of a filter.
+std::size_t count_negative(std::span<const float> samples) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(samples, [](float sample) { return sample < -0.01F; }));
 }
 
-/// Converts signed float samples to (n + 1) / 2, except alpha.
-void convert_signs(const std::filesystem::path& file, bool is_signed, Image& image) {
-    if (image.bits() != 32) {
-        if (is_signed)
-            throw UsageError(
-                fmt::format("--input-signed: {} has {} bits, but only floats can be signed",
-                            file.string(), image.bits()));
-        return;
+std::size_t count_negative(ImageRowReader& rows) {
+    std::vector<float> row(rows.row_bytes() / sizeof(float));
+    std::size_t count = 0;
+    while (rows.next_row() < rows.info().height) {
+        rows.read(std::as_writable_bytes(std::span(row)));
+        count += count_negative(row);
     }
-    if (!is_signed && has_negative_samples(image)) {
+    return count;
+}
+
+/// \param negative  the number of negative samples. \throws UsageError, FileError if the samples do
+/// not have the form that is given
+void check_signs(const std::filesystem::path& file, bool is_signed, const ImageInfo& info,
+                 const std::function<std::size_t()>& negative) {
+    if (info.bits != 32 && is_signed) {
+        throw UsageError(
+            fmt::format("--input-signed: {} has {} bits, but only floats can be signed",
+                        file.string(), info.bits));
+    }
+    if (info.bits != 32 || is_signed) return;
+    const auto samples = static_cast<std::size_t>(info.width) *
+                         static_cast<std::size_t>(info.height) *
+                         static_cast<std::size_t>(info.channels);
+    if (negative() > samples / 1000) {
         throw failure(file, "has samples below 0, so it stores n instead of (n + 1) / 2",
                       "give --input-signed");
-    }
-    if (!is_signed) return;
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const std::span<float> samples = image.as<float>();
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (i % channels < 3) samples[i] = (samples[i] + 1.0F) / 2.0F;
     }
 }
 
@@ -79,6 +89,15 @@ Green detected_green(const std::filesystem::path& file, const Image& image) {
                   "give up or down instead of auto");
 }
 
+/// Returns whether a file has more bytes of samples than `max_memory`, and can be read by rows.
+bool leaves_samples(const std::filesystem::path& file, const ImageInfo& info,
+                    std::size_t max_memory) {
+    const std::size_t row = static_cast<std::size_t>(info.width) *
+                            static_cast<std::size_t>(info.channels * info.bits / 8);
+    if (row * static_cast<std::size_t>(info.height) <= max_memory) return false;
+    return ImageRowReader(file).is_streamed();
+}
+
 void check_channels(const std::filesystem::path& file, int channels) {
     if (channels > 1) return;
     throw failure(file, "has 1 channel, but normals need at least 2",
@@ -88,18 +107,35 @@ void check_channels(const std::filesystem::path& file, int channels) {
 }  // namespace
 
 InputMap read_normal_map(const std::filesystem::path& file, const MapInputOptions& options) {
+    return open_normal_map(file, options, std::numeric_limits<std::size_t>::max());
+}
+
+InputMap open_normal_map(const std::filesystem::path& file, const MapInputOptions& options,
+                         std::size_t max_memory) {
     InputMap map;
-    ImageInfo info = read_image_info(file);
-    check_channels(file, info.channels);
-    map.image = read_image(file, ImageUse::data);
-    convert_signs(file, options.is_signed, map.image);
-    map.metadata = std::move(info.metadata);
+    map.info = read_image_info(file);
+    check_channels(file, map.info.channels);
+    if (options.detects_green || !leaves_samples(file, map.info, max_memory)) {
+        map.image = read_image(file, ImageUse::data);
+        check_signs(file, options.is_signed, map.info,
+                    [&] { return count_negative(map.image.as<float>()); });
+        if (options.is_signed) remove_signs(map.image);
+    } else {
+        check_signs(file, options.is_signed, map.info, [&] {
+            ImageRowReader rows(file);
+            return count_negative(rows);
+        });
+    }
+    map.metadata = map.info.metadata;
     map.green = options.green ? options.green : recorded_green(map.metadata);
     if (options.detects_green) map.green = detected_green(file, map.image);
-    if (options.flat)
+    if (options.flat) {
         map.flat = *options.flat;
-    else if (map.image.channels > 2)
-        map.flat = detect_flat_code(map.image, map.metadata);
+    } else if (map.info.channels > 2) {
+        // Only the metadata decides; the samples may be in the file.
+        const Image any = make_image(1, 1, 3, 8, ColorSpace::data);
+        map.flat = detect_flat_code(any, map.metadata);
+    }
     map.conventions = green_text(options, map) + ", " + zero_text(options, map);
     return map;
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 
 namespace relief::tools {
@@ -23,7 +24,10 @@ struct MapInputOptions {
 };
 
 struct InputMap {
-    Image image;  ///< Float samples are converted to (n + 1) / 2.
+    /// Float samples are converted to (n + 1) / 2. Empty if open_normal_map() leaves them in the
+    /// file.
+    Image image;
+    ImageInfo info;
     std::map<std::string, std::string> metadata;
     std::optional<Green> green;  ///< Absent if it is neither given nor detected.
     FlatCode flat = FlatCode::half;
@@ -34,6 +38,11 @@ struct InputMap {
 /// \throws FileError if the file cannot be read, has too few channels for a normal map, or if
 /// detecting green fails
 InputMap read_normal_map(const std::filesystem::path& file, const MapInputOptions& options);
+
+/// The same, but leaves the samples in files that are too large and can be read by rows.
+/// \param max_memory  bytes of samples that are read; all if green is detected
+InputMap open_normal_map(const std::filesystem::path& file, const MapInputOptions& options,
+                         std::size_t max_memory);
 
 /// Returns the text entries that a converted map keeps: author, description, and those of relief.
 std::map<std::string, std::string> kept_metadata(const std::map<std::string, std::string>& all);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts a normal map file. If only the axes change, the stored codes are mapped exactly;
-// otherwise the normals are decoded to unit floats, pass through a list of steps, and are encoded
-// with their mip levels. Tests: tests/tools/relief_bake_convert_test.cpp.
+// otherwise the normals are decoded to unit floats, pass through a list of steps, and are encoded.
+// The library does both by bands of rows. Mip levels and conversions of the space need the whole
+// map in memory. Tests: tests/tools/relief_bake_convert_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +14,10 @@
 #include "common/text.h"
 #include "convert.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/limits.h"
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_map_file.h"
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
@@ -40,12 +43,12 @@ struct ConvertStep {
 
 // Size, slopes and detail.
 
-glm::ivec2 size_of(const SizeChoice& choice, const Image& image) {
+glm::ivec2 size_of(const SizeChoice& choice, int width, int height) {
     if (choice.fraction == 0.0) return choice.texels;
     const auto side = [&](int size) {
         return std::max(1, static_cast<int>(std::lround(size * choice.fraction)));
     };
-    return {side(image.width), side(image.height)};
+    return {side(width), side(height)};
 }
 
 ConvertStep resize_step(const ResizeChoice& choice) {
@@ -58,7 +61,7 @@ ConvertStep resize_step(const ResizeChoice& choice) {
         fmt::format("resized to {} by {} ({})", target, name_of(options.domain, domain_choices()),
                     name_of(options.filter, filter_choices())),
         [=](NormalField& field, Report& report) {
-            const glm::ivec2 texels = size_of(size, field.normals);
+            const glm::ivec2 texels = size_of(size, field.normals.width, field.normals.height);
             field.normals = resize_normals(field.normals, texels.x, texels.y, options, report);
             if (field.alpha)
                 field.alpha = resize_samples(*field.alpha, texels.x, texels.y, options);
@@ -72,12 +75,13 @@ ConvertStep strength_step(double strength) {
 }
 
 /// Reads the normals of the detail map, with the green direction of the base.
-Image read_detail(const DetailOptions& options, const NormalField& base, Report& report) {
+Image read_detail(const DetailOptions& options, const std::optional<Green>& green_of_base,
+                  Report& report) {
     const InputMap detail = read_normal_map(*options.file, options.input);
     Image normals = about(*options.file, [&] {
         return decode_normal_map(detail.image, Green::up, detail.flat, report, FlatTexels::exact);
     });
-    const std::optional<Green> base_green = base.green ? base.green : detail.green;
+    const std::optional<Green> base_green = green_of_base ? green_of_base : detail.green;
     const Green green = detail.green.value_or(base_green.value_or(Green::up));
     if (base_green && green != *base_green) map_normal_axes(normals, flip_green);
     if (options.strength) scale_slopes(normals, *options.strength, report);
@@ -92,22 +96,32 @@ void add_with_suffix(const Report& other, const std::string& suffix, Report& rep
     }
 }
 
-ConvertStep detail_step(const DetailOptions& detail, const ResizeChoice& resize) {
+/// Reads the detail map for a base of this size.
+DetailLayer detail_layer(const DetailOptions& detail, const ResizeChoice& resize,
+                         const std::optional<Green>& green_of_base, glm::ivec2 base_size) {
     ResizeOptions options;
     options.filter = resize.options.filter;
     options.repeat = detail.repeat.value_or(options.repeat);
+    DetailLayer layer;
+    layer.blend = detail.blend;
+    Report report;
+    layer.normals = fitted_detail(read_detail(detail, green_of_base, report), base_size.x,
+                                  base_size.y, options, report);
+    add_with_suffix(report, " in the detail", layer.report);
+    return layer;
+}
+
+ConvertStep detail_step(const DetailOptions& detail, const ResizeChoice& resize) {
     std::string description = fmt::format("detail {} blended ({}", detail.file->string(),
                                           name_of(detail.blend, blend_choices()));
     if (detail.repeat)
         description += fmt::format(", {:g} x {:g} times", detail.repeat->x, detail.repeat->y);
     if (detail.strength) description += fmt::format(", slopes times {:g}", *detail.strength);
     return {description + ")", [=](NormalField& field, Report& report) {
-                Report detail_report;
-                const Image normals =
-                    fitted_detail(read_detail(detail, field, detail_report), field.normals.width,
-                                  field.normals.height, options, detail_report);
-                add_with_suffix(detail_report, " in the detail", report);
-                blend_normals(field.normals, normals, detail.blend, report);
+                const DetailLayer layer = detail_layer(detail, resize, field.green,
+                                                       {field.normals.width, field.normals.height});
+                report.merge(layer.report);
+                blend_normals(field.normals, layer.normals, layer.blend, report);
             }};
 }
 
@@ -291,12 +305,6 @@ class LevelWriter {
           report_(report),
           result_(result) {}
 
-    /// Writes the map alone.
-    void write_codes(const Image& codes) {
-        stages_.run("write", [&] { write(job_.output, codes, metadata()); });
-        result_.levels.push_back({job_.output, codes.width, codes.height, 1.0, 1.0, {}, {}});
-    }
-
     /// Encodes and writes the map, and with --mips all levels. Frees the field on the way.
     void write_field(NormalField& field) {
         if (request_.mips.lengths && field.alpha) {
@@ -308,7 +316,24 @@ class LevelWriter {
         const Image codes =
             stages_.run("convert", [&] { return encode(field.normals, field.alpha); });
         field = NormalField{};  // Before writing, which needs memory itself.
-        write_codes(codes);
+        stages_.run("write", [&] { write(job_.output, codes, metadata()); });
+        result_.levels.push_back({job_.output, codes.width, codes.height, 1.0, 1.0, {}, {}});
+    }
+
+    /// Converts and writes the map by rows.
+    void write_by_rows(const NormalMapSource& source, NormalMapConversion conversion) {
+        conversion.metadata = metadata();
+        conversion.write = write_options_of(request_.output, job_.output);
+        const ConvertedMapFile converted =
+            convert_normal_map_file(source, job_.output, conversion, report_,
+                                    [&](double part) { stages_.show_progress("convert", part); });
+        stages_.clear_progress();
+        if (source.image == nullptr) stages_.book("read", converted.times.read);
+        stages_.book("convert", converted.times.convert);
+        stages_.book("write", converted.times.write);
+        result_.lengths = converted.lengths;
+        result_.levels.push_back(
+            {job_.output, conversion.width, conversion.height, 1.0, 1.0, {}, {}});
     }
 
   private:
@@ -412,7 +437,7 @@ class LevelWriter {
 // The conversion.
 
 void check_channels(const Job& job, const ConvertRequest& request, const InputMap& input) {
-    if (input.image.channels > 2 || request.rebuild_z) return;
+    if (input.info.channels > 2 || request.rebuild_z) return;
     throw failure(job.input, "has only 2 channels, and no z", "give --rebuild-z rg to compute z");
 }
 
@@ -420,27 +445,67 @@ void check_channels(const Job& job, const ConvertRequest& request, const InputMa
 bool keeps_codes(const ConvertRequest& request, const InputMap& input,
                  const NormalMapFormat& format) {
     const bool same_codes =
-        input.image.bits() == format.bits && (format.bits == 32 || input.flat == format.flat);
+        input.info.bits == format.bits && (format.bits == 32 || input.flat == format.flat);
     return same_codes && !request.rebuild_z && !request.normalize && !request.mips.wanted &&
            steps_of(request).empty();
 }
 
-/// Maps the axes of the stored codes, and drops alpha if requested.
-void convert_codes(const ConvertRequest& request, InputMap& input, const AxisConversion& axes,
-                   MapConversion& result, Report& report) {
+/// Returns whether the whole map must be in memory.
+bool needs_whole_map(const ConvertRequest& request) {
+    return request.mips.wanted || request.space.to_object || request.space.to_tangent;
+}
+
+std::string describe_lengths(const LengthRange& lengths) {
+    return fmt::format("normalized (lengths were {:.3f} to {:.3f}, mean {:.3f})", lengths.least,
+                       lengths.greatest, lengths.mean);
+}
+
+/// Converts the stored codes, of which only axes and alpha change.
+void convert_codes(const ConvertRequest& request, const InputMap& input,
+                   const NormalMapSource& source, const AxisConversion& axes, LevelWriter& writer,
+                   MapConversion& result) {
     if (request.output.dither && *request.output.dither != Dither::none)
         throw UsageError("--dither: has no effect if all codes are kept");
-    if (axes.mapping != same_axes) {
-        map_axes(input.image, axes.mapping, input.flat, report);
-        result.steps.push_back(describe_axes(axes.mapping));
-    }
-    if (input.image.channels == 4 && request.alpha == AlphaChoice::drop) {
-        drop_alpha(input.image);
+    NormalMapConversion conversion;
+    conversion.keeps_codes = true;
+    conversion.axes = axes.mapping;
+    conversion.keeps_alpha = request.alpha == AlphaChoice::keep;
+    conversion.width = input.info.width;
+    conversion.height = input.info.height;
+    if (axes.mapping != same_axes) result.steps.push_back(describe_axes(axes.mapping));
+    if (input.info.channels == 4 && !conversion.keeps_alpha)
         result.steps.emplace_back("alpha dropped");
-    }
     if (result.steps.empty()) result.steps.emplace_back("nothing");
     result.steps.back() += ", all codes kept";
-    result.green = axes.green;
+    writer.write_by_rows(source, std::move(conversion));
+}
+
+/// Decodes, converts and encodes the map by rows.
+void convert_rows(const ConvertRequest& request, const InputMap& input,
+                  const NormalMapSource& source, const AxisConversion& axes, Stages& stages,
+                  LevelWriter& writer, MapConversion& result) {
+    NormalMapConversion conversion;
+    conversion.rebuild_z = request.rebuild_z;
+    conversion.axes = axes.mapping;
+    conversion.keeps_alpha = request.alpha == AlphaChoice::keep;
+    glm::ivec2 size = {input.info.width, input.info.height};
+    if (request.resize.size) size = size_of(*request.resize.size, size.x, size.y);
+    conversion.width = size.x;
+    conversion.height = size.y;
+    conversion.resize = request.resize.options;
+    conversion.strength = request.strength;
+    if (request.detail.file) {
+        conversion.detail = stages.run("convert", [&] {
+            return detail_layer(request.detail, request.resize, axes.green, size);
+        });
+    }
+    conversion.format = result.format;
+    writer.write_by_rows(source, std::move(conversion));
+    result.steps.push_back(request.rebuild_z ? "z computed from x and y"
+                                             : describe_lengths(*result.lengths));
+    if (axes.mapping != same_axes) result.steps.push_back(describe_axes(axes.mapping));
+    for (const ConvertStep& step : steps_of(request))
+        result.steps.push_back(step.description);
 }
 
 /// Decodes the unit normals of the input, with y as it is stored.
@@ -452,9 +517,7 @@ Image decode_input(const ConvertRequest& request, const InputMap& input, MapConv
                              FlatTexels::exact);
     }
     result.lengths = measure_lengths(input.image, input.flat, report);
-    result.steps.push_back(fmt::format("normalized (lengths were {:.3f} to {:.3f}, mean {:.3f})",
-                                       result.lengths->least, result.lengths->greatest,
-                                       result.lengths->mean));
+    result.steps.push_back(describe_lengths(*result.lengths));
     return decode_normal_map(input.image, Green::up, input.flat, report, FlatTexels::exact);
 }
 
@@ -497,29 +560,40 @@ std::vector<std::filesystem::path> output_files(const std::filesystem::path& out
 MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages& stages) {
     MapConversion result;
     Report report;
-    InputMap input = stages.run("read", [&] { return read_normal_map(job.input, request.input); });
-    result.width = input.image.width;
-    result.height = input.image.height;
-    result.channels = input.image.channels;
-    result.bits_read = input.image.bits();
+    InputMap input = stages.run("read", [&] {
+        if (needs_whole_map(request)) return read_normal_map(job.input, request.input);
+        // A map that fits is read once instead of three times.
+        const std::size_t max_memory =
+            std::min<std::uint64_t>(max_normal_map_in_memory, input_limits().memory / 4);
+        return open_normal_map(job.input, request.input, max_memory);
+    });
+    result.width = input.info.width;
+    result.height = input.info.height;
+    result.channels = input.info.channels;
+    result.bits_read = input.info.bits;
     result.input_text = input.conventions;
     check_channels(job, request, input);
     // An object-space map has no green direction; its tangent-space map has that of the output.
     if (request.space.to_tangent) input.green = request.output.green;
     const AxisConversion axes = axis_conversion(job, request, input);
+    result.green = axes.green;
     result.format = format_of(request.output, job.output,
                               {.bits = result.bits_read, .green = Green::up, .flat = input.flat});
     LevelWriter writer(job, request, input.metadata, stages, report, result);
-    const auto convert = [&](auto&& conversion) {
-        about(job.input, [&] { stages.run("convert", conversion); });
-    };
+    const NormalMapSource source = {job.input, input.image.empty() ? nullptr : &input.image,
+                                    input.flat, request.input.is_signed};
     if (keeps_codes(request, input, result.format)) {
-        convert([&] { convert_codes(request, input, axes, result, report); });
-        writer.write_codes(input.image);
-    } else {
+        about(job.input, [&] { convert_codes(request, input, source, axes, writer, result); });
+    } else if (needs_whole_map(request)) {
         NormalField field;
-        convert([&] { convert_floats(request, input, axes, result, field, report); });
+        about(job.input, [&] {
+            stages.run("convert",
+                       [&] { convert_floats(request, input, axes, result, field, report); });
+        });
         writer.write_field(field);
+    } else {
+        about(job.input,
+              [&] { convert_rows(request, input, source, axes, stages, writer, result); });
     }
     result.findings.add("", report);
     return result;

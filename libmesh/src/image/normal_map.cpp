@@ -15,6 +15,7 @@
 #include <numeric>
 
 #include "image/dither_tile.h"
+#include "image/normal_bands.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
 #include "relief/mesh/report.h"
@@ -60,13 +61,14 @@ void encode_row(const float* normals, int width, int row, const NormalMapFormat&
     }
 }
 
+/// \param first_row  the row of the map that the first row of `normals` is
 template <typename Sample>
-void encode(const ImageView& normals, const NormalMapFormat& format, const MutableImageView& map,
-            Report& report) {
+void encode(const ImageView& normals, const NormalMapFormat& format, int first_row,
+            const MutableImageView& map, Report& report) {
     for_each_row(normals.width, normals.height, report, [&](std::size_t index, Report& found) {
         const int row = static_cast<int>(index);
-        encode_row(normals.row<float>(row), normals.width, row, format, map.row<Sample>(row),
-                   found);
+        encode_row(normals.row<float>(row), normals.width, first_row + row, format,
+                   map.row<Sample>(row), found);
     });
 }
 
@@ -86,13 +88,12 @@ bool has_no_direction(const Sample* sample, FlatCode flat) {
 }
 
 template <typename Sample>
-void decode(const ImageView& map, Green green, FlatCode flat, FlatTexels texels,
+void decode(const ImageView& map, Green green, FlatCode flat, const ExactFlat<Sample>& exact,
             const MutableImageView& normals, Report& report) {
     const auto width = static_cast<std::size_t>(map.width);
     const auto channels = static_cast<std::size_t>(map.channels);
     const NormalCoding<Sample> coding{flat};
     const double up = green == Green::up ? 1.0 : -1.0;
-    const ExactFlat<Sample> exact(map, flat, texels, 0, 1);
     for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
         const Sample* sample = map.row<Sample>(static_cast<int>(row));
         float* normal = normals.row<float>(static_cast<int>(row));
@@ -110,9 +111,9 @@ void decode(const ImageView& map, Green green, FlatCode flat, FlatTexels texels,
 
 /// Counts the texels with each pair of the two codes around zero, lower first, x before y.
 template <typename Code>
-std::array<std::size_t, 4> pairs_around_zero(const ImageView& map, int x, int y) {
+void count_pairs_around_zero(const ImageView& map, int x, int y,
+                             std::array<std::size_t, 4>& counts) {
     constexpr Code lower = std::numeric_limits<Code>::max() / 2;
-    std::array<std::size_t, 4> counts{};
     for (int row = 0; row < map.height; ++row) {
         const Code* sample = map.row<Code>(row);
         for (int column = 0; column < map.width; ++column, sample += map.channels) {
@@ -121,7 +122,6 @@ std::array<std::size_t, 4> pairs_around_zero(const ImageView& map, int x, int y)
             if (in_x <= 1 && in_y <= 1) ++counts[2U * in_x + in_y];
         }
     }
-    return counts;
 }
 
 std::string zero_code(const NormalMapFormat& format) {
@@ -169,7 +169,7 @@ void encode_normal_map(const ImageView& normals, const NormalMapFormat& format,
     check_floats(normals, 3, "normals");
     check_target(map, normals, format.bits, "normal map");
     with_sample_type(
-        map, [&]<typename Sample>(Sample) { encode<Sample>(normals, format, map, report); });
+        map, [&]<typename Sample>(Sample) { encode<Sample>(normals, format, 0, map, report); });
 }
 
 Image decode_normal_map(const ImageView& map, Green green, FlatCode flat, Report& report,
@@ -187,8 +187,45 @@ void decode_normal_map(const ImageView& map, Green green, FlatCode flat,
     check_map(map);
     check_target(normals, map, 32, "normals");
     with_sample_type(map, [&]<typename Sample>(Sample) {
-        decode<Sample>(map, green, flat, texels, normals, report);
+        decode<Sample>(map, green, flat, ExactFlat<Sample>(map, flat, texels, 0, 1), normals,
+                       report);
     });
+}
+
+Image encode_normal_rows(const ImageView& normals, const NormalMapFormat& format, int first_row,
+                         Report& report) {
+    Image result = make_image(normals.width, normals.height, 3, format.bits, ColorSpace::data);
+    with_sample_type(result, [&]<typename Sample>(Sample) {
+        encode<Sample>(normals, format, first_row, MutableImageView(result), report);
+    });
+    return result;
+}
+
+Image decode_normal_rows(const ImageView& map, FlatCode flat, const FlatCodes& codes,
+                         Report& report) {
+    check_map(map);
+    Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
+    with_sample_type(map, [&]<typename Sample>(Sample) {
+        decode<Sample>(map, Green::up, flat, ExactFlat<Sample>(codes), MutableImageView(result),
+                       report);
+    });
+    return result;
+}
+
+void FlatCodeCount::add(const ImageView& map, int x, int y) {
+    bits_ = map.bits();
+    if (bits_ == 8) count_pairs_around_zero<std::uint8_t>(map, x, y, counts_);
+    if (bits_ == 16) count_pairs_around_zero<std::uint16_t>(map, x, y, counts_);
+}
+
+FlatCodes FlatCodeCount::codes() const {
+    const std::size_t all = std::accumulate(counts_.begin(), counts_.end(), std::size_t{0});
+    const auto most = std::max_element(counts_.begin(), counts_.end());
+    if (all == 0 || 4 * *most < 3 * all) return std::nullopt;
+    const auto pair = static_cast<unsigned>(most - counts_.begin());
+    const unsigned lower = bits_ == 8 ? 127 : 32767;
+    return std::array{static_cast<std::uint16_t>(lower + pair / 2),
+                      static_cast<std::uint16_t>(lower + pair % 2)};
 }
 
 std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const ImageView& map, int x, int y) {
@@ -197,17 +234,9 @@ std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const ImageView& ma
         throw InvalidInput(
             fmt::format("channels {} and {} of an image that has {}", x, y, map.channels));
     }
-    if (map.bits() == 32) return std::nullopt;
-    const std::array<std::size_t, 4> counts = map.bits() == 8
-                                                  ? pairs_around_zero<std::uint8_t>(map, x, y)
-                                                  : pairs_around_zero<std::uint16_t>(map, x, y);
-    const std::size_t all = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-    const auto most = std::max_element(counts.begin(), counts.end());
-    if (all == 0 || 4 * *most < 3 * all) return std::nullopt;
-    const auto pair = static_cast<unsigned>(most - counts.begin());
-    const unsigned lower = map.bits() == 8 ? 127 : 32767;
-    return std::array{static_cast<std::uint16_t>(lower + pair / 2),
-                      static_cast<std::uint16_t>(lower + pair % 2)};
+    FlatCodeCount count;
+    count.add(map, x, y);
+    return count.codes();
 }
 
 FlatCode detect_flat_code(const ImageView& map,

@@ -10,10 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
+#include "image/normal_bands.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
 #include "relief/mesh/report.h"
@@ -22,16 +22,6 @@ namespace relief {
 namespace {
 
 constexpr double largest_strength = 1e6;
-
-void check_xy_map(const ImageView& map, const XyChannels& channels) {
-    if (map.empty()) throw InvalidInput("an empty image holds no normals");
-    for (const int channel : {channels.x, channels.y}) {
-        if (channel < 0 || channel >= map.channels) {
-            throw InvalidInput(
-                fmt::format("there is no channel {}, but only {}", channel + 1, map.channels));
-        }
-    }
-}
 
 /// Returns the normal with these coordinates that points outwards.
 Direction facing_outwards(double x, double y, std::size_t texel, Report& found) {
@@ -54,14 +44,6 @@ double length_tolerance(FlatCode flat) {
     else
         return std::numbers::sqrt3 / NormalCoding<Sample>::steps(flat);
 }
-
-/// The lengths of the vectors of a row.
-struct RowLengths {
-    double least = std::numeric_limits<double>::infinity();
-    double sum = 0.0;
-    double greatest = 0.0;
-    std::size_t count = 0;
-};
 
 template <typename Sample>
 RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Report& found) {
@@ -87,8 +69,78 @@ RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Repo
     return result;
 }
 
-/// Combines all rows in order.
-LengthRange time_statistics(const std::vector<RowLengths>& rows) {
+template <typename Sample>
+void decode_xy(const ImageView& map, const XyChannels& channels, double up, FlatCode flat,
+               const ExactFlat<Sample>& exact, float* normals, Report& report) {
+    const auto stride = static_cast<std::size_t>(map.channels);
+    const auto x = static_cast<std::size_t>(channels.x);
+    const auto y = static_cast<std::size_t>(channels.y);
+    const NormalCoding<Sample> coding{flat};
+    for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
+        const Sample* sample = map.row<Sample>(static_cast<int>(row));
+        const std::size_t first = row * static_cast<std::size_t>(map.width);
+        const std::size_t end = first + static_cast<std::size_t>(map.width);
+        for (std::size_t texel = first; texel < end; ++texel, sample += stride) {
+            const Direction normal =
+                exact.is_flat(sample[x], sample[y])
+                    ? Direction{0.0, 0.0, 1.0}
+                    : facing_outwards(coding.decoded(sample[x]), coding.decoded(sample[y]) * up,
+                                      texel, found);
+            store(normal, normals + texel * 3);
+        }
+    });
+}
+
+}  // namespace
+
+void check_xy_channels(int count, const XyChannels& channels) {
+    for (const int channel : {channels.x, channels.y}) {
+        if (channel < 0 || channel >= count)
+            throw InvalidInput(
+                fmt::format("there is no channel {}, but only {}", channel + 1, count));
+    }
+}
+
+Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green green, FlatCode flat,
+                    Report& report, FlatTexels texels) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    check_xy_channels(map.channels, channels);
+    Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
+    float* const normals = result.as<float>().data();
+    const double up = green == Green::up ? 1.0 : -1.0;
+    with_sample_type(map, [&]<typename Sample>(Sample) {
+        const ExactFlat<Sample> exact(map, flat, texels, channels.x, channels.y);
+        decode_xy<Sample>(map, channels, up, flat, exact, normals, report);
+    });
+    return result;
+}
+
+Image decode_xy_rows(const ImageView& map, const XyChannels& channels, FlatCode flat,
+                     const FlatCodes& codes, Report& report) {
+    check_xy_channels(map.channels, channels);
+    Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
+    with_sample_type(map, [&]<typename Sample>(Sample) {
+        decode_xy<Sample>(map, channels, 1.0, flat, ExactFlat<Sample>(codes),
+                          result.as<float>().data(), report);
+    });
+    return result;
+}
+
+void append_row_lengths(const Image& map, FlatCode flat, std::vector<RowLengths>& lengths,
+                        Report& report) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.channels < 3)
+        throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
+    const std::size_t first = lengths.size();
+    lengths.resize(first + static_cast<std::size_t>(map.height));
+    with_sample_type(map, [&]<typename Sample>(Sample) {
+        for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
+            lengths[first + row] = lengths_of_row<Sample>(map, flat, row, found);
+        });
+    });
+}
+
+LengthRange range_of(const std::vector<RowLengths>& rows) {
     RowLengths all;
     for (const RowLengths& row : rows) {
         all.least = std::min(all.least, row.least);
@@ -100,48 +152,10 @@ LengthRange time_statistics(const std::vector<RowLengths>& rows) {
     return {all.least, all.sum / static_cast<double>(all.count), all.greatest};
 }
 
-}  // namespace
-
-Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green green, FlatCode flat,
-                    Report& report, FlatTexels texels) {
-    check_xy_map(map, channels);
-    Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
-    float* const normals = result.as<float>().data();
-    const double up = green == Green::up ? 1.0 : -1.0;
-    const auto stride = static_cast<std::size_t>(map.channels);
-    const auto x = static_cast<std::size_t>(channels.x);
-    const auto y = static_cast<std::size_t>(channels.y);
-    with_sample_type(map, [&]<typename Sample>(Sample) {
-        const NormalCoding<Sample> coding{flat};
-        const ExactFlat<Sample> exact(map, flat, texels, channels.x, channels.y);
-        for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
-            const Sample* sample = map.row<Sample>(static_cast<int>(row));
-            const std::size_t first = row * static_cast<std::size_t>(map.width);
-            const std::size_t end = first + static_cast<std::size_t>(map.width);
-            for (std::size_t texel = first; texel < end; ++texel, sample += stride) {
-                const Direction normal =
-                    exact.is_flat(sample[x], sample[y])
-                        ? Direction{0.0, 0.0, 1.0}
-                        : facing_outwards(coding.decoded(sample[x]), coding.decoded(sample[y]) * up,
-                                          texel, found);
-                store(normal, normals + texel * 3);
-            }
-        });
-    });
-    return result;
-}
-
 LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report) {
-    if (map.empty()) throw InvalidInput("an empty image holds no normals");
-    if (map.channels < 3)
-        throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
-    std::vector<RowLengths> rows(static_cast<std::size_t>(map.height));
-    with_sample_type(map, [&]<typename Sample>(Sample) {
-        for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
-            rows[row] = lengths_of_row<Sample>(map, flat, row, found);
-        });
-    });
-    return time_statistics(rows);
+    std::vector<RowLengths> rows;
+    append_row_lengths(map, flat, rows, report);
+    return range_of(rows);
 }
 
 void scale_slopes(Image& normals, double strength, Report& report) {
@@ -267,7 +281,8 @@ void blend_row(float* base, const float* detail, std::size_t width, std::size_t 
 
 }  // namespace
 
-void blend_normals(Image& base, const Image& detail, NormalBlend method, Report& report) {
+void blend_normal_rows(Image& base, int first_row, const Image& detail, NormalBlend method,
+                       Report& report) {
     check_floats(base, 3, "normals of a base");
     check_floats(detail, 3, "normals of a detail");
     float* const to = base.as<float>().data();
@@ -276,9 +291,14 @@ void blend_normals(Image& base, const Image& detail, NormalBlend method, Report&
     const auto period_x = static_cast<std::size_t>(detail.width);
     const auto period_y = static_cast<std::size_t>(detail.height);
     for_each_row(base.width, base.height, report, [&](std::size_t row, Report& found) {
-        blend_row(to + row * width * 3, from + row % period_y * period_x * 3, width, period_x,
-                  method, row * width, found);
+        const std::size_t detail_row = (static_cast<std::size_t>(first_row) + row) % period_y;
+        blend_row(to + row * width * 3, from + detail_row * period_x * 3, width, period_x, method,
+                  row * width, found);
     });
+}
+
+void blend_normals(Image& base, const Image& detail, NormalBlend method, Report& report) {
+    blend_normal_rows(base, 0, detail, method, report);
 }
 
 }  // namespace relief

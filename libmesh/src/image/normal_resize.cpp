@@ -3,9 +3,10 @@
 // averaging.
 //
 // Resampling is separable: for each row of the result, the rows around it are summed first, then
-// the columns. Weights are double, sums are float, in the order of the texels, so the bits are the
-// same for any number of threads. Mip levels average vectors, never codes, and normalize only the
-// result; its length before that gives the variance.
+// the columns. Only these rows of the source are needed, so files are resized by bands. Weights are
+// double, sums are float, in the order of the texels, so the bits are the same for any number of
+// threads. Mip levels average vectors, never codes, and normalize only the result; its length
+// before that gives the variance.
 #include "relief/mesh/normal_map.h"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include <numbers>
 #include <vector>
 
+#include "image/normal_bands.h"
 #include "image/texel_loops.h"
 #include "portable_math.h"
 #include "relief/mesh/image.h"
@@ -23,18 +25,6 @@
 
 namespace relief {
 namespace {
-
-/// A source texel along one axis and its weight.
-struct Tap {
-    std::size_t place;
-    float weight;
-};
-
-/// All taps along one axis: result i has those in [first[i], first[i + 1]).
-struct Taps {
-    std::vector<Tap> taps;
-    std::vector<std::size_t> first = {0};
-};
 
 double sinc(double x) {
     if (x == 0.0) return 1.0;
@@ -78,8 +68,8 @@ double weight_of(ResizeFilter filter, double middle, int place, double scale) {
 
 /// \param from, to  texels of the source and of the result; the result shows the source `repeat`
 ///                  times
-Taps taps_of(int from, int to, double repeat, ResizeFilter filter, Wrap wrap) {
-    Taps result;
+ResampledAxis resampled_axis(int from, int to, double repeat, ResizeFilter filter, Wrap wrap) {
+    ResampledAxis result;
     const double scale = from * repeat / to;
     if (filter == ResizeFilter::best)
         filter = scale > 1.0 ? ResizeFilter::lanczos : ResizeFilter::cubic;
@@ -98,101 +88,13 @@ Taps taps_of(int from, int to, double repeat, ResizeFilter filter, Wrap wrap) {
                                    static_cast<float>(weight)});
         }
         result.first.push_back(result.taps.size());
+        result.reach.push_back({begin, end + 1});
     }
     return result;
 }
-
-/// Computes rows of float samples at another size.
-class Resampling {
-  public:
-    Resampling(const Image& source, int width, int height, const ResizeOptions& options)
-        : source_(source),
-          across_(taps_of(source.width, width, options.repeat.x, options.filter, options.wrap.x)),
-          down_(taps_of(source.height, height, options.repeat.y, options.filter, options.wrap.y)) {}
-
-    void make_row(std::size_t row, float* result) const {
-        const auto channels = static_cast<std::size_t>(source_.channels);
-        const std::vector<float> sums = sum_of_rows(row);
-        for (std::size_t x = 0; x + 1 < across_.first.size(); ++x) {
-            for (std::size_t c = 0; c < channels; ++c) {
-                float sum = 0.0F;
-                for (std::size_t t = across_.first[x]; t < across_.first[x + 1]; ++t)
-                    sum += across_.taps[t].weight * sums[across_.taps[t].place * channels + c];
-                result[x * channels + c] = sum;
-            }
-        }
-    }
-
-    /// Returns the mean of vectors at one texel of the result, with the weights of the samples.
-    [[nodiscard]] Direction mean_vector(const Image& vectors, std::size_t row,
-                                        std::size_t column) const {
-        const float* const all = vectors.as<float>().data();
-        Direction sum{0.0, 0.0, 0.0};
-        for (std::size_t j = down_.first[row]; j < down_.first[row + 1]; ++j) {
-            for (std::size_t i = across_.first[column]; i < across_.first[column + 1]; ++i) {
-                const float* const vector =
-                    all + (down_.taps[j].place * static_cast<std::size_t>(vectors.width) +
-                           across_.taps[i].place) *
-                              3;
-                const double weight = static_cast<double>(down_.taps[j].weight) *
-                                      static_cast<double>(across_.taps[i].weight);
-                sum = {sum.x + weight * vector[0], sum.y + weight * vector[1],
-                       sum.z + weight * vector[2]};
-            }
-        }
-        return sum;
-    }
-
-  private:
-    /// Returns the weighted sum of the source rows of one result row, by column.
-    [[nodiscard]] std::vector<float> sum_of_rows(std::size_t row) const {
-        const float* const samples = source_.as<float>().data();
-        std::vector<float> sums(static_cast<std::size_t>(source_.width) *
-                                static_cast<std::size_t>(source_.channels));
-        for (std::size_t t = down_.first[row]; t < down_.first[row + 1]; ++t) {
-            const float* const from = samples + down_.taps[t].place * sums.size();
-            const float weight = down_.taps[t].weight;
-            for (std::size_t i = 0; i < sums.size(); ++i)
-                sums[i] += weight * from[i];
-        }
-        return sums;
-    }
-
-    const Image& source_;
-    Taps across_;
-    Taps down_;
-};
 
 bool is_own_size(const Image& image, int width, int height, const ResizeOptions& options) {
     return width == image.width && height == image.height && options.repeat == glm::dvec2(1.0);
-}
-
-void check(int width, int height, const ResizeOptions& options) {
-    if (width < 1 || height < 1)
-        throw InvalidInput(fmt::format("there is no image of {} x {} texels", width, height));
-    for (const double repeat : {options.repeat.x, options.repeat.y}) {
-        if (!(repeat > 0.0 && repeat <= 1e4))
-            throw InvalidInput(
-                fmt::format("a map cannot be repeated {} times, but up to 1e4", repeat));
-    }
-}
-
-/// Returns the slopes of normals, two floats per texel; NaN if the normal is too steep.
-Image slopes_to_average(const Image& normals, Report& report) {
-    Image result = make_image(normals.width, normals.height, 2, 32, ColorSpace::data);
-    const std::span<const float> from = normals.as<float>();
-    const std::span<float> to = result.as<float>();
-    for_each_texel(from.size() / 3, report, [&](std::size_t texel, Report& found) {
-        const float* const n = &from[texel * 3];
-        const double across = std::sqrt(double{n[0]} * n[0] + double{n[1]} * n[1]);
-        const bool is_steep = !(across <= max_averaged_slope * n[2]);
-        if (is_steep)
-            found.add("normal too steep to average slopes", "texel", texel,
-                      "the vectors around it are averaged");
-        to[texel * 2] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[0] / n[2];
-        to[texel * 2 + 1] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[1] / n[2];
-    });
-    return result;
 }
 
 /// Stores a row of means as unit normals. \param mean_vector  returns the mean vector of a texel
@@ -212,41 +114,139 @@ void store_row(const std::vector<float>& means, ResizeDomain domain, std::size_t
     }
 }
 
+/// Returns the rows of an image in memory.
+FloatRows rows_of(const Image& image) {
+    const std::size_t row_size =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
+    return [samples = image.as<float>().data(), row_size](std::size_t row) {
+        return samples + row * row_size;
+    };
+}
+
 }  // namespace
+
+void check_resize(int width, int height, const ResizeOptions& options) {
+    if (width < 1 || height < 1)
+        throw InvalidInput(fmt::format("there is no image of {} x {} texels", width, height));
+    for (const double repeat : {options.repeat.x, options.repeat.y}) {
+        if (!(repeat > 0.0 && repeat <= 1e4))
+            throw InvalidInput(
+                fmt::format("a map cannot be repeated {} times, but up to 1e4", repeat));
+    }
+}
+
+Resampling::Resampling(int width, int height, int to_width, int to_height,
+                       const ResizeOptions& options)
+    : width_(static_cast<std::size_t>(width)),
+      across_(resampled_axis(width, to_width, options.repeat.x, options.filter, options.wrap.x)),
+      down_(resampled_axis(height, to_height, options.repeat.y, options.filter, options.wrap.y)) {}
+
+void Resampling::make_row(std::size_t row, std::size_t channels, const FloatRows& source,
+                          float* result) const {
+    const std::vector<float> sums = sum_of_rows(row, channels, source);
+    for (std::size_t x = 0; x + 1 < across_.first.size(); ++x) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            float sum = 0.0F;
+            for (std::size_t t = across_.first[x]; t < across_.first[x + 1]; ++t)
+                sum += across_.taps[t].weight * sums[across_.taps[t].place * channels + c];
+            result[x * channels + c] = sum;
+        }
+    }
+}
+
+Direction Resampling::mean_vector(const FloatRows& vectors, std::size_t row,
+                                  std::size_t column) const {
+    Direction sum{0.0, 0.0, 0.0};
+    for (std::size_t j = down_.first[row]; j < down_.first[row + 1]; ++j) {
+        const float* const vectors_of_row = vectors(down_.taps[j].place);
+        for (std::size_t i = across_.first[column]; i < across_.first[column + 1]; ++i) {
+            const float* const vector = vectors_of_row + across_.taps[i].place * 3;
+            const double weight = static_cast<double>(down_.taps[j].weight) *
+                                  static_cast<double>(across_.taps[i].weight);
+            sum = {sum.x + weight * vector[0], sum.y + weight * vector[1],
+                   sum.z + weight * vector[2]};
+        }
+    }
+    return sum;
+}
+
+std::vector<float> Resampling::sum_of_rows(std::size_t row, std::size_t channels,
+                                           const FloatRows& source) const {
+    std::vector<float> sums(width_ * channels);
+    for (std::size_t t = down_.first[row]; t < down_.first[row + 1]; ++t) {
+        const float* const from = source(down_.taps[t].place);
+        const float weight = down_.taps[t].weight;
+        for (std::size_t i = 0; i < sums.size(); ++i)
+            sums[i] += weight * from[i];
+    }
+    return sums;
+}
+
+Image slopes_to_average(const Image& normals, Report& report) {
+    Image result = make_image(normals.width, normals.height, 2, 32, ColorSpace::data);
+    const std::span<const float> from = normals.as<float>();
+    const std::span<float> to = result.as<float>();
+    for_each_texel(from.size() / 3, report, [&](std::size_t texel, Report& found) {
+        const float* const n = &from[texel * 3];
+        const double across = std::sqrt(double{n[0]} * n[0] + double{n[1]} * n[1]);
+        const bool is_steep = !(across <= max_averaged_slope * n[2]);
+        if (is_steep)
+            found.add("normal too steep to average slopes", "texel", texel,
+                      "the vectors around it are averaged");
+        to[texel * 2] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[0] / n[2];
+        to[texel * 2 + 1] = is_steep ? std::numeric_limits<float>::quiet_NaN() : -n[1] / n[2];
+    });
+    return result;
+}
+
+void resize_normal_rows(const Resampling& resampling, ResizeDomain domain, const FloatRows& normals,
+                        const FloatRows& slopes, int first_row, Image& result, Report& report) {
+    const bool has_slopes = domain == ResizeDomain::slopes;
+    const std::size_t channels = has_slopes ? 2 : 3;
+    float* const to = result.as<float>().data();
+    const auto columns = static_cast<std::size_t>(result.width);
+    for_each_row(result.width, result.height, report, [&](std::size_t index, Report& found) {
+        const std::size_t row = static_cast<std::size_t>(first_row) + index;
+        std::vector<float> means(columns * channels);
+        resampling.make_row(row, channels, has_slopes ? slopes : normals, means.data());
+        store_row(means, domain, index * columns, to + index * columns * 3, found,
+                  [&](std::size_t x) { return resampling.mean_vector(normals, row, x); });
+    });
+}
+
+void resize_sample_rows(const Resampling& resampling, const FloatRows& samples, int first_row,
+                        Image& result) {
+    float* const to = result.as<float>().data();
+    const auto channels = static_cast<std::size_t>(result.channels);
+    const std::size_t row_size = static_cast<std::size_t>(result.width) * channels;
+    Report unused;
+    for_each_row(result.width, result.height, unused, [&](std::size_t index, Report&) {
+        resampling.make_row(static_cast<std::size_t>(first_row) + index, channels, samples,
+                            to + index * row_size);
+    });
+}
 
 Image resize_normals(const Image& normals, int width, int height, const ResizeOptions& options,
                      Report& report) {
     check_floats(normals, 3, "normals");
-    check(width, height, options);
+    check_resize(width, height, options);
     if (is_own_size(normals, width, height, options)) return normals;
     const bool has_slopes = options.domain == ResizeDomain::slopes;
     const Image slopes = has_slopes ? slopes_to_average(normals, report) : Image{};
-    const Resampling resampling(has_slopes ? slopes : normals, width, height, options);
-
+    const Resampling resampling(normals.width, normals.height, width, height, options);
     Image result = make_image(width, height, 3, 32, ColorSpace::data);
-    float* const to = result.as<float>().data();
-    const auto columns = static_cast<std::size_t>(width);
-    for_each_row(width, height, report, [&](std::size_t row, Report& found) {
-        std::vector<float> means(columns * (has_slopes ? 2 : 3));
-        resampling.make_row(row, means.data());
-        store_row(means, options.domain, row * columns, to + row * columns * 3, found,
-                  [&](std::size_t x) { return resampling.mean_vector(normals, row, x); });
-    });
+    resize_normal_rows(resampling, options.domain, rows_of(normals),
+                       has_slopes ? rows_of(slopes) : FloatRows(), 0, result, report);
     return result;
 }
 
 Image resize_samples(const Image& image, int width, int height, const ResizeOptions& options) {
     check_floats(image, image.channels, "samples");
-    check(width, height, options);
+    check_resize(width, height, options);
     if (is_own_size(image, width, height, options)) return image;
-    const Resampling resampling(image, width, height, options);
+    const Resampling resampling(image.width, image.height, width, height, options);
     Image result = make_image(width, height, image.channels, 32, image.color_space);
-    float* const to = result.as<float>().data();
-    const std::size_t row_size =
-        static_cast<std::size_t>(width) * static_cast<std::size_t>(image.channels);
-    Report unused;
-    for_each_row(width, height, unused,
-                 [&](std::size_t row, Report&) { resampling.make_row(row, to + row * row_size); });
+    resize_sample_rows(resampling, rows_of(image), 0, result);
     return result;
 }
 
@@ -257,7 +257,7 @@ Image fitted_detail(const Image& detail, int base_width, int base_height,
         return texels >= 1.0 && texels == std::floor(texels) ? static_cast<int>(texels) : size;
     };
     check_floats(detail, 3, "normals of a detail");
-    check(base_width, base_height, options);
+    check_resize(base_width, base_height, options);
     ResizeOptions fitted = options;
     fitted.wrap = Wrap::repeat;
     const int width = period(base_width, options.repeat.x);

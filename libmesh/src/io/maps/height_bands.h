@@ -35,6 +35,7 @@ class HeightBandReader {
 class KeptRows {
   public:
     void append(const Image& rows);
+    void append_row(const KeptRows& other, int index);
     void drop(int count);
     [[nodiscard]] bool empty() const { return bytes_.empty(); }
     [[nodiscard]] int count() const;

@@ -60,13 +60,21 @@ HeightMap HeightBandReader::read(int rows) {
 
 void KeptRows::append(const Image& rows) {
     bits_ = rows.bits();
-    row_bytes_ = static_cast<std::size_t>(rows.width) * static_cast<std::size_t>(bits_ / 8);
+    row_bytes_ =
+        static_cast<std::size_t>(rows.width) * static_cast<std::size_t>(rows.channels * bits_ / 8);
     std::visit(
         [&](const auto& samples) {
             const auto bytes = std::as_bytes(std::span(samples));
             bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
         },
         rows.samples);
+}
+
+void KeptRows::append_row(const KeptRows& other, int index) {
+    bits_ = other.bits_;
+    row_bytes_ = other.row_bytes_;
+    const auto* const row = static_cast<const std::byte*>(other.at(index));
+    bytes_.insert(bytes_.end(), row, row + row_bytes_);
 }
 
 void KeptRows::drop(int count) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "relief/mesh/execution.h"
+#include "relief/mesh/normal_map_file.h"
 #include "support/peak_memory.h"
 #include "support/shared_data.h"
 
@@ -67,6 +68,43 @@ TEST(ImageRowsMemory, FromFileToFileIsBoundedWhateverTheHeight) {
         // buffers of a batch of pieces, except for a part that depends on the size.
         EXPECT_LT(test::peak_megabytes() - small, 60.0) << extension;
     }
+}
+
+/// Writes a normal map of 8 bits with noise.
+void write_normal_map(const std::filesystem::path& file, int width, int height) {
+    ImageWriteOptions fast;
+    fast.effort = WriteEffort::fast;
+    ImageRowWriter writer(file, {width, height, 3, 8, ColorSpace::data}, {}, fast);
+    std::vector<std::uint8_t> row(static_cast<std::size_t>(width) * 3);
+    std::uint32_t state = 1;
+    for (int y = 0; y < height; ++y) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            state = state * 1664525U + 1013904223U;
+            row[i] = static_cast<std::uint8_t>(i % 3 == 2 ? 250U : 112U + (state >> 27));
+        }
+        writer.write(std::as_bytes(std::span(row)));
+    }
+    writer.finish();
+}
+
+TEST(NormalMapMemory, OfResizingIsBoundedWhateverTheHeight) {
+    const test::TemporaryDirectory folder;
+    set_thread_limit(2);
+    const auto convert = [&](int height) {
+        write_normal_map(folder / "map.png", 2048, height);
+        NormalMapConversion conversion;
+        conversion.width = 1024;
+        conversion.height = height / 2;
+        conversion.format.bits = 8;
+        conversion.write.effort = WriteEffort::fast;
+        conversion.texels_per_band = 1 << 17;
+        convert_normal_map_file({folder / "map.png", nullptr, FlatCode::half, false},
+                                folder / "small.png", conversion);
+        return test::peak_megabytes();
+    };
+    const double small = convert(256);
+    // In memory, decoded normals, their slopes and the result would have 97 MB more.
+    EXPECT_LT(convert(2048) - small, 40.0);
 }
 
 }  // namespace
