@@ -90,6 +90,8 @@ TEST(AllToolsAlike, FailWhenTheirResultCannotBePrinted) {
     const ProgramResult result = workplace.run("relief-mesh info square.obj > /dev/full");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.error, "relief-mesh: error: standard output: cannot be written\n");
+    EXPECT_EQ(workplace.run("relief-mesh process --help > /dev/full").exit_code, 1);
+    EXPECT_EQ(workplace.run("relief-mesh --version > /dev/full").exit_code, 1);
 }
 
 TEST(AllToolsAlike, ReturnTheirCodeWhenTheErrorCannotBePrinted) {

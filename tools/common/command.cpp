@@ -158,6 +158,15 @@ int report_failure(const CLI::App& root, const std::string& text) {
     return static_cast<int>(ExitCode::failed);
 }
 
+/// Returns the code if everything could be printed.
+/// \throws FileError if standard output cannot be written
+int flushed(int code) {
+    if (std::fflush(out()) == 0 && std::ferror(out()) == 0) return code;
+    // A reader that closes its pipe, such as head, needs no message.
+    if (errno == EPIPE) return static_cast<int>(ExitCode::failed);
+    throw FileError("standard output", "cannot be written");
+}
+
 /// Parses the arguments and runs the command.
 int parse_and_run(CLI::App& root, const std::vector<Command>& commands,
                   const std::vector<std::string>& arguments) {
@@ -167,19 +176,13 @@ int parse_and_run(CLI::App& root, const std::vector<Command>& commands,
         std::ostringstream text;
         const int code = root.exit(request, text, text);
         fmt::print(out(), "{}", text.str());
-        return code;
+        return flushed(code);
     } catch (const CLI::ParseError& error) {
         throw usage_error(root, error);
     }
     for (const Command& command : commands) {
         if (!command.app->parsed()) continue;
-        const ExitCode code = command.run();
-        if (std::fflush(out()) != 0 || std::ferror(out()) != 0) {
-            // A reader that closes its pipe, such as head, needs no message.
-            if (errno == EPIPE) return static_cast<int>(ExitCode::failed);
-            throw FileError("standard output", "cannot be written");
-        }
-        return static_cast<int>(code);
+        return flushed(static_cast<int>(command.run()));
     }
     throw UsageError("a command is missing");
 }

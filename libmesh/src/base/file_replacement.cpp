@@ -185,6 +185,11 @@ FileReplacement::~FileReplacement() {
     remove_from_list(place_);
 }
 
+std::filesystem::path FileReplacement::written_path() const {
+    std::filesystem::path path = fmt::format("/proc/self/fd/{}", descriptor_);
+    return ::access(path.c_str(), W_OK) == 0 ? path : temporary_;
+}
+
 void FileReplacement::complete() {
     if (is_complete_) return;
     copy_mode_and_owner(target_, descriptor_);
@@ -206,7 +211,7 @@ void FileReplacement::commit() {
 }
 
 void write_all(const FileReplacement& replacement, std::span<const std::byte> bytes) {
-    std::ofstream stream(replacement.temporary(), std::ios::binary);
+    std::ofstream stream(replacement.written_path(), std::ios::binary);
     stream.write(reinterpret_cast<const char*>(bytes.data()),
                  static_cast<std::streamsize>(bytes.size()));
     stream.close();

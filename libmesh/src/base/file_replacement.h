@@ -13,7 +13,7 @@ namespace RELIEF_API relief {
 
 /// A temporary file beside the file that it will replace.
 ///
-/// Write to temporary(), which exists and is empty, then call commit(). Without commit(), the
+/// Write to written_path(), which exists and is empty, then call commit(). Without commit(), the
 /// destructor removes the temporary file. Its name is random and keeps the extension, from which
 /// writers choose the format. A symbolic link is followed: the file that it names is replaced. The
 /// mode and, where the system permits it, the owner of a replaced file are kept; other hard links
@@ -27,7 +27,11 @@ class FileReplacement {
     FileReplacement& operator=(const FileReplacement&) = delete;
 
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+    /// The name of the temporary file.
     [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+    /// A path to the temporary file that stays its own if another program replaces the name by a
+    /// link: that of the open descriptor in /proc. Without /proc it is temporary().
+    [[nodiscard]] std::filesystem::path written_path() const;
 
     /// Waits until the temporary file is on the disk, so that commit() only renames it.
     /// \throws FileError

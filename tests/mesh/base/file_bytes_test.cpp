@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 
 #include "file_bytes.h"
@@ -143,6 +144,7 @@ TEST(FileReplacement, ATemporaryFileThatIsReplacedByALinkIsRefused) {
     FileReplacement replacement(folder / "a.txt");
     std::filesystem::remove(replacement.temporary());
     std::filesystem::create_symlink("victim.txt", replacement.temporary());
+    write_all(replacement, std::as_bytes(std::span("new")));
     EXPECT_THAT(test::message_of<FileError>([&] { replacement.commit(); }),
                 testing::HasSubstr("another program replaced the temporary file"));
     EXPECT_EQ(text_of(folder / "a.txt"), "old");

@@ -67,6 +67,10 @@ class ValueChecker {
             check_floats(accessor, "non-finite color",
                          [](float value) { return std::isfinite(value); });
         }
+        if (kind == "TEXCOORD") {
+            check_floats(accessor, "non-finite texture coordinate",
+                         [](float value) { return std::isfinite(value); });
+        }
         if (kind == "WEIGHTS") {
             constexpr float rounding = 1e-5F;
             check_floats(accessor, "weight that is not between 0 and 1",

@@ -409,7 +409,7 @@ GltfLayout layout_of(const GltfContents& contents) {
 /// Writes the pieces to a temporary file and renames it.
 void write_pieces(const std::filesystem::path& file, const std::vector<std::string_view>& pieces) {
     FileReplacement replacement(file);
-    std::ofstream stream(replacement.temporary(), std::ios::binary);
+    std::ofstream stream(replacement.written_path(), std::ios::binary);
     for (const std::string_view piece : pieces) {
         stream.write(piece.data(), static_cast<std::streamsize>(piece.size()));
     }

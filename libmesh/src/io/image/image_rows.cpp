@@ -299,7 +299,7 @@ ImageRowWriter::ImageRowWriter(const std::filesystem::path& file, const ImageSha
     check_metadata(metadata);
     implementation_.reset(new Implementation{FileReplacement(file), {}, nullptr});
     Implementation& self = *implementation_;
-    self.plan = {file, self.replacement.temporary(), format, shape, metadata, options};
+    self.plan = {file, self.replacement.written_path(), format, shape, metadata, options};
     self.sink =
         std::string_view(format) == "png" ? make_png_sink(self.plan) : make_module_sink(self.plan);
 }

@@ -205,8 +205,8 @@ class EarClipper {
   public:
     explicit EarClipper(std::span<const glm::vec3> positions);
 
-    /// Appends the triangles; false if the last ones are a fan.
-    bool clip(std::vector<glm::uvec3>& triangles);
+    /// Appends the triangles.
+    PolygonCut clip(std::vector<glm::uvec3>& triangles);
 
   private:
     using Corner = PointTree::Index;
@@ -330,7 +330,7 @@ void EarClipper::remove(Corner corner) {
     update(after);
 }
 
-bool EarClipper::clip(std::vector<glm::uvec3>& triangles) {
+PolygonCut EarClipper::clip(std::vector<glm::uvec3>& triangles) {
     std::size_t left = points_.size();
     while (has_plane_ && left > 3 && tests_ < max_tests) {
         const std::optional<Corner> corner = next_to_cut();
@@ -345,17 +345,19 @@ bool EarClipper::clip(std::vector<glm::uvec3>& triangles) {
     for (Corner b = next_[first]; next_[b] != first; b = next_[b]) {
         triangles.emplace_back(first, b, next_[b]);
     }
-    return left == 3;
+    if (left == 3) return PolygonCut::ears;
+    return tests_ < max_tests ? PolygonCut::fan : PolygonCut::fan_at_limit;
 }
 
 }  // namespace
 
-bool triangulate_polygon(std::span<const glm::vec3> positions, std::span<const glm::vec2> texcoords,
-                         std::vector<glm::uvec3>& triangles) {
+PolygonCut triangulate_polygon(std::span<const glm::vec3> positions,
+                               std::span<const glm::vec2> texcoords,
+                               std::vector<glm::uvec3>& triangles) {
     assert(positions.size() >= 3 && (texcoords.empty() || texcoords.size() == positions.size()));
     if (positions.size() == 3) {
         triangles.emplace_back(0, 1, 2);
-        return true;
+        return PolygonCut::ears;
     }
     if (positions.size() > 4) return EarClipper(positions).clip(triangles);
     if (quad_is_cut_from_first_to_third(positions, texcoords)) {
@@ -365,7 +367,7 @@ bool triangulate_polygon(std::span<const glm::vec3> positions, std::span<const g
         triangles.emplace_back(0, 1, 3);
         triangles.emplace_back(1, 2, 3);
     }
-    return true;
+    return PolygonCut::ears;
 }
 
 namespace {
@@ -429,8 +431,12 @@ CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report&
             report.add("face of fewer than three corners", "face", i, "left out");
         } else if (count == 3) {
             cuts.emplace_back(0, 1, 2);
-        } else if (!triangulate_polygon(positions, texcoords, cuts)) {
-            report.add("polygon without an ear", "face", i, "cut as a fan");
+        } else {
+            const PolygonCut cut = triangulate_polygon(positions, texcoords, cuts);
+            if (cut == PolygonCut::fan)
+                report.add("polygon without an ear", "face", i, "cut as a fan");
+            if (cut == PolygonCut::fan_at_limit)
+                report.add("polygon too complex to cut", "face", i, "its rest is cut as a fan");
         }
         for (const glm::uvec3& cut : cuts) {
             result.triangles.emplace_back(corner[cut.x], corner[cut.y], corner[cut.z]);

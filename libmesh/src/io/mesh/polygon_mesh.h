@@ -33,15 +33,21 @@
 
 namespace relief {
 
+/// How a polygon was cut.
+enum class PolygonCut {
+    ears,          ///< Completely, or it has four corners at most.
+    fan,           ///< The rest is a fan: no plane, crossing edges, or non-finite corners.
+    fan_at_limit,  ///< The rest is a fan after 200 million tests.
+};
+
 /// Cuts a polygon of n corners into n - 2 triangles with the same winding.
 ///
 /// \param positions  one per corner, object space, any unit of length; at least 3
 /// \param texcoords  one per corner, or empty
 /// \param triangles  triples of corner numbers are appended
-/// \return false if ear clipping fails (no plane, crossing edges, non-finite corners, or more than
-/// a billion point tests); the rest of the polygon is then cut as a fan
-bool triangulate_polygon(std::span<const glm::vec3> positions, std::span<const glm::vec2> texcoords,
-                         std::vector<glm::uvec3>& triangles);
+PolygonCut triangulate_polygon(std::span<const glm::vec3> positions,
+                               std::span<const glm::vec2> texcoords,
+                               std::vector<glm::uvec3>& triangles);
 
 /// Polygons as consecutive ranges of vertex indices.
 struct Polygons {
@@ -58,8 +64,9 @@ struct CutPolygons {
 /// Triangulates polygons by triangulate_polygon().
 ///
 /// \param vertices  positions, and texture coordinates if it has them
-/// \param report    counts polygons of fewer than three corners (left out) and those without an ear
-///         (cut as fans)
+/// \param report    counts polygons of fewer than three corners (left out), and those that are cut
+/// as
+///         fans
 CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report& report);
 
 /// Sets the triangles of a mesh. \throws FileError if a polygon names a missing vertex, or if there

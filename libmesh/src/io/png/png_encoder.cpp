@@ -392,7 +392,7 @@ AnimatedPng::AnimatedPng(const std::filesystem::path& file, std::uint32_t frames
                            0,
                            0,
                            {}});
-    implementation_->out.open(implementation_->replacement.temporary(), std::ios::binary);
+    implementation_->out.open(implementation_->replacement.written_path(), std::ios::binary);
     if (!implementation_->out) throw FileError(file, "cannot be written");
 }
 

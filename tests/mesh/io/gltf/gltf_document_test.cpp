@@ -395,6 +395,13 @@ TEST_F(GltfDocumentTest, ValuesWithoutMeaningAreReported) {
     SkinnedTriangle triangle;
     triangle.colors[5] = nan;
     EXPECT_EQ(findings(triangle), "1 x non-finite color (accessor 2): is kept as it is\n");
+    triangle.root["accessors"].push_back(
+        {{"bufferView", 2}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}});
+    json& attributes = triangle.root["meshes"][0]["primitives"][0]["attributes"];
+    attributes.erase("COLOR_0");
+    attributes["TEXCOORD_0"] = 5;
+    EXPECT_EQ(findings(triangle),
+              "1 x non-finite texture coordinate (accessor 5): is kept as it is\n");
     for (const float weight : {nan, -1.0F, 5.0F, std::numeric_limits<float>::infinity()}) {
         triangle = {};
         triangle.weights[11] = weight;

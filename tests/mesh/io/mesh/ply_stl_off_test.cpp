@@ -301,7 +301,7 @@ using Points = std::vector<glm::vec3>;
 
 std::vector<glm::uvec3> cut(const Points& positions, const std::vector<glm::vec2>& texcoords = {}) {
     std::vector<glm::uvec3> triangles;
-    EXPECT_TRUE(triangulate_polygon(positions, texcoords, triangles));
+    EXPECT_EQ(triangulate_polygon(positions, texcoords, triangles), PolygonCut::ears);
     return triangles;
 }
 
@@ -432,7 +432,7 @@ TEST(PolygonTriangulation, WithoutAPlaneItIsAFanAndSaysSo) {
     };
     for (const Points& points : polygons) {
         std::vector<glm::uvec3> triangles;
-        EXPECT_FALSE(triangulate_polygon(points, {}, triangles));
+        EXPECT_EQ(triangulate_polygon(points, {}, triangles), PolygonCut::fan);
         ASSERT_EQ(triangles.size(), points.size() - 2);
         for (std::uint32_t i = 0; i < triangles.size(); ++i) {
             EXPECT_EQ(triangles[i], glm::uvec3(0, i + 1, i + 2));
