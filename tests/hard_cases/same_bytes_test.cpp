@@ -259,6 +259,62 @@ void hash_bake(Hash& hash) {
     hash.add_all(image.heights);
 }
 
+/// Occlusion, curvature, positions and both directions of rays.
+void hash_bake_layers(Hash& hash) {
+    FrameOptions frames;
+    frames.normals = NormalWeight::area;
+    frames.tangents = TangentMethod::mikktspace;
+    const Mesh low = with_frames(textured_torus(), frames).mesh;
+    const Mesh high = with_frames(subdivided(low, 1, frames, IgnoredReport()), frames).mesh;
+    BakeOptions options = sized(24, 20);
+    options.map.layers.occlusion = OcclusionOptions{};
+    options.map.layers.curvature = true;
+    options.map.layers.positions = true;
+    for (const RayDirections directions : {RayDirections::averaged, RayDirections::shading}) {
+        options.directions = directions;
+        const BakedImage image = bake({high}, low, options);
+        hash.add_all(image.normals);
+        hash.add_all(image.occlusion);
+        hash.add_all(image.curvature);
+        hash.add_all(image.positions);
+    }
+}
+
+/// Arbitrary codes, also those without direction: decoding, blending, lengths and exact resizing.
+void hash_converted_maps(Hash& hash) {
+    Image codes = make_image(53, 31, 4, 8, ColorSpace::data);
+    std::uint32_t state = 5;
+    for (std::uint8_t& code : codes.as<std::uint8_t>()) {
+        state = state * 1664525U + 1013904223U;
+        code = static_cast<std::uint8_t>(state >> 24);
+    }
+    Report report;
+    const LengthRange lengths = measure_lengths(codes, FlatCode::half, report);
+    for (const double length : {lengths.least, lengths.mean, lengths.greatest})
+        hash.add(length);
+    const Image base = decode_normal_map(codes, Green::down, FlatCode::middle, report);
+    const Image detail = decode_xy_map(codes, {3, 1}, Green::up, FlatCode::half, report);
+    for (const NormalBlend blend : all_normal_blends) {
+        Image blended = base;
+        blend_normals(blended, detail, blend, report);
+        scale_slopes(blended, 1.7, report);
+        hash.add(encode_normal_map(blended, {16, Green::up, FlatCode::middle}, report));
+    }
+    for (const ResizeFilter filter :
+         {ResizeFilter::box, ResizeFilter::triangle, ResizeFilter::cubic, ResizeFilter::lanczos}) {
+        ResizeOptions options;
+        options.filter = filter;
+        options.wrap = Wraps(Wrap::mirror, Wrap::clamp);
+        hash.add(resize_normals(base, 20, 47, options, report));
+        hash.add(resize_samples(channel_of(codes, 3), 20, 47, options));
+    }
+    codes.color_space = ColorSpace::srgb;
+    for (const Image& level : mip_levels(codes))
+        hash.add(level);
+    hash.add(to_srgb(to_linear(codes), 16));
+    hash.add(report);
+}
+
 struct Algorithm {
     const char* name;
     void (*add)(Hash& hash);
@@ -299,7 +355,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Algorithm{"bump", hash_bump, 0x7507D5E8682965A0},
                     Algorithm{"kernel_choice", hash_kernel_choice, 0x5926B9DCF1140153},
                     Algorithm{"normal_maps", hash_normal_maps, 0xC4E3E1A0C4839E9C},
-                    Algorithm{"bake", hash_bake, 0x6BFF5036ED217037}),
+                    Algorithm{"converted_maps", hash_converted_maps, 0xC277AA09C6E1A1AE},
+                    Algorithm{"bake", hash_bake, 0x6BFF5036ED217037},
+                    Algorithm{"bake_layers", hash_bake_layers, 0x4F4E3DDD159F9354}),
     [](const testing::TestParamInfo<Algorithm>& row) { return std::string(row.param.name); });
 
 }  // namespace
