@@ -4,6 +4,7 @@
 /// measures memory bandwidth; and the mesh of most geometry benchmarks.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,11 @@ inline void measure(std::vector<Contender>& all, std::size_t rounds, std::size_t
         const double taken = seconds_of(all[i].run);
         if (counted) all[i].nanoseconds.push_back(1e9 * taken);
     });
+}
+
+/// The least time of a contender: that of the round which other processes disturbed least.
+inline double least(const Contender& contender) {
+    return *std::min_element(contender.nanoseconds.begin(), contender.nanoseconds.end());
 }
 
 /// McCalpin's triad: a = b + s * c over three arrays larger than any cache. Loops with known memory

@@ -16,6 +16,7 @@
 
 #include "progress_stage.h"
 #include "relief/mesh/execution.h"
+#include "work_array.h"
 
 #ifdef RELIEF_TSAN
 #include <sanitizer/tsan_interface.h>
@@ -103,8 +104,10 @@ template <typename RunPiece>
 void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece) {
     if (current_thread_limit == 1) return run_piece(0, count);
     FirstFailure failure;
+    Workspace* const workspace = current_workspace;
     const auto run_and_catch = [&](std::size_t begin, std::size_t end) {
         acquire_writes(&failure);
+        Workspace* const before = std::exchange(current_workspace, workspace);
         if (!failure.is_before(begin)) {
             try {
                 run_piece(begin, end);
@@ -112,6 +115,7 @@ void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece)
                 failure.set(begin, std::current_exception());
             }
         }
+        current_workspace = before;
         release_writes(&failure);
     };
     release_writes(&failure);

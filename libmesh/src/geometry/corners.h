@@ -12,12 +12,11 @@
 #include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
-#include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/buffers.h"
+#include "work_array.h"
 
 namespace relief {
 
@@ -53,7 +52,7 @@ class CornersByVertex {
     /// Considers only the triangles for which `counts(index)` is true.
     template <typename Counts>
     CornersByVertex(std::size_t vertex_count, TriangleSpan triangles, const Counts& counts)
-        : first_(vertex_count + 1, 0) {
+        : first_(vertex_count + 1) {
         // Each part of the triangles first counts its corners at each vertex, which gives the
         // position of its corners.
         const std::size_t parts = parts_for(vertex_count, triangles.size());
@@ -64,33 +63,35 @@ class CornersByVertex {
                 if (counts(t)) body(t);
             }
         };
-        std::vector<std::vector<std::uint32_t>> places(parts);
+        WorkArray<std::uint32_t> places(parts * vertex_count);
         parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t part = begin; part < end; ++part) {
-                std::vector<std::uint32_t>& count = places[part];
-                count.resize(vertex_count);
+                std::uint32_t* const count = places.data() + part * vertex_count;
+                std::fill_n(count, vertex_count, 0U);
                 for_triangles(part, [&](std::size_t t) {
+                    const glm::uvec3 triangle = triangles[t];
                     for (int i = 0; i < 3; ++i)
-                        ++count[triangles[t][i]];
+                        ++count[triangle[i]];
                 });
             }
         });
         std::uint32_t next = 0;
         for (std::size_t v = 0; v < vertex_count; ++v) {
             first_[v] = next;
-            for (std::vector<std::uint32_t>& place : places)
-                next += std::exchange(place[v], next);
+            for (std::size_t part = 0; part < parts; ++part)
+                next += std::exchange(places[part * vertex_count + v], next);
         }
         first_[vertex_count] = next;
-        reserve_to_fill(corners_, next);
-        corners_.resize(next);
+        corners_ = WorkArray<Corner>(next);
         parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t part = begin; part < end; ++part) {
-                std::vector<std::uint32_t>& place = places[part];
+                std::uint32_t* const place = places.data() + part * vertex_count;
+                Corner* const corners = corners_.data();
                 for_triangles(part, [&](std::size_t t) {
+                    const glm::uvec3 triangle = triangles[t];
                     const auto corner = static_cast<Corner>(3 * t);
                     for (int i = 0; i < 3; ++i)
-                        corners_[place[triangles[t][i]]++] = corner + static_cast<Corner>(i);
+                        corners[place[triangle[i]]++] = corner + static_cast<Corner>(i);
                 });
             }
         });
@@ -99,7 +100,7 @@ class CornersByVertex {
     [[nodiscard]] std::size_t vertex_count() const { return first_.size() - 1; }
 
     [[nodiscard]] std::span<const Corner> at(std::size_t vertex) const {
-        return std::span(corners_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
+        return {corners_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]};
     }
 
   private:
@@ -111,8 +112,8 @@ class CornersByVertex {
                                        thread_count());
     }
 
-    std::vector<std::uint32_t> first_;  ///< Index of each vertex's first corner, and the end.
-    std::vector<Corner> corners_;
+    WorkArray<std::uint32_t> first_;  ///< Index of each vertex's first corner, and the end.
+    WorkArray<Corner> corners_;
 };
 
 }  // namespace relief

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,16 +17,39 @@
 
 #include "geometry/check_triangles.h"
 #include "geometry/direction.h"
+#include "parallel.h"
 #include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
+namespace {
+
+/// The largest index of one triangle or more.
+std::uint32_t largest_index(const TriangleSpan& triangles) {
+    std::atomic<std::uint32_t> largest = 0;
+    parallel_for(triangles.size(), 65536, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t most = 0;
+        if (triangles.longs() != nullptr) {
+            const std::uint32_t* const indices = &triangles.longs()->x;
+            for (std::size_t i = 3 * begin; i < 3 * end; ++i)
+                most = std::max(most, indices[i]);
+        } else {
+            for (std::size_t t = begin; t < end; ++t) {
+                const glm::uvec3 triangle = triangles[t];
+                most = std::max({most, triangle.x, triangle.y, triangle.z});
+            }
+        }
+        std::uint32_t before = largest;
+        while (before < most && !largest.compare_exchange_weak(before, most)) {
+        }
+    });
+    return largest;
+}
+
+}  // namespace
+
 std::optional<std::size_t> corner_beyond(TriangleSpan triangles, std::size_t vertex_count) {
-    glm::uvec3 largest(0);
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-        largest = glm::max(largest, triangles[t]);
-    if (triangles.empty() || std::max({largest.x, largest.y, largest.z}) < vertex_count)
-        return std::nullopt;
+    if (triangles.empty() || largest_index(triangles) < vertex_count) return std::nullopt;
     for (std::size_t corner = 0;; ++corner) {
         if (triangles[corner / 3][static_cast<int>(corner % 3)] >= vertex_count) return corner;
     }

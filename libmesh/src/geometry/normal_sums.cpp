@@ -24,7 +24,6 @@
 #include "geometry/direction.h"
 #include "geometry/normal_contributions.h"
 #include "geometry/normal_sums.h"
-#include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/execution.h"
@@ -33,21 +32,217 @@
 namespace relief {
 namespace {
 
-// The four doubles of a sum as one operand. The compiler splits it on processors with smaller
-// registers.
-using Lanes = double __attribute__((vector_size(32), may_alias));
-
 using Block = std::span<const glm::uvec3>;
 
-/// Returns triangles in memory, with indices of 32 bits; indices of 16 bits are converted into
-/// `wide`.
-RELIEF_INLINE Block block_of(const TriangleSpan& triangles, std::size_t first, std::size_t size,
-                             std::array<glm::uvec3, triangles_at_once>& wide) {
-    if (triangles.longs() != nullptr) return {triangles.longs() + first, size};
-    for (std::size_t i = 0; i < size; ++i)
-        wide[i] = triangles[first + i];
-    return {wide.data(), size};
+// The four doubles of a sum as one operand.
+using Lanes = double __attribute__((vector_size(32), may_alias));
+
+// Rounding.
+
+constexpr std::size_t at_once = 128;  // Vertices.
+constexpr double unit_rounding = 0x1p-53;
+
+struct BlockSums {
+    alignas(64) std::array<double, at_once> x, y, z, edge_product, count;
+};
+
+struct BlockNormals {
+    alignas(64) std::array<float, at_once> x, y, z;
+    alignas(64) std::array<std::uint32_t, at_once> doubt;  ///< 1 or 0.
+};
+
+/// Rounds to the nearest integer, for |value| < 2^51.
+RELIEF_INLINE double nearest(double value) {
+    constexpr double large = 0x1.8p52;
+    return (value + large) - large;
 }
+
+RELIEF_INLINE float to_float(double steps) {
+    return static_cast<float>(steps) * static_cast<float>(1.0 / normal_grid) + 0.0F;
+}
+
+RELIEF_INLINE void round_block(const BlockSums& sums, BlockNormals& normals) {
+    for (std::size_t i = 0; i < at_once; ++i) {
+        const double x = sums.x[i], y = sums.y[i], z = sums.z[i];
+        const double steps = normal_grid / std::sqrt(x * x + y * y + z * z);
+        const double sum_error = (64.0 + 2.0 * sums.count[i]) * sums.edge_product[i] * steps;
+        const double safe = 0.5 - unit_rounding * (sum_error + 8.0 * normal_grid);
+        const double to_x = nearest(x * steps), to_y = nearest(y * steps),
+                     to_z = nearest(z * steps);
+        const double off_x = std::abs(x * steps - to_x), off_y = std::abs(y * steps - to_y),
+                     off_z = std::abs(z * steps - to_z);
+        const double off_xy = off_x > off_y ? off_x : off_y;
+        const double off = off_xy > off_z ? off_xy : off_z;
+        // The condition is true for NaN (from a sum of zero) and for a saturated count.
+        const double full = sums.count[i] < 255.0 ? 0.0 : 1.0;
+        normals.doubt[i] = off + full < safe ? 0U : 1U;
+        normals.x[i] = to_float(to_x);
+        normals.y[i] = to_float(to_y);
+        normals.z[i] = to_float(to_z);
+    }
+}
+
+template <typename Take>
+RELIEF_INLINE void take_part(const PartialSums& part, std::size_t begin, std::size_t from,
+                             std::size_t to, BlockSums& block, const Take& take) {
+    std::size_t v = from;
+    for (; v + 4 <= to; v += 4) {
+        const auto* const sums = reinterpret_cast<const Lanes*>(part.sums() + v);
+        FourDoubles x = sums[0], y = sums[1], z = sums[2], edge_product = sums[3];
+        transpose(x, y, z, edge_product);
+        take(block.x[v - begin], x);
+        take(block.y[v - begin], y);
+        take(block.z[v - begin], z);
+        take(block.edge_product[v - begin], edge_product);
+    }
+    for (; v < to; ++v) {
+        const WeightedNormalSum& sum = part.sums()[v];
+        take(block.x[v - begin], sum.x);
+        take(block.y[v - begin], sum.y);
+        take(block.z[v - begin], sum.z);
+        take(block.edge_product[v - begin], sum.edge_product);
+    }
+    for (v = from; v < to; ++v)
+        take(block.count[v - begin], static_cast<double>(part.counts()[v]));
+}
+
+/// Adds the sums of all parts for the vertices from `begin`.
+RELIEF_INLINE void load(std::span<const PartialSums> parts, std::size_t begin, std::size_t size,
+                        BlockSums& block) {
+    const auto set = [](double& to, const auto& values) {
+        std::memcpy(&to, &values, sizeof values);
+    };
+    const auto add = [](double& to, const auto& values) {
+        std::remove_cvref_t<decltype(values)> sum;
+        std::memcpy(&sum, &to, sizeof sum);
+        sum += values;
+        std::memcpy(&to, &sum, sizeof sum);
+    };
+    bool is_set = false;
+    for (const PartialSums& part : parts) {
+        const std::size_t from = std::max<std::size_t>(begin, part.vertices().lowest);
+        const std::size_t to =
+            std::min<std::size_t>(begin + size, std::size_t(part.vertices().highest) + 1);
+        if (from >= to) continue;
+        const bool is_whole = to - from == at_once;
+        if (!is_set && is_whole) {
+            take_part(part, begin, from, to, block, set);
+        } else {
+            if (!is_set) block = {};
+            take_part(part, begin, from, to, block, add);
+        }
+        is_set = true;
+    }
+    if (!is_set) block = {};
+}
+
+// A separate function: GCC does not vectorize the loop when it is inlined.
+RELIEF_TARGET_512 void round_block_512(const BlockSums& sums, BlockNormals& normals) {
+    round_block(sums, normals);
+}
+RELIEF_TARGET_256 void round_block_256(const BlockSums& sums, BlockNormals& normals) {
+    round_block(sums, normals);
+}
+[[gnu::noinline]] void round_block_any(const BlockSums& sums, BlockNormals& normals) {
+    round_block(sums, normals);
+}
+
+/// Rounds the normals of a block of vertices and marks uncertain ones in `doubt`.
+template <typename RoundBlock>
+RELIEF_INLINE void round_vertices(std::span<const PartialSums> parts, std::size_t begin,
+                                  std::size_t size, StridedSpan<glm::vec3> normals,
+                                  BlockNormals& rounded, const RoundBlock& round) {
+    BlockSums block;
+    load(parts, begin, size, block);
+    round(block, rounded);
+    for (std::size_t i = 0; i < size; ++i)
+        normals[begin + i] = {rounded.x[i], rounded.y[i], rounded.z[i]};
+}
+
+RELIEF_TARGET_512 void round_vertices_512(std::span<const PartialSums> parts, std::size_t begin,
+                                          std::size_t size, StridedSpan<glm::vec3> normals,
+                                          BlockNormals& rounded) {
+    round_vertices(parts, begin, size, normals, rounded, round_block_512);
+}
+RELIEF_TARGET_256 void round_vertices_256(std::span<const PartialSums> parts, std::size_t begin,
+                                          std::size_t size, StridedSpan<glm::vec3> normals,
+                                          BlockNormals& rounded) {
+    round_vertices(parts, begin, size, normals, rounded, round_block_256);
+}
+void round_vertices_any(std::span<const PartialSums> parts, std::size_t begin, std::size_t size,
+                        StridedSpan<glm::vec3> normals, BlockNormals& rounded) {
+    round_vertices(parts, begin, size, normals, rounded, round_block_any);
+}
+
+auto* best_round_vertices() {
+    switch (best_vector_target()) {
+        case VectorTarget::widest:
+            return &round_vertices_512;
+        case VectorTarget::wide:
+            return &round_vertices_256;
+        case VectorTarget::any:
+            break;
+    }
+    return &round_vertices_any;
+}
+
+/// Adds the doubtful vertices of a block.
+void gather_doubtful(const BlockNormals& normals, std::size_t begin, std::size_t size,
+                     std::vector<std::uint32_t>& indices) {
+    std::uint32_t any = 0;
+    for (std::size_t i = 0; i < size; ++i)
+        any |= normals.doubt[i];
+    if (any == 0) return;
+    for (std::size_t i = 0; i < size; ++i) {
+        if (normals.doubt[i] != 0) indices.push_back(static_cast<std::uint32_t>(begin + i));
+    }
+}
+
+/// Rounds the normals of vertices that probably get no more contributions, while their sums are in
+/// the cache: those below all vertices of the last blocks of triangles. Vertices that do get
+/// another contribution are rounded again at the end.
+class EarlyNormals {
+  public:
+    EarlyNormals(PartialSums& sums, StridedSpan<glm::vec3> normals)
+        : sums_(sums), normals_(normals) {}
+
+    /// \param range  the vertices of a block of triangles, which were added to the sums
+    void add(std::span<const glm::uvec3> triangles, const VertexRange& range) {
+        if (range.lowest < end_) {
+            for (const glm::uvec3& triangle : triangles) {
+                for (int i = 0; i < 3; ++i)
+                    sums_.rounded()[triangle[i] / at_once] = 0;
+            }
+        }
+        lowest_ = std::min(lowest_, range.lowest);
+        if (++blocks_ % 16 != 0) return;
+        round_up_to(std::min(lowest_, lowest_before_));
+        lowest_before_ = std::exchange(lowest_, std::numeric_limits<std::uint32_t>::max());
+    }
+    [[nodiscard]] const std::vector<std::uint32_t>& doubtful() const { return doubtful_; }
+
+  private:
+    void round_up_to(std::size_t end) {
+        const auto round = best_round_vertices();
+        const std::size_t first = (sums_.vertices().lowest + at_once - 1) / at_once * at_once;
+        for (end_ = std::max(end_, first); end_ + at_once <= end; end_ += at_once) {
+            BlockNormals rounded;
+            round({&sums_, 1}, end_, at_once, normals_, rounded);
+            gather_doubtful(rounded, end_, at_once, doubtful_);
+            sums_.rounded()[end_ / at_once] = 1;
+        }
+    }
+
+    PartialSums& sums_;
+    StridedSpan<glm::vec3> normals_;
+    std::size_t end_ = 0;
+    std::size_t blocks_ = 0;
+    std::uint32_t lowest_ = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t lowest_before_ = 0;
+    std::vector<std::uint32_t> doubtful_;
+};
+
+// Summation.
 
 /// One value per triangle of a block.
 template <typename T>
@@ -72,19 +267,9 @@ struct Job {
     PartialSums* sums;
     VertexRange* ranges;
     std::vector<std::uint32_t>* odd;
+    EarlyNormals normals;
     bool out_of_range = false;  ///< A triangle refers to a vertex that does not exist.
 };
-
-RELIEF_INLINE VertexRange range_of(Block block) {
-    std::uint32_t lowest = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t highest = 0;
-    const std::uint32_t* index = &block[0].x;
-    for (std::size_t i = 0; i < 3 * block.size(); ++i) {
-        lowest = index[i] < lowest ? index[i] : lowest;
-        highest = index[i] > highest ? index[i] : highest;
-    }
-    return {lowest, highest};
-}
 
 /// Loads corners one by one, for blocks that are not full or that use the last vertex.
 inline void gather_each(Block block, StridedSpan<const glm::vec3> positions,
@@ -99,30 +284,13 @@ inline void gather_each(Block block, StridedSpan<const glm::vec3> positions,
     }
 }
 
-/// Loads the corners of a full block, four triangles at a time. Each position is loaded together
-/// with the following number, which must exist.
-RELIEF_INLINE void gather_four(Block block, StridedSpan<const glm::vec3> positions,
-                               BlockCorners& corners) {
-    using Floats = float __attribute__((vector_size(16)));
-    const auto* const first = reinterpret_cast<const std::byte*>(positions.data());
-    const std::size_t stride = positions.stride();
+/// Loads the corners of a full block.
+RELIEF_INLINE void gather_all(Block block, StridedSpan<const glm::vec3> positions,
+                              BlockCorners& corners) {
     for (std::size_t i = 0; i < triangles_at_once; i += 4) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            Floats a, b, c, d;
-            std::memcpy(&a, first + stride * block[i][static_cast<int>(k)], sizeof a);
-            std::memcpy(&b, first + stride * block[i + 1][static_cast<int>(k)], sizeof b);
-            std::memcpy(&c, first + stride * block[i + 2][static_cast<int>(k)], sizeof c);
-            std::memcpy(&d, first + stride * block[i + 3][static_cast<int>(k)], sizeof d);
-            const Floats xy_ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-            const Floats xy_cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-            const Floats z_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-            const Floats z_cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-            const Floats x = __builtin_shufflevector(xy_ab, xy_cd, 0, 1, 4, 5);
-            const Floats y = __builtin_shufflevector(xy_ab, xy_cd, 2, 3, 6, 7);
-            const Floats z = __builtin_shufflevector(z_ab, z_cd, 0, 1, 4, 5);
-            std::memcpy(&corners[k][0][i], &x, sizeof x);
-            std::memcpy(&corners[k][1][i], &y, sizeof y);
-            std::memcpy(&corners[k][2][i], &z, sizeof z);
+        for (int k = 0; k < 3; ++k) {
+            auto& corner = corners[static_cast<std::size_t>(k)];
+            gather_four(positions, &block[i], k, &corner[0][i], &corner[1][i], &corner[2][i]);
         }
     }
 }
@@ -149,7 +317,24 @@ RELIEF_INLINE void contribution(const BlockCorners& at, Real scale, BlockContrib
 }
 
 RELIEF_INLINE void count_up(std::uint8_t& count) {
-    count = static_cast<std::uint8_t>(count + (count != 255));
+    // This is faster than a choice, because the branch is never taken.
+    if (++count == 0) [[unlikely]]
+        count = 255;
+}
+
+/// Adds the contribution of one triangle at its vertices.
+template <NormalWeight weight>
+RELIEF_INLINE void scatter(const glm::uvec3& triangle, const FourDoubles& contribution,
+                           const BlockContributions& contributions, std::size_t i, Lanes* sums,
+                           std::uint8_t* counts) {
+    const std::array<std::uint32_t, 3> at = {triangle.x, triangle.y, triangle.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if constexpr (weight == NormalWeight::area)
+            sums[at[k]] += contribution;
+        else
+            sums[at[k]] += contribution * contributions.factor[k][i];
+        count_up(counts[at[k]]);
+    }
 }
 
 template <NormalWeight weight>
@@ -157,17 +342,23 @@ RELIEF_INLINE void scatter(Block block, const BlockContributions& contributions,
                            PartialSums& target) {
     auto* const sums = reinterpret_cast<Lanes*>(target.sums());
     std::uint8_t* const counts = target.counts();
-    for (std::size_t i = 0; i < block.size(); ++i) {
-        const Lanes contribution = {contributions.x[i], contributions.y[i], contributions.z[i],
-                                    contributions.edge_product[i]};
-        const std::array<std::uint32_t, 3> at = {block[i].x, block[i].y, block[i].z};
-        for (std::size_t k = 0; k < 3; ++k) {
-            if constexpr (weight == NormalWeight::area)
-                sums[at[k]] += contribution;
-            else
-                sums[at[k]] += contribution * contributions.factor[k][i];
-            count_up(counts[at[k]]);
-        }
+    std::size_t i = 0;
+    for (; i + 4 <= block.size(); i += 4) {
+        FourDoubles a, b, c, d;
+        std::memcpy(&a, &contributions.x[i], sizeof a);
+        std::memcpy(&b, &contributions.y[i], sizeof b);
+        std::memcpy(&c, &contributions.z[i], sizeof c);
+        std::memcpy(&d, &contributions.edge_product[i], sizeof d);
+        transpose(a, b, c, d);
+        scatter<weight>(block[i], a, contributions, i, sums, counts);
+        scatter<weight>(block[i + 1], b, contributions, i + 1, sums, counts);
+        scatter<weight>(block[i + 2], c, contributions, i + 2, sums, counts);
+        scatter<weight>(block[i + 3], d, contributions, i + 3, sums, counts);
+    }
+    for (; i < block.size(); ++i) {
+        const FourDoubles contribution = {contributions.x[i], contributions.y[i],
+                                          contributions.z[i], contributions.edge_product[i]};
+        scatter<weight>(block[i], contribution, contributions, i, sums, counts);
     }
 }
 
@@ -213,7 +404,6 @@ RELIEF_INLINE void add_contributions(Job& job, const Contribution& contribution)
     BlockCorners corners{};
     BlockContributions contributions{};
     std::array<glm::uvec3, triangles_at_once> wide;
-    VertexRange touched{std::numeric_limits<std::uint32_t>::max(), 0};
     for (std::size_t first = 0; first < job.triangles.size(); first += triangles_at_once) {
         check_cancelled(first);
         const std::size_t size = std::min(triangles_at_once, job.triangles.size() - first);
@@ -224,19 +414,17 @@ RELIEF_INLINE void add_contributions(Job& job, const Contribution& contribution)
             return;
         }
         job.ranges[first / triangles_at_once] = range;
-        touched.lowest = std::min(touched.lowest, range.lowest);
-        touched.highest = std::max(touched.highest, range.highest);
-
+        job.sums->extend_to(range);
         if (size == triangles_at_once && range.highest + 1 < job.positions.size())
-            gather_four(block, job.positions, corners);
+            gather_all(block, job.positions, corners);
         else
             gather_each(block, job.positions, corners);
         contribution(corners, static_cast<Real>(job.scale), contributions);
         if (any_odd(contributions, size))
             set_odd_aside(contributions, job.first_triangle + first, size, *job.odd);
         scatter<weight>(block, contributions, *job.sums);
+        job.normals.add(block, range);
     }
-    job.sums->touched = touched;
 }
 
 template <NormalWeight weight, typename Real>
@@ -282,6 +470,7 @@ void add_narrow(const Job& job, NormalWeight weight) {
                 sum.z += contributions.factor[k] * contributions.area_vector[2];
                 sum.edge_product += contributions.factor[k] * contributions.edge_product;
                 count_up(job.sums->counts()[triangle[i]]);
+                job.sums->rounded()[triangle[i] / at_once] = 0;
             }
         });
     }
@@ -358,22 +547,35 @@ float scale_for(StridedSpan<const glm::vec3> positions) {
     return std::ldexp(1.0F, std::clamp(-std::ilogb(size), -126, 127));
 }
 
-PartialSums::PartialSums(std::size_t vertex_count) {
-    // The system provides large zeroed memory on first use: untouched memory costs nothing.
-    const std::size_t bytes =
-        vertex_count * (sizeof(WeightedNormalSum) + 1) + alignof(WeightedNormalSum);
-    memory_.reset(std::calloc(bytes, 1));
-    if (!memory_) throw std::bad_alloc();
-    void* begin = memory_.get();
-    std::size_t room = bytes;
-    sums_ = static_cast<WeightedNormalSum*>(std::align(
-        alignof(WeightedNormalSum), vertex_count * sizeof(WeightedNormalSum), begin, room));
-    counts_ = reinterpret_cast<std::uint8_t*>(sums_ + vertex_count);
-    expect_filling(sums_, vertex_count * sizeof(WeightedNormalSum));
+void PartialSums::clear(std::size_t begin, std::size_t end) {
+    std::fill(sums() + begin, sums() + end, WeightedNormalSum{});
+    std::fill(counts() + begin, counts() + end, std::uint8_t{0});
+}
+
+PartialSums::PartialSums(std::size_t vertex_count)
+    : sums_(vertex_count),
+      counts_(vertex_count),
+      rounded_((vertex_count + at_once - 1) / at_once, std::uint8_t{0}) {}
+
+void PartialSums::extend_to(const VertexRange& range) {
+    if (vertices_.lowest > vertices_.highest) {
+        clear(range.lowest, std::size_t(range.highest) + 1);
+        vertices_ = range;
+        return;
+    }
+    if (range.lowest < vertices_.lowest) {
+        clear(range.lowest, vertices_.lowest);
+        vertices_.lowest = range.lowest;
+    }
+    if (range.highest > vertices_.highest) {
+        clear(std::size_t(vertices_.highest) + 1, std::size_t(range.highest) + 1);
+        vertices_.highest = range.highest;
+    }
 }
 
 NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
-                             NormalWeight weight, Arithmetic arithmetic) {
+                             NormalWeight weight, Arithmetic arithmetic,
+                             StridedSpan<glm::vec3> normals) {
     constexpr std::size_t worth_a_thread = 64 * triangles_at_once;
     // A larger number of parts would cost more memory than the threads save time.
     constexpr std::size_t max_parts = 8;
@@ -395,7 +597,8 @@ NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpa
             std::min(blocks * (i + 1) / parts * triangles_at_once, triangles.size());
         jobs.push_back({positions, triangles.subspan(begin, end - begin),
                         static_cast<std::uint32_t>(begin), scale, &result.parts[i],
-                        result.ranges.data() + first, &odd[i]});
+                        result.ranges.data() + first, &odd[i],
+                        EarlyNormals(result.parts[i], normals)});
     }
     parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -403,6 +606,8 @@ NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpa
     });
     for (const Job& job : jobs) {
         if (job.out_of_range) check_triangles(triangles, positions.size());
+        result.doubtful.insert(result.doubtful.end(), job.normals.doubtful().begin(),
+                               job.normals.doubtful().end());
     }
     for (const std::vector<std::uint32_t>& some : odd)
         result.odd.insert(result.odd.end(), some.begin(), some.end());
@@ -411,86 +616,6 @@ NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpa
 
 namespace {
 
-constexpr std::size_t at_once = 128;
-constexpr double unit_rounding = 0x1p-53;
-
-struct BlockSums {
-    alignas(64) std::array<double, at_once> x, y, z, edge_product, count;
-};
-
-struct BlockNormals {
-    alignas(64) std::array<float, at_once> x, y, z;
-    alignas(64) std::array<std::uint32_t, at_once> doubt;  ///< 1 or 0.
-};
-
-/// Rounds to the nearest integer, for |value| < 2^51.
-RELIEF_INLINE double nearest(double value) {
-    constexpr double large = 0x1.8p52;
-    return (value + large) - large;
-}
-
-RELIEF_INLINE float to_float(double steps) {
-    return static_cast<float>(steps) * static_cast<float>(1.0 / normal_grid) + 0.0F;
-}
-
-RELIEF_INLINE void round_block(const BlockSums& sums, BlockNormals& normals) {
-    for (std::size_t i = 0; i < at_once; ++i) {
-        const double x = sums.x[i], y = sums.y[i], z = sums.z[i];
-        const double steps = normal_grid / std::sqrt(x * x + y * y + z * z);
-        const double sum_error = (64.0 + 2.0 * sums.count[i]) * sums.edge_product[i] * steps;
-        const double safe = 0.5 - unit_rounding * (sum_error + 8.0 * normal_grid);
-        const double to_x = nearest(x * steps), to_y = nearest(y * steps),
-                     to_z = nearest(z * steps);
-        const double off_x = std::abs(x * steps - to_x), off_y = std::abs(y * steps - to_y),
-                     off_z = std::abs(z * steps - to_z);
-        const double off_xy = off_x > off_y ? off_x : off_y;
-        const double off = off_xy > off_z ? off_xy : off_z;
-        // The condition is true for NaN (from a sum of zero) and for a saturated count.
-        const double full = sums.count[i] < 255.0 ? 0.0 : 1.0;
-        normals.doubt[i] = off + full < safe ? 0U : 1U;
-        normals.x[i] = to_float(to_x);
-        normals.y[i] = to_float(to_y);
-        normals.z[i] = to_float(to_z);
-    }
-}
-
-template <typename Take>
-RELIEF_INLINE void take_part(const PartialSums& part, std::size_t begin, std::size_t from,
-                             std::size_t to, BlockSums& block, const Take& take) {
-    for (std::size_t v = from; v < to; ++v) {
-        const WeightedNormalSum& sum = part.sums()[v];
-        take(block.x[v - begin], sum.x);
-        take(block.y[v - begin], sum.y);
-        take(block.z[v - begin], sum.z);
-        take(block.edge_product[v - begin], sum.edge_product);
-    }
-    for (std::size_t v = from; v < to; ++v)
-        take(block.count[v - begin], static_cast<double>(part.counts()[v]));
-}
-
-/// Adds the sums of all parts for the vertices from `begin`.
-RELIEF_INLINE void load(const NormalSums& sums, std::size_t begin, std::size_t size,
-                        BlockSums& block) {
-    const auto set = [](double& to, double value) { to = value; };
-    const auto add = [](double& to, double value) { to += value; };
-    bool is_set = false;
-    for (const PartialSums& part : sums.parts) {
-        const std::size_t from = std::max<std::size_t>(begin, part.touched.lowest);
-        const std::size_t to =
-            std::min<std::size_t>(begin + size, std::size_t(part.touched.highest) + 1);
-        if (from >= to) continue;
-        const bool is_whole = to - from == at_once;
-        if (!is_set && is_whole) {
-            take_part(part, begin, from, to, block, set);
-        } else {
-            if (!is_set) block = {};
-            take_part(part, begin, from, to, block, add);
-        }
-        is_set = true;
-    }
-    if (!is_set) block = {};
-}
-
 /// Adds the sums of `size` groups of vertices.
 void load_shared(const NormalSums& sums, std::span<const std::uint32_t> first,
                  std::span<const std::uint32_t> members, std::size_t size, BlockSums& block) {
@@ -498,6 +623,8 @@ void load_shared(const NormalSums& sums, std::span<const std::uint32_t> first,
     for (std::size_t i = 0; i < size; ++i) {
         for (std::size_t k = first[i]; k < first[i + 1]; ++k) {
             for (const PartialSums& part : sums.parts) {
+                const auto& [lowest, highest] = part.vertices();
+                if (members[k] < lowest || members[k] > highest) continue;
                 const WeightedNormalSum& sum = part.sums()[members[k]];
                 block.x[i] += sum.x;
                 block.y[i] += sum.y;
@@ -509,71 +636,23 @@ void load_shared(const NormalSums& sums, std::span<const std::uint32_t> first,
     }
 }
 
-// A separate function: GCC does not vectorize the loop when it is inlined.
-RELIEF_TARGET_512 void round_block_512(const BlockSums& sums, BlockNormals& normals) {
-    round_block(sums, normals);
-}
-RELIEF_TARGET_256 void round_block_256(const BlockSums& sums, BlockNormals& normals) {
-    round_block(sums, normals);
-}
-[[gnu::noinline]] void round_block_any(const BlockSums& sums, BlockNormals& normals) {
-    round_block(sums, normals);
-}
-
-/// Rounds the normals of a block of vertices and marks uncertain ones in `doubt`.
-template <typename RoundBlock>
-RELIEF_INLINE void round_vertices(const NormalSums& sums, std::size_t begin, std::size_t size,
-                                  StridedSpan<glm::vec3> normals, BlockNormals& rounded,
-                                  const RoundBlock& round) {
-    BlockSums block;
-    load(sums, begin, size, block);
-    round(block, rounded);
-    for (std::size_t i = 0; i < size; ++i)
-        normals[begin + i] = {rounded.x[i], rounded.y[i], rounded.z[i]};
-}
-
-RELIEF_TARGET_512 void round_vertices_512(const NormalSums& sums, std::size_t begin,
-                                          std::size_t size, StridedSpan<glm::vec3> normals,
-                                          BlockNormals& rounded) {
-    round_vertices(sums, begin, size, normals, rounded, round_block_512);
-}
-RELIEF_TARGET_256 void round_vertices_256(const NormalSums& sums, std::size_t begin,
-                                          std::size_t size, StridedSpan<glm::vec3> normals,
-                                          BlockNormals& rounded) {
-    round_vertices(sums, begin, size, normals, rounded, round_block_256);
-}
-void round_vertices_any(const NormalSums& sums, std::size_t begin, std::size_t size,
-                        StridedSpan<glm::vec3> normals, BlockNormals& rounded) {
-    round_vertices(sums, begin, size, normals, rounded, round_block_any);
-}
-
-auto* best_round_vertices() {
-    switch (best_vector_target()) {
-        case VectorTarget::widest:
-            return &round_vertices_512;
-        case VectorTarget::wide:
-            return &round_vertices_256;
-        case VectorTarget::any:
-            break;
-    }
-    return &round_vertices_any;
-}
-
 /// Indices gathered by several threads, sorted at the end.
 class Gathered {
   public:
     void add(const BlockNormals& normals, std::size_t begin, std::size_t size) {
-        std::uint32_t any = 0;
-        for (std::size_t i = 0; i < size; ++i)
-            any |= normals.doubt[i];
-        if (any == 0) return;
-        const std::lock_guard lock(mutex_);
-        for (std::size_t i = 0; i < size; ++i) {
-            if (normals.doubt[i] != 0) indices_.push_back(static_cast<std::uint32_t>(begin + i));
-        }
+        std::vector<std::uint32_t> some;
+        gather_doubtful(normals, begin, size, some);
+        add(some);
     }
+    void add(std::span<const std::uint32_t> some) {
+        if (some.empty()) return;
+        const std::lock_guard lock(mutex_);
+        indices_.insert(indices_.end(), some.begin(), some.end());
+    }
+    /// Each index once.
     std::vector<std::uint32_t> sorted() {
         std::sort(indices_.begin(), indices_.end());
+        indices_.erase(std::unique(indices_.begin(), indices_.end()), indices_.end());
         return std::move(indices_);
     }
 
@@ -581,6 +660,19 @@ class Gathered {
     std::mutex mutex_;
     std::vector<std::uint32_t> indices_;
 };
+
+/// Tests whether the only part with sums of a block of vertices has rounded it.
+bool is_rounded(std::span<const PartialSums> parts, std::size_t begin) {
+    std::size_t with_sums = 0;
+    bool rounded = false;
+    for (const PartialSums& part : parts) {
+        const auto& [lowest, highest] = part.vertices();
+        if (lowest > highest || lowest >= begin + at_once || highest < begin) continue;
+        ++with_sums;
+        rounded = part.rounded()[begin / at_once] != 0;
+    }
+    return with_sums == 1 && rounded;
+}
 
 constexpr std::size_t blocks_a_piece = 64;
 
@@ -603,10 +695,12 @@ glm::vec3 on_grid(double x, double y, double z) {
 
 std::vector<std::uint32_t> round_normals(const NormalSums& sums, StridedSpan<glm::vec3> normals) {
     Gathered doubtful;
+    doubtful.add(sums.doubtful);
     const auto round = best_round_vertices();
     for_blocks(normals.size(), [&](std::size_t begin, std::size_t size) {
+        if (is_rounded(sums.parts, begin)) return;
         BlockNormals rounded;
-        round(sums, begin, size, normals, rounded);
+        round(sums.parts, begin, size, normals, rounded);
         doubtful.add(rounded, begin, size);
     });
     return doubtful.sorted();

@@ -14,21 +14,21 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "geometry/gather.h"
 #include "relief/mesh/buffers.h"
 #include "relief/mesh/normals.h"
+#include "work_array.h"
 
 namespace relief {
 /// Sum of contributions at one vertex, as wide as one vector register.
 struct alignas(32) WeightedNormalSum {
-    double x = 0.0, y = 0.0, z = 0.0;
+    double x, y, z;
     /// Sum of factor times edge product, the unit of the rounding error.
-    double edge_product = 0.0;
+    double edge_product;
 };
 
 /// A triangle is degenerate if its width divided by its longest edge is below this ratio. The
@@ -56,46 +56,53 @@ float scale_for(StridedSpan<const glm::vec3> positions);
 /// cache.
 constexpr std::size_t triangles_at_once = 128;
 
-/// Smallest and largest vertex index of a block of `triangles_at_once` triangles.
-struct VertexRange {
-    std::uint32_t lowest;
-    std::uint32_t highest;
-};
-
-/// Contributions of a range of triangles at all vertices. Memory that no triangle touches is never
-/// written.
+/// Contributions of a range of triangles at the vertices from the lowest to the highest that they
+/// name. Memory of other vertices is never written.
 class PartialSums {
   public:
     explicit PartialSums(std::size_t vertex_count);
 
-    WeightedNormalSum* sums() { return sums_; }
-    std::uint8_t* counts() { return counts_; }
-    [[nodiscard]] const WeightedNormalSum* sums() const { return sums_; }
-    [[nodiscard]] const std::uint8_t* counts() const { return counts_; }
+    WeightedNormalSum* sums() { return sums_.data(); }
+    /// Number of contributions at each vertex; 255 means 255 or more.
+    std::uint8_t* counts() { return counts_.data(); }
+    [[nodiscard]] const WeightedNormalSum* sums() const { return sums_.data(); }
+    [[nodiscard]] const std::uint8_t* counts() const { return counts_.data(); }
 
-    VertexRange touched{1, 0};  ///< Empty if there is no triangle.
+    /// 1 for each block of vertices whose normals were rounded from these sums alone.
+    std::uint8_t* rounded() { return rounded_.data(); }
+    [[nodiscard]] const std::uint8_t* rounded() const { return rounded_.data(); }
+    /// The vertices that have sums; empty if there is no triangle.
+    [[nodiscard]] const VertexRange& vertices() const { return vertices_; }
+    /// Sets the sums of vertices that have none yet to zero. On usual meshes, where triangles
+    /// follow the order of vertices, they are then still in the cache when the first triangle is
+    /// added.
+    void extend_to(const VertexRange& range);
 
   private:
-    struct Free {
-        void operator()(void* memory) const { std::free(memory); }
-    };
-    std::unique_ptr<void, Free> memory_;
-    WeightedNormalSum* sums_;
-    /// Number of contributions at each vertex; 255 means 255 or more.
-    std::uint8_t* counts_;
+    void clear(std::size_t begin, std::size_t end);
+
+    WorkArray<WeightedNormalSum> sums_;
+    WorkArray<std::uint8_t> counts_;
+    WorkArray<std::uint8_t> rounded_;
+    VertexRange vertices_{1, 0};
 };
 
 struct NormalSums {
-    std::vector<PartialSums> parts;  ///< Partial sums that are added.
+    std::vector<PartialSums> parts;       ///< Partial sums that are added.
+    std::vector<std::uint32_t> doubtful;  ///< The uncertain ones of vertices that were rounded.
     /// Vertex range of each block of `triangles_at_once` triangles.
     std::vector<VertexRange> ranges;
     /// Triangles that were processed one by one: all that are not valid, and narrow valid ones.
     std::vector<std::uint32_t> odd;
 };
 
+/// Sums the contributions, and already computes the normals of most vertices whose sums are
+/// complete, while these are in the cache.
+///
 /// \throws InvalidInput if a triangle names a vertex that does not exist
 NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
-                             NormalWeight weight, Arithmetic arithmetic);
+                             NormalWeight weight, Arithmetic arithmetic,
+                             StridedSpan<glm::vec3> normals);
 
 /// Grid steps per unit to which unit vectors are rounded. The error is at most 1.9e-9, a sixteenth
 /// of the spacing of floats next to 1.
@@ -104,8 +111,8 @@ constexpr double normal_grid = 268435456.0;
 /// Rounds a unit vector to the grid and to float. -0 becomes +0.
 glm::vec3 on_grid(double x, double y, double z);
 
-/// Computes the normals of all vertices. \return the vertices whose rounding is uncertain or that
-/// have no normal, ascending
+/// Computes the normals of all other vertices. \return the vertices whose rounding is uncertain or
+/// that have no normal, ascending
 std::vector<std::uint32_t> round_normals(const NormalSums& sums, StridedSpan<glm::vec3> normals);
 
 /// Computes the normals of groups of vertices that share a normal. Group i is `members` from

@@ -349,9 +349,10 @@ AveragingResult averaged_normals(StridedSpan<const glm::vec3> positions, Triangl
     AveragingResult result;
     Groups groups;
     NormalSums sums;
-    parallel_tasks({[&] { sums = sum_contributions(positions, triangles, weight, arithmetic); },
-                    [&] { groups = shared(); }},
-                   triangles.size() < few_triangles);
+    parallel_tasks(
+        {[&] { sums = sum_contributions(positions, triangles, weight, arithmetic, normals); },
+         [&] { groups = shared(); }},
+        triangles.size() < few_triangles);
     result.odd_triangles = std::move(sums.odd);
     const auto vertices = round_normals(sums, normals);
     const auto doubtful = round_shared_normals(sums, groups.first, groups.members, normals);

@@ -9,10 +9,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 #include <numbers>
 
 #include "geometry/direction.h"
+#include "geometry/gather.h"
 #include "geometry/tangent_contributions.h"
 #include "parallel.h"
 #include "portable_math.h"
@@ -128,16 +130,22 @@ struct BlockAxes {
 /// Contributions at one corner of every triangle of a block.
 struct BlockContributions {
     Vectors<std::int32_t, 3> vector;
-    PerTriangle<std::int32_t> exponent;
-    PerTriangle<std::int32_t> seen;
+    PerTriangle<std::int32_t> rest;  ///< The other members of CornerContribution.
     PerTriangle<std::uint32_t> odd;
 };
 
-void gather(const TangentInput& input, std::size_t first, std::size_t count, BlockCorners& block) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const glm::uvec3& triangle = input.triangles[first + i];
+/// The bits of exponent, side and seen.
+RELIEF_INLINE std::int32_t rest_of(std::int32_t exponent, std::int32_t side, std::int32_t seen) {
+    static_assert(std::endian::native == std::endian::little);
+    return (exponent & 0xFFFF) | (side & 0xFF) << 16 | seen << 24;
+}
+
+/// Loads corners one by one, for blocks that are not full or that use the last vertex.
+void gather_each(const TangentInput& input, std::span<const glm::uvec3> triangles,
+                 BlockCorners& block) {
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t vertex = triangle[static_cast<int>(k)];
+            const std::uint32_t vertex = triangles[i][static_cast<int>(k)];
             const glm::vec3& position = input.positions[vertex];
             block.position[k][0][i] = position.x;
             block.position[k][1][i] = position.y;
@@ -149,6 +157,41 @@ void gather(const TangentInput& input, std::size_t first, std::size_t count, Blo
             const glm::vec2& texcoord = input.texcoords[vertex];
             block.texcoord[k][0][i] = texcoord.x;
             block.texcoord[k][1][i] = -texcoord.y;
+        }
+    }
+}
+
+/// Loads the texture coordinates of one corner of four triangles, with v upwards.
+RELIEF_INLINE void gather_four_texcoords(const StridedSpan<const glm::vec2>& texcoords,
+                                         const glm::uvec3* triangles, int corner, float* u,
+                                         float* v) {
+    const auto* const first = reinterpret_cast<const std::byte*>(texcoords.data());
+    const std::size_t stride = texcoords.stride();
+    FourFloats ab, cd;
+    std::array<double, 2> pair;  // Moves 8 bytes at a time.
+    std::memcpy(&pair[0], first + stride * triangles[0][corner], sizeof pair[0]);
+    std::memcpy(&pair[1], first + stride * triangles[1][corner], sizeof pair[1]);
+    std::memcpy(&ab, pair.data(), sizeof ab);
+    std::memcpy(&pair[0], first + stride * triangles[2][corner], sizeof pair[0]);
+    std::memcpy(&pair[1], first + stride * triangles[3][corner], sizeof pair[1]);
+    std::memcpy(&cd, pair.data(), sizeof cd);
+    const FourFloats us = __builtin_shufflevector(ab, cd, 0, 2, 4, 6);
+    const FourFloats vs = -__builtin_shufflevector(ab, cd, 1, 3, 5, 7);
+    std::memcpy(u, &us, sizeof us);
+    std::memcpy(v, &vs, sizeof vs);
+}
+
+/// Loads the corners of a full block.
+RELIEF_INLINE void gather_all(const TangentInput& input, std::span<const glm::uvec3> triangles,
+                              BlockCorners& block) {
+    for (std::size_t i = 0; i < triangles_at_once; i += 4) {
+        for (int k = 0; k < 3; ++k) {
+            auto& [x, y, z] = block.position[static_cast<std::size_t>(k)];
+            auto& [nx, ny, nz] = block.normal[static_cast<std::size_t>(k)];
+            auto& [u, v] = block.texcoord[static_cast<std::size_t>(k)];
+            gather_four(input.positions, &triangles[i], k, &x[i], &y[i], &z[i]);
+            gather_four(input.normals, &triangles[i], k, &nx[i], &ny[i], &nz[i]);
+            gather_four_texcoords(input.texcoords, &triangles[i], k, &u[i], &v[i]);
         }
     }
 }
@@ -280,11 +323,11 @@ RELIEF_INLINE void contribution_at_corner(const BlockCorners& block, const Block
         contributions.vector[0][i] = to_contribution_bits(x * scale);
         contributions.vector[1][i] = to_contribution_bits(y * scale);
         contributions.vector[2][i] = to_contribution_bits(z * scale);
-        contributions.exponent[i] =
-            static_cast<std::int32_t>(exponent >> 52) - 1023 - (contribution_bits - 1);
         const std::int32_t skewed = pq * pq < skewed_cosine_squared * (pp * qq) ? 0 : seen_skewed;
         const std::int32_t behind = cx * nx + cy * ny + cz * nz > 0.0 ? 0 : seen_from_behind;
-        contributions.seen[i] = skewed | behind;
+        contributions.rest[i] =
+            rest_of(static_cast<std::int32_t>(exponent >> 52) - 1023 - (contribution_bits - 1),
+                    static_cast<std::int32_t>(axes.side[i]), skewed | behind);
         sound &= (largest > 1e-250 && largest < 1e250) ? 1U : 0U;
         contributions.odd[i] = 1U - sound;
     }
@@ -358,33 +401,68 @@ void contribution_of_any(const Job& job, TangentWeight weight, std::size_t trian
         job.contributions[3 * triangle + k] = std::bit_cast<glm::vec4>(found.contributions[k]);
 }
 
+/// Stores the contributions of a full block at one corner of its triangles.
+RELIEF_INLINE void store_corner(const BlockContributions& block, glm::vec4* first) {
+    for (std::size_t i = 0; i < triangles_at_once; i += 4) {
+        FourInts a, b, c, d;
+        std::memcpy(&a, &block.vector[0][i], sizeof a);
+        std::memcpy(&b, &block.vector[1][i], sizeof b);
+        std::memcpy(&c, &block.vector[2][i], sizeof c);
+        std::memcpy(&d, &block.rest[i], sizeof d);
+        transpose(a, b, c, d);
+        std::memcpy(&first[3 * i], &a, sizeof a);
+        std::memcpy(&first[3 * i + 3], &b, sizeof b);
+        std::memcpy(&first[3 * i + 6], &c, sizeof c);
+        std::memcpy(&first[3 * i + 9], &d, sizeof d);
+    }
+}
+
+/// Stores the contributions of `count` triangles.
+void store_each(const std::array<BlockContributions, 3>& block, std::size_t count,
+                glm::vec4* first) {
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            first[3 * i + k] =
+                std::bit_cast<glm::vec4>(std::array{block[k].vector[0][i], block[k].vector[1][i],
+                                                    block[k].vector[2][i], block[k].rest[i]});
+        }
+    }
+}
+
 template <TangentWeight weight>
 void compute_contributions_of(const Job& job, std::size_t begin, std::size_t end,
                               std::vector<std::uint32_t>& without) {
     BlockCorners corners{};
     BlockAxes axes{};
     std::array<BlockContributions, 3> contributions{};
+    std::array<glm::uvec3, triangles_at_once> wide;
     for (std::size_t first = begin; first < end; first += triangles_at_once) {
         const std::size_t count = std::min(triangles_at_once, end - first);
-        gather(job.input, first, count, corners);
+        const auto block = block_of(job.input.triangles, first, count, wide);
+        const bool is_full = count == triangles_at_once;
+        if (is_full && range_of(block).highest + 1 < job.input.positions.size())
+            gather_all(job.input, block, corners);
+        else
+            gather_each(job.input, block, corners);
         contribution<weight>(corners, axes, contributions);
+        glm::vec4* const results = &job.contributions[3 * first];
+        if (is_full) {
+            for (std::size_t k = 0; k < 3; ++k)
+                store_corner(contributions[k], results + k);
+        } else {
+            store_each(contributions, count, results);
+        }
+        std::uint32_t any_odd = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            if ((axes.odd[i] | contributions[0].odd[i] | contributions[1].odd[i] |
-                 contributions[2].odd[i]) != 0) {
-                contribution_of_any(job, weight, first + i, without);
-                continue;
-            }
+            const std::uint32_t odd = axes.odd[i] | contributions[0].odd[i] |
+                                      contributions[1].odd[i] | contributions[2].odd[i];
+            axes.odd[i] = odd;
+            any_odd |= odd;
             job.kinds[first + i] = axes.side[i] > 0 ? Gradient::upright : Gradient::mirrored;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const CornerContribution contribution{
-                    contributions[k].vector[0][i],
-                    contributions[k].vector[1][i],
-                    contributions[k].vector[2][i],
-                    static_cast<std::int16_t>(contributions[k].exponent[i]),
-                    static_cast<std::int8_t>(axes.side[i]),
-                    static_cast<std::uint8_t>(contributions[k].seen[i])};
-                job.contributions[3 * (first + i) + k] = std::bit_cast<glm::vec4>(contribution);
-            }
+        }
+        if (any_odd == 0) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (axes.odd[i] != 0) contribution_of_any(job, weight, first + i, without);
         }
     }
 }

@@ -126,6 +126,14 @@ class ContributionScale {
         : highest_(highest_exponent),
           room_(std::max(31 - static_cast<int>(std::bit_width(count)), 0)) {}
 
+    /// Tests whether contributions with this exponent, the lowest one, are only shifted to the
+    /// left.
+    [[nodiscard]] bool keeps_all_bits(int lowest_exponent) const {
+        return highest_ - lowest_exponent <= room_;
+    }
+    /// The shift to the left of such contributions.
+    [[nodiscard]] int shift_of(int exponent) const { return room_ - (highest_ - exponent); }
+
     [[nodiscard]] TangentSum scaled(const CornerContribution& contribution) const {
         const int below = std::min(highest_ - contribution.exponent, 63);
         const auto at = [&](std::int32_t number) {

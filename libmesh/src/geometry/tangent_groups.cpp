@@ -13,6 +13,7 @@
 // opposite, which were subtracted twice.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <mutex>
 #include <numbers>
@@ -20,6 +21,7 @@
 #include <tuple>
 
 #include "geometry/direction.h"
+#include "geometry/gather.h"
 #include "geometry/tangent_groups.h"
 #include "geometry/tangent_signs.h"
 #include "parallel.h"
@@ -170,7 +172,10 @@ constexpr double cancelled_tangents = 1e-6;
 
 // Squared cosine of 42 degrees. If all u directions are nearer than this to one of them, they are
 // within 84 degrees of each other, and v directions that are not skewed are within 168.
-constexpr double near_cosine_squared = 0.553;
+constexpr float near_cosine_squared = 0.553F;
+
+// Four integers for sums. The compiler splits them on processors with smaller registers.
+using FourLongs = std::int64_t __attribute__((vector_size(32)));
 
 /// Plane of a vertex's tangents, or all of space if its normal has no direction.
 class TangentPlane {
@@ -206,62 +211,90 @@ class GroupAverager {
         : input_(input),
           corners_(corners),
           findings_(findings),
-          linker_(input.mesh.triangles, input.gradients.kinds) {}
+          linker_(input.mesh.triangles, input.gradients.kinds),
+          indices_(input.mesh.triangles.longs() != nullptr ? &input.mesh.triangles.longs()->x
+                                                           : nullptr) {}
 
     void average_at(std::size_t vertex) {
         const std::span<const Corner> around = input_.corners.at(vertex);
         if (around.empty()) return;
         plane_ = TangentPlane(input_.mesh.normals[vertex]);
-        if (around.size() > max_batch || !average_single_fan(around)) average_carefully(around);
+        if (around.size() > max_single_fan || !average_single_fan(around))
+            average_carefully(around);
     }
 
   private:
-    static constexpr std::size_t max_batch = 16;
-
     /// Handles the usual case: one fan, one handedness, all contributions near each other. Returns
     /// false otherwise.
     bool average_single_fan(std::span<const Corner> around) {
-        int highest = std::numeric_limits<int>::min();
-        bool usual = true;
-        for (std::size_t i = 0; i < around.size(); ++i) {
-            const CornerContribution contribution = contribution_at(corners_, around[i]);
-            fan_contributions_[i] = contribution;
-            usual &= contribution.side != 0 && contribution.side == fan_contributions_[0].side &&
-                     contribution.seen == fan_contributions_[0].seen &&
-                     (contribution.seen & seen_skewed) == 0;
-            highest = std::max(highest, int(contribution.exponent));
-            const glm::uvec3& triangle = input_.mesh.triangles[triangle_of(around[i])];
-            const Corner place = around[i] % 3;
-            fan_next_[i] = triangle[static_cast<int>(place == 2 ? 0 : place + 1)];
-            fan_previous_[i] = triangle[static_cast<int>(place == 0 ? 2 : place - 1)];
-        }
-        const std::span contributions(fan_contributions_.data(), around.size());
-        if (!usual || !are_near(contributions) ||
-            !is_single_fan({fan_next_.data(), around.size()},
-                           {fan_previous_.data(), around.size()}))
+        const auto count = static_cast<std::uint32_t>(around.size());
+        // The members of a contribution after the exponent: side and seen.
+        const auto kind_of = [](const FourInts& contribution) { return contribution[3] >> 16; };
+        const FourInts first = std::bit_cast<FourInts>(corners_[around[0]]);
+        if (contribution_at(corners_, around[0]).side == 0 ||
+            (contribution_at(corners_, around[0]).seen & seen_skewed) != 0)
             return false;
-        const ContributionScale scale(highest, around.size());
-        TangentSum sum;
-        for (const CornerContribution& contribution : contributions)
-            sum += scale.scaled(contribution);
-        const glm::vec4 tangent(plane_.tangent_along(sum.vector()), float(contributions[0].side));
+        int highest = std::numeric_limits<int>::min();
+        int lowest = std::numeric_limits<int>::max();
+        std::int32_t differences = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Corner corner = around[i];
+            const FourInts contribution = std::bit_cast<FourInts>(corners_[corner]);
+            fan_[i] = contribution;
+            differences |= kind_of(contribution) ^ kind_of(first);
+            const int exponent = static_cast<std::int16_t>(contribution[3] & 0xFFFF);
+            highest = std::max(highest, exponent);
+            lowest = std::min(lowest, exponent);
+            fan_next_[i] = index_of(next_in_triangle(corner));
+            fan_previous_[i] = index_of(previous_in_triangle(corner));
+        }
+        // Completes the last four.
+        for (std::uint32_t i = count; i % 4 != 0; ++i)
+            fan_[i] = first;
+        const ContributionScale scale(highest, count);
+        if (differences != 0 || !scale.keeps_all_bits(lowest) || !are_near(count) ||
+            !is_single_fan(fan_next_, fan_previous_, count))
+            return false;
+        FourLongs sum{};
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const int exponent = static_cast<std::int16_t>(fan_[i][3] & 0xFFFF);
+            sum += __builtin_convertvector(fan_[i], FourLongs) << scale.shift_of(exponent);
+        }
+        const glm::dvec3 vector(static_cast<double>(sum[0]), static_cast<double>(sum[1]),
+                                static_cast<double>(sum[2]));
+        const float side = contribution_at(corners_, around[0]).side;
+        const glm::vec4 tangent(plane_.tangent_along(vector), side);
         for (const Corner corner : around)
             corners_[corner] = tangent;
         return true;
     }
 
-    /// Tests whether all contributions are within 42 degrees of the first.
-    static bool are_near(std::span<const CornerContribution> contributions) {
-        const glm::dvec3 first(contributions[0].x, contributions[0].y, contributions[0].z);
-        const double first_squared = glm::dot(first, first);
-        bool near = true;
-        for (const CornerContribution& contribution : contributions) {
-            const glm::dvec3 vector(contribution.x, contribution.y, contribution.z);
-            const double product = glm::dot(first, vector);
-            near &= product > 0.0 && product * product > near_cosine_squared * first_squared *
-                                                             glm::dot(vector, vector);
+    /// Tests whether all contributions of the fan are within 42 degrees of the first. The last four
+    /// are complete.
+    [[nodiscard]] bool are_near(std::uint32_t count) const {
+        // In float: its rounding is far less than the margin of near_cosine_squared.
+        const auto x = static_cast<float>(fan_[0][0]);
+        const auto y = static_cast<float>(fan_[0][1]);
+        const auto z = static_cast<float>(fan_[0][2]);
+        const float limit = near_cosine_squared * (x * x + y * y + z * z);
+        FourInts far{};
+        for (std::uint32_t i = 0; i < count; i += 4) {
+            FourInts a = fan_[i], b = fan_[i + 1], c = fan_[i + 2], d = fan_[i + 3];
+            transpose(a, b, c, d);
+            const FourFloats ax = __builtin_convertvector(a, FourFloats);
+            const FourFloats ay = __builtin_convertvector(b, FourFloats);
+            const FourFloats az = __builtin_convertvector(c, FourFloats);
+            const FourFloats product = x * ax + y * ay + z * az;
+            const FourFloats square = ax * ax + ay * ay + az * az;
+            far |= product <= 0.0F;
+            far |= product * product <= limit * square;
         }
-        return near;
+        return (far[0] | far[1] | far[2] | far[3]) == 0;
+    }
+
+    /// The vertex of a corner.
+    [[nodiscard]] std::uint32_t index_of(Corner corner) const {
+        return indices_ != nullptr ? indices_[corner] : vertex_of(corner, input_.mesh.triangles);
     }
 
     /// Handles any case: finds groups by walking from neighbor to neighbor.
@@ -427,9 +460,10 @@ class GroupAverager {
     CornerLinker linker_;
     TangentPlane plane_;
     std::span<const Corner> around_;
-    std::array<CornerContribution, max_batch> fan_contributions_;
-    std::array<std::uint32_t, max_batch> fan_next_{};
-    std::array<std::uint32_t, max_batch> fan_previous_{};
+    const std::uint32_t* indices_;  ///< Null if they have 16 bits.
+    std::array<FourInts, max_single_fan> fan_;
+    FanVertices fan_next_{};
+    FanVertices fan_previous_{};
     std::vector<CornerContribution> contributions_;
     std::vector<glm::vec4> tangents_;
     std::vector<std::uint8_t> is_open_;

@@ -13,6 +13,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <cstring>
 #include <glm/glm.hpp>
 #include <limits>
 #include <span>
@@ -20,8 +21,10 @@
 #include <vector>
 
 #include "geometry/corners.h"
+#include "geometry/gather.h"
 #include "geometry/tangent_contributions.h"
 #include "geometry/texture_gradient.h"
+#include "vector_targets.h"
 
 namespace relief {
 /// An edge of a triangle, relative to the vertex at its end.
@@ -67,46 +70,63 @@ class CornerLinker {
     std::vector<Place> twin_;
 };
 
+/// Returns a bit for each of `count` numbers, 8 or 16, that equals `value`.
+template <std::size_t count>
+RELIEF_INLINE std::uint32_t equal_to(const std::uint32_t* numbers, std::uint32_t value) {
+    const auto wanted = static_cast<std::int32_t>(value);
+    FourInts mask{};
+    for (int i = 0; i < static_cast<int>(count); i += 4) {
+        FourInts four;
+        std::memcpy(&four, numbers + i, sizeof four);
+        mask |= (four == FourInts{wanted, wanted, wanted, wanted}) &
+                FourInts{1 << i, 2 << i, 4 << i, 8 << i};
+    }
+    mask |= __builtin_shufflevector(mask, mask, 2, 3, 0, 1);
+    return static_cast<std::uint32_t>(mask[0] | mask[1]);
+}
+
+/// The largest number of corners for is_single_fan().
+constexpr std::size_t max_single_fan = 16;
+using FanVertices = std::array<std::uint32_t, max_single_fan>;
+
 /// Tests whether the corners at a vertex form one chain or one ring: each triangle is the neighbor
 /// of the next, none remains, and no edge has a third triangle. Then no search for neighbors is
 /// needed.
 ///
-/// \param next,previous  for each corner, the next and the previous vertex of its triangle; 1 to 16
-/// corners
-///                       1 to 16 of them
+/// \param next,previous  for each corner, the next and the previous vertex of its triangle
+/// \param count  the number of corners, at least 1
 ///
 /// Compares all pairs of corners without branches, which is faster than a search for so few
 /// corners.
-inline bool is_single_fan(std::span<const std::uint32_t> next,
-                          std::span<const std::uint32_t> previous) {
-    constexpr std::size_t most = 16;
-    const auto count = static_cast<std::uint32_t>(next.size());
-    assert(count >= 1 && count <= most && previous.size() == count);
-    std::array<std::uint32_t, most> after;  // The corner across, or `count` if there is none.
-    std::uint32_t followed = 0;             // One bit for each corner that follows another.
-    std::uint32_t links = 0;
+RELIEF_INLINE bool is_single_fan(const FanVertices& next, const FanVertices& previous,
+                                 std::uint32_t count) {
+    assert(count >= 1 && count <= max_single_fan);
+    const std::uint32_t all = (1U << count) - 1;
+    std::uint64_t after = 0;     // Four bits for each corner: the corner across, if there is one.
+    std::uint32_t followed = 0;  // One bit for each corner that follows another.
+    std::uint32_t last = 0;      // One bit for each corner that no other follows.
     bool crowded = false;
     for (std::uint32_t i = 0; i < count; ++i) {
-        std::uint32_t found = count;
-        std::uint32_t matches = 0;
-        for (std::uint32_t k = 0; k < count; ++k) {
-            const bool match = previous[k] == next[i];
-            found = match ? k : found;
-            matches += match ? 1 : 0;
-        }
+        const std::uint32_t matches =
+            all & (count <= 8 ? equal_to<8>(previous.data(), next[i])
+                              : equal_to<max_single_fan>(previous.data(), next[i]));
         // A corner may have only one predecessor and one successor.
-        crowded |= matches > 1 || (matches & (followed >> found)) != 0;
-        after[i] = found;
-        followed |= matches << found;
-        links += matches;
+        crowded |= (matches & (matches - 1)) != 0 || (matches & followed) != 0;
+        followed |= matches;
+        last |= matches == 0 ? 1U << i : 0U;
+        after |= std::uint64_t(std::countr_zero(matches | 1U << 15)) << (4 * i);
     }
-    if (crowded || links + 1 < count) return false;
+    if (crowded || (last & (last - 1)) != 0) return false;
     // There is at most one chain; everything else is rings. All corners must be reached from the
     // first of the chain, or from any corner of a ring.
-    const auto first = links == count ? 0U : static_cast<std::uint32_t>(std::countr_one(followed));
+    const auto first = last == 0 ? 0U : static_cast<std::uint32_t>(std::countr_one(followed));
     std::uint32_t reached = 1;
-    for (std::uint32_t i = after[first]; i != count && i != first; i = after[i])
+    std::uint32_t i = first;
+    while ((last >> i & 1U) == 0) {
+        i = static_cast<std::uint32_t>(after >> (4 * i)) & 15U;
+        if (i == first) break;
         ++reached;
+    }
     return reached == count;
 }
 

@@ -37,6 +37,8 @@
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/workspace.h"
+#include "work_array.h"
 
 namespace relief {
 namespace {
@@ -255,27 +257,26 @@ class WeldedTriangles {
         if (std::all_of(first.begin(), first.end(),
                         [&](std::uint32_t index) { return index == vertex++; }))
             return;
-        welded_ = welded_triangles(input.triangles, first);
+        welded_ = WorkArray<glm::uvec3>(input.triangles.size());
+        weld_triangles(input.triangles, first, welded_);
         triangles_ = welded_;
     }
     [[nodiscard]] TriangleSpan get() const { return triangles_; }
 
   private:
-    std::vector<glm::uvec3> welded_;
+    WorkArray<glm::uvec3> welded_;
     TriangleSpan triangles_;
 };
 
-std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, TangentGroups groups,
-                                   Report& report) {
+/// \param tangents  three per triangle
+void compute_tangents(TangentInput input, TangentWeight weight, TangentGroups groups,
+                      std::span<glm::vec4> tangents, Report& report) {
     ProgressStage stage("tangents", 6);
     check(input);
     const WeldedTriangles welded(input);
     input.triangles = welded.get();
     stage.advance(1);
 
-    std::vector<glm::vec4> tangents;
-    reserve_to_fill(tangents, 3 * input.triangles.size());
-    tangents.resize(3 * input.triangles.size());
     const TriangleGradients gradients = compute_contributions(input, weight, tangents);
     stage.advance(1);
     const CornersByVertex corners(input.positions.size(), input.triangles,
@@ -294,6 +295,14 @@ std::vector<glm::vec4> tangents_of(TangentInput input, TangentWeight weight, Tan
         report.add("corner without texture direction", "corner", corner,
                    "gets a fixed tangent perpendicular to its normal");
     }
+}
+
+std::vector<glm::vec4> tangents_of(const TangentInput& input, TangentWeight weight,
+                                   TangentGroups groups, Report& report) {
+    std::vector<glm::vec4> tangents;
+    reserve_to_fill(tangents, 3 * input.triangles.size());
+    tangents.resize(3 * input.triangles.size());
+    compute_tangents(input, weight, groups, tangents, report);
     return tangents;
 }
 
@@ -348,6 +357,19 @@ std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> position
                        TangentGroups::connected, report);
 }
 
+void corner_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const glm::vec3> normals,
+                     StridedSpan<const glm::vec2> texcoords, TriangleSpan triangles,
+                     std::span<glm::vec4> tangents, Report& report,
+                     const ExecutionOptions& execution) {
+    const ExecutionScope scope(execution);
+    if (tangents.size() != 3 * triangles.size()) {
+        throw InvalidInput(fmt::format("there is memory for {} tangents, but there are {} corners",
+                                       tangents.size(), 3 * triangles.size()));
+    }
+    compute_tangents({positions, normals, texcoords, triangles}, TangentWeight::angle,
+                     TangentGroups::connected, tangents, report);
+}
+
 void vertex_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const glm::vec3> normals,
                      StridedSpan<const glm::vec2> texcoords, TriangleSpan triangles,
                      StridedSpan<glm::vec4> tangents, Report& report,
@@ -358,8 +380,9 @@ void vertex_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const g
             fmt::format("there is memory for {} tangents, but there are {} positions",
                         tangents.size(), positions.size()));
     }
-    const std::vector<glm::vec4> of_corners =
-        mikktspace_tangents(positions, normals, texcoords, triangles, report);
+    WorkArray<glm::vec4> of_corners(3 * triangles.size());
+    compute_tangents({positions, normals, texcoords, triangles}, TangentWeight::angle,
+                     TangentGroups::connected, of_corners, report);
     const std::vector<std::uint32_t> differing =
         write_first_tangents(of_corners, triangles, tangents);
     settle_differing(of_corners, triangles, differing, tangents, report);

@@ -20,6 +20,7 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
+#include "work_array.h"
 
 namespace relief {
 namespace {
@@ -68,25 +69,51 @@ struct BucketEntry {
 /// the same bucket, and the table of a bucket fits the cache.
 class Buckets {
   public:
-    explicit Buckets(std::span<const std::uint32_t> hashes)
-        : shift_(32 -
-                 std::min(max_bits, static_cast<int>(std::bit_width(hashes.size() / usual_size)))),
-          first_((std::size_t(1) << (32 - shift_)) + 1, 0) {
-        reserve_to_fill(entries_, hashes.size());
-        entries_.resize(hashes.size());
-        for (const std::uint32_t hash : hashes)
-            ++first_[bucket_of(hash) + 1];
-        std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        std::vector<std::size_t> end(first_.begin(), first_.end() - 1);
-        for (std::size_t i = 0; i < hashes.size(); ++i) {
-            check_cancelled(i);
-            entries_[end[bucket_of(hashes[i])]++] = {hashes[i], static_cast<std::uint32_t>(i)};
+    /// \param hash_at  hash_at(i) returns the hash of vertex i
+    template <typename HashAt>
+    Buckets(std::size_t count, const HashAt& hash_at)
+        : shift_(32 - std::min(max_bits, static_cast<int>(std::bit_width(count / usual_size)))),
+          first_((std::size_t(1) << (32 - shift_)) + 1, 0),
+          entries_(count) {
+        // Each part of the vertices first counts its vertices in each bucket, which gives the
+        // position of its entries.
+        constexpr std::size_t worth_a_thread = 32768;
+        const std::size_t parts =
+            std::clamp<std::size_t>(count / worth_a_thread, 1, thread_count());
+        WorkArray<std::uint32_t> hashes(count);
+        std::vector<std::vector<std::size_t>> places(parts);
+        const auto for_vertices = [&](const auto& body) {
+            parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t part = begin; part < end; ++part) {
+                    const std::size_t last = count * (part + 1) / parts;
+                    for (std::size_t i = count * part / parts; i < last; ++i) {
+                        check_cancelled(i);
+                        body(i, places[part]);
+                    }
+                }
+            });
+        };
+        for (std::vector<std::size_t>& place : places)
+            place.resize(this->count());
+        for_vertices([&](std::size_t i, std::vector<std::size_t>& place) {
+            hashes[i] = hash_at(i);
+            ++place[bucket_of(hashes[i])];
+        });
+        std::size_t next = 0;
+        for (std::size_t bucket = 0; bucket < this->count(); ++bucket) {
+            first_[bucket] = next;
+            for (std::vector<std::size_t>& place : places)
+                next += std::exchange(place[bucket], next);
         }
+        first_.back() = next;
+        for_vertices([&](std::size_t i, std::vector<std::size_t>& place) {
+            entries_[place[bucket_of(hashes[i])]++] = {hashes[i], static_cast<std::uint32_t>(i)};
+        });
     }
 
     [[nodiscard]] std::size_t count() const { return first_.size() - 1; }
     [[nodiscard]] std::span<const BucketEntry> at(std::size_t bucket) const {
-        return std::span(entries_).subspan(first_[bucket], first_[bucket + 1] - first_[bucket]);
+        return {entries_.data() + first_[bucket], first_[bucket + 1] - first_[bucket]};
     }
 
   private:
@@ -99,25 +126,18 @@ class Buckets {
 
     int shift_;
     std::vector<std::size_t> first_;
-    std::vector<BucketEntry> entries_;
+    WorkArray<BucketEntry> entries_;
 };
 
 /// \param key_of  key_of(i) returns the numbers of vertex i as an array
 template <typename KeyOf>
 std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
-    constexpr std::size_t grain = 8192;
-    std::vector<std::uint32_t> hashes;
-    reserve_to_fill(hashes, count);
-    hashes.resize(count);
-    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto key = key_of(i);
-            // A NaN equals no other value; a hash of the index avoids collisions.
-            hashes[i] = static_cast<std::uint32_t>(key == key ? hash_of(key) : mixed(i + 1));
-        }
+    const Buckets buckets(count, [&](std::size_t i) {
+        const auto key = key_of(i);
+        // A NaN equals no other value; a hash of the index avoids collisions.
+        return static_cast<std::uint32_t>(key == key ? hash_of(key) : mixed(i + 1));
     });
-    const Buckets buckets(hashes);
-    std::vector<std::uint32_t> representatives = std::move(hashes);
+    std::vector<std::uint32_t> representatives(count);
     std::iota(representatives.begin(), representatives.end(), 0U);
     parallel_for(buckets.count(), 4, [&](std::size_t begin, std::size_t end) {
         std::vector<BucketEntry> table;
@@ -200,14 +220,19 @@ std::vector<glm::uvec3> welded_triangles(TriangleSpan triangles,
     std::vector<glm::uvec3> welded;
     reserve_to_fill(welded, triangles.size());
     welded.resize(triangles.size());
+    weld_triangles(triangles, representatives, welded);
+    return welded;
+}
+
+void weld_triangles(TriangleSpan triangles, std::span<const std::uint32_t> representatives,
+                    std::span<glm::uvec3> welded) {
     parallel_for(triangles.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const glm::uvec3& triangle = triangles[i];
+            const glm::uvec3 triangle = triangles[i];
             welded[i] = {representatives[triangle.x], representatives[triangle.y],
                          representatives[triangle.z]};
         }
     });
-    return welded;
 }
 
 namespace {

@@ -49,6 +49,8 @@ Groups groups_of(std::span<const std::uint32_t> representatives);
 /// Triangles over class representatives instead of over vertices.
 std::vector<glm::uvec3> welded_triangles(TriangleSpan triangles,
                                          std::span<const std::uint32_t> representatives);
+void weld_triangles(TriangleSpan triangles, std::span<const std::uint32_t> representatives,
+                    std::span<glm::uvec3> welded);
 
 /// For every vertex, the smallest index of the vertices that it is joined with.
 ///

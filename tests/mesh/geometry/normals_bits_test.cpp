@@ -147,6 +147,22 @@ TEST(VertexNormals, MinusZeroIsTheSamePlaceAsZero) {
     EXPECT_LE(degrees_between(normals[0], glm::dvec3(1, 0, 1)), float_degrees);
 }
 
+TEST(VertexNormals, LateTrianglesChangeNormalsThatWereRoundedEarly) {
+    // Normals of vertices below those of the last triangles are rounded early.
+    Mesh mesh = test::sphere(200, 150);
+    mesh.triangles.push_back({10, 20'000, 300});
+    mesh.triangles.push_back({29'000, 5'000, 5'001});
+    const Mesh permuted = test::with_triangle_order(mesh, test::shuffled(mesh.triangles.size()));
+    for (const NormalWeight weight : {NormalWeight::area, NormalWeight::angle}) {
+        const NormalOptions options{weight, Arithmetic::float64, std::nullopt};
+        const auto expected = normals_of(permuted, options);
+        for (const unsigned threads : {1U, 2U}) {
+            const ExecutionScope scope({.threads = threads});
+            EXPECT_TRUE(test::same_bits(normals_of(mesh, options), expected));
+        }
+    }
+}
+
 TEST(VertexNormals, ScalingByAPowerOfTwoChangesNoBit) {
     const Mesh sphere = test::sphere(16, 8);
     for (const NormalWeight weight : all_weights) {

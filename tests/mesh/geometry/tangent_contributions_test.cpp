@@ -258,15 +258,40 @@ bool is_walked_whole(const std::vector<std::uint32_t>& next,
     return reached == next.size();
 }
 
+bool is_one_fan(const std::vector<std::uint32_t>& next,
+                const std::vector<std::uint32_t>& previous) {
+    // The rest of the arrays may hold vertices of an earlier fan.
+    FanVertices all_next, all_previous;
+    for (std::uint32_t i = 0; i < max_single_fan; ++i) {
+        all_next[i] = i < next.size() ? next[i] : i;
+        all_previous[i] = i < next.size() ? previous[i] : i % 3;
+    }
+    return is_single_fan(all_next, all_previous, static_cast<std::uint32_t>(next.size()));
+}
+
 TEST(CornerLinks, ASingleFanIsToldFromAllElse) {
-    EXPECT_TRUE(is_single_fan(std::array{1U}, std::array{2U}));
-    EXPECT_TRUE(is_single_fan(std::array{1U, 2U, 3U}, std::array{3U, 1U, 2U})) << "a ring";
-    EXPECT_TRUE(is_single_fan(std::array{2U, 1U}, std::array{3U, 2U})) << "a chain";
-    EXPECT_FALSE(is_single_fan(std::array{1U, 3U}, std::array{2U, 4U})) << "two apart";
-    EXPECT_FALSE(is_single_fan(std::array{1U, 1U}, std::array{2U, 2U})) << "a triangle twice";
-    EXPECT_FALSE(is_single_fan(std::array{1U, 2U, 3U, 4U}, std::array{2U, 1U, 4U, 3U}))
-        << "two rings";
-    EXPECT_FALSE(is_single_fan(std::array{1U, 1U, 5U}, std::array{2U, 3U, 1U})) << "a third";
+    EXPECT_TRUE(is_one_fan({1U}, {2U}));
+    EXPECT_TRUE(is_one_fan({1U, 2U, 3U}, {3U, 1U, 2U})) << "a ring";
+    EXPECT_TRUE(is_one_fan({2U, 1U}, {3U, 2U})) << "a chain";
+    EXPECT_FALSE(is_one_fan({1U, 3U}, {2U, 4U})) << "two apart";
+    EXPECT_FALSE(is_one_fan({1U, 1U}, {2U, 2U})) << "a triangle twice";
+    EXPECT_FALSE(is_one_fan({1U, 2U, 3U, 4U}, {2U, 1U, 4U, 3U})) << "two rings";
+    EXPECT_FALSE(is_one_fan({1U, 1U, 5U}, {2U, 3U, 1U})) << "a third";
+
+    for (const std::uint32_t count : {3U, 8U, 9U, 16U}) {
+        std::vector<std::uint32_t> next, previous;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            next.push_back((7 * i + 7) % (7 * count));
+            previous.push_back(7 * i);
+        }
+        EXPECT_TRUE(is_one_fan(next, previous)) << "a ring of " << count;
+        next.back() = 1;
+        EXPECT_TRUE(is_one_fan(next, previous)) << "a chain of " << count;
+        previous[count / 2] = 2;
+        EXPECT_FALSE(is_one_fan(next, previous)) << "two chains";
+        next.back() = next.front();
+        EXPECT_FALSE(is_one_fan(next, previous)) << "a third triangle";
+    }
 
     std::mt19937 random(3);
     int fans = 0;
@@ -278,7 +303,7 @@ TEST(CornerLinks, ASingleFanIsToldFromAllElse) {
             previous.push_back(static_cast<std::uint32_t>((next.back() + 1 + random() % 4) % 5));
         }
         const bool expected = is_walked_whole(next, previous);
-        ASSERT_EQ(is_single_fan(next, previous), expected) << "round " << round;
+        ASSERT_EQ(is_one_fan(next, previous), expected) << "round " << round;
         fans += expected ? 1 : 0;
     }
     EXPECT_GT(fans, 500);

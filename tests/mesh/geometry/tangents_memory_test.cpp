@@ -10,6 +10,7 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
+#include "relief/mesh/workspace.h"
 #include "support/shapes.h"
 
 namespace {
@@ -119,6 +120,31 @@ TEST(BufferMemory, InterleavedVerticesAndShortIndicesAreNotCopied) {
               tangents_peak);
     EXPECT_EQ(vertices[count / 2].tangent, glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
     set_thread_limit(0);
+}
+
+TEST(BufferMemory, AWorkspaceServesTheNextCall) {
+    const Mesh mesh = test::grid(150);
+    std::vector<glm::vec3> normals(mesh.positions.size());
+    std::vector<glm::vec4> of_corners(3 * mesh.triangles.size());
+    std::vector<glm::vec4> of_vertices(mesh.positions.size());
+    Workspace workspace;
+    const auto compute = [&] {
+        const ExecutionOptions execution{.threads = 1};
+        const WorkspaceScope scope(workspace);
+        Report report;
+        vertex_normals(mesh.positions, mesh.triangles, {}, normals, report, execution);
+        corner_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, of_corners,
+                        report, execution);
+        vertex_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, of_vertices,
+                        report, execution);
+    };
+    const std::size_t first = peak_of(compute);
+    EXPECT_GT(first, of_corners.size() * sizeof(glm::vec4)) << "those of vertex_tangents()";
+    // Blocks of memory are exchanged for larger ones at first.
+    compute();
+    compute();
+    // What remains are small arrays: kinds of triangles, classes and ranges.
+    EXPECT_LT(peak_of(compute), first / 10);
 }
 
 TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "geometry/weld.h"
+#include "relief/mesh/execution.h"
 #include "support/hard_meshes.h"
 #include "support/shapes.h"
 
@@ -54,6 +55,25 @@ TEST(Weld, VerticesAreOneOnlyIfNormalAndTextureCoordinateAgreeToo) {
     const std::vector<glm::vec3> normals = {{0, 0, 1}, {0, 0, 1}, {0, 1, 0}, {0, -0.0F, 1}};
     const std::vector<glm::vec2> texcoords = {{0, 0}, {1, 0}, {0, 0}, {-0.0F, 0}};
     EXPECT_THAT(weld_vertices(positions, normals, texcoords), ElementsAre(0, 1, 2, 0));
+}
+
+TEST(Weld, LargeArraysGiveTheSameClassesForAnyNumberOfThreads) {
+    // Long enough for several threads. Every 97th vertex equals one that comes 60,000 earlier or
+    // later, so that threads see only one of the two.
+    constexpr std::uint32_t count = 140'000;
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        expected.push_back(i % 97 == 0 && i >= 60'000 ? i - 60'000 : i);
+        // Vertices of the first part may be equal to even earlier ones.
+        expected[i] = expected[expected[i]];
+        const std::uint32_t which = expected[i];
+        positions.emplace_back(which % 300, which / 300, 0.125F * static_cast<float>(which % 7));
+    }
+    for (const unsigned threads : {1U, 2U, 3U}) {
+        const ExecutionScope scope({.threads = threads});
+        EXPECT_EQ(weld_positions(positions), expected) << threads << " threads";
+    }
 }
 
 TEST(Weld, TheSphereClosesAtItsSeamAndPoles) {
