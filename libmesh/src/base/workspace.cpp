@@ -7,7 +7,6 @@
 #include "relief/mesh/workspace.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <mutex>
 #include <new>
 #include <utility>
@@ -28,10 +27,10 @@ WorkspaceScope::~WorkspaceScope() {
 
 namespace {
 
-constexpr std::size_t alignment = 64;
+constexpr std::align_val_t alignment{64};
 
 void* allocate(std::size_t size) {
-    void* const memory = ::operator new(size);
+    void* const memory = ::operator new(size, alignment);
     expect_filling(memory, size);
     return memory;
 }
@@ -45,7 +44,7 @@ Workspace::~Workspace() {
 void Workspace::clear() {
     const std::lock_guard lock(mutex_);
     for (const Block& block : free_)
-        ::operator delete(block.memory);
+        ::operator delete(block.memory, alignment);
     free_.clear();
 }
 
@@ -69,7 +68,7 @@ Workspace::Block Workspace::take(std::size_t size) {
             return block;
         }
         if (!free_.empty()) {
-            ::operator delete(free_.back().memory);
+            ::operator delete(free_.back().memory, alignment);
             free_.pop_back();
         }
     }
@@ -86,11 +85,9 @@ void Workspace::give_back(const Block& block) noexcept {
 
 WorkMemory::WorkMemory(std::size_t size) : workspace_(current_workspace) {
     if (size == 0) return;
-    const std::size_t enough = size + alignment;
-    block_ = workspace_ != nullptr ? workspace_->take(enough)
-                                   : Workspace::Block{allocate(enough), enough};
-    const auto address = reinterpret_cast<std::uintptr_t>(block_.memory);
-    data_ = reinterpret_cast<void*>((address + alignment - 1) / alignment * alignment);
+    block_ =
+        workspace_ != nullptr ? workspace_->take(size) : Workspace::Block{allocate(size), size};
+    data_ = block_.memory;
 }
 
 WorkMemory::~WorkMemory() {
@@ -98,7 +95,7 @@ WorkMemory::~WorkMemory() {
     if (workspace_ != nullptr)
         workspace_->give_back(block_);
     else
-        ::operator delete(block_.memory);
+        ::operator delete(block_.memory, alignment);
 }
 
 }  // namespace relief

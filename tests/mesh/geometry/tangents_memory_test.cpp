@@ -44,7 +44,14 @@ void counted_delete(void* memory) noexcept {
 void* operator new(std::size_t size) {
     return counted_new(size);
 }
+// For alignments up to that of the data.
+void* operator new(std::size_t size, std::align_val_t) {
+    return counted_new(size);
+}
 void operator delete(void* memory) noexcept {
+    counted_delete(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
     counted_delete(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
