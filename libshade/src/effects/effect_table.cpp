@@ -250,6 +250,10 @@ Decision of_schlick(Subject s) {
 }
 
 Decision of_refraction(Subject s) {
+    const std::vector<std::string>& undrawn = s.material.undrawn_extensions;
+    const std::string transmission = "KHR_materials_transmission";
+    if (is_physical(s) && std::find(undrawn.begin(), undrawn.end(), transmission) != undrawn.end())
+        return {false, fmt::format("{} has {}, which is not drawn", s.name, transmission)};
     if (!(s.material.transmission > 0.0F) || is_physical(s))
         return {false, s.name + " lets nothing through"};
     if (!s.scene.environment) return {false, "the scene has no environment"};

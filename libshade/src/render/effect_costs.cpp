@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "relief/shade/effects.h"
 #include "relief/shade/renderer.h"
@@ -43,6 +44,10 @@ PictureChange picture_change(const Image& with, const Image& without) {
     if (difference.differing_pixels == 0) return {};
     const FlipDifference flip = flip_difference(with, without);
     return {difference.max, difference.mean, flip.mean, flip.max};
+}
+
+bool exceeds_noise(const EffectCost& cost, const EffectCosts& measured) {
+    return std::abs(cost.milliseconds) > measured.frame.p90 - measured.frame.p10;
 }
 
 struct EffectCostMeasurement::Implementation {

@@ -84,6 +84,7 @@ OverlayDrawing::OverlayDrawing(const gl::Api& api, ProgramCache& programs, const
             if (framed_.contains(mesh)) continue;
             const PlannedStreams streams{.normals = true, .tangents = true};
             framed_.emplace(mesh, with_planned_frames(scene.meshes[mesh], streams, report));
+            framed_of_.emplace(mesh, scene.meshes[mesh].identity());
         }
     }
     make_markers(scene);
@@ -146,7 +147,15 @@ void OverlayDrawing::move(const Scene& scene) {
     world_from_object_.clear();
     for (const Instance& instance : scene.instances)
         world_from_object_.push_back(instance.world_from_object);
-    if (overlays_.vertex_frames) make_frames(scene);
+    if (!overlays_.vertex_frames) return;
+    for (auto& [mesh, identity] : framed_of_) {  // Deformed meshes are new ones.
+        if (identity.is(scene.meshes[mesh])) continue;
+        Report unused;
+        const PlannedStreams streams{.normals = true, .tangents = true};
+        framed_.at(mesh) = with_planned_frames(scene.meshes[mesh], streams, unused);
+        identity = scene.meshes[mesh].identity();
+    }
+    make_frames(scene);
 }
 
 glm::vec3 OverlayDrawing::coded(const glm::vec3& srgb) const {

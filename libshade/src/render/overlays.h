@@ -86,12 +86,13 @@ class OverlayDrawing {
     OutputCoding output_;
     std::shared_ptr<const gl::LinkedProgram> lines_program_;
     std::shared_ptr<const gl::LinkedProgram> discs_program_;
-    std::set<std::size_t> instances_;           ///< The drawn instances.
-    std::map<std::size_t, Mesh> framed_;        ///< Meshes with computed frames, by index.
-    glm::dvec3 center_{0.0};                    ///< The origin of the frame lines.
-    std::array<Points, 3> frames_;              ///< Tangents, bitangents, normals.
-    std::map<std::size_t, Points> markers_;     ///< By instance.
-    std::vector<glm::mat4> world_from_object_;  ///< By instance.
+    std::set<std::size_t> instances_;     ///< The drawn instances.
+    std::map<std::size_t, Mesh> framed_;  ///< Meshes with computed frames, by index.
+    std::map<std::size_t, Shared<Mesh>::Identity> framed_of_;  ///< Of these meshes.
+    glm::dvec3 center_{0.0};                                   ///< The origin of the frame lines.
+    std::array<Points, 3> frames_;                             ///< Tangents, bitangents, normals.
+    std::map<std::size_t, Points> markers_;                    ///< By instance.
+    std::vector<glm::mat4> world_from_object_;                 ///< By instance.
 };
 
 }  // namespace relief

@@ -307,6 +307,8 @@ struct Renderer::Implementation {
                    const FrameSettings& settings, RenderCache* given, Report& report);
 
     void prepare_meshes(const Scene& scene, Report& report);
+    void check_meshes(const Scene& scene) const;
+    void replace_meshes(const Scene& scene);
     void prepare_draws(const Scene& scene);
     Draw prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw);
     void bind_planned_textures(Draw& draw, const Planned& p);
@@ -331,6 +333,8 @@ struct Renderer::Implementation {
     SceneTextures textures;
     LightStorage lights;
     std::map<std::size_t, std::shared_ptr<GpuMesh>> meshes;  ///< Drawn meshes by index.
+    std::map<std::size_t, PlannedStreams> streams;           ///< What they hold.
+    std::map<std::size_t, Shared<Mesh>::Identity> drawn;     ///< The meshes that they were made of.
     std::vector<Draw> draws;                                 ///< Opaque ones first.
     std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
@@ -380,14 +384,48 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
 }
 
 void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report) {
-    std::map<std::size_t, PlannedStreams> streams;
     for (const DrawPlan& draw : plan.draws)
         streams[scene.instances[draw.instance].mesh].add(planned_interface(draw.features));
     ProgressStage stage("uploading meshes", streams.size());
     for (const auto& [mesh, planned] : streams) {
         meshes.emplace(mesh, cache.meshes.get(scene.meshes[mesh], planned, report));
+        drawn.emplace(mesh, scene.meshes[mesh].identity());
         stage.advance(1);
     }
+}
+
+/// Checks that meshes that were replaced are valid, and that draws have all of their triangles.
+void Renderer::Implementation::check_meshes(const Scene& scene) const {
+    for (const auto& [index, identity] : drawn) {
+        if (index >= scene.meshes.size())
+            throw InvalidInput("a moved scene must have the same meshes as before");
+        const Shared<Mesh>& mesh = scene.meshes[index];
+        if (identity.is(mesh)) continue;
+        validate(*mesh);
+        for (const Draw& draw : draws) {
+            if (draw.mesh == index &&
+                draw.range.first_triangle + draw.range.triangle_count > mesh->triangles.size())
+                throw InvalidInput("a moved mesh must have the same triangles as before");
+        }
+    }
+}
+
+/// Uploads the meshes that are not those of the last picture.
+void Renderer::Implementation::replace_meshes(const Scene& scene) {
+    bool has_changed = false;
+    for (auto& [index, identity] : drawn) {
+        const Shared<Mesh>& mesh = scene.meshes.at(index);
+        if (identity.is(mesh)) continue;
+        Report unused;  // The findings are those of the mesh at rest.
+        meshes.at(index) = cache.meshes.get(mesh, streams.at(index), unused);
+        identity = mesh.identity();
+        has_changed = true;
+        for (Draw& draw : draws) {
+            if (draw.mesh == index && draw.sorted)
+                draw.sorted = std::make_unique<SortedTriangles>(*mesh, draw.range);
+        }
+    }
+    if (has_changed) cache.meshes.drop_unused();
 }
 
 void Renderer::Implementation::prepare_draws(const Scene& scene) {
@@ -448,6 +486,7 @@ void Renderer::Implementation::set_environment_values(Draw& draw) const {
 }
 
 void Renderer::Implementation::move(const Scene& scene) {
+    replace_meshes(scene);
     lights.update(api, scene);
     for (Draw& draw : draws)
         set_place(draw.values, scene.instances[draw.instance].world_from_object);
@@ -645,6 +684,7 @@ void Renderer::move(const Scene& scene) {
         throw InvalidInput(
             "a moved scene must have the same numbers of instances and lights as before");
     }
+    implementation_->check_meshes(scene);
     implementation_->move(scene);
 }
 

@@ -308,6 +308,19 @@ void add_textures(Material& result, const GltfMaterial& material, std::size_t in
     result.alpha_cutoff = usable(material.alpha_cutoff, max_reflectance);
 }
 
+/// Reports what the file asks for and no effect draws.
+void add_undrawn_extensions(Material& result, const GltfMaterial& material, std::size_t index,
+                            const std::vector<std::string>& required, Report& report) {
+    result.undrawn_extensions = material.more_extensions;
+    for (const std::string& name : material.more_extensions) {
+        const bool is_required =
+            std::find(required.begin(), required.end(), name) != required.end();
+        report.add(is_required ? name + ", which the file requires" : name, "material", index,
+                   is_required ? "not drawn: the picture is not the intended one"
+                               : "left out: drawn without it");
+    }
+}
+
 /// Returns the materials of the document, in order. For MaterialModel::phong some images are
 /// decoded for their means, and kept decoded if nothing else needs their bytes.
 std::vector<Material> materials_from(const GltfView& view, const SceneOptions& options,
@@ -326,6 +339,7 @@ std::vector<Material> materials_from(const GltfView& view, const SceneOptions& o
                 usable(material.roughness, 1.0F), std::nullopt};
         }
         add_textures(result, material, i, report);
+        add_undrawn_extensions(result, material, i, view.required_extensions, report);
     }
     return materials;
 }
@@ -350,44 +364,133 @@ Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
     return mesh;
 }
 
-/// Reports meshes that would be deformed, once for each node.
-void report_rest(const GltfView& view, Report& report) {
-    std::set<std::size_t> reported;
-    for (const auto& item : view.primitives) {
-        if (!reported.insert(item.node).second) continue;
-        const GltfNode& node = view.nodes[item.node];
-        if (node.has_skin) report.add("skinned mesh", "node", item.node, "drawn at rest");
-        if (node.has_morph_targets) report.add("morph targets", "node", item.node, "drawn without");
-    }
-}
-
 /// Returns the mesh of a primitive with normals. glTF demands flat ones for a mesh without normals,
 /// and ignores its tangents; the effect plan computes tangents where it needs them.
+///
+/// \param options  replaces the normals unless they are kept; a crease angle smooths missing ones
 Mesh drawable_mesh(const GltfDocument& document, GltfPrimitiveId id,
-                   const std::vector<GltfMaterial>& materials, Report& report) {
-    FrameOptions options;
-    options.if_missing = NormalMode::flat;
-    options.tangents = TangentMethod::none;
+                   const std::vector<GltfMaterial>& materials, const SceneOptions& options,
+                   Report& report) {
+    FrameOptions frames = frame_options("", options);
+    frames.if_missing = options.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
+    frames.tangents = TangentMethod::none;
     Mesh mesh = mesh_from(document, id, materials);
-    return mesh.normals.empty() ? with_frames(std::move(mesh), options, report).mesh : mesh;
+    if (options.normals == NormalMode::keep && !mesh.normals.empty()) return mesh;
+    return with_frames(std::move(mesh), frames, report).mesh;
+}
+
+/// Gives each triangle vertices of its own. \return the vertex that each new one copies
+std::vector<std::uint32_t> separate_triangles(Mesh& mesh) {
+    std::vector<std::uint32_t> source;
+    for (glm::uvec3& triangle : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            source.push_back(triangle[k]);
+            triangle[k] = static_cast<std::uint32_t>(source.size() - 1);
+        }
+    }
+    const auto copy = [&](auto& values) {
+        if (values.empty()) return;
+        auto copies = values;
+        copies.clear();
+        for (const std::uint32_t vertex : source)
+            copies.push_back(values[vertex]);
+        values = std::move(copies);
+    };
+    copy(mesh.positions);
+    copy(mesh.normals);
+    copy(mesh.tangents);
+    copy(mesh.texcoords);
+    copy(mesh.colors);
+    return source;
+}
+
+template <typename Value>
+void take_vertices(const std::vector<std::uint32_t>& source, std::vector<Value>& values) {
+    if (values.empty()) return;
+    std::vector<Value> taken;
+    for (const std::uint32_t vertex : source)
+        taken.push_back(values[vertex]);
+    values = std::move(taken);
+}
+
+/// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal map
+/// needs, because they are deformed with it.
+std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const GltfView& view,
+                                          const GltfInstance<GltfPrimitiveId>& item,
+                                          const SceneOptions& options, Report& report) {
+    const GltfNode& node = view.nodes[item.node];
+    if (!node.skin && !node.has_morph_targets) return std::nullopt;
+    GltfDeformation deformation = document.deformation(item.what);
+    DeformedMesh result;
+    result.node = item.node;
+    result.weights = node.morph_weights;
+    if (node.skin && !deformation.joints.empty() && !view.skins[*node.skin].joints.empty()) {
+        result.joints = view.skins[*node.skin].joints;
+        result.joint_from_mesh = view.skins[*node.skin].joint_from_mesh;
+    } else {
+        deformation.joints.clear();
+    }
+    if (deformation.targets.empty() && deformation.joints.empty()) return std::nullopt;
+    FrameOptions frames = frame_options("", options);
+    frames.if_missing = options.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
+    Mesh mesh = mesh_from(document, item.what, view.materials);
+    const bool keeps = options.normals == NormalMode::keep && !mesh.normals.empty();
+    result.has_flat_normals =
+        !keeps && (options.normals == NormalMode::flat ||
+                   (options.normals == NormalMode::keep && !options.crease_angle));
+    std::vector<std::uint32_t> source;
+    if (result.has_flat_normals) source = separate_triangles(mesh);
+    const std::vector<MaterialRange>& ranges = mesh.material_ranges;
+    const bool is_mapped = !ranges.empty() && ranges.front().material &&
+                           view.materials[*ranges.front().material].normal_texture &&
+                           !mesh.texcoords.empty();
+    const bool has_tangents = keeps && !mesh.tangents.empty();
+    frames.tangents = has_tangents ? TangentMethod::keep
+                      : is_mapped  ? TangentMethod::mikktspace
+                                   : TangentMethod::none;
+    FramedMesh framed = with_frames(std::move(mesh), frames, report);
+    std::vector<std::uint32_t> vertices = std::move(framed.source_vertex);
+    if (!source.empty()) take_vertices(vertices, source);
+    const std::vector<std::uint32_t>& taken = source.empty() ? vertices : source;
+    for (GltfMorphTarget& target : deformation.targets) {
+        take_vertices(taken, target.positions);
+        take_vertices(taken, target.normals);
+        take_vertices(taken, target.tangents);
+    }
+    for (GltfJoints& joints : deformation.joints) {
+        take_vertices(taken, joints.joints);
+        take_vertices(taken, joints.weights);
+    }
+    result.rest = std::move(framed.mesh);
+    result.deformation = std::move(deformation);
+    return result;
 }
 
 /// Adds meshes and instances. A primitive with several instances is read once.
-void add_instances(const GltfDocument& document, const GltfView& view, SceneGraph& graph,
-                   Report& report) {
+void add_instances(const GltfDocument& document, const GltfView& view, const SceneOptions& options,
+                   SceneGraph& graph, Report& report) {
     Scene& scene = graph.scene;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
     ProgressStage stage("meshes", view.primitives.size());
     for (const auto& item : view.primitives) {
-        const auto key = std::pair(item.what.mesh, item.what.primitive);
-        const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
-        if (is_new)
-            scene.meshes.push_back(drawable_mesh(document, item.what, view.materials, report));
-        scene.instances.push_back({entry->second, item.world_from_object, item.name});
+        if (auto deformed = deformed_mesh(document, view, item, options, report)) {
+            deformed->mesh = scene.meshes.size();
+            if (!deformed->joints.empty()) deformed->skinned_instance = scene.instances.size();
+            scene.meshes.push_back(deformed->rest);
+            scene.instances.push_back({deformed->mesh, item.world_from_object, item.name});
+            graph.deformed.push_back(std::move(*deformed));
+        } else {
+            const auto key = std::pair(item.what.mesh, item.what.primitive);
+            const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
+            if (is_new) {
+                scene.meshes.push_back(
+                    drawable_mesh(document, item.what, view.materials, options, report));
+            }
+            scene.instances.push_back({entry->second, item.world_from_object, item.name});
+        }
         graph.instances.push_back({item.node, item.node_from_object});
         stage.advance(1);
     }
-    report_rest(view, report);
 }
 
 void add_lights(const GltfView& view, SceneGraph& graph) {
@@ -450,7 +553,7 @@ void add_nodes(const GltfView& view, SceneGraph& graph, Report& report) {
     }
 }
 
-/// Adds animations that move a node. Those of skins and morph targets have no channels here.
+/// Adds animations that move a node or a morph target.
 void add_animations(const GltfDocument& document, SceneGraph& graph, Report& report) {
     for (KeyAnimation& animation : document.animations(report)) {
         if (!animation.channels.empty()) graph.animations.emplace_back(std::move(animation));
@@ -487,10 +590,13 @@ SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path&
     SceneGraph graph;
     add_appearance(view, model, options, graph.scene, report);
     add_nodes(view, graph, report);
-    add_instances(document, view, graph, report);
+    add_instances(document, view, options, graph, report);
     add_lights(view, graph);
     add_camera(view, graph, report);
     add_animations(document, graph, report);
+    for (std::size_t i = 0; i < view.material_variants.size(); ++i)
+        report.add("material variant", "variant", i,
+                   "not selectable: drawn with its own materials");
     return graph;
 }
 
@@ -505,7 +611,7 @@ std::vector<Scene> mesh_scenes(const GltfDocument& document, std::span<const std
         if (place == meshes.end()) continue;
         Scene& scene = scenes[static_cast<std::size_t>(place - meshes.begin())];
         scene.instances.push_back({scene.meshes.size(), glm::mat4(1.0F), ""});
-        scene.meshes.push_back(drawable_mesh(document, id, view.materials, report));
+        scene.meshes.push_back(drawable_mesh(document, id, view.materials, {}, report));
     }
     return scenes;
 }

@@ -190,14 +190,34 @@ void name_missing_materials(Scene& scene) {
     scene.materials.push_back(std::move(material));
 }
 
-Scene scene_from(MeshFile contents, const std::filesystem::path& file, Report& report) {
+/// Rotates z to y, exactly.
+constexpr glm::mat4 y_up_from_z_up{{1.0F, 0.0F, 0.0F, 0.0F},
+                                   {0.0F, 0.0F, -1.0F, 0.0F},
+                                   {0.0F, 1.0F, 0.0F, 0.0F},
+                                   {0.0F, 0.0F, 0.0F, 1.0F}};
+
+/// Attaches all that stands in the world to a node that turns z up.
+void turn_z_up(SceneGraph& graph) {
+    for (Instance& instance : graph.scene.instances)
+        instance.world_from_object = y_up_from_z_up * instance.world_from_object;
+    for (SceneNode& node : graph.nodes) {
+        if (!node.parent) node.parent = graph.nodes.size();
+    }
+    if (graph.nodes.empty()) return;
+    SceneNode& root = graph.nodes.emplace_back();
+    root.name = "z up";
+    root.matrix = y_up_from_z_up;
+}
+
+Scene scene_from(MeshFile contents, const std::filesystem::path& file, const SceneOptions& read,
+                 Report& report) {
     Scene scene;
     ImagesByPath images(file, scene.images);
     for (std::size_t i = 0; i < contents.materials.size(); ++i) {
         scene.materials.push_back(material_from(contents.materials[i], i, images, report));
     }
-    FrameOptions options;  // Angle-weighted normals where there are none.
-    scene.meshes.push_back(with_frames(std::move(contents.mesh), options, report).mesh);
+    scene.meshes.push_back(
+        with_frames(std::move(contents.mesh), frame_options(file, read), report).mesh);
     scene.instances.push_back({0, glm::mat4(1.0F), scene.meshes.front()->name});
     name_missing_materials(scene);
     return scene;
@@ -234,6 +254,20 @@ Material phong_from_mtl(const MtlMaterial& material) {
     return phong;
 }
 
+bool is_z_up(const std::filesystem::path& model, const SceneOptions& options) {
+    const bool is_stl = lower_extension(model) == ".stl";
+    return options.up == UpAxis::z || (options.up == UpAxis::automatic && is_stl);
+}
+
+FrameOptions frame_options(const std::filesystem::path& model, const SceneOptions& options) {
+    FrameOptions frames;
+    frames.normals = options.normals;
+    frames.crease_angle = options.crease_angle;
+    if (!frames.crease_angle && lower_extension(model) == ".stl")
+        frames.crease_angle = stl_crease_angle;
+    return frames;
+}
+
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
                             Report& report) {
     const std::string extension = lower_extension(file);
@@ -244,8 +278,10 @@ SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOption
         } else if (extension == ".gltf" || extension == ".glb") {
             graph = graph_from(GltfDocument::read(file, report), file, options, report);
         } else {
-            graph.scene = scene_from(read_mesh(file, report), file, report);
+            graph.scene = scene_from(read_mesh(file, report), file, options, report);
         }
+        if (extension != ".json" && is_z_up(file, options)) turn_z_up(graph);
+        if (clips_exclude_each_other(graph)) graph.clip = 0;
         pose(graph, 0.0);
         validate(graph);
     } catch (const InvalidInput& error) {

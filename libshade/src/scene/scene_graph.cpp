@@ -11,6 +11,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 #include <numbers>
+#include <set>
+#include <span>
 #include <utility>
 
 #include "portable_math.h"
@@ -82,7 +84,13 @@ glm::vec4 between(const KeyChannel& channel, std::size_t key, float t) {
 void check_keys(const KeyChannel& channel) {
     const std::size_t keys = channel.times.size();
     if (keys == 0) throw InvalidInput("a channel has no keys");
-    const std::size_t needed = keys * values_per_key(channel);
+    const bool has_weights = channel.property == KeyChannel::Property::weights;
+    if (has_weights && (channel.weights.empty() ||
+                        channel.weights.size() % (keys * values_per_key(channel)) != 0)) {
+        throw InvalidInput(fmt::format("a channel of {} keys has {} weights, not a multiple", keys,
+                                       channel.weights.size()));
+    }
+    const std::size_t needed = has_weights ? 0 : keys * values_per_key(channel);
     if (channel.values.size() != needed) {
         throw InvalidInput(fmt::format("a channel of {} keys has {} values, but needs {}", keys,
                                        channel.values.size(), needed));
@@ -110,6 +118,45 @@ void check_keys(const KeyChannel& channel) {
         if (!(glm::length(key_value(channel, i)) > 0.0F))
             throw InvalidInput(fmt::format("rotation {} of a channel has no length", i));
     }
+}
+
+std::vector<float> weights_at(const KeyChannel& channel, double seconds) {
+    const std::vector<float>& times = channel.times;
+    const std::size_t per_key = values_per_key(channel);
+    if (times.empty() || channel.weights.size() % (per_key * times.size()) != 0)
+        check_keys(channel);  // Throws.
+    const std::size_t count = channel.weights.size() / (per_key * times.size());
+    // The group of weights of a key: 0 is the in-tangent, 1 the value, 2 the out-tangent.
+    const auto group = [&](std::size_t key, std::size_t part) {
+        const std::size_t first = (per_key == 3 ? 3 * key + part : key) * count;
+        return std::span(channel.weights).subspan(first, count);
+    };
+    const auto after =
+        std::upper_bound(times.begin(), times.end(), seconds,
+                         [](double t, float key) { return t < static_cast<double>(key); });
+    const auto next = static_cast<std::size_t>(after - times.begin());
+    const std::size_t key = next == 0 ? 0 : next - 1;
+    std::vector<float> result(group(key, 1).begin(), group(key, 1).end());
+    const bool is_held = next == 0 || next == times.size();
+    if (is_held || channel.interpolation == KeyInterpolation::step) return result;
+    const auto from = static_cast<double>(times[key]);
+    const double span = static_cast<double>(times[next]) - from;
+    const auto t = static_cast<float>((seconds - from) / span);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float a = group(key, 1)[i];
+        const float b = group(next, 1)[i];
+        if (channel.interpolation == KeyInterpolation::linear) {
+            result[i] = a + t * (b - a);
+            continue;
+        }
+        const auto seconds_between = static_cast<float>(span);
+        const float t2 = t * t;
+        const float t3 = t2 * t;
+        result[i] = (2.0F * t3 - 3.0F * t2 + 1.0F) * a +
+                    seconds_between * (t3 - 2.0F * t2 + t) * group(key, 2)[i] +
+                    (3.0F * t2 - 2.0F * t3) * b + seconds_between * (t3 - t2) * group(next, 0)[i];
+    }
+    return result;
 }
 
 glm::vec4 value_at(const KeyChannel& channel, double seconds) {
@@ -143,6 +190,7 @@ struct LocalTransform {
     glm::vec3 scale{1.0F};
     std::optional<glm::mat4> matrix;
     std::optional<glm::mat4> turntable;  ///< Applied first.
+    std::vector<float> weights{};        ///< Of morph targets, if animated.
 };
 
 glm::vec3 unit_or(const glm::vec3& direction, const glm::vec3& fallback) {
@@ -198,8 +246,12 @@ class Animator {
     void operator()(const KeyAnimation& animation) const {
         const double now = wrapped(seconds_, length_of(animation));
         for (const KeyChannel& channel : animation.channels) {
-            const glm::vec4 value = value_at(channel, now);
             LocalTransform& transform = at(channel.node);
+            if (channel.property == KeyChannel::Property::weights) {
+                transform.weights = weights_at(channel, now);
+                continue;
+            }
+            const glm::vec4 value = value_at(channel, now);
             switch (channel.property) {
                 case KeyChannel::Property::translation:
                     transform.translation = glm::vec3(value);
@@ -209,6 +261,8 @@ class Animator {
                     break;
                 case KeyChannel::Property::scale:
                     transform.scale = glm::vec3(value);
+                    break;
+                case KeyChannel::Property::weights:
                     break;
             }
         }
@@ -245,14 +299,26 @@ class Animator {
     double seconds_;
 };
 
+/// Calls visit(animation) for every animation that plays.
+template <typename Visit>
+void for_each_playing(const SceneGraph& graph, const Visit& visit) {
+    std::size_t clip = 0;
+    for (const Animation& animation : graph.animations) {
+        const bool is_clip = std::holds_alternative<KeyAnimation>(animation);
+        if (is_clip && graph.clip && *graph.clip != clip++) continue;
+        visit(animation);
+    }
+}
+
 std::vector<LocalTransform> transforms_at(const SceneGraph& graph, double seconds) {
     std::vector<LocalTransform> transforms;
     transforms.reserve(graph.nodes.size());
     for (const SceneNode& node : graph.nodes)
         transforms.push_back(
-            {node.translation, node.rotation, node.scale, node.matrix, std::nullopt});
-    for (const Animation& animation : graph.animations)
+            {node.translation, node.rotation, node.scale, node.matrix, std::nullopt, {}});
+    for_each_playing(graph, [&](const Animation& animation) {
         std::visit(Animator(transforms, seconds), animation);
+    });
     return transforms;
 }
 
@@ -367,7 +433,14 @@ void pose_camera(SceneGraph& graph, const NodeMatrices& nodes) {
 void pose(SceneGraph& graph, double seconds) {
     if (!std::isfinite(seconds))
         throw InvalidInput(fmt::format("the time is {}, but must be finite", seconds));
-    const NodeMatrices nodes(world_matrices(graph, transforms_at(graph, seconds)));
+    std::vector<LocalTransform> transforms = transforms_at(graph, seconds);
+    std::vector<glm::mat4> world_from_node = world_matrices(graph, transforms);
+    std::vector<NodeWeights> weights;
+    for (std::size_t i = 0; i < transforms.size(); ++i) {
+        if (!transforms[i].weights.empty())
+            weights.push_back({i, std::move(transforms[i].weights)});
+    }
+    const NodeMatrices nodes(world_from_node);
     Scene& scene = graph.scene;
     move_all(
         scene.instances, graph.instances, nodes,
@@ -385,6 +458,7 @@ void pose(SceneGraph& graph, double seconds) {
                  light.point.position_world = glm::vec3(matrix[3]);
                  light.direction_world = direction_of(matrix);
              });
+    deform(graph, world_from_node, weights);
     pose_camera(graph, nodes);
 }
 
@@ -395,7 +469,7 @@ double duration(const SceneGraph& graph) {
             longest =
                 std::max(longest, 2.0 * std::numbers::pi / std::abs(static_cast<double>(speed)));
     };
-    for (const Animation& animation : graph.animations) {
+    for_each_playing(graph, [&](const Animation& animation) {
         if (const auto* keys = std::get_if<KeyAnimation>(&animation)) {
             longest = std::max(longest, length_of(*keys));
         } else if (const auto* orbit = std::get_if<Orbit>(&animation)) {
@@ -404,8 +478,34 @@ double duration(const SceneGraph& graph) {
         } else if (const auto* turntable = std::get_if<Turntable>(&animation)) {
             add_rotation(turntable->speed);
         }
-    }
+    });
     return longest;
+}
+
+std::vector<std::string> clip_names(const SceneGraph& graph) {
+    std::vector<std::string> names;
+    for (const Animation& animation : graph.animations) {
+        const auto* keys = std::get_if<KeyAnimation>(&animation);
+        if (keys == nullptr) continue;
+        names.push_back(keys->name.empty() ? fmt::format("animation {}", names.size() + 1)
+                                           : keys->name);
+    }
+    return names;
+}
+
+bool clips_exclude_each_other(const SceneGraph& graph) {
+    std::set<std::pair<std::size_t, KeyChannel::Property>> moved;
+    for (const Animation& animation : graph.animations) {
+        const auto* keys = std::get_if<KeyAnimation>(&animation);
+        if (keys == nullptr) continue;
+        std::set<std::pair<std::size_t, KeyChannel::Property>> own;
+        for (const KeyChannel& channel : keys->channels)
+            own.emplace(channel.node, channel.property);
+        for (const auto& property : own) {
+            if (!moved.insert(property).second) return true;
+        }
+    }
+    return false;
 }
 
 glm::mat3 orbit_axes(double azimuth, double elevation) {
@@ -519,6 +619,7 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     const std::size_t first_mesh = graph.scene.meshes.size();
     const auto first_material = static_cast<std::uint32_t>(graph.scene.materials.size());
     const std::size_t first_node = graph.nodes.size();
+    const std::size_t first_instance = graph.scene.instances.size();
     for (Material& material : part.scene.materials)
         shift_images(material, first_image);
     for (Shared<Mesh>& mesh : part.scene.meshes) {
@@ -528,6 +629,17 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     }
     for (Instance& instance : part.scene.instances)
         instance.mesh += first_mesh;
+    for (DeformedMesh& deformed : part.deformed) {
+        deformed.mesh += first_mesh;
+        deformed.node += first_node;
+        for (std::size_t& joint : deformed.joints)
+            joint += first_node;
+        if (deformed.skinned_instance) *deformed.skinned_instance += first_instance;
+    }
+    std::size_t clip = 0;
+    std::erase_if(part.animations, [&](const Animation& animation) {  // What does not play.
+        return std::holds_alternative<KeyAnimation>(animation) && part.clip && *part.clip != clip++;
+    });
     for (SceneNode& child : part.nodes)
         child.parent = child.parent ? *child.parent + first_node : node;
     for (Animation& animation : part.animations)
@@ -538,6 +650,7 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     join(graph.scene.meshes, std::move(part.scene.meshes));
     join(graph.nodes, std::move(part.nodes));
     join(graph.animations, std::move(part.animations));
+    join(graph.deformed, std::move(part.deformed));
     graph.scene.ambient += part.scene.ambient;
 }
 

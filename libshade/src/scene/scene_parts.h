@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "portable_math.h"
 #include "relief/mesh/gltf_document.h"
@@ -56,6 +58,20 @@ void check_keys(const KeyChannel& channel);
 /// of the node, and its animations play along. Its ambient light is added; its camera, environment
 /// and settings are not.
 void append(SceneGraph& graph, SceneGraph part, std::size_t node);
+
+/// The morph weights of a node at one time.
+struct NodeWeights {
+    std::size_t node = 0;
+    std::vector<float> weights;
+};
+
+/// Returns the weights of a channel at a time. \throws InvalidInput as pose() does for keys
+std::vector<float> weights_at(const KeyChannel& channel, double seconds);
+
+/// Deforms the meshes of a graph.
+/// \param weights  those that animations change
+void deform(SceneGraph& graph, std::span<const glm::mat4> world_from_node,
+            std::span<const NodeWeights> weights);
 
 // Scenes from files
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include "file_bytes.h"
 #include "portable_math.h"
@@ -24,6 +25,7 @@ constexpr int format_version = 1;
 constexpr int max_picture_side = 16384;
 /// The depth of nested nodes: more than any scene needs, and less than the stack holds.
 constexpr int max_node_levels = 200;
+constexpr double radians_per_degree = std::numbers::pi / 180.0;
 
 float number_in(const JsonCursor& object, const char* key, float absent) {
     const auto found = object.find(key);
@@ -368,8 +370,8 @@ class SceneReader {
         if (level > max_node_levels)
             object.fail(fmt::format("lies more than {} levels deep", max_node_levels));
         object.allow({"name", "translation", "rotation", "scale", "matrix", "model", "shape",
-                      "material", "material_changes", "light", "camera", "orbit", "turntable",
-                      "children"});
+                      "material", "material_changes", "normals", "crease", "light", "camera",
+                      "orbit", "turntable", "children"});
         const std::size_t index = graph_.nodes.size();
         graph_.nodes.push_back(node_from(object));
         graph_.nodes.back().parent = parent;
@@ -389,7 +391,7 @@ class SceneReader {
         const auto shape = object.find("shape");
         if (model && shape) shape->fail("stands beside 'model': a node has one of them");
         if (!model && !shape) {
-            for (const char* key : {"material", "material_changes"}) {
+            for (const char* key : {"material", "material_changes", "normals", "crease"}) {
                 if (const auto extra = object.find(key))
                     extra->fail("needs a 'model' or a 'shape' beside it");
             }
@@ -397,8 +399,12 @@ class SceneReader {
         }
         const std::size_t first_mesh = graph_.scene.meshes.size();
         const std::size_t first_material = graph_.scene.materials.size();
+        for (const char* key : {"normals", "crease"}) {
+            const auto extra = object.find(key);
+            if (extra && !model) extra->fail("needs a 'model' beside it");
+        }
         if (model) {
-            append(graph_, model_from(*model), node);
+            append(graph_, model_from(object, *model), node);
         } else {
             graph_.instances.resize(graph_.scene.instances.size());
             graph_.scene.instances.push_back(
@@ -417,11 +423,19 @@ class SceneReader {
             use_material(first_mesh, material_from(*material));
     }
 
-    SceneGraph model_from(const JsonCursor& cursor) {
+    SceneGraph model_from(const JsonCursor& node, const JsonCursor& cursor) {
         const std::filesystem::path file = images_.file(cursor);
+        SceneOptions options = options_;
+        options.up = UpAxis::y;
+        if (const auto normals = node.find("normals"))
+            options.normals = one_of(*normals, enum_names<NormalMode>);
+        if (const auto crease = node.find("crease")) {
+            (void)crease->number(0.0F, 180.0F);
+            options.crease_angle = crease->exact_number() * radians_per_degree;
+        }
         if (file.extension() == ".json") cursor.fail("is a scene file, which scenes do not nest");
         try {
-            return load_scene_graph(file, options_, report_);
+            return load_scene_graph(file, options, report_);
         } catch (const FileError& error) {
             cursor.fail(error.what());
         }

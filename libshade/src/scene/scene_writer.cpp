@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <numbers>
 #include <span>
 
 #include "file_bytes.h"
@@ -53,7 +54,7 @@ class SceneWriter {
     SceneWriter(const std::filesystem::path& file, const SceneToSave& saved)
         : file_(file), saved_(saved), scene_(saved.scene) {
         Report ignored;
-        loaded_ = load_scene(saved.source, ignored);
+        loaded_ = load_scene(saved.source, saved.options, ignored);
         name_default_material(loaded_);
         name_default_material(scene_);
     }
@@ -96,8 +97,14 @@ class SceneWriter {
     void begin() {
         if (!is_scene_file(saved_.source)) {
             json_["relief_scene"] = 1;
-            json_["nodes"] =
-                Json::array({{{"model", relative_path(file_.parent_path(), saved_.source)}}});
+            Json node = {{"model", relative_path(file_.parent_path(), saved_.source)}};
+            if (is_z_up(saved_.source, saved_.options))
+                node["matrix"] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+            if (saved_.options.normals != NormalMode::keep)
+                node["normals"] = enum_name(saved_.options.normals);
+            if (saved_.options.crease_angle)
+                node["crease"] = *saved_.options.crease_angle * 180.0 / std::numbers::pi;
+            json_["nodes"] = Json::array({std::move(node)});
             return;
         }
         if (std::filesystem::absolute(file_).parent_path().lexically_normal() !=

@@ -291,7 +291,11 @@ void check_parts(const SceneGraph& graph, const std::string& thing, std::size_t 
 void validate_motion(const SceneGraph& graph, const std::string& thing,
                      const KeyAnimation& animation) {
     for (const KeyChannel& channel : animation.channels) {
-        check_parts(graph, thing, channel.node);
+        if (channel.property == KeyChannel::Property::weights) {
+            check_node(graph, thing, channel.node);
+        } else {
+            check_parts(graph, thing, channel.node);
+        }
         try {
             check_keys(channel);
         } catch (const InvalidInput& error) {
@@ -313,6 +317,37 @@ void validate_motion(const SceneGraph& graph, const std::string& thing,
 
 }  // namespace
 
+namespace {
+
+/// Checks that vertices have all displacements and weights, and that joints are nodes.
+void validate_deformed(const SceneGraph& graph, const DeformedMesh& deformed, std::size_t number) {
+    const std::string thing = fmt::format("deformed mesh {}", number);
+    const auto check = [&](std::size_t count, std::size_t allowed, const char* what) {
+        if (count == allowed) return;
+        throw InvalidInput(fmt::format("{} has {} {}, but needs {}", thing, count, what, allowed));
+    };
+    const std::size_t vertices = deformed.rest->positions.size();
+    for (const GltfMorphTarget& target : deformed.deformation->targets) {
+        for (const auto* values : {&target.positions, &target.normals, &target.tangents}) {
+            if (!values->empty()) check(values->size(), vertices, "displacements");
+        }
+    }
+    for (const GltfJoints& joints : deformed.deformation->joints) {
+        check(joints.joints.size(), vertices, "groups of joints");
+        check(joints.weights.size(), vertices, "groups of weights");
+    }
+    check(deformed.joint_from_mesh.size(), deformed.joints.size(), "joint matrices");
+    check_node(graph, thing, deformed.node);
+    for (const std::size_t joint : deformed.joints)
+        check_node(graph, thing, joint);
+    if (deformed.mesh >= graph.scene.meshes.size() ||
+        deformed.skinned_instance.value_or(0) >= graph.scene.instances.size()) {
+        throw InvalidInput(thing + " has no mesh or instance in the scene");
+    }
+}
+
+}  // namespace
+
 void validate(const SceneGraph& graph) {
     for (std::size_t i = 0; i < graph.nodes.size(); ++i)
         validate_node(graph, i);
@@ -329,6 +364,8 @@ void validate(const SceneGraph& graph) {
         std::visit([&](const auto& motion) { validate_motion(graph, thing, motion); },
                    graph.animations[i]);
     }
+    for (std::size_t i = 0; i < graph.deformed.size(); ++i)
+        validate_deformed(graph, graph.deformed[i], i);
     validate(scene);
 }
 

@@ -74,6 +74,73 @@ TEST(LoadScene, ReadsObjWithItsMaterials) {
     EXPECT_TRUE(scene.directional_lights.empty());
 }
 
+/// A roof of two triangles with normals (1,0,1) and (-1,0,1) and its ridge along y, as STL.
+constexpr const char* roof_stl =
+    "solid roof\n"
+    "facet normal 1 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 0\nvertex 0 1 1\nendloop\nendfacet\n"
+    "facet normal -1 0 1\nouter loop\nvertex 0 0 1\nvertex 0 1 1\nvertex -1 0 "
+    "0\nendloop\nendfacet\n"
+    "endsolid roof\n";
+
+TEST(LoadScene, KeepsTheEdgesOfPartsHard) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "roof.stl", roof_stl);
+    const float half = std::sqrt(0.5F);
+    const auto first_normal = [&](const SceneOptions& options) {
+        const Scene scene = load_scene(folder / "roof.stl", options);
+        return scene.meshes[0]->normals[scene.meshes[0]->triangles[0].x];
+    };
+    EXPECT_LT(glm::distance(first_normal({}), glm::vec3(half, 0.0F, half)), 1e-6F);
+    EXPECT_LT(glm::distance(first_normal({.crease_angle = 1.6}), glm::vec3(0.0F, 0.0F, 1.0F)),
+              1e-6F)
+        << "the edge of 90 degrees is smooth";
+    EXPECT_LT(glm::distance(first_normal({.normals = NormalMode::flat, .crease_angle = 1.6}),
+                            glm::vec3(half, 0.0F, half)),
+              1e-6F);
+}
+
+TEST(LoadScene, TurnsTheUpAxisOfAModelUp) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "roof.stl", roof_stl);
+    write_text(folder / "flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 5\nf 1 2 3\n");
+    const auto top = [&](const char* file, UpAxis up) {
+        return world_bounds(load_scene(folder / file, {.up = up})).max;
+    };
+    EXPECT_EQ(top("roof.stl", UpAxis::automatic), glm::vec3(1.0F, 1.0F, 0.0F)) << "z is up";
+    EXPECT_EQ(top("roof.stl", UpAxis::y), glm::vec3(1.0F, 1.0F, 1.0F));
+    EXPECT_EQ(top("flat.obj", UpAxis::automatic), glm::vec3(1.0F, 1.0F, 5.0F));
+    EXPECT_EQ(top("flat.obj", UpAxis::z), glm::vec3(1.0F, 5.0F, 0.0F));
+}
+
+TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
+    const test::TemporaryDirectory folder;
+    const auto load = [&](const std::string& materials, const std::string& more) {
+        write_text(folder / "m.gltf", R"({"asset": {"version": "2.0"}, "materials": [)" +
+                                          materials + "]" + more + "}");
+        Report report;
+        Scene scene = load_scene(folder / "m.gltf", report);
+        return std::pair(std::move(scene), report);
+    };
+    const auto [neutral, nothing] = load(
+        R"({"extensions": {"KHR_materials_clearcoat": {}, "KHR_materials_ior": {"ior": 1.5},
+            "KHR_materials_sheen": {"sheenColorFactor": [0, 0, 0]},
+            "KHR_materials_specular": {"specularFactor": 1.0},
+            "KHR_materials_emissive_strength": {"emissiveStrength": 3}}})",
+        "");
+    EXPECT_TRUE(nothing.empty()) << "these values change nothing";
+    EXPECT_TRUE(neutral.materials[0].undrawn_extensions.empty());
+    const auto [scene, report] = load(
+        R"({"extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1}}},
+           {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5},
+                           "KHR_materials_iridescence": {"iridescenceFactor": 0.1}}})",
+        R"(, "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_iridescence"],
+           "extensionsRequired": ["KHR_materials_transmission"])");
+    EXPECT_EQ(report.count("KHR_materials_iridescence"), 2U);
+    EXPECT_EQ(report.count("KHR_materials_transmission, which the file requires"), 1U);
+    EXPECT_THAT(scene.materials[1].undrawn_extensions,
+                testing::ElementsAre("KHR_materials_iridescence", "KHR_materials_transmission"));
+}
+
 TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {
     const test::TemporaryDirectory folder;
     write_text(folder / "model.obj", two_triangles);

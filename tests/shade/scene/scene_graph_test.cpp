@@ -193,6 +193,36 @@ TEST(Pose, PlaysKeysAgainAndAgain) {
     EXPECT_EQ(light_at(graph, 4.0).x, 0.0F);
 }
 
+TEST(Clips, PlayAloneIfTheyMoveTheSame) {
+    const auto slide = [](const char* name, std::size_t node, float length) {
+        KeyChannel channel;
+        channel.node = node;
+        channel.times = {0.0F, length};
+        channel.values = {glm::vec4(0.0F), glm::vec4(length, 0.0F, 0.0F, 0.0F)};
+        return KeyAnimation{name, {channel}};
+    };
+    SceneGraph graph = one_of_each();
+    graph.animations = {slide("walk", 1, 2.0F), Orbit{.node = 3}, slide("", 2, 3.0F)};
+    EXPECT_FALSE(clips_exclude_each_other(graph));
+    EXPECT_THAT(clip_names(graph), testing::ElementsAre("walk", "animation 2"));
+    graph.animations.emplace_back(slide("run", 1, 4.0F));
+    EXPECT_TRUE(clips_exclude_each_other(graph));
+    std::get<Orbit>(graph.animations[1]).azimuth_speed = 0.0F;
+    EXPECT_DOUBLE_EQ(duration(graph), 4.0);
+    graph.clip = 0;
+    EXPECT_DOUBLE_EQ(duration(graph), 2.0);
+    pose(graph, 1.0);
+    expect_place(graph.scene.instances[0].world_from_object[3], {1, 0, 0});
+    graph.clip = 2;
+    pose(graph, 1.0);
+    expect_place(graph.scene.instances[0].world_from_object[3], {1, 0, 0});
+    EXPECT_DOUBLE_EQ(duration(graph), 4.0);
+    SceneGraph whole;
+    whole.nodes.resize(1);
+    append(whole, graph, 0);
+    EXPECT_THAT(clip_names(whole), testing::ElementsAre("run"));
+}
+
 TEST(Pose, OrbitsOnSphericalCoordinates) {
     Orbit orbit;
     orbit.center = {1, 2, 3};
@@ -341,16 +371,109 @@ TEST(LoadSceneGraph, MovesTheBoxOfARealAnimation) {
     EXPECT_EQ(world_bounds(graph.scene).max, before.max);
 }
 
-TEST(LoadSceneGraph, ReportsWhatStaysAtRest) {
+/// Two joints of a bar of two quads: the first one stands still, the second one is at y = 1.
+SceneGraph bar_with_joints() {
+    SceneGraph graph;
+    graph.nodes.resize(3);  // The mesh, and two joints.
+    graph.nodes[0].translation = {50.0F, 0.0F, 0.0F};
+    graph.nodes[2].parent = 1;
+    graph.nodes[2].translation = {0.0F, 1.0F, 0.0F};
+    Mesh bar;
+    bar.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}, {1, 2, 0}};
+    bar.normals.assign(6, {0, 0, 1});
+    bar.triangles = {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}};
+    graph.scene.meshes.emplace_back(bar);
+    graph.scene.instances.emplace_back();
+    graph.instances.push_back({0});
+    DeformedMesh deformed;
+    deformed.rest = bar;
+    GltfDeformation how;
+    how.joints.push_back({std::vector<glm::uvec4>(6, {0, 1, 9, 0}), {}});
+    how.joints[0].weights = {{1, 0, 0, 0}, {1, 0, 0, 0}, {2, 2, 0, 0},
+                             {1, 1, 7, 0}, {0, 1, 0, 0}, {0, 1, 0, 0}};
+    deformed.deformation = how;
+    deformed.joints = {1, 2};
+    deformed.joint_from_mesh.assign(2, glm::mat4(1.0F));
+    deformed.joint_from_mesh[1][3] = {0, -1, 0, 1};
+    deformed.skinned_instance = 0;
+    graph.deformed.push_back(std::move(deformed));
+    return graph;
+}
+
+TEST(Deformation, JointsMoveVerticesByTheirWeights) {
+    SceneGraph graph = bar_with_joints();
+    validate(graph);
+    pose(graph, 0.0);
+    EXPECT_EQ(graph.scene.instances[0].world_from_object, glm::mat4(1.0F))
+        << "joints place the mesh, not its node";
+    for (std::size_t i = 0; i < 6; ++i)
+        expect_place(graph.scene.meshes[0]->positions[i], graph.deformed[0].rest->positions[i]);
+    // The upper joint leans to the viewer by 90 degrees: y becomes z.
+    graph.nodes[2].rotation = glm::angleAxis(pi / 2, glm::vec3(1, 0, 0));
+    pose(graph, 0.0);
+    const Mesh& bent = graph.scene.meshes[0];
+    expect_place(bent.positions[0], {0, 0, 0});
+    expect_place(bent.positions[2], {0, 1, 0});  // On the axis of the joint.
+    expect_place(bent.positions[5], {1, 1, 1});
+    expect_place(bent.normals[5], {0, -1, 0});
+    expect_place(bent.normals[0], {0, 0, 1});
+    // Half of each rotation; the joint that does not exist has no weight.
+    expect_place(bent.normals[3], {0, -std::sqrt(0.5F), std::sqrt(0.5F)});
+    EXPECT_EQ(graph.deformed[0].rest->positions[5], glm::vec3(1, 2, 0));
+}
+
+TEST(Deformation, MorphTargetsAddTheirDisplacements) {
+    SceneGraph graph = bar_with_joints();
+    DeformedMesh& deformed = graph.deformed[0];
+    deformed.joints.clear();
+    deformed.joint_from_mesh.clear();
+    deformed.skinned_instance.reset();
+    GltfDeformation how;
+    how.targets.resize(2);
+    how.targets[0].positions.assign(6, {0, 0, 4});
+    how.targets[1].positions.assign(6, {8, 0, 0});
+    how.targets[1].normals.assign(6, {0, 0, -2});
+    deformed.deformation = how;
+    deformed.weights = {0.5F, 0.0F};
+    pose(graph, 0.0);
+    expect_place(graph.scene.meshes[0]->positions[1], {1, 0, 2});
+    expect_place(graph.scene.instances[0].world_from_object[3], {50, 0, 0});
+    KeyChannel channel;
+    channel.property = KeyChannel::Property::weights;
+    channel.times = {0.0F, 2.0F};
+    channel.weights = {0.0F, 0.0F, 0.0F, 1.0F};
+    graph.animations.emplace_back(KeyAnimation{"", {channel}});
+    validate(graph);
+    pose(graph, 1.0);
+    expect_place(graph.scene.meshes[0]->positions[1], {5, 0, 0});
+    expect_place(graph.scene.meshes[0]->normals[1], {0, 0, 1});  // Without a length: at rest.
+    pose(graph, 1.5);
+    expect_place(graph.scene.meshes[0]->normals[1], {0, 0, -1});
+    channel.interpolation = KeyInterpolation::cubic_spline;
+    // In-tangents, values and out-tangents of both keys: the slope is 1 at the start.
+    channel.weights = {0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
+    EXPECT_FLOAT_EQ(weights_at(channel, 1.0)[1], 0.5F + 2.0F * 0.125F);
+    channel.weights.pop_back();
+    EXPECT_THROW(check_keys(channel), InvalidInput);
+}
+
+TEST(Deformation, RealModelsAreSkinnedAndMorphed) {
     RELIEF_NEEDS_SHARED(fox, "data/models/gltf/Fox/glTF-Binary/Fox.glb");
     RELIEF_NEEDS_SHARED(morph,
                         "data/models/gltf/AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb");
-    Report report;
-    (void)load_scene_graph(fox, {}, report);
-    EXPECT_EQ(report.count("skinned mesh"), 1U);
-    (void)load_scene_graph(morph, {}, report);
-    EXPECT_EQ(report.count("morph targets"), 1U);
-    EXPECT_EQ(report.count("animated morph weights"), 1U);
+    for (const auto& file : {fox, morph}) {
+        Report report;
+        SceneGraph graph = load_scene_graph(file, {}, report);
+        EXPECT_TRUE(report.empty());
+        ASSERT_EQ(graph.deformed.size(), 1U);
+        const Mesh before = graph.scene.meshes[0];
+        pose(graph, 0.4);
+        EXPECT_NE(graph.scene.meshes[0]->positions, before.positions);
+        EXPECT_NO_THROW(validate(graph.scene));
+        pose(graph, 0.0);
+        EXPECT_EQ(graph.scene.meshes[0]->positions, before.positions);
+    }
+    EXPECT_EQ(clip_names(load_scene_graph(fox, {})).size(), 3U);
 }
 
 }  // namespace

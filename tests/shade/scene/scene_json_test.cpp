@@ -75,6 +75,12 @@ TEST(SampleScenes, AreReadWithoutAFindingAndMoveSoundly) {
     EXPECT_EQ(count, 10U);
 }
 
+TEST(SampleScenes, TheModelOfEnvironmentMappingScattersAmbientLight) {
+    const Scene scene =
+        load_scene(test::source_directory() / "data/scenes/environment-mapping.json");
+    EXPECT_GT(scene.ambient.r * scene.materials.at(0).ambient.r, 0.0F);
+}
+
 /// Returns the first JSON block of the page that describes the format.
 std::string documented_example() {
     std::ifstream stream(test::source_directory() / "docs/scene-files.md");

@@ -89,6 +89,9 @@ struct GltfMaterial {
     float alpha_cutoff = 0.5F;
     bool double_sided = false;
     bool unlit = false;  ///< KHR_materials_unlit
+    /// The extensions that change the appearance and are not among the members above, sorted.
+    /// Those whose values change nothing are left out.
+    std::vector<std::string> more_extensions{};
 };
 
 enum class LightType { directional, point, spot };
@@ -127,7 +130,34 @@ struct GltfNode {
     glm::vec3 scale{1.0F};
     std::optional<glm::mat4> matrix;  ///< Replaces the three members above.
     bool has_skin = false;
-    bool has_morph_targets = false;  ///< True if a primitive of its mesh has morph targets.
+    bool has_morph_targets = false;      ///< True if a primitive of its mesh has morph targets.
+    std::optional<std::size_t> skin{};   ///< Index into GltfView::skins.
+    std::vector<float> morph_weights{};  ///< At rest, one for each morph target of its mesh.
+};
+
+/// The joints of a skin.
+struct GltfSkin {
+    std::vector<std::size_t> joints;         ///< Nodes.
+    std::vector<glm::mat4> joint_from_mesh;  ///< Inverse bind matrices, one for each joint.
+};
+
+/// The displacements of a morph target, one for each vertex; empty where it has none.
+struct GltfMorphTarget {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec3> tangents;
+};
+
+/// Four joints of each vertex with their weights.
+struct GltfJoints {
+    std::vector<glm::uvec4> joints;  ///< Indices into GltfSkin::joints, which may be too large.
+    std::vector<glm::vec4> weights;
+};
+
+/// What deforms a primitive, for the vertices of GltfDocument::mesh().
+struct GltfDeformation {
+    std::vector<GltfMorphTarget> targets;
+    std::vector<GltfJoints> joints;  ///< Those of JOINTS_0, JOINTS_1, ...
 };
 
 /// The interpolation between two keys, as in glTF.
@@ -140,7 +170,7 @@ enum class KeyInterpolation {
 /// The keys of one property of a node. The first value holds before the first key, the last value
 /// after the last key.
 struct KeyChannel {
-    enum class Property { translation, rotation, scale };
+    enum class Property { translation, rotation, scale, weights };
 
     std::size_t node = 0;
     Property property = Property::translation;
@@ -149,6 +179,9 @@ struct KeyChannel {
     /// One for each time, or three for cubic_spline: in-tangent, value, out-tangent. Quaternions
     /// are x, y, z, w of any length but 0; w of other properties is ignored.
     std::vector<glm::vec4> values;
+    /// Of Property::weights, which has no values: for each time, or three times for each, the
+    /// weights of all morph targets of the node's mesh.
+    std::vector<float> weights{};
 };
 
 /// Key frames that repeat from the start.
@@ -177,6 +210,9 @@ struct GltfView {
     std::vector<GltfInstance<GltfCamera>> cameras;
     std::vector<GltfMaterial> materials;
     std::vector<GltfImage> images;
+    std::vector<GltfSkin> skins{};
+    std::vector<std::string> required_extensions{};  ///< In the order of the document.
+    std::vector<std::string> material_variants{};    ///< Names (KHR_materials_variants).
 };
 
 /// The texture coordinates to which the tangents of a primitive belong.
@@ -284,6 +320,10 @@ class GltfDocument {
     ///         attributes differ in length or have the wrong type, or if there is no such primitive
     [[nodiscard]] Mesh mesh(GltfPrimitiveId id, int texcoord_set = 0) const;
 
+    /// Returns the morph targets and the joints of a primitive.
+    /// \throws InvalidInput if an attribute has the wrong type, or as mesh()
+    [[nodiscard]] GltfDeformation deformation(GltfPrimitiveId id) const;
+
     /// Returns the texture coordinate sets of a primitive, ascending.
     [[nodiscard]] std::vector<int> texcoord_sets(GltfPrimitiveId id) const;
 
@@ -377,9 +417,10 @@ class GltfDocument {
 
     /// Returns the animations of nodes, in the document's order.
     ///
-    /// \param report  counts channels that are left out: those of morph weights or of extensions,
-    ///         and those of nodes with a matrix, which glTF does not animate; also those with times
-    ///         or values that are not finite, of the wrong number, or of the wrong type
+    /// \param report  counts channels that are left out: those of extensions, and those of nodes
+    /// with
+    ///         a matrix, which glTF does not animate; also those with times or values that are not
+    ///         finite, of the wrong number, or of the wrong type
     [[nodiscard]] std::vector<KeyAnimation> animations(Report& report = IgnoredReport()) const;
 
     /// Returns the compression of the file, one entry for each extension; empty if there is none.

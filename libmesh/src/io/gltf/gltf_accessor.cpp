@@ -505,4 +505,62 @@ Mesh GltfDocument::mesh(GltfPrimitiveId id, int texcoord_set) const {
     }
 }
 
+namespace {
+
+/// Returns the displacements of a morph target; empty if it has none.
+std::vector<glm::vec3> displacements_in(const GltfContents& contents, const Json& target,
+                                        const char* name) {
+    const auto accessor = index_in(target, name);
+    return accessor ? float_elements<glm::vec3>(contents, *accessor) : std::vector<glm::vec3>();
+}
+
+/// Returns JOINTS_n and WEIGHTS_n; empty if one of them is absent.
+GltfJoints joints_in(const GltfContents& contents, const Json& primitive, int set) {
+    GltfJoints result;
+    const auto numbers = attribute<glm::vec4>(contents, primitive, fmt::format("JOINTS_{}", set));
+    result.weights = attribute<glm::vec4>(contents, primitive, fmt::format("WEIGHTS_{}", set));
+    if (numbers.size() != result.weights.size()) return {};
+    for (const glm::vec4& joints : numbers) {
+        glm::uvec4& indices = result.joints.emplace_back(0U);
+        for (int k = 0; k < 4; ++k) {  // Floats, which glTF forbids, may be anything.
+            if (joints[k] > 0.0F && joints[k] <= 65535.0F)
+                indices[k] = static_cast<std::uint32_t>(joints[k]);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+GltfDeformation GltfDocument::deformation(GltfPrimitiveId id) const {
+    const GltfContents& contents = contents_->data;
+    try {
+        const Json& primitive = primitive_json(contents, id);
+        GltfDeformation result;
+        for (const Json& target : array_in(primitive, "targets")) {
+            result.targets.push_back({displacements_in(contents, target, "POSITION"),
+                                      displacements_in(contents, target, "NORMAL"),
+                                      displacements_in(contents, target, "TANGENT")});
+        }
+        for (int set = 0; primitive["attributes"].contains(fmt::format("JOINTS_{}", set)); ++set) {
+            GltfJoints joints = joints_in(contents, primitive, set);
+            if (!joints.joints.empty()) result.joints.push_back(std::move(joints));
+        }
+        const GltfTriangles triangles = read_triangles(contents, id);
+        if (!triangles.used) return result;
+        for (GltfMorphTarget& target : result.targets) {
+            keep_only(*triangles.used, target.positions);
+            keep_only(*triangles.used, target.normals);
+            keep_only(*triangles.used, target.tangents);
+        }
+        for (GltfJoints& joints : result.joints) {
+            keep_only(*triangles.used, joints.joints);
+            keep_only(*triangles.used, joints.weights);
+        }
+        return result;
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(fmt::format("{}: {}", describe_primitive(contents, id), error.what()));
+    }
+}
+
 }  // namespace relief

@@ -10,11 +10,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <string_view>
+#include <utility>
 
 #include "geometry/direction.h"
 #include "io/gltf/gltf_accessor.h"
@@ -35,6 +38,20 @@ glm::mat4 transform(const glm::vec3& translation, const glm::vec4& rotation,
            glm::scale(glm::mat4(1.0F), scale);
 }
 
+/// Returns the weights of a node, else of its mesh, for as many morph targets as a primitive has.
+std::vector<float> morph_weights(const Json& root, const Json& node, std::size_t mesh) {
+    const Json& json = root["meshes"][mesh];
+    std::size_t count = 0;
+    for (const Json& primitive : json["primitives"])
+        count = std::max(count, array_in(primitive, "targets").size());
+    std::vector<float> weights(count, 0.0F);
+    const Json& given =
+        !array_in(node, "weights").empty() ? array_in(node, "weights") : array_in(json, "weights");
+    for (std::size_t i = 0; i < std::min(count, given.size()); ++i)
+        weights[i] = given[i].is_number() ? given[i].get<float>() : 0.0F;
+    return weights;
+}
+
 GltfNode node_from(const Json& root, const Json& json) {
     GltfNode node;
     node.name = text_in(json, "name");
@@ -44,7 +61,9 @@ GltfNode node_from(const Json& root, const Json& json) {
         node.has_morph_targets = std::any_of(
             primitives.begin(), primitives.end(),
             [](const Json& primitive) { return !array_in(primitive, "targets").empty(); });
+        if (node.has_morph_targets) node.morph_weights = morph_weights(root, json, *mesh);
     }
+    node.skin = index_in(json, "skin");
     node.translation = vector_in(json, "translation", node.translation);
     node.rotation = vector_in(json, "rotation", node.rotation);
     node.scale = vector_in(json, "scale", node.scale);
@@ -147,6 +166,55 @@ std::optional<GltfTexture> texture_in(const Json& root, const Json& holder, cons
     return result;
 }
 
+/// Tells whether a property is absent or has a value, which vectors have in all components.
+bool has_only(const Json& extension, const char* key, double value) {
+    const Json* found = find(extension, key);
+    if (found == nullptr) return true;
+    if (!found->is_array()) return found->is_number() && *found == value;
+    return std::all_of(found->begin(), found->end(), [&](const Json& component) {
+        return component.is_number() && component == value;
+    });
+}
+
+/// Tells whether an extension of a material has values that change nothing.
+bool is_neutral(const std::string& name, const Json& extension) {
+    if (!extension.is_object()) return false;
+    if (name == "KHR_materials_specular") {
+        return has_only(extension, "specularFactor", 1.0) &&
+               has_only(extension, "specularColorFactor", 1.0) &&
+               !extension.contains("specularTexture") &&
+               !extension.contains("specularColorTexture");
+    }
+    if (name == "KHR_materials_ior") return has_only(extension, "ior", 1.5);
+    // The factor without which the extension does nothing.
+    static constexpr std::array<std::pair<std::string_view, const char*>, 8> factors{{
+        {"KHR_materials_anisotropy", "anisotropyStrength"},
+        {"KHR_materials_clearcoat", "clearcoatFactor"},
+        {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"},
+        {"KHR_materials_dispersion", "dispersion"},
+        {"KHR_materials_iridescence", "iridescenceFactor"},
+        {"KHR_materials_sheen", "sheenColorFactor"},
+        {"KHR_materials_transmission", "transmissionFactor"},
+        {"KHR_materials_volume", "thicknessFactor"},
+    }};
+    return std::any_of(factors.begin(), factors.end(), [&](const auto& factor) {
+        return factor.first == name && has_only(extension, factor.second, 0.0);
+    });
+}
+
+/// Returns the extensions of a material that GltfMaterial does not have, without neutral ones.
+std::vector<std::string> more_extensions_of(const Json& json) {
+    std::vector<std::string> names;
+    const Json* extensions = find(json, "extensions");
+    if (extensions == nullptr || !extensions->is_object()) return names;
+    for (const auto& [name, extension] : extensions->items()) {
+        const bool is_member =
+            name == "KHR_materials_unlit" || name == "KHR_materials_emissive_strength";
+        if (!is_member && !is_neutral(name, extension)) names.push_back(name);
+    }
+    return names;
+}
+
 GltfMaterial material_from(const Json& root, const Json& json) {
     static const Json nothing = Json::object();
     GltfMaterial material;
@@ -178,6 +246,7 @@ GltfMaterial material_from(const Json& root, const Json& json) {
     material.alpha_cutoff = float_in(json, "alphaCutoff", 0.5F);
     material.double_sided = bool_in(json, "doubleSided");
     material.unlit = find(json, "extensions", "KHR_materials_unlit") != nullptr;
+    material.more_extensions = more_extensions_of(json);
     return material;
 }
 
@@ -334,6 +403,46 @@ std::vector<GltfPrimitiveId> GltfDocument::triangle_primitives() const {
     return result;
 }
 
+namespace {
+
+/// Returns the matrices of an accessor, or none if it has another type.
+std::vector<glm::mat4> matrices_of(const GltfContents& contents, std::size_t accessor) {
+    const Json& json = contents.root["accessors"][accessor];
+    const ElementLayout layout = element_layout(json);
+    if (text_in(json, "type") != "MAT4" || layout.component_type != gltf_code::float32) return {};
+    const PackedElements packed = packed_elements(contents, accessor);
+    const std::string_view bytes = packed.bytes();
+    std::vector<glm::mat4> matrices(bytes.size() / sizeof(glm::mat4));
+    if (!matrices.empty())
+        std::memcpy(matrices.data(), bytes.data(), matrices.size() * sizeof(glm::mat4));
+    return matrices;
+}
+
+GltfSkin skin_from(const GltfContents& contents, const Json& json) {
+    GltfSkin skin;
+    for (const Json& joint : array_in(json, "joints"))
+        skin.joints.push_back(joint.get<std::size_t>());
+    if (const auto accessor = index_in(json, "inverseBindMatrices"))
+        skin.joint_from_mesh = matrices_of(contents, *accessor);
+    skin.joint_from_mesh.resize(skin.joints.size(), glm::mat4(1.0F));
+    return skin;
+}
+
+std::vector<std::string> variants_of(const Json& root) {
+    std::vector<std::string> names;
+    const Json* extension = find(root, "extensions", "KHR_materials_variants");
+    const Json* variants =
+        extension == nullptr || !extension->is_object() ? nullptr : find(*extension, "variants");
+    if (variants == nullptr || !variants->is_array()) return names;
+    for (const Json& variant : *variants) {
+        const Json* name = variant.is_object() ? find(variant, "name") : nullptr;
+        names.push_back(name != nullptr && name->is_string() ? name->get<std::string>() : "");
+    }
+    return names;
+}
+
+}  // namespace
+
 GltfView GltfDocument::view() const {
     const GltfContents& contents = contents_->data;
     GltfView view;
@@ -343,6 +452,11 @@ GltfView GltfDocument::view() const {
     }
     for (std::size_t i = 0; i < array_in(contents.root, "images").size(); ++i)
         view.images.push_back(image_from(contents, i));
+    for (const Json& name : array_in(contents.root, "extensionsRequired"))
+        view.required_extensions.push_back(name.get<std::string>());
+    for (const Json& skin : array_in(contents.root, "skins"))
+        view.skins.push_back(skin_from(contents, skin));
+    view.material_variants = variants_of(contents.root);
     SceneWalk(contents, view).run();
     return view;
 }
@@ -353,6 +467,7 @@ std::optional<KeyChannel::Property> property_from(const std::string& path) {
     if (path == "translation") return KeyChannel::Property::translation;
     if (path == "rotation") return KeyChannel::Property::rotation;
     if (path == "scale") return KeyChannel::Property::scale;
+    if (path == "weights") return KeyChannel::Property::weights;
     return std::nullopt;
 }
 
@@ -375,8 +490,17 @@ std::vector<glm::vec4> values_of(const GltfContents& contents, std::size_t acces
 bool is_usable(const KeyChannel& channel) {
     const bool cubic = channel.interpolation == KeyInterpolation::cubic_spline;
     const std::size_t per_key = cubic ? 3 : 1;
-    if (channel.times.empty() || channel.values.size() != per_key * channel.times.size())
+    if (channel.times.empty()) return false;
+    if (channel.property == KeyChannel::Property::weights) {
+        if (channel.weights.empty() ||
+            channel.weights.size() % (per_key * channel.times.size()) != 0)
+            return false;
+        if (!std::all_of(channel.weights.begin(), channel.weights.end(),
+                         [](float weight) { return std::isfinite(weight); }))
+            return false;
+    } else if (channel.values.size() != per_key * channel.times.size()) {
         return false;
+    }
     const auto no_order =
         std::adjacent_find(channel.times.begin(), channel.times.end(), std::greater_equal<float>());
     if (no_order != channel.times.end() || !(channel.times.front() >= 0.0F) ||
@@ -400,7 +524,13 @@ std::optional<KeyChannel> keys_from(const GltfContents& contents, const Json& sa
     try {
         for (const auto& time : float_elements<glm::vec1>(contents, size_in(sampler, "input")))
             channel.times.push_back(time.x);
-        channel.values = values_of(contents, size_in(sampler, "output"), property);
+        if (property == KeyChannel::Property::weights) {
+            for (const auto& weight :
+                 float_elements<glm::vec1>(contents, size_in(sampler, "output")))
+                channel.weights.push_back(weight.x);
+        } else {
+            channel.values = values_of(contents, size_in(sampler, "output"), property);
+        }
     } catch (const InvalidInput&) {
         return std::nullopt;
     }
@@ -415,12 +545,12 @@ void add_channel(const GltfContents& contents, const Json& animation, const Json
     const std::string name = text_in(target, "path");
     const auto property = property_from(name);
     if (!property) {
-        report.add(name == "weights" ? "animated morph weights" : "animation of an extension",
-                   "channel", number, "left out");
+        report.add("animation of an extension", "channel", number, "left out");
         return;
     }
     if (!node) return;  // By the specification, channels without a node are ignored.
-    if (contents.root["nodes"][*node].contains("matrix")) {
+    if (property != KeyChannel::Property::weights &&
+        contents.root["nodes"][*node].contains("matrix")) {
         report.add("animated node with a matrix", "channel", number, "left out");
         return;
     }

@@ -52,6 +52,10 @@ struct EffectCosts {
     std::vector<EffectCost> effects;  ///< The effects of effects_in(plan), in its order.
 };
 
+/// Returns whether a cost is larger than the noise of the measurement: the range from the 10th to
+/// the 90th percentile of the time of a frame.
+bool exceeds_noise(const EffectCost& cost, const EffectCosts& measured);
+
 /// Measures every effect: removes it, and effects that are invisible without it, from the plan, and
 /// draws frames with and without it, interleaved. \throws as Renderer does
 EffectCosts measure_effects(const MeasuredFrame& frame, const FramePlan& plan);

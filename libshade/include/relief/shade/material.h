@@ -166,6 +166,10 @@ struct Material {
     float alpha_cutoff = 0.5F;
     bool double_sided = false;  ///< Otherwise back faces are not drawn.
     bool unlit = false;         ///< Shows the diffuse color without light.
+
+    /// The extensions of its glTF material that change the appearance and are not drawn, for
+    /// reasons.
+    std::vector<std::string> undrawn_extensions{};
 };
 
 /// Returns the factor of specular_model: 1, or (shininess + 2) / 8.

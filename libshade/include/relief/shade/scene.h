@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/shade/material.h"
@@ -328,6 +329,23 @@ struct Turntable {
 
 using Animation = std::variant<KeyAnimation, Orbit, Turntable>;
 
+/// A mesh that morph targets and joints deform. glTF 2.0, sections 3.7.2.2 and 3.7.3.3.
+struct DeformedMesh {
+    /// Index into Scene::meshes. pose() replaces the mesh.
+    std::size_t mesh = 0;
+    Shared<Mesh> rest;
+    Shared<GltfDeformation> deformation;  ///< For the vertices of `rest`.
+    /// The node with the morph weights.
+    std::size_t node = 0;
+    std::vector<float> weights;  ///< At rest.
+    /// The joints; without any, only morph targets deform the mesh.
+    std::vector<std::size_t> joints;
+    std::vector<glm::mat4> joint_from_mesh;  ///< One for each joint.
+    /// The instance whose mesh is in world space, because joints place it; none without joints.
+    std::optional<std::size_t> skinned_instance;
+    bool has_flat_normals = false;  ///< The normals of the deformed triangles.
+};
+
 /// A scene with its nodes and animations.
 ///
 /// The lists of Carried correspond to the scene's lists of the same name; if one is shorter, the
@@ -346,14 +364,19 @@ struct SceneGraph {
     /// True if the far plane must stay behind all moving meshes, because the file does not name
     /// one.
     bool camera_sees_all = false;
-    /// All play at the same time. If two move the same node, the later one wins.
+    /// All play at the same time, except key animations other than `clip`. If two move the same
+    /// node, the later one wins.
     std::vector<Animation> animations;
+    /// The key animation that plays, counted among the key animations; if absent, all of them.
+    std::optional<std::size_t> clip;
+    /// Meshes that pose() deforms.
+    std::vector<DeformedMesh> deformed;
     /// The bounds of every mesh, for camera_sees_all; pose() fills them on first use.
     std::vector<Bounds> mesh_bounds;
 };
 
-/// Moves all objects that are attached to nodes to their transforms at this time. Meshes do not
-/// change.
+/// Moves all objects that are attached to nodes to their transforms at this time, and deforms the
+/// meshes with joints or morph targets; no other mesh changes.
 ///
 /// A light whose node is scaled to 0 shines along the world's -z; such a camera has the world's
 /// axes.
@@ -361,9 +384,16 @@ struct SceneGraph {
 ///         finite, or keys are not as KeyChannel requires
 void pose(SceneGraph& graph, double seconds);
 
-/// Returns the duration of the longest animation: the time of its last key, or of a full rotation.
-/// 0 without animations; those of speed 0 are ignored.
+/// Returns the duration of the longest animation that plays: the time of its last key, or of a full
+/// rotation. 0 without animations; those of speed 0 are ignored.
 double duration(const SceneGraph& graph);
+
+/// Returns the names of the key animations, "animation 1" and so on where a name is empty.
+std::vector<std::string> clip_names(const SceneGraph& graph);
+
+/// Returns whether two key animations move the same property of a node, so that they are meant to
+/// play one at a time.
+bool clips_exclude_each_other(const SceneGraph& graph);
 
 /// Checks everything that pose() relies on, and the scene. \throws InvalidInput naming the first
 /// error

@@ -3,14 +3,18 @@
 /// Reads scenes from model files and scene files, saves edited scenes, and decodes their images.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -23,6 +27,21 @@ namespace RELIEF_API relief {
 
 // Reads scenes from model files and scene files.
 
+/// The axis of a model that points up in the world.
+enum class UpAxis {
+    y,
+    z,
+    automatic,  ///< z for STL, as programs for parts and printing write it; y for others.
+};
+
+template <>
+inline constexpr auto enum_names<UpAxis> = std::to_array<EnumName<UpAxis>>(
+    {{"y", UpAxis::y}, {"z", UpAxis::z}, {"auto", UpAxis::automatic}});
+
+/// Edges of an STL file that are sharper are hard, in radians: 30 degrees. The format has one
+/// normal for each triangle, and is used for parts with sharp edges.
+inline constexpr double stl_crease_angle = 0.523598775598299;
+
 /// Options of load_scene_graph.
 struct SceneOptions {
     /// The model of glTF's materials.
@@ -31,16 +50,32 @@ struct SceneOptions {
         phong,  ///< Phong's model, by phong_from_metallic_roughness() with the means of textures.
     };
     MaterialModel model = MaterialModel::as_authored;
+    /// Replaces the normals of models, unless it is keep.
+    NormalMode normals = NormalMode::keep;
+    /// In radians, 0 to pi: sharper edges are hard in normals that are computed. If absent, STL
+    /// has stl_crease_angle, and others have the smoothing groups of their file.
+    std::optional<double> crease_angle = std::nullopt;
+    /// Of a model file; models within scene files stand as the scene file says.
+    UpAxis up = UpAxis::automatic;
 };
+
+/// Returns whether the z axis of a model file points up.
+bool is_z_up(const std::filesystem::path& model, const SceneOptions& options);
+
+/// Returns the options for the normals of a model file. A format that demands other normals where
+/// there are none sets FrameOptions::if_missing.
+FrameOptions frame_options(const std::filesystem::path& model, const SceneOptions& options);
 
 /// Reads .gltf, .glb, .obj, .ply, .stl, .off or a scene file (.json, docs/scene-files.md) as a
 /// scene graph, posed at time 0.
 ///
 /// Meshes without normals get flat normals in glTF (as it requires) and angle-weighted normals in
-/// other formats. The effect plan computes tangents. Lights and the first camera come from glTF;
-/// none are added. Formats that do not define sides (all but glTF) are double-sided. glTF's light
-/// units (lux, candela) become irradiance over pi, so that the picture is the one that
-/// KHR_lights_punctual describes.
+/// other formats, with hard edges in STL. The effect plan computes tangents. Lights and the first
+/// camera come from glTF; none are added. Formats that do not define sides (all but glTF) are
+/// double-sided. glTF's light units (lux, candela) become irradiance over pi, so that the picture
+/// is the one that KHR_lights_punctual describes.
+///
+/// If animations move the same property of a node, the first one plays (SceneGraph::clip).
 ///
 /// A glTF mesh has the texture coordinates of its material's first texture, with that texture's
 /// KHR_texture_transform applied. MTL's bump multiplier -bm, which has no unit, multiplies
@@ -49,10 +84,10 @@ struct SceneOptions {
 ///
 /// \param report  counts everything that is not drawn as intended: textures with further texture
 ///                coordinate sets (left out) or another transform than their material's first;
-///                statements of MTL without an equivalent (map_Ka, map_Ns, disp, refl,
-///                scaled or shifted maps); skins and morph targets (drawn at rest), and animations
-///                that cannot be played; and, for MaterialModel::phong, unreadable textures, whose
-///                mean counts as 1
+///                extensions of glTF materials that are not drawn, and those that the file
+///                requires; statements of MTL without an equivalent (map_Ka, map_Ns, disp, refl,
+///                scaled or shifted maps); animations that cannot be played; and, for
+///                MaterialModel::phong, unreadable textures, whose mean counts as 1
 /// \throws FileError as the readers do. A missing image file is reported when it is decoded, and
 ///         only visible images are decoded
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
@@ -123,6 +158,7 @@ struct SceneToSave {
     const Scene& scene;            ///< The edited scene: lights, environment, materials.
     Camera camera;
     glm::ivec2 size{1024, 1024};
+    SceneOptions options{};  ///< Those with which the source was read.
 };
 
 /// Writes a scene file that names the model, or repeats the scene file, with the differences:

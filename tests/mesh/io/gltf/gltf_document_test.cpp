@@ -380,6 +380,29 @@ struct SkinnedTriangle {
     }
 };
 
+TEST_F(GltfDocumentTest, ReturnsWhatDeformsAPrimitive) {
+    SkinnedTriangle triangle;
+    triangle.joints[5] = 0;
+    triangle.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, json::object()};
+    triangle.root["meshes"][0]["weights"] = {0.5, 0.25};
+    triangle.root["nodes"][0]["weights"] = {0.75};
+    write_gltf_file(folder_ / "a.glb", triangle.root, triangle.bytes());
+    const GltfDocument document = read(folder_ / "a.glb");
+    const GltfDeformation how = document.deformation({});
+    ASSERT_EQ(how.joints.size(), 1U);
+    EXPECT_EQ(how.joints[0].joints[1], glm::uvec4(1, 0, 1, 1));
+    EXPECT_EQ(how.joints[0].weights[2], glm::vec4(0.25F));
+    ASSERT_EQ(how.targets.size(), 2U);
+    EXPECT_EQ(how.targets[0].positions, document.mesh({}).positions);
+    EXPECT_TRUE(how.targets[1].positions.empty());
+    const GltfView view = document.view();
+    EXPECT_EQ(view.nodes[0].morph_weights, (std::vector<float>{0.75F, 0.0F}));
+    EXPECT_EQ(view.nodes[0].skin, 0U);
+    EXPECT_FALSE(view.nodes[1].skin);
+    EXPECT_EQ(view.skins[0].joints, (std::vector<std::size_t>{0, 1}));
+    EXPECT_EQ(view.skins[0].joint_from_mesh[1], glm::mat4(1.0F)) << "the file has none";
+}
+
 TEST_F(GltfDocumentTest, ValuesWithoutMeaningAreReported) {
     const auto findings = [&](const SkinnedTriangle& triangle) {
         write_gltf_file(folder_ / "a.glb", triangle.root, triangle.bytes());
