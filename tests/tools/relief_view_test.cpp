@@ -416,6 +416,27 @@ TEST(ViewCommand, ImagesOfMtlAndSceneFilesThatCannotBeReadAreNamedAndDrawnWithou
     }
 }
 
+TEST(ViewCommand, SavedScenesKeepTheUpAxisAndTheNormals) {
+    const Workplace workplace;
+    workplace.write(
+        "roof.stl",
+        "solid r\nfacet normal 0 0 0\nouter loop\nvertex 0 0 1\nvertex 1 0 0\nvertex 0 1 "
+        "1\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 1\nvertex 0 1 "
+        "1\nvertex -1 0 0\nendloop\nendfacet\nendsolid r\n");
+    const auto draw = [&](const std::string& words) {
+        const ProgramResult result =
+            workplace.run("relief-view " + words + " --size 40x30 --quiet --output out/p.png");
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return picture_in(workplace / "out/p.png").samples;
+    };
+    std::filesystem::create_directory(workplace / "out");
+    const auto hard = draw("roof.stl");
+    const auto smooth = draw("roof.stl --crease 120 --save-scene out/smooth.json");
+    EXPECT_NE(smooth, hard);
+    EXPECT_NE(draw("roof.stl --up y --crease 120"), smooth);
+    EXPECT_EQ(draw("out/smooth.json"), smooth);
+}
+
 TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     workplace.write_square("square.obj");
@@ -479,6 +500,18 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
          {"square.obj --output out/old.png --backend vulkan", 2,
           "--backend vulkan: not one of auto, osmesa, egl"},
          {"missing.obj --output out/old.png", 1, "missing.obj: "},
+         {"empty --output out/old.png", 1,
+          "empty: is a folder, not a model (it contains no model)"},
+         {". --output out/old.png", 1,
+          ".: is a folder, not a model (name a file in it: plain.obj, square.obj)"},
+         {"square.obj --output out/old.png --normal-map map.png --interpolation gouraud", 2,
+          "--normal-map: does not show with --interpolation gouraud or flat"},
+         {"square.obj --output out/old.png --normals flat --crease 30", 2,
+          "--crease: contradicts --normals flat"},
+         {"scene.json --output out/old.png --up z", 2,
+          "--up: applies to model files, not to scene files (rotate the nodes of the scene)"},
+         {"square.obj --output out/old.png --animation walk", 2,
+          "--animation: the model has no animation of its own to choose"},
          {"map.png --output out/old.png", 1, "map.png: "},
          {"square.obj --output nowhere/p.png", 1, "nowhere/p.png: "},
          {"plain.obj --output out/old.png --normal-map map.png", 1,

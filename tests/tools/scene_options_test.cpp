@@ -72,6 +72,38 @@ TEST(SceneOptions, AMapReplacesTheDiffuseColourOfEveryMaterial) {
     EXPECT_TRUE(scene.materials[0].diffuse_texture);
 }
 
+TEST(SceneOptions, ANamedMaterialReplacesColorTexturesButKeepsHoles) {
+    const Workplace workplace;
+    workplace.write_square("plain.obj");
+    workplace.write("m.mtl",
+                    "newmtl wall\nmap_Kd a.png\nmap_Ks b.png\nnorm c.png\n"
+                    "newmtl leaf\nmap_Kd a.png\nmap_d d.png\n");
+    workplace.write("model.obj", "mtllib m.mtl\nusemtl wall\n" + workplace.read("plain.obj") +
+                                     "usemtl leaf\nf 1/1 2/2 3/3\n");
+    ViewOptions options = of(workplace / "model.obj");
+    options.material = "gold";
+    const Scene scene = composed(options).scene();
+    const Material& wall = scene.materials.at(0);
+    EXPECT_FALSE(wall.diffuse_texture || wall.specular_texture);
+    EXPECT_TRUE(wall.normal_map);
+    EXPECT_TRUE(scene.materials.at(1).diffuse_texture) << "its alpha may cut holes";
+    options.diffuse_map = "e.png";
+    EXPECT_TRUE(composed(options).scene().materials.at(0).diffuse_texture) << "asked for";
+}
+
+TEST(SceneOptions, NotesMapsThatDoNotShow) {
+    const Workplace workplace;
+    workplace.write_square("plain.obj");
+    workplace.write("m.mtl", "newmtl wall\nnorm c.png\n");
+    workplace.write("model.obj", "mtllib m.mtl\nusemtl wall\n" + workplace.read("plain.obj"));
+    ViewOptions options = of(workplace / "model.obj");
+    options.interpolation = Interpolation::gouraud;
+    EXPECT_THAT(composed(options).notes,
+                testing::Contains(HasSubstr("the normal or bump map of 1 material does not show")));
+    options.interpolation = Interpolation::per_pixel;
+    EXPECT_THAT(composed(options).notes, testing::Not(testing::Contains(HasSubstr("bump map"))));
+}
+
 TEST(SceneOptions, TransmissionComesWithTheReflectivityOfGlass) {
     ViewOptions options;
     options.transmission = 0.75F;

@@ -33,8 +33,9 @@ std::string material_name(const Scene& scene, const DrawPlan& draw) {
 
 using Table = std::vector<EffectReason>;
 
-/// A line for each effect that is on; effects that are off for the same reason share a line.
-std::vector<std::string> table_lines(const Table& reasons) {
+/// A line for each effect that is on. Effects that are off share a line: those with the same
+/// reason, or all of them, without reasons.
+std::vector<std::string> table_lines(const Table& reasons, bool explains_off) {
     std::size_t width = 0;
     for (const EffectReason& reason : reasons) {
         if (reason.on) width = std::max(width, reason.effect.size());
@@ -46,15 +47,16 @@ std::vector<std::string> table_lines(const Table& reasons) {
             lines.push_back(fmt::format("on   {:<{}}  {}", reason.effect, width, reason.reason));
             continue;
         }
-        const auto same = std::ranges::find(off, reason.reason, &decltype(off)::value_type::first);
+        const std::string why = explains_off ? ": " + reason.reason : "";
+        const auto same = std::ranges::find(off, why, &decltype(off)::value_type::first);
         if (same == off.end()) {
-            off.emplace_back(reason.reason, reason.effect);
+            off.emplace_back(why, reason.effect);
         } else {
             same->second += ", " + reason.effect;
         }
     }
-    for (const auto& [reason, effects] : off)
-        lines.push_back(fmt::format("off  {}: {}", effects, reason));
+    for (const auto& [why, effects] : off)
+        lines.push_back(fmt::format("off  {}{}", effects, why));
     return lines;
 }
 
@@ -128,11 +130,15 @@ std::string draw_heading(const Scene& scene, const DrawPlan& draw) {
 
 Summary effect_summary(const Scene& scene, const FramePlan& plan) {
     Summary summary;
-    summary.add("frame", table_lines(joined(plan.reasons, pass_rows(plan))),
+    summary.add("frame", table_lines(joined(plan.reasons, pass_rows(plan)), true),
                 {{"frame", list_of(plan.reasons)}, {"passes", list_of(planned_passes(plan))}});
     std::vector<Table> tables;
     for (const DrawPlan& draw : plan.draws)
         tables.push_back(joined(draw.reasons, input_rows(scene, draw)));
+    // The reasons of what is off would fill pages if draws differ.
+    const bool explains_off = std::all_of(tables.begin(), tables.end(), [&](const Table& table) {
+        return same_table(table, tables.front());
+    });
     std::vector<bool> is_listed(plan.draws.size(), false);
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
         if (is_listed[i]) continue;
@@ -145,10 +151,12 @@ Summary effect_summary(const Scene& scene, const FramePlan& plan) {
         std::vector<std::string> lines = {
             draw_heading(scene, plan.draws[i]) +
             (same > 1 ? fmt::format(" (and {} alike)", counted(same - 1, "draw")) : "")};
-        const std::vector<std::string> table = table_lines(tables[i]);
+        const std::vector<std::string> table = table_lines(tables[i], explains_off);
         lines.insert(lines.end(), table.begin(), table.end());
         summary.add("draw", lines);
     }
+    if (!explains_off)
+        summary.add("off", "--json states the reason for each effect of a draw that is off");
     const auto draw_json = [&](const DrawPlan& draw) -> Json {
         const DrawInputs inputs = planned_inputs(scene, draw);
         return {
@@ -201,13 +209,16 @@ void add_costs(Summary& summary, const EffectCosts& costs, const ViewOptions& op
         width = std::max(width, cost.effect.size());
     Summary::Lines lines = {fmt::format("a frame takes {}; without", milliseconds(costs.frame))};
     for (const EffectCost& cost : costs.effects) {
-        lines.push_back(fmt::format("{:<{}}  {:+8.2f} ms  {}", cost.effect, width,
-                                    -cost.milliseconds,
+        const std::string time = exceeds_noise(cost, costs)
+                                     ? fmt::format("{:+8.2f} ms", -cost.milliseconds)
+                                     : fmt::format("{:>11}", "(noise)");
+        lines.push_back(fmt::format("{:<{}}  {}  {}", cost.effect, width, time,
                                     change_text(cost.change, peak_of(options))));
     }
-    const auto cost_json = [](const EffectCost& cost) -> Json {
+    const auto cost_json = [&](const EffectCost& cost) -> Json {
         return {{"effect", cost.effect},
                 {"milliseconds", cost.milliseconds},
+                {"exceeds_noise", exceeds_noise(cost, costs)},
                 {"change", change_json(cost.change)}};
     };
     summary.add("costs", lines,

@@ -8,7 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numbers>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "common/command.h"
@@ -23,6 +27,76 @@
 #include "window/orbit_camera.h"
 
 namespace relief::tools {
+
+// The model.
+
+namespace {
+
+constexpr const char* model_group = "Model";
+
+/// Returns up to three models of a folder, for a message.
+std::string models_in(const std::filesystem::path& folder) {
+    constexpr std::array<std::string_view, 7> extensions = {".glb", ".gltf", ".obj", ".ply",
+                                                            ".stl", ".off",  ".json"};
+    constexpr std::size_t shown = 3;
+    std::set<std::string> names;
+    std::error_code problem;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, problem)) {
+        const std::string extension = extension_of(entry.path());
+        if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end())
+            names.insert(entry.path().filename().string());
+    }
+    if (names.empty()) return "it contains no model";
+    const std::size_t count = names.size();
+    while (names.size() > shown)
+        names.erase(std::prev(names.end()));
+    return fmt::format("name a file in it: {}{}", fmt::join(names, ", "),
+                       count > shown ? ", ..." : "");
+}
+
+}  // namespace
+
+void add_model_options(CLI::App& app, ViewOptions& options) {
+    add_choice(app, "--up", options.up, enum_choices<UpAxis>(),
+               "Set the axis of the model that points up. auto is z for STL files and y for "
+               "others. Default: auto.")
+        .group(model_group);
+    add_choice(app, "--normals", options.normals, enum_choices<NormalMode>(),
+               "The source of normals, as in relief-mesh process: the file (keep), one per "
+               "triangle (flat), or an average around each vertex. Default: keep; glTF without "
+               "normals gets flat ones, and other files angle.")
+        .group(model_group);
+    add_number(app, "--crease", "DEG", options.crease_degrees, {0.0, 180.0, "degrees"},
+               "Edges sharper than this angle in degrees are hard, where normals are computed. "
+               "Default: 30 for STL files; others have hard edges only between the smoothing "
+               "groups of an OBJ file.")
+        .group(model_group);
+}
+
+void check_model(const ViewOptions& options) {
+    const bool is_scene = extension_of(options.model) == ".json";
+    const auto refuse_for_scene = [&](bool given, const char* option, const char* remedy) {
+        refuse(given && is_scene, option, "applies to model files, not to scene files", remedy);
+    };
+    refuse_for_scene(options.up.has_value(), "--up", "rotate the nodes of the scene");
+    refuse_for_scene(options.normals.has_value(), "--normals",
+                     "set 'normals' beside 'model' in the scene");
+    refuse_for_scene(options.crease_degrees.has_value(), "--crease",
+                     "set 'crease' beside 'model' in the scene");
+    refuse(options.crease_degrees && options.normals == NormalMode::flat, "--crease",
+           "contradicts --normals flat, which makes all edges hard", "leave one of them out");
+}
+
+SceneOptions scene_options(const ViewOptions& options) {
+    using Model = SceneOptions::MaterialModel;
+    SceneOptions read;
+    read.model = reason_for_phong(options).empty() ? Model::as_authored : Model::phong;
+    read.normals = options.normals.value_or(read.normals);
+    if (options.crease_degrees)
+        read.crease_angle = *options.crease_degrees * std::numbers::pi / 180.0;
+    read.up = options.up.value_or(read.up);
+    return read;
+}
 
 // Maps and materials.
 
@@ -103,6 +177,12 @@ void check_maps(const ViewOptions& options) {
            "leave it out");
     refuse(bump && options.normal_scale, "--normal-scale",
            "applies to normal maps, not to bump maps", "use --strength");
+    const bool has_one_normal =
+        options.interpolation.value_or(Interpolation::per_pixel) != Interpolation::per_pixel;
+    refuse(has_one_normal && (options.normal_map || options.height_map),
+           options.normal_map ? "--normal-map" : "--height-map",
+           "does not show with --interpolation gouraud or flat, which do not shade each pixel",
+           "leave one of them out");
     refuse(options.tangent_frame && options.normal_space == NormalSpace::object, "--tangent-frame",
            "object-space normal maps need no tangent frame", "leave it out");
 }
@@ -121,7 +201,7 @@ MetallicOption parse_metallic(const std::string& subject, const std::string& tex
     return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1])};
 }
 
-void add_model_options(CLI::App& app, ViewOptions& options) {
+void add_shading_options(CLI::App& app, ViewOptions& options) {
     using Model = SceneOptions::MaterialModel;
     add_choice(app, "--shading", options.shading,
                Choices<Model>{{"as_authored", Model::as_authored}, {"phong", Model::phong}},
@@ -133,8 +213,8 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
                "the face normals. Default: the value in the scene file, else per_pixel.")
         .group(materials_group);
     add_value(app, "--material", "NAME",
-              "Use a classic material: gold, chrome, emerald, \"red plastic\", ... An unknown name "
-              "lists similar names.",
+              "Use a classic material instead of the model's colors and their textures: gold, "
+              "chrome, emerald, \"red plastic\", ... An unknown name lists similar names.",
               [&](const std::string&, const std::string& text) { options.material = text; })
         .group(materials_group);
     add_value(app, "--metallic-roughness", "METALLIC,ROUGHNESS",
@@ -148,7 +228,7 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
 }  // namespace
 
 void add_material_options(CLI::App& app, ViewOptions& options) {
-    add_model_options(app, options);
+    add_shading_options(app, options);
     add_choice(app, "--specular", options.specular, enum_choices<SpecularModel>(),
                "Choose the model of highlights. The normalized model preserves their energy for "
                "every shininess. Materials without a specular color get gray 0.25. Default: the "
@@ -306,10 +386,14 @@ Material named_material(const std::string& name) {
                      fmt::format("there are {}", fmt::join(material_names(), ", ")));
 }
 
-/// Sets the colors and highlights of a named material. Other properties stay.
+/// Sets the colors and highlights of a named material, in place of the model's colors and their
+/// textures. Other properties stay.
 void set_named_material(Scene& scene, const std::string& name) {
     const Material named = named_material(name);
     for (Material& material : scene.materials) {
+        // The alpha of the diffuse texture cuts holes, so a material with holes keeps it.
+        if (material.alpha_mode == AlphaMode::opaque) material.diffuse_texture.reset();
+        material.specular_texture.reset();
         material.ambient = named.ambient;
         material.diffuse = named.diffuse;
         material.specular = named.specular;
@@ -341,6 +425,20 @@ void set_shading(Scene& scene, const ViewOptions& options) {
             options.specular_antialiasing.value_or(material.specular_antialiasing);
         set_reflection(material, options);
     }
+}
+
+/// Notes materials whose normal or bump map cannot show.
+void note_hidden_maps(const Scene& scene, std::vector<std::string>& notes) {
+    const auto count = static_cast<std::size_t>(
+        std::count_if(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+            return (material.normal_map || material.bump_map) && !material.unlit &&
+                   material.interpolation != Interpolation::per_pixel;
+        }));
+    if (count == 0) return;
+    notes.push_back(fmt::format(
+        "the normal or bump map of {} does not show, because Gouraud and flat shading do not shade "
+        "each pixel",
+        counted(count, "material")));
 }
 
 }  // namespace
@@ -387,6 +485,7 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
     if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);
     if (options.specular || options.shininess) set_highlights(scene, options, notes);
     set_shading(scene, options);
+    note_hidden_maps(scene, notes);
 }
 
 // The environment, the lights and the camera.
@@ -683,11 +782,6 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
     if (options.ambient) scene.ambient = glm::vec3(*options.ambient);
 }
 
-SceneOptions scene_options(const ViewOptions& options) {
-    using Model = SceneOptions::MaterialModel;
-    return {reason_for_phong(options).empty() ? Model::as_authored : Model::phong};
-}
-
 /// Only scene files have a background.
 bool has_background(const ViewOptions& options) {
     return extension_of(options.model) == ".json";
@@ -704,9 +798,29 @@ void mark_lights(ComposedScene& composed, float share) {
     add_light_markers(composed.graph, share * std::max(size, std::numeric_limits<float>::min()));
 }
 
+/// Returns the key animation that --animation names; none for all of them.
+std::optional<std::size_t> clip_of(const SceneGraph& graph, const std::string& text) {
+    if (text == "all") return std::nullopt;
+    const std::vector<std::string> names = clip_names(graph);
+    if (names.empty()) {
+        throw UsageError("--animation: the model has no animation of its own to choose",
+                         "leave it out");
+    }
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (text == fmt::format("{}", i + 1)) return i;
+    }
+    throw UsageError(
+        fmt::format("--animation {}: no such animation{}", text, did_you_mean(text, names)),
+        fmt::format("there are {}", fmt::join(names, ", ")));
+}
+
 }  // namespace
 
 ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report) {
+    if (std::filesystem::is_directory(options.model))
+        throw failure(options.model, "is a folder, not a model", models_in(options.model));
     ComposedScene composed;
     composed.graph = stages.run("read", [&] {
         return about(options.model, [&] {
@@ -714,7 +828,8 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
         });
     });
     if (!options.size_given) options.size = composed.graph.picture_size.value_or(options.size);
-    if (options.time) pose(composed.graph, *options.time);
+    if (options.animation) composed.graph.clip = clip_of(composed.graph, *options.animation);
+    if (options.time || options.animation) pose(composed.graph, options.time.value_or(0.0));
     Scene& scene = composed.scene();
     if (scene.instances.empty()) throw FileError(options.model, "contains no triangles");
     if (options.frames && duration(composed.graph) == 0.0 && !options.seconds)

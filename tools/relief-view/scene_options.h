@@ -28,6 +28,16 @@ Range field_limits(Value Owner::*member) {
     return {static_cast<double>(range.min), static_cast<double>(range.max), ""};
 }
 
+// The model: its axes and normals.
+
+void add_model_options(CLI::App& app, ViewOptions& options);
+
+/// \throws UsageError if an option has no effect on this file
+void check_model(const ViewOptions& options);
+
+/// How the model file is read.
+SceneOptions scene_options(const ViewOptions& options);
+
 // Maps, materials, highlights and reflection, which the options set for all materials of a scene.
 
 void add_map_options(CLI::App& app, ViewOptions& options);

@@ -44,7 +44,7 @@ bool is_sequence(const ViewOptions& options) {
 }  // namespace
 
 void add_sequence_options(CLI::App& app, ViewOptions& options) {
-    const std::string group = "Sequences";
+    const std::string group = "Animation";
     const auto add_count = [&](const char* name, std::optional<int>& target,
                                const char* description) {
         add_value(app, name, "N", description,
@@ -66,8 +66,15 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
     add_number(app, "--fps", "F", options.frames_per_second, {0.1, 1000, ""},
                "Set the pictures per second of an .apng animation. Default: 25.")
         .group(group);
-    add_number(app, "--time", "T", options.time, {-1e6, 1e6, ""},
-               "Set the time of the picture in the scene's animation, in seconds. Default: 0.")
+    add_value(app, "--animation", "NAME|N|all",
+              "Play the animation of this name or number of a glTF file, or all of them at once. "
+              "Default: all; the first one if they move the same nodes.",
+              [&](const std::string&, const std::string& text) { options.animation = text; })
+        .group(group);
+    add_number(
+        app, "--time", "T", options.time, {-1e6, 1e6, ""},
+        "Set the time of the picture in the scene's animation, in seconds. A window then opens "
+        "paused at this time. Default: 0.")
         .group(group);
 }
 
@@ -205,30 +212,49 @@ Frame draw_sequence(Renderer& renderer, ComposedScene& composed, const ViewOptio
 namespace {
 
 /// glTF requires flat normals if there are none, and then ignores stored tangents.
-void frame(GltfDocument& document, Report& report) {
+void frame(GltfDocument& document, const FrameOptions& read, Report& report) {
     for (const GltfPrimitiveId id : document.triangle_primitives()) {
         const GltfTangentTexcoords texcoords = document.tangent_texcoords(id);
         Mesh mesh = document.mesh(id, texcoords.set);
-        FrameOptions options;
-        options.if_missing = NormalMode::flat;
+        FrameOptions options = read;
+        options.if_missing = read.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
         const bool has_normals = !mesh.normals.empty();
         const bool has_tangents = has_normals && !mesh.tangents.empty();
         if (!has_tangents) options.tangents = TangentMethod::none;
         if (!has_tangents && !mesh.texcoords.empty() && texcoords.texture == "normalTexture")
             options.tangents = TangentMethod::mikktspace;
-        if (has_normals && !computes_tangents(options.tangents)) continue;
+        const bool keeps_normals = has_normals && options.normals == NormalMode::keep;
+        if (keeps_normals && !computes_tangents(options.tangents)) continue;
         const FramedMesh framed = with_frames(std::move(mesh), options, report);
         document.set_frames(id, framed, options, report);
     }
 }
 
-void frame(MeshFile& contents, Report& report) {
+void frame(MeshFile& contents, FrameOptions options, Report& report) {
     const bool has_map =
         std::any_of(contents.materials.begin(), contents.materials.end(),
                     [](const MtlMaterial& material) { return material.normal_map.has_value(); });
-    FrameOptions options;
     if (has_map && !contents.mesh.texcoords.empty()) options.tangents = TangentMethod::mikktspace;
     contents.mesh = with_frames(std::move(contents.mesh), options, report).mesh;
+}
+
+/// Turns z up: glTF's y points up.
+void turn_y_up(Model& model) {
+    auto* contents = std::get_if<MeshFile>(&model);
+    if (contents == nullptr)
+        throw InvalidInput("is drawn with z up, which a copy of a glTF file cannot hold");
+    const auto turn = [](auto& v) {
+        const auto y = v.y;
+        v.y = v.z;
+        v.z = -y;
+    };
+    turn(contents->origin);
+    for (glm::vec3& position : contents->mesh.positions)
+        turn(position);
+    for (glm::vec3& normal : contents->mesh.normals)
+        turn(normal);
+    for (glm::vec4& tangent : contents->mesh.tangents)
+        turn(tangent);
 }
 
 }  // namespace
@@ -269,18 +295,21 @@ void save_files(const ViewOptions& options, const ComposedScene& composed, Stage
         if (!options.general.quiet && !options.json) print_entry("saved", file_and_size(*file));
     };
     save(options.save_scene, [&] {
-        save_scene(*options.save_scene,
-                   {options.model, composed.scene(), composed.camera, options.size});
+        save_scene(*options.save_scene, {options.model, composed.scene(), composed.camera,
+                                         options.size, scene_options(options)});
     });
-    save(options.save_model, [&] { save_model(*options.save_model, options.model); });
+    save(options.save_model,
+         [&] { save_model(*options.save_model, options.model, scene_options(options)); });
 }
 
-void save_model(const std::filesystem::path& file, const std::filesystem::path& model) {
+void save_model(const std::filesystem::path& file, const std::filesystem::path& model,
+                const SceneOptions& options) {
     if (extension_of(model) == ".json")
         throw InvalidInput("is a scene file and cannot be saved as a model");
     Report unused;  // These findings have already been reported.
     Model contents = read_model(model, unused);
-    std::visit([&](auto& read) { frame(read, unused); }, contents);
+    std::visit([&](auto& read) { frame(read, frame_options(model, options), unused); }, contents);
+    if (is_z_up(model, options)) turn_y_up(contents);
     write_model(file, contents, model, true, unused);
 }
 

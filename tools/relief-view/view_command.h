@@ -80,9 +80,11 @@ void save_files(const ViewOptions& options, const ComposedScene& composed, Stage
 /// Writes a model. Missing normals are added, and so are tangents if a normal map needs them. Other
 /// data stays. Materials of other formats become glTF materials.
 ///
-/// \param file  .glb or .gltf
+/// \param file     .glb or .gltf
+/// \param options  for the normals and the axis that points up
 /// \throws FileError if a file cannot be read or written
 /// \throws InvalidInput if the model is a scene file
-void save_model(const std::filesystem::path& file, const std::filesystem::path& model);
+void save_model(const std::filesystem::path& file, const std::filesystem::path& model,
+                const SceneOptions& options = {});
 
 }  // namespace relief::tools

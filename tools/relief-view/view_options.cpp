@@ -205,8 +205,8 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
     add_repeatable(app, "--light", "LIGHT",
                    "Replace the model's lights; may be given several times. "
                    "directional:azimuth,elevation[,intensity[,#rrggbb]] shines from this "
-                   "direction, in degrees; point:x,y,z[,intensity[,#rrggbb]] is in the model's "
-                   "space; spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]] shines from x,y,z "
+                   "direction, in degrees; point:x,y,z[,intensity[,#rrggbb]] is in world space, "
+                   "y up; spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]] shines from x,y,z "
                    "towards tx,ty,tz in a cone of 30 or angle degrees from its axis; none removes "
                    "all lights. Intensity 1 makes a white surface white, at distance 1 for point "
                    "and spot. Default: the model's lights, else a key light and a fill light.",
@@ -324,6 +324,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
              "The model to show: .glb .gltf .obj .ply .stl .off, or a scene: .json. Without "
              "--output, a window opens.");
     add_output_options(app, options);
+    add_model_options(app, options);
     add_save_options(app, options);
     add_window_options(app, options);
     add_map_options(app, options);
@@ -352,6 +353,7 @@ void settle(ViewOptions& options) {
     check_sequence(options);
     check_reference(options);
     check_compare_options(options);
+    check_model(options);
     check_maps(options);
     check_materials(options);
     check_environment(options);

@@ -22,6 +22,7 @@
 
 #include "common/options.h"
 #include "relief/mesh/bump.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
@@ -139,6 +140,10 @@ struct ViewOptions {
     std::optional<std::filesystem::path> diffuse_map;
     std::optional<bool> specular_antialiasing;
 
+    std::optional<NormalMode> normals;
+    std::optional<double> crease_degrees;
+    std::optional<UpAxis> up;
+
     std::optional<SceneOptions::MaterialModel> shading;
     std::optional<Interpolation> interpolation;
     std::optional<std::string> material;  ///< A name of the table of classic materials.
@@ -171,6 +176,7 @@ struct ViewOptions {
     std::optional<double> seconds;
     std::optional<double> frames_per_second;
     std::optional<double> time;
+    std::optional<std::string> animation;  ///< The name or number of a clip, or "all".
 
     std::optional<std::filesystem::path> dump_state;  ///< JSON file for the state of the window.
     std::optional<float> ui_scale;                    ///< Scale of the user interface.

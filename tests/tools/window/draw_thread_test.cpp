@@ -121,6 +121,29 @@ TEST_F(Drawing, AnotherCameraNeedsNoRenderer) {
     EXPECT_EQ(drawn.renderers, 2U);
 }
 
+TEST_F(Drawing, AnotherPoseNeedsNoRenderer) {
+    DrawThread thread(context());
+    thread.request(request_of(1));
+    rest(thread);
+    DrawRequest moved = request_of(1);
+    auto scene = std::make_shared<Scene>(*moved.scene);
+    scene->instances[0].world_from_object[3] = {100.0F, 0.0F, 0.0F, 1.0F};
+    moved.scene = scene;
+    moved.pose = 1;
+    thread.request(moved);
+    const RenderedPicture drawn = rest(thread);
+    EXPECT_EQ(drawn.error, "");
+    EXPECT_EQ(drawn.frames, 2U);
+    EXPECT_EQ(drawn.renderers, 1U);
+    scene = std::make_shared<Scene>(*scene);
+    scene->instances.push_back({});
+    moved.scene = scene;
+    moved.pose = 2;
+    thread.request(moved);
+    EXPECT_THAT(rest(thread).error, HasSubstr("same numbers of instances"))
+        << "the scene is the one that was moved";
+}
+
 TEST_F(Drawing, OnlyTheLastOfManyRequestsMustBeDrawn) {
     DrawThread thread(context());
     for (std::uint64_t i = 1; i <= 200; ++i)

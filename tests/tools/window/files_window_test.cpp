@@ -81,7 +81,7 @@ void drop_scene(ViewerWindow& window, const Display& display, const Workplace& w
     EXPECT_EQ(after["lights"].size(), file["lights"].size());
     EXPECT_NEAR(after["camera"]["fov"].get<double>(), file["camera"]["fov"].get<double>(), 1e-3);
     EXPECT_TRUE(eventually(
-        [&] { return changed_share(before, display.picture(), 310, 10, 960, 760) > 0.1; }));
+        [&] { return changed_share(before, display.picture(), 390, 10, 880, 760) > 0.1; }));
 }
 
 /// Hidden instances are not drawn.
@@ -97,7 +97,7 @@ void hide_and_show(ViewerWindow& window, const Display& display) {
             return seen["shown"] == json({shown, 3});
         });
         EXPECT_TRUE(eventually([&] {
-            return changed_share(before, display.picture(), 310, 10, 960, 760, 2) > 0.005;
+            return changed_share(before, display.picture(), 390, 10, 880, 760, 2) > 0.005;
         }));
         return now;
     };

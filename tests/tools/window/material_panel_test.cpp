@@ -164,8 +164,8 @@ TEST_F(MapSlots, DependOnTheMaterialModel) {
     unlit.unlit = true;
     EXPECT_TRUE(slot_named("Specular map").is_used(phong));
     EXPECT_FALSE(slot_named("Specular map").is_used(metallic));
-    EXPECT_TRUE(slot_named("Metallic and roughness map").is_used(metallic));
-    EXPECT_FALSE(slot_named("Metallic and roughness map").is_used(phong));
+    EXPECT_TRUE(slot_named("Metallic-roughness map").is_used(metallic));
+    EXPECT_FALSE(slot_named("Metallic-roughness map").is_used(phong));
     EXPECT_FALSE(slot_named("Normal map").is_used(unlit));
     EXPECT_TRUE(slot_named("Diffuse map").is_used(unlit));
 }

@@ -50,6 +50,15 @@ TEST(Shortcuts, AreListedOnePerLine) {
               "F                               Fit the model to the view");
 }
 
+TEST(StatusLine, ShowsWhatFitsFromTheFirstPartOn) {
+    const auto width_of = [](const std::string& text) { return static_cast<float>(text.size()); };
+    EXPECT_EQ(fitting_line({"", "one", "two", "three"}, 100.0F, width_of), "one   two   three");
+    EXPECT_EQ(fitting_line({"one", "two", "three"}, 9.0F, width_of), "one   two");
+    EXPECT_EQ(fitting_line({"one", "three", "2"}, 8.0F, width_of), "one") << "in their order";
+    EXPECT_EQ(fitting_line({"Saved /far/away.png"}, 11.0F, width_of), "Save....png");
+    EXPECT_EQ(fitting_line({}, 9.0F, width_of), "");
+}
+
 std::string page() {
     return test::contents_of(test::source_directory() / "docs/window.md");
 }
@@ -217,7 +226,7 @@ class Panel : public testing::Test {
         window_->click_on(name);
         json now = window_->wait_for(name, holds);
         EXPECT_TRUE(eventually([&] {
-            return changed_share(before, display_->picture(), 310, 10, 960, 760, 2) > 0.005;
+            return changed_share(before, display_->picture(), 390, 10, 880, 760, 2) > 0.005;
         })) << "the picture is the same after "
             << name;
         return now;

@@ -145,6 +145,20 @@ TEST_F(State, EditsCopyTheSceneAndShareItsMeshes) {
     EXPECT_EQ(state().request()->revision, revision + 1);
 }
 
+TEST_F(State, LightMarkersAreInThePictureOnly) {
+    show("square.obj");
+    state().edit([](Scene& scene) { scene.point_lights.push_back({{0.0F, 3.0F, 0.0F}}); });
+    const std::uint64_t revision = state().request()->revision;
+    state().act(Action::light_markers);
+    EXPECT_GT(state().request()->revision, revision);
+    const Scene& shown = *state().request()->scene;
+    ASSERT_EQ(shown.instances.size(), 2U);
+    EXPECT_EQ(shown.instances[1].world_from_object[3], glm::vec4(0.0F, 3.0F, 0.0F, 1.0F));
+    EXPECT_EQ(state().scene().instances.size(), 1U);
+    state().act(Action::light_markers);
+    EXPECT_EQ(state().request()->scene->instances.size(), 1U);
+}
+
 TEST_F(State, MovingTheCameraIsNoRevision) {
     show("square.obj");
     const DrawRequest before = *state().request();
@@ -279,9 +293,10 @@ TEST_F(State, LightsRotateUntilTheirSpeedIsZero) {
     rows[0].speed = 1.0F;
     state().set_light_rows(rows);
     EXPECT_TRUE(state().is_turning());
-    const std::uint64_t revision = state().request()->revision;
+    const DrawRequest request = *state().request();
     EXPECT_TRUE(state().advance(0.5));
-    EXPECT_GT(state().request()->revision, revision);
+    EXPECT_GT(state().request()->pose, request.pose);
+    EXPECT_EQ(state().request()->revision, request.revision) << "nothing is prepared again";
     const glm::vec3 after = state().scene().directional_lights[0].direction_world;
     EXPECT_NEAR(after.y, before.y, 1e-5F);
     EXPECT_NEAR(glm::length(after), glm::length(before), 1e-5F);

@@ -111,7 +111,12 @@ class DrawThread::Drawer {
         const bool is_tried = has_tried_ && tried_revision_ == request.revision &&
                               tried_beside_ == revision_of(request.beside) &&
                               tried_settings_ == request.settings;
-        if (!is_tried) try_to_prepare(request, drawn, progress);
+        if (!is_tried) {
+            try_to_prepare(request, drawn, progress);
+        } else if (renderer_ && failure_.empty() && pose_ != request.pose) {
+            renderer_->move(*request.scene);
+        }
+        pose_ = request.pose;
         drawn.error = failure_;
         if (!renderer_) return;
         if (!failure_.empty() && is_same_view(drawn.camera, request.camera)) return;
@@ -211,6 +216,7 @@ class DrawThread::Drawer {
     bool has_tried_ =
         false;  ///< The last request was prepared, and shaders have not changed since.
     std::uint64_t tried_revision_ = 0;
+    std::uint64_t pose_ = 0;
     std::uint64_t tried_beside_ = 0;
     FrameSettings tried_settings_;
     std::string failure_;  ///< Error of the last preparation; empty if there was none.

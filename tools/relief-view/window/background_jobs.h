@@ -243,7 +243,8 @@ struct BesideRequest {
 /// A request for one picture.
 struct DrawRequest {
     std::shared_ptr<const Scene> scene;
-    std::uint64_t revision = 0;  ///< Changes with everything except the camera.
+    std::uint64_t revision = 0;  ///< Changes with everything except the camera and the pose.
+    std::uint64_t pose = 0;      ///< Changes if only instances and lights have moved.
     EffectRequest effects;
     FrameSettings settings;
     Camera camera;

@@ -161,15 +161,16 @@ void Saving::begin(const std::filesystem::path& file, std::function<void()> save
     });
 }
 
-void Saving::save_scene(const ViewerState& state) {
+void Saving::save_scene(ViewerState& state) {
     const std::optional<DrawRequest> request = state.request();
     if (!request || is_running()) return;
     const std::filesystem::path model = state.options().model;
     const std::filesystem::path file = free_beside(model, "-scene-", ".json");
     // Hidden instances are saved too, because hiding affects only the picture.
-    const auto scene = std::make_shared<const Scene>(state.scene());
-    begin(file, [model, file, scene, camera = request->camera, size = state.view()] {
-        relief::save_scene(file, {model, *scene, camera, size});
+    const std::shared_ptr<const Scene> scene = state.scene_at_rest();
+    begin(file, [model, file, scene, camera = request->camera, size = state.view(),
+                 options = scene_options(state.options())] {
+        relief::save_scene(file, {model, *scene, camera, size, options});
     });
 }
 
@@ -177,7 +178,9 @@ void Saving::save_model(const ViewerState& state) {
     if (!state.has_scene() || is_running()) return;
     const std::filesystem::path model = state.options().model;
     const std::filesystem::path file = free_beside(model, "-model-", ".glb");
-    begin(file, [model, file] { tools::save_model(file, model); });
+    begin(file, [model, file, options = scene_options(state.options())] {
+        tools::save_model(file, model, options);
+    });
 }
 
 void Saving::follow() {

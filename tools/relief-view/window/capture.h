@@ -82,7 +82,7 @@ class Saving {
     explicit Saving(std::function<void()> wake) : job_(std::move(wake)) {}
 
     /// Saves as "vase-scene-1.json". Does nothing while a file is being saved.
-    void save_scene(const ViewerState& state);
+    void save_scene(ViewerState& state);
     /// Saves as "vase-model-1.glb".
     void save_model(const ViewerState& state);
 

@@ -213,8 +213,9 @@ void Comparison::begin(const ViewerState& state) {
     });
 }
 
-void Comparison::compose(const Scene& shown, std::uint64_t revision) {
-    composed_of_ = revision;
+void Comparison::compose(const Scene& shown, const DrawRequest& request) {
+    composed_of_ = request.revision;
+    composed_pose_ = request.pose;
     ++revision_;
     if (!prepared_->file) {
         composed_ = std::make_shared<const Scene>(with_variant(shown, prepared_->prepared));
@@ -239,12 +240,13 @@ void Comparison::follow(const ViewerState& state) {
     }
     const std::optional<DrawRequest> request = state.request();
     if (prepared_ && request && !preparing_.is_running() &&
-        (!composed_ || composed_of_ != request->revision))
-        compose(*request->scene, request->revision);
+        (!composed_ || composed_of_ != request->revision || composed_pose_ != request->pose))
+        compose(*request->scene, *request);
 }
 
 std::optional<DrawTask> Comparison::add_to(DrawRequest& request) {
-    if (!is_on_ || !composed_ || composed_of_ != request.revision) return std::nullopt;
+    if (!is_on_ || !composed_ || composed_of_ != request.revision || composed_pose_ != request.pose)
+        return std::nullopt;
     const Camera camera =
         choices_.file ? with_depth_range(request.camera, bounding_sphere(world_bounds(*composed_)))
                       : request.camera;

@@ -145,7 +145,7 @@ class Comparison {
 
     void discard();
     void begin(const ViewerState& state);
-    void compose(const Scene& shown, std::uint64_t revision);
+    void compose(const Scene& shown, const DrawRequest& request);
     [[nodiscard]] std::string label(bool is_other) const;
 
     CompareChoices choices_;
@@ -161,6 +161,7 @@ class Comparison {
     std::optional<PreparedSide> prepared_;
     std::shared_ptr<const Scene> composed_;
     std::uint64_t composed_of_ = 0;  ///< Revision of the state.
+    std::uint64_t composed_pose_ = 0;
     std::uint64_t revision_ = 0;
     ComparisonJob pictures_;
     std::optional<ComparisonKey> last_;  ///< Key of the last request.

@@ -7,6 +7,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
@@ -140,16 +141,31 @@ void turn(AnyLight& light, const glm::mat3& rotation, const glm::vec3& center) {
     }
 }
 
-void LightRows::update(const Scene& scene) {
+namespace {
+
+const std::vector<Carried>& of_type(const LightCarriers& carriers, LightType type) {
+    return type == LightType::directional ? carriers.directional
+           : type == LightType::point     ? carriers.point
+                                          : carriers.spot;
+}
+
+}  // namespace
+
+void LightRows::update(const Scene& scene, const LightCarriers& carriers) {
     std::vector<Entry> now;
+    std::array<std::size_t, 3> counts{};  // Of the lights of each kind.
     for (const AnyLight& light : lights_of(scene)) {
         const LightType type = type_of(light);
+        const std::size_t place = counts[static_cast<std::size_t>(type)]++;
+        const std::vector<Carried>& nodes = of_type(carriers, type);
+        const Carried carried = place < nodes.size() ? nodes[place] : Carried{};
         const auto same = std::find_if(entries_.begin(), entries_.end(),
                                        [&](const Entry& entry) { return entry.type == type; });
         if (same == entries_.end()) {
-            now.push_back({type, ++last_id_, 0.0F});
+            now.push_back({type, ++last_id_, 0.0F, carried});
         } else {
             now.push_back(*same);
+            now.back().carried = same->is_detached ? Carried{} : carried;
             entries_.erase(same);
         }
     }
@@ -160,18 +176,41 @@ std::vector<LightRow> LightRows::rows(const Scene& scene) const {
     const std::vector<AnyLight> lights = lights_of(scene);
     std::vector<LightRow> rows;
     for (std::size_t i = 0; i < std::min(lights.size(), entries_.size()); ++i)
-        rows.push_back({lights[i], entries_[i].id, entries_[i].speed});
+        rows.push_back({lights[i], entries_[i].id, entries_[i].speed, entries_[i].carried});
     return rows;
+}
+
+LightCarriers LightRows::carriers() const {
+    LightCarriers carriers;
+    for (const Entry& entry : entries_) {
+        std::vector<Carried>& of_kind = entry.type == LightType::directional ? carriers.directional
+                                        : entry.type == LightType::point     ? carriers.point
+                                                                             : carriers.spot;
+        of_kind.push_back(entry.carried);
+    }
+    return carriers;
+}
+
+void LightRows::detach_all() {
+    for (Entry& entry : entries_) {
+        entry.is_detached |= entry.carried.node.has_value();
+        entry.carried = {};
+    }
 }
 
 void LightRows::set(Scene& scene, std::vector<LightRow> rows) {
     std::stable_sort(rows.begin(), rows.end(), [](const LightRow& a, const LightRow& b) {
         return type_of(a.light) < type_of(b.light);
     });
-    entries_.clear();
+    const std::vector<Entry> before = std::exchange(entries_, {});
     std::vector<AnyLight> lights;
     for (const LightRow& row : rows) {
-        entries_.push_back({type_of(row.light), row.id != 0 ? row.id : ++last_id_, row.speed});
+        const auto known = std::find_if(before.begin(), before.end(),
+                                        [&](const Entry& entry) { return entry.id == row.id; });
+        const bool was_attached =
+            known != before.end() && (known->is_detached || known->carried.node);
+        entries_.push_back({type_of(row.light), row.id != 0 ? row.id : ++last_id_, row.speed,
+                            row.carried, was_attached && !row.carried.node});
         lights.push_back(row.light);
     }
     set_lights(scene, lights);
@@ -208,6 +247,19 @@ bool edit_light_color(glm::vec3& irradiance) {
     return changed;
 }
 
+/// Edits the color of highlights, if it is not that of the light.
+bool edit_highlights(std::optional<glm::vec3>& highlight, const glm::vec3& light) {
+    bool has_own = highlight.has_value();
+    bool changed = ImGui::Checkbox("Own highlight color", &has_own);
+    probe_item("Own highlight color");
+    if (changed) highlight = has_own ? std::optional(light) : std::nullopt;
+    if (!highlight) return changed;
+    ImGui::PushID("highlights");
+    changed |= edit_light_color(*highlight);
+    ImGui::PopID();
+    return changed;
+}
+
 bool edit_direction(glm::vec3& direction) {
     const glm::vec3 from = -glm::normalize(direction);
     float azimuth = glm::degrees(std::atan2(from.x, from.z));
@@ -221,8 +273,9 @@ bool edit_direction(glm::vec3& direction) {
 bool edit_point(PointLight& light) {
     bool changed = ImGui::DragFloat3("Position", &light.position_world.x, 0.01F);
     changed |= edit_light_color(light.intensity);
+    changed |= edit_highlights(light.highlight_intensity, light.intensity);
     bool falls_off = light.falloff == Falloff::inverse_square;
-    if (ImGui::Checkbox("Falloff with distance", &falls_off)) {
+    if (ImGui::Checkbox("Falloff", &falls_off)) {
         light.falloff = falls_off ? Falloff::inverse_square : Falloff::none;
         changed = true;
     }
@@ -243,8 +296,10 @@ bool edit_cones(SpotLight& light) {
 
 bool edit_light(AnyLight& light) {
     if (auto* directional = std::get_if<DirectionalLight>(&light)) {
-        const bool turned = edit_direction(directional->direction_world);
-        return edit_light_color(directional->irradiance) || turned;
+        bool changed = edit_direction(directional->direction_world);
+        changed |= edit_light_color(directional->irradiance);
+        return edit_highlights(directional->highlight_irradiance, directional->irradiance) ||
+               changed;
     }
     if (auto* point = std::get_if<PointLight>(&light)) return edit_point(*point);
     auto& spot = std::get<SpotLight>(light);
@@ -259,6 +314,7 @@ bool edit_row(LightRow& row, const BoundingSphere& sphere) {
     bool changed = choose("Kind", type);
     if (changed) row.light = converted_to(row.light, type, sphere);
     changed |= edit_light(row.light);
+    if (row.carried.node) ImGui::TextDisabled("Its node moves it, until it is moved here.");
     float speed = glm::degrees(row.speed);
     if (slide("Rotation", speed, {-180.0F, 180.0F, "%.0f deg/s"})) {
         row.speed = glm::radians(speed);
@@ -420,7 +476,7 @@ const std::vector<MapSlot>& map_slots() {
     static const std::vector<MapSlot> slots = {
         {"Diffuse map", get<&M::diffuse_texture>, put<&M::diffuse_texture>, always},
         {"Specular map", get<&M::specular_texture>, put<&M::specular_texture>, is_phong},
-        {"Metallic and roughness map", metallic_texture, set_metallic_texture, is_metallic},
+        {"Metallic-roughness map", metallic_texture, set_metallic_texture, is_metallic},
         {"Normal map", normal_texture, set_normal_texture, is_lit},
         {"Bump map", bump_texture, set_bump_texture, is_lit},
         {"Occlusion map", get<&M::occlusion_texture>, put<&M::occlusion_texture>, is_lit},

@@ -15,6 +15,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/shade/scene.h"
 #include "window/orbit_camera.h"
+#include "window/playback.h"
 
 namespace relief::tools {
 
@@ -46,16 +47,26 @@ void turn(AnyLight& light, const glm::mat3& rotation, const glm::vec3& center);
 struct LightRow {
     AnyLight light;
     unsigned id = 0;  ///< Constant for the lifetime of the light; 0: not yet assigned.
-    /// Radians per second about the vertical axis through the center of the model.
+    /// Radians per second: about the vertical axis through the center of the model, or of the orbit
+    /// of its node.
     float speed = 0.0F;
+    /// The node that carries it. Without one, animations do not move the light.
+    Carried carried = {};
 };
 
 /// Identifies lights across edits, and rotates them.
 class LightRows {
   public:
     /// Updates the list for another scene, or for changed lights. Lights of the same kind keep
-    /// their id and speed in order.
-    void update(const Scene& scene);
+    /// their id and speed in order. Lights that were detached from their node stay so.
+    /// \param carriers  the nodes of the lights; the lists may be shorter
+    void update(const Scene& scene, const LightCarriers& carriers = {});
+
+    /// The nodes of the lights.
+    [[nodiscard]] LightCarriers carriers() const;
+
+    /// Detaches all lights from their nodes.
+    void detach_all();
 
     /// The rows for the scene of the last update().
     [[nodiscard]] std::vector<LightRow> rows(const Scene& scene) const;
@@ -74,6 +85,8 @@ class LightRows {
         LightType type;
         unsigned id;
         float speed;
+        Carried carried;
+        bool is_detached = false;  ///< It had a node.
     };
 
     std::vector<Entry> entries_;  ///< In the order of the scene's lights.

@@ -21,6 +21,8 @@ struct OrbitCamera {
     float elevation = 0.0F;  ///< Above the horizon, -90 to 90 degrees.
     float distance = 1.0F;   ///< From the target; positive.
     float vertical_fov = 0.610865238F;
+
+    friend bool operator==(const OrbitCamera&, const OrbitCamera&) = default;
 };
 
 /// The limits of vertical_fov in the window.

@@ -149,6 +149,36 @@ void draw_progress(const std::string& what, const Progress::State& progress) {
     }
 }
 
+std::string fitting_line(const std::vector<std::string>& parts, float width,
+                         const std::function<float(const std::string&)>& width_of) {
+    const std::string gap = "   ";
+    std::string line;
+    for (const std::string& part : parts) {
+        if (part.empty()) continue;
+        const std::string longer = line.empty() ? part : line + gap + part;
+        if (width_of(longer) <= width) {
+            line = longer;
+            continue;
+        }
+        if (!line.empty()) return line;
+        const auto continues = [&](std::size_t i) {  // A character of UTF-8 is not divided.
+            return (static_cast<unsigned char>(part[i]) & 0xC0U) == 0x80U;
+        };
+        for (std::size_t kept = part.size() - 1; kept > 1; --kept) {
+            std::size_t end = kept / 2;
+            std::size_t begin = part.size() - (kept - end);
+            while (end > 0 && continues(end))
+                --end;
+            while (begin + 1 < part.size() && continues(begin))
+                ++begin;
+            line = part.substr(0, end) + "..." + part.substr(begin);
+            if (width_of(line) <= width) break;
+        }
+        return line;
+    }
+    return line;
+}
+
 // The effects panel.
 
 namespace {
@@ -258,12 +288,13 @@ void EffectTimes::discard_unless_valid_for(const FramePlan& plan, const DrawRequ
     if (!holds) cancel();
 }
 
-std::optional<double> EffectTimes::milliseconds(const std::string& effect) const {
+std::string EffectTimes::text(const std::string& effect) const {
     const State now = state();
     const auto found = std::find_if(now.costs.effects.begin(), now.costs.effects.end(),
                                     [&](const EffectCost& cost) { return cost.effect == effect; });
-    if (found == now.costs.effects.end()) return std::nullopt;
-    return found->milliseconds;
+    if (found == now.costs.effects.end()) return "";
+    return exceeds_noise(*found, now.costs) ? fmt::format("{:.2f} ms", found->milliseconds)
+                                            : "noise";
 }
 
 nlohmann::ordered_json json_of(const EffectTimes::State& state) {
@@ -370,9 +401,7 @@ void draw_reasons(const PanelInput& input, const std::vector<EffectReason>& reas
         draw_switch(input.state, reason.effect);
         // The times come before the names, because long names reach beyond the panel.
         ImGui::TableNextColumn();
-        if (const std::optional<double> milliseconds =
-                input.effect_times.milliseconds(reason.effect))
-            ImGui::Text("%.2f ms", *milliseconds);
+        ImGui::TextUnformatted(input.effect_times.text(reason.effect).c_str());
         ImGui::TableNextColumn();
         const ImVec4 color =
             ImGui::GetStyleColorVec4(reason.on ? ImGuiCol_Text : ImGuiCol_TextDisabled);
@@ -578,8 +607,8 @@ bool edit(Environment& environment) {
     bool changed = drag_up("Intensity", environment.intensity);
     changed |= ImGui::Checkbox("Show as background", &environment.skybox);
     probe_item("Show as background");
-    changed |= ImGui::Checkbox("Light the scene", &environment.lights);
-    probe_item("Light the scene");
+    changed |= ImGui::Checkbox("Environment light", &environment.lights);
+    probe_item("Environment light");
     return changed;
 }
 
@@ -649,6 +678,10 @@ void draw_view_panel(const PanelInput& input) {
         changed = true;
     }
     if (choices.health_markers) draw_legend(input.state.markers());
+    bool has_light_markers = input.state.has_light_markers();
+    if (ImGui::Checkbox("Light markers", &has_light_markers))
+        input.state.act(Action::light_markers);
+    probe_item("Light markers");
     if (changed) input.state.set_debug(choices);
 }
 
@@ -671,16 +704,32 @@ void draw_picture_panel(const PanelInput& input) {
 
 namespace {
 
-constexpr float column_width = 23.0F;  // In line heights.
+// In line heights. The labels have space for the longest one, "Metallic-roughness map".
+constexpr float column_width = 29.0F;
+constexpr float label_width = 14.5F;
 
-std::string status_text(const PanelInput& input) {
-    if (!input.state.has_scene()) return "";
-    const std::string saved = input.captured.empty() ? "" : "   " + input.captured;
-    return fmt::format("{}   {} x {} pixels   {:.1f} ms per picture   picture {}, {}   {}{}",
-                       counted(triangle_count(input.state.scene()), "triangle"),
-                       input.drawn.settings.width, input.drawn.settings.height,
-                       input.drawn.times.draw, input.drawn.frames,
-                       input.is_drawing ? "drawing" : "idle", input.renderer, saved);
+/// The parts of the status line, the most important one first.
+std::vector<std::string> status_parts(const PanelInput& input) {
+    if (!input.state.has_scene()) return {};
+    const FrameSettings& settings = input.drawn.settings;
+    return {input.captured,
+            counted(triangle_count(input.state.scene()), "triangle"),
+            fmt::format("{} x {} pixels", settings.width, settings.height),
+            fmt::format("{:.1f} ms per picture", input.drawn.times.draw),
+            input.is_drawing ? "drawing" : "idle",
+            input.renderer,
+            fmt::format("picture {}", input.drawn.frames)};
+}
+
+/// Shows a line that fits; if a message is cut, its tooltip has all of it.
+void draw_line(const std::vector<std::string>& parts, const ImVec4& color) {
+    const auto width_of = [](const std::string& text) {
+        return ImGui::CalcTextSize(text.c_str()).x;
+    };
+    const std::string line = fitting_line(parts, ImGui::GetContentRegionAvail().x, width_of);
+    ImGui::TextColored(color, "%s", line.c_str());
+    const bool is_cut = !parts.empty() && !line.starts_with(parts.front());
+    if (is_cut && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", parts.front().c_str());
 }
 
 struct Panel {
@@ -738,13 +787,78 @@ float draw_panels(const PanelInput& input, PanelRequests& requests) {
     ImGui::SetNextWindowSize({width, io.DisplaySize.y - status_height});
     ImGui::Begin("Panels", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
-    ImGui::PushItemWidth(0.5F * width);
+    ImGui::PushItemWidth(-label_width * ImGui::GetFontSize());
     for (const Panel& panel : all_panels) {
         if (begins(panel, input.layout)) panel.draw(input, requests);
     }
     ImGui::PopItemWidth();
     ImGui::End();
     return width;
+}
+
+namespace {
+
+constexpr std::array speeds{0.1F, 0.25F, 0.5F, 1.0F, 2.0F, 4.0F};
+
+void choose_speed(ViewerState& state) {
+    std::vector<std::string> names;
+    std::size_t index = 0;
+    for (const float speed : speeds) {
+        if (speed == state.playback().speed()) index = names.size();
+        names.push_back(fmt::format("{:g} x", speed));
+    }
+    ImGui::SetNextItemWidth(5.0F * ImGui::GetFontSize());
+    if (choose_index("Speed", index, names))
+        state.change_playback([&](Playback& playback) { playback.set_speed(speeds[index]); });
+}
+
+void choose_clip(ViewerState& state) {
+    const Playback& now = state.playback();
+    if (now.clips().size() < 2) return;
+    std::vector<std::string> names = {"all"};
+    names.insert(names.end(), now.clips().begin(), now.clips().end());
+    std::size_t index = now.clip() ? *now.clip() + 1 : 0;
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(8.0F * ImGui::GetFontSize());
+    if (!choose_index("Clip", index, names)) return;
+    state.change_playback([&](Playback& playback) {
+        playback.set_clip(index == 0 ? std::nullopt : std::optional(index - 1));
+    });
+}
+
+}  // namespace
+
+float draw_playback(ViewerState& state, float left, float bottom) {
+    const Playback& now = state.playback();
+    if (!state.has_scene() || (!now.has_motion() && now.clips().size() < 2)) return 0.0F;
+    const ImGuiIO& io = ImGui::GetIO();
+    const float letter = ImGui::GetFontSize();
+    const float height = ImGui::GetFrameHeight() + 0.6F * letter;
+    ImGui::SetNextWindowPos({left, io.DisplaySize.y - bottom - height});
+    ImGui::SetNextWindowSize({io.DisplaySize.x - left, height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.6F * letter, 0.3F * letter});
+    ImGui::Begin("Playback", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+    if (ImGui::Button(now.is_playing() ? "Pause" : "Play", {4.5F * letter, 0.0F}))
+        state.act(Action::play);
+    probe_item("Play");
+    ImGui::SameLine();
+    const float others = (now.clips().size() < 2 ? 10.0F : 22.0F) * letter;
+    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - others, 8.0F * letter));
+    auto time = static_cast<float>(now.time_in_clip());
+    const auto end = static_cast<float>(now.duration());
+    const std::string format = fmt::format("%.2f of {:.2f} s", end);
+    if (slide("##time", time, {0.0F, end, format.c_str()})) {
+        state.change_playback([&](Playback& playback) {
+            playback.set_playing(false);
+            playback.set_time(static_cast<double>(time));
+        });
+    }
+    ImGui::SameLine();
+    choose_speed(state);
+    choose_clip(state);
+    ImGui::End();
+    ImGui::PopStyleVar();
+    return height;
 }
 
 void draw_status(const PanelInput& input, PanelRequests& requests) {
@@ -767,9 +881,9 @@ void draw_status(const PanelInput& input, PanelRequests& requests) {
     } else if (!input.progress.stage.empty()) {
         draw_progress("Preparing", input.progress);
     } else if (!error.empty()) {
-        ImGui::TextColored({1.0F, 0.5F, 0.4F, 1.0F}, "%s", error.c_str());
+        draw_line({error}, {1.0F, 0.5F, 0.4F, 1.0F});
     } else {
-        ImGui::TextUnformatted(status_text(input).c_str());
+        draw_line(status_parts(input), ImGui::GetStyleColorVec4(ImGuiCol_Text));
     }
     ImGui::End();
     ImGui::PopStyleVar();

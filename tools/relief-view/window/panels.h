@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -93,6 +94,12 @@ FileChoice file_field(const char* label, const std::optional<std::string>& shown
 /// Shows a label such as "Reading big.obj: parsing", and a progress bar if the share is known.
 void draw_progress(const std::string& what, const Progress::State& progress);
 
+/// Joins the parts that fit into a line, from the first one on. A first part that is too long loses
+/// its middle.
+/// \param width_of  the width of a text
+std::string fitting_line(const std::vector<std::string>& parts, float width,
+                         const std::function<float(const std::string&)>& width_of);
+
 // The effects panel: the reasons for each effect, measured times, and the shader source.
 
 /// Measures the time of each effect on the drawing thread. Results are valid for one plan and size.
@@ -121,8 +128,8 @@ class EffectTimes {
     /// \param request  the request at full resolution
     void discard_unless_valid_for(const FramePlan& plan, const DrawRequest& request);
 
-    /// Milliseconds of an effect, if it was measured.
-    [[nodiscard]] std::optional<double> milliseconds(const std::string& effect) const;
+    /// "1.25 ms"; "noise" for a time below the noise, and empty if the effect was not measured.
+    [[nodiscard]] std::string text(const std::string& effect) const;
 
   private:
     /// A measurement, shared by both threads.
@@ -218,6 +225,11 @@ std::vector<std::string> panel_names();
 
 /// Draws all panels in one column. \return its width in window units
 float draw_panels(const PanelInput& input, PanelRequests& requests);
+
+/// Draws the controls of the animation below the picture, if there is one: play, time, speed, clip.
+/// \param left, bottom  the width and height that other parts of the window occupy
+/// \return its height in window units
+float draw_playback(ViewerState& state, float left, float bottom);
 
 /// Draws the status line at the bottom: triangles, frame time, current work.
 void draw_status(const PanelInput& input, PanelRequests& requests);

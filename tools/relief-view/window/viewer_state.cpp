@@ -37,6 +37,9 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::narrow_fov, "[", "Decrease the field of view"},
         {Action::widen_fov, "]", "Increase the field of view"},
         {Action::turntable, "Space", "Start or stop the turntable"},
+        {Action::play, "P", "Play or pause the animation"},
+        {Action::step_back, ",", "Step back in the animation"},
+        {Action::step_forward, ".", "Step forward in the animation"},
         {Action::zoom_in, "+", "Zoom in"},
         {Action::zoom_in, "=", "Zoom in"},
         {Action::zoom_out, "-", "Zoom out"},
@@ -50,6 +53,7 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::wireframe, "W", "Show or hide the wireframe"},
         {Action::vertex_frames, "N", "Show or hide tangents, bitangents and normals"},
         {Action::health_markers, "M", "Show or hide markers for mesh problems"},
+        {Action::light_markers, "L", "Show or hide markers at point lights and spotlights"},
         {Action::compare, "K", "Start or stop the comparison"},
         {Action::swap_sides, "X", "Swap the two sides"},
         {Action::show_difference, "D", "Show the difference or both sides"},
@@ -332,10 +336,31 @@ namespace {
 constexpr float quarter = 0.5F * std::numbers::pi_v<float>;
 constexpr float key_turn = quarter / 18.0F;  // 5 degrees.
 constexpr float turntable_speed = 0.5F;      // Radians per second.
+constexpr double step_seconds = 1.0 / 25.0;  // Of the animation.
+constexpr float marker_share = 0.03F;        // Of the radius of the scene.
 constexpr float fov_step = 1.1F;
 
 float changed_fov(float fov, float factor) {
     return std::clamp(fov * factor, glm::radians(min_fov_degrees), glm::radians(max_fov_degrees));
+}
+
+}  // namespace
+
+namespace {
+
+/// Returns the position and direction of a light; zero where it has none.
+std::pair<glm::vec3, glm::vec3> place_of(const AnyLight& light) {
+    if (const auto* directional = std::get_if<DirectionalLight>(&light))
+        return {glm::vec3(0.0F), directional->direction_world};
+    if (const auto* point = std::get_if<PointLight>(&light))
+        return {point->position_world, glm::vec3(0.0F)};
+    const auto& spot = std::get<SpotLight>(light);
+    return {spot.point.position_world, spot.direction_world};
+}
+
+/// Returns whether a light of the same kind is at another place.
+bool is_moved(const AnyLight& a, const AnyLight& b) {
+    return type_of(a) == type_of(b) && place_of(a) != place_of(b);
 }
 
 }  // namespace
@@ -347,6 +372,7 @@ void ViewerState::take(Loaded loaded) {
     error_ = loaded.error;
     if (!loaded.composed) return;
     const bool is_new = loaded.options.model != shown_model_;
+    const std::shared_ptr<const Scene> edited = scene_at_rest();
     const DebugChoices debug = options_.debug;  // The window's debug settings stay.
     options_ = std::move(loaded.options);
     options_.debug = debug;
@@ -354,30 +380,56 @@ void ViewerState::take(Loaded loaded) {
     notes_ = std::move(loaded.composed->notes);
     findings_ = std::move(loaded.findings);
     const Camera camera = loaded.composed->camera;
-    tree_ = tree_of(loaded.composed->graph);
-    auto scene = std::make_shared<Scene>(std::move(loaded.composed->scene()));
+    SceneGraph& graph = loaded.composed->graph;
+    tree_ = tree_of(graph);
+    playback_.take(graph, !is_new);
+    if (is_new && options_.time) {
+        playback_.set_playing(false);
+        playback_.set_time(*options_.time);
+    }
+    const LightCarriers carriers{graph.directional_lights, graph.point_lights, graph.spot_lights};
+    auto scene = std::make_shared<Scene>(std::move(graph.scene));
     if (has_named_default_) relief::name_default_material(*scene);
     auto read = std::make_shared<const Scene>(*scene);
-    rebased_ = scene_ ? rebase_edits(*read_, *scene_, *scene) : RebasedEdits{};
+    rebased_ = edited ? rebase_edits(*read_, *edited, *scene) : RebasedEdits{};
     notes_.insert(notes_.end(), rebased_.lost.begin(), rebased_.lost.end());
     if (is_new || hidden_.size() != scene->instances.size())
         hidden_.assign(scene->instances.size(), false);
     replace(std::move(scene));
-    light_rows_.update(*scene_);
+    light_rows_.update(*scene_, carriers);
     read_ = std::move(read);
     edit_error_.clear();
     ++scenes_;
-    sphere_ = bounding_sphere(world_bounds(*scene_));
+    const Bounds bounds = world_bounds(*scene_);
+    sphere_ = bounding_sphere(bounds);
+    const Bounds& reach = playback_.reach();
+    reach_ =
+        reach.empty()
+            ? sphere_
+            : bounding_sphere({glm::min(bounds.min, reach.min), glm::max(bounds.max, reach.max)});
     mark_health();
-    if (!is_new) return;
-    const std::optional<CameraOption>& view = options_.camera;
-    camera_ = view && view->place ? orbit_of(*view, *view->place, camera.vertical_fov)
-                                  : orbit_of(camera, sphere_);
+    if (is_new) {
+        const std::optional<CameraOption>& view = options_.camera;
+        camera_ = view && view->place ? orbit_of(*view, *view->place, camera.vertical_fov)
+                                      : orbit_of(camera, sphere_);
+        followed_.reset();
+        if (loaded.composed->camera_follows_scene && playback_.camera()) followed_ = camera_;
+    }
+    if (playback_.has_motion()) {
+        move_to(playback_.time());
+    } else {
+        show_all_but_hidden();  // The size of markers is that of the new scene.
+    }
 }
 
 /// Replaces the scene, and updates the scene without hidden instances.
 void ViewerState::replace(std::shared_ptr<const Scene> scene) {
     scene_ = std::move(scene);
+    show_all_but_hidden();
+    ++revision_;
+}
+
+void ViewerState::show_all_but_hidden() {
     shown_ = scene_;
     if (std::find(hidden_.begin(), hidden_.end(), true) != hidden_.end()) {
         auto shown = std::make_shared<Scene>(*scene_);
@@ -387,7 +439,41 @@ void ViewerState::replace(std::shared_ptr<const Scene> scene) {
         }
         shown_ = std::move(shown);
     }
-    ++revision_;
+    if (!has_light_markers_) return;
+    SceneGraph marked;
+    marked.scene = *shown_;
+    add_light_markers(marked, marker_share * sphere_.radius);
+    shown_ = std::make_shared<Scene>(std::move(marked.scene));
+}
+
+/// Moves instances and lights, which draws the scene without preparing it again.
+template <typename Change>
+void ViewerState::move(const Change& change) {
+    auto moved = std::make_shared<Scene>(*scene_);
+    change(*moved);
+    scene_ = std::move(moved);
+    show_all_but_hidden();
+    ++pose_;
+}
+
+void ViewerState::move_to(double seconds) {
+    move([&](Scene& scene) { playback_.pose(scene, light_rows_.carriers(), seconds); });
+    follow_camera();
+}
+
+/// Shows the camera of the animation, unless the user has moved it.
+void ViewerState::follow_camera() {
+    const std::optional<Camera> camera = playback_.camera();
+    if (!camera || !followed_ || *followed_ != camera_) return followed_.reset();
+    camera_ = orbit_of(*camera, sphere_);
+    followed_ = camera_;
+}
+
+std::shared_ptr<const Scene> ViewerState::scene_at_rest() {
+    if (!scene_ || !playback_.has_motion()) return scene_;
+    auto scene = std::make_shared<Scene>(*scene_);
+    playback_.pose(*scene, light_rows_.carriers(), options_.time.value_or(0.0));
+    return scene;
 }
 
 void ViewerState::show(const std::vector<std::size_t>& instances, bool are_shown) {
@@ -427,10 +513,29 @@ void ViewerState::set_environment(const std::filesystem::path& file) {
 }
 
 std::vector<LightRow> ViewerState::light_rows() const {
-    return scene_ ? light_rows_.rows(*scene_) : std::vector<LightRow>();
+    if (!scene_) return {};
+    std::vector<LightRow> rows = light_rows_.rows(*scene_);
+    for (LightRow& row : rows) {
+        if (!row.carried.node) continue;
+        if (const auto speed = playback_.orbit_speed(*row.carried.node)) row.speed = *speed;
+    }
+    return rows;
 }
 
 void ViewerState::set_light_rows(std::vector<LightRow> rows) {
+    const std::vector<LightRow> before = light_rows();
+    for (LightRow& row : rows) {
+        const auto old = std::find_if(before.begin(), before.end(),
+                                      [&](const LightRow& one) { return one.id == row.id; });
+        if (old == before.end() || !row.carried.node) continue;
+        const std::size_t node = *row.carried.node;
+        const bool orbits = playback_.orbit_speed(node).has_value();
+        if (orbits && row.speed != old->speed) playback_.set_orbit_speed(node, row.speed);
+        // A light that is moved by hand, or that rotates by itself, leaves its node.
+        if (is_moved(row.light, old->light) || (!orbits && row.speed != old->speed))
+            row.carried = {};
+        if (orbits) row.speed = 0.0F;  // The node moves the light.
+    }
     edit([&](Scene& scene) { light_rows_.set(scene, std::move(rows)); });
 }
 
@@ -440,6 +545,7 @@ void ViewerState::orbit_lights(const glm::vec2& pixels) {
     const glm::vec3 right(std::cos(camera_.azimuth), 0.0F, -std::sin(camera_.azimuth));
     glm::mat4 rotation = glm::rotate(glm::mat4(1.0F), unit * pixels.y, right);
     rotation = glm::rotate(rotation, unit * pixels.x, {0.0F, 1.0F, 0.0F});
+    light_rows_.detach_all();
     edit([&](Scene& scene) {
         std::vector<AnyLight> lights = lights_of(scene);
         for (AnyLight& light : lights)
@@ -548,6 +654,14 @@ void ViewerState::act(Action action) {
         case Action::turntable:
             is_turning_ = !is_turning_;
             return;
+        case Action::play:
+            return playback_.set_playing(!playback_.is_playing());
+        case Action::step_back:
+        case Action::step_forward:
+            if (!playback_.has_motion()) return;
+            return change_playback([&](Playback& playback) {
+                playback.step(action == Action::step_back ? -step_seconds : step_seconds);
+            });
         case Action::zoom_in:
             return zoom_by(camera_, 1.0F, glm::vec2(0.0F), sphere_);
         case Action::zoom_out:
@@ -567,6 +681,10 @@ void ViewerState::act(Action action) {
         case Action::vertex_frames:
         case Action::health_markers:
             return act_on_debug(action);
+        case Action::light_markers:
+            has_light_markers_ = !has_light_markers_;
+            if (scene_) replace(scene_);
+            return;
         default:
             return;  // The window handles the other actions.
     }
@@ -577,9 +695,12 @@ void ViewerState::set_view(const glm::ivec2& pixels) {
 }
 
 bool ViewerState::advance(double seconds) {
+    if (!scene_) return false;
+    const bool is_playing = playback_.advance(seconds);
+    if (is_playing) move_to(playback_.time());
     if (light_rows_.is_moving())
-        edit([&](Scene& scene) { light_rows_.advance(scene, seconds, sphere_.center); });
-    if (!is_turning_) return light_rows_.is_moving();
+        move([&](Scene& scene) { light_rows_.advance(scene, seconds, sphere_.center); });
+    if (!is_turning_) return is_playing || light_rows_.is_moving();
     camera_.azimuth = std::remainder(
         camera_.azimuth - turntable_speed * static_cast<float>(seconds), 4.0F * quarter);
     return true;
@@ -590,13 +711,14 @@ std::optional<DrawRequest> ViewerState::request() const {
     DrawRequest request;
     request.scene = shown_;
     request.revision = revision_;
+    request.pose = pose_;
     request.effects = effects_;
     request.settings.width = view_.x;
     request.settings.height = view_.y;
     request.settings.samples = options_.samples;
     request.settings.view = options_.debug.view;
     request.settings.overlays = overlays_of(options_.debug, markers_);
-    request.camera = camera_of(camera_, sphere_);
+    request.camera = camera_of(camera_, reach_);
     return request;
 }
 
@@ -619,7 +741,9 @@ nlohmann::ordered_json ViewerState::json(const RenderedPicture& drawn) const {
                                       {"fov", glm::degrees(camera_.vertical_fov)}}},
                                     {"show", debug_view_info(options_.debug.view).name},
                                     {"overlays", overlays_json(options_.debug, markers_)},
+                                    {"light_markers", has_light_markers_},
                                     {"turntable", is_turning_},
+                                    {"animation", playback_.json()},
                                     {"scenes", scenes_},
                                     {"edits", {{"kept", rebased_.kept}, {"lost", rebased_.lost}}},
                                     {"revision", revision_},
@@ -633,7 +757,7 @@ nlohmann::ordered_json ViewerState::json(const RenderedPicture& drawn) const {
     for (const Instance& instance : scene_->instances)
         triangles += scene_->meshes[instance.mesh]->triangles.size();
     state["triangles"] = triangles;
-    state["shown"] = {shown_->instances.size(), scene_->instances.size()};
+    state["shown"] = {std::count(hidden_.begin(), hidden_.end(), false), hidden_.size()};
     state["materials"] = scene_->materials.size();
     nlohmann::json lights = nlohmann::json::array();
     for (const DirectionalLight& light : scene_->directional_lights)

@@ -20,6 +20,7 @@
 #include "window/background_jobs.h"
 #include "window/edit_panels.h"
 #include "window/orbit_camera.h"
+#include "window/playback.h"
 
 namespace relief::tools {
 
@@ -37,6 +38,9 @@ enum class Action {
     narrow_fov,
     widen_fov,
     turntable,
+    play,
+    step_back,
+    step_forward,
     zoom_in,
     zoom_out,
     orbit_left,
@@ -49,6 +53,7 @@ enum class Action {
     wireframe,
     vertex_frames,
     health_markers,
+    light_markers,
     compare,
     swap_sides,
     show_difference,
@@ -213,6 +218,8 @@ class ViewerState {
     void take(HealthResult found);
     [[nodiscard]] const DebugChoices& debug() const { return options_.debug; }
     [[nodiscard]] const HealthMarkers& markers() const { return markers_; }
+    /// Returns whether point lights and spotlights are shown as spheres.
+    [[nodiscard]] bool has_light_markers() const { return has_light_markers_; }
 
     /// Handles the actions that affect the scene or the camera.
     void act(Action action);
@@ -223,10 +230,24 @@ class ViewerState {
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
     [[nodiscard]] const BoundingSphere& sphere() const { return sphere_; }
 
-    /// Returns whether the turntable or a light rotates.
-    [[nodiscard]] bool is_turning() const { return is_turning_ || light_rows_.is_moving(); }
-    /// Advances the turntable and the rotation of lights. \return whether anything moved
+    /// Returns whether the turntable or a light rotates, or the animation plays.
+    [[nodiscard]] bool is_turning() const {
+        return is_turning_ || light_rows_.is_moving() || playback_.is_playing();
+    }
+    /// Advances the turntable, the rotation of lights and the animation. \return whether anything
+    /// moved
     bool advance(double seconds);
+
+    [[nodiscard]] const Playback& playback() const { return playback_; }
+    /// Changes the playback, and shows the scene at its time.
+    template <typename Change>
+    void change_playback(const Change& change) {
+        change(playback_);
+        if (scene_) move_to(playback_.time());
+    }
+
+    /// The scene with its edits, in the pose in which it was read.
+    [[nodiscard]] std::shared_ptr<const Scene> scene_at_rest();
 
     /// The request for the current picture. Empty without a scene or a view.
     [[nodiscard]] std::optional<DrawRequest> request() const;
@@ -238,23 +259,35 @@ class ViewerState {
 
   private:
     void replace(std::shared_ptr<const Scene> scene);
+    void show_all_but_hidden();
+    template <typename Change>
+    void move(const Change& change);
+    void move_to(double seconds);
+    void follow_camera();
     void mark_health();
     void act_on_debug(Action action);
     void look_from(float azimuth, float elevation);
 
     ViewOptions options_;
     std::shared_ptr<const Scene> scene_;
-    std::shared_ptr<const Scene> read_;   ///< The scene without edits.
-    RebasedEdits rebased_;                ///< Edits of the last scene that was read.
-    std::uint64_t scenes_ = 0;            ///< The number of scenes that were read.
-    std::shared_ptr<const Scene> shown_;  ///< The scene without hidden instances.
-    std::vector<bool> hidden_;            ///< Indexed by instance.
+    std::shared_ptr<const Scene> read_;  ///< The scene without edits.
+    RebasedEdits rebased_;               ///< Edits of the last scene that was read.
+    std::uint64_t scenes_ = 0;           ///< The number of scenes that were read.
+    /// The scene without hidden instances, with light markers.
+    std::shared_ptr<const Scene> shown_;
+    bool has_light_markers_ = false;
+    std::vector<bool> hidden_;  ///< Indexed by instance.
     bool has_named_default_ = false;
     SceneTree tree_;
     LightRows light_rows_;
+    Playback playback_;
+    BoundingSphere reach_;  ///< Contains everything, wherever the animation moves it.
+    /// The camera of the animation as it was shown last, until the user moves it.
+    std::optional<OrbitCamera> followed_;
     std::filesystem::path shown_model_;
     std::uint64_t revision_ = 0;
-    HealthMarkers markers_;  ///< The result of the search for mesh problems.
+    std::uint64_t pose_ = 0;  ///< Changes when only instances and lights move.
+    HealthMarkers markers_;   ///< The result of the search for mesh problems.
     bool has_health_request_ = false;
     EffectRequest effects_;
     OrbitCamera camera_;

@@ -255,6 +255,8 @@ bool is_repeating(Action action) {
         case Action::orbit_right:
         case Action::orbit_up:
         case Action::orbit_down:
+        case Action::step_back:
+        case Action::step_forward:
             return true;
         default:
             return false;
@@ -427,6 +429,7 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
     events.has_input = std::exchange(has_input_, false);
     left_ = input.layout.has_panels ? draw_panels(input, events.panels) : 0.0F;
     bottom_ = ImGui::GetFrameHeightWithSpacing();
+    bottom_ += draw_playback(input.state, left_, bottom_);
     draw_status(input, events.panels);
     if (is_help_open_) draw_help(is_help_open_);
 
@@ -496,12 +499,15 @@ class WindowLoop {
 
     void run() {
         while (!system_.is_closing()) {
+            const bool was_working = is_working();
             wait();
             take_results();
             state_.advance(seconds_since_last());
             accuracy_.follow(state_);
             comparison_.follow(state_);
             saving_.follow();
+            // Tables find their column widths after the first frame with the results.
+            if (was_working && !is_working()) pending_frames_ = frames_to_settle;
             if (system_.is_visible()) draw();
         }
         // A size from the command line is not stored.
@@ -559,7 +565,8 @@ class WindowLoop {
     /// While work is in progress, the window draws frames to show it.
     bool is_working() {
         return loader_.is_loading() || drawer_.is_busy() || accuracy_.is_measuring() ||
-               effect_times_.state().is_running || captured_->state().is_running();
+               effect_times_.state().is_running || captured_->state().is_running() ||
+               saving_.is_running();
     }
 
     double seconds_since_last() {
@@ -653,7 +660,8 @@ class WindowLoop {
 
     /// Returns whether two requests show the same picture, in any resolution.
     static bool is_same(const DrawRequest& a, const DrawRequest& b) {
-        return a.revision == b.revision && a.camera.world_from_view == b.camera.world_from_view &&
+        return a.revision == b.revision && a.pose == b.pose &&
+               a.camera.world_from_view == b.camera.world_from_view &&
                a.camera.vertical_fov == b.camera.vertical_fov && a.instead == b.instead &&
                a.beside.has_value() == b.beside.has_value() &&
                (!a.beside || a.beside->revision == b.beside->revision) &&

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// Playback without a window: time, speed, clips, and the lights that leave their nodes.
+#include "window/playback.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tools/workplace.h"
+#include "window/background_jobs.h"
+#include "window/viewer_state.h"
+
+namespace relief::tools {
+namespace {
+
+using test::Workplace;
+using testing::ElementsAre;
+
+constexpr float quarter = 0.5F * std::numbers::pi_v<float>;
+constexpr float rounding = 1e-5F;  // Of float sines and products.
+
+/// A node that slides along x, by `distance` in two seconds.
+KeyAnimation slide(const char* name, std::size_t node, float distance) {
+    KeyChannel channel;
+    channel.node = node;
+    channel.times = {0.0F, 2.0F};
+    channel.values = {glm::vec4(0.0F), glm::vec4(distance, 0.0F, 0.0F, 0.0F)};
+    return {name, {channel}};
+}
+
+/// A quad on a sliding node, and a point light that orbits at a quarter turn per second.
+SceneGraph moving_scene() {
+    SceneGraph graph;
+    graph.nodes.resize(2);
+    graph.scene.meshes.emplace_back(make_quad(1));
+    graph.scene.instances.emplace_back();
+    graph.instances.push_back({0});
+    graph.scene.point_lights.resize(1);
+    graph.point_lights.push_back({1});
+    graph.animations.emplace_back(slide("walk", 0, 4.0F));
+    graph.animations.emplace_back(slide("run", 0, 8.0F));
+    graph.animations.emplace_back(Orbit{.node = 1, .azimuth_speed = quarter});
+    graph.clip = 0;
+    return graph;
+}
+
+/// The x of the quad after posing.
+float x_of(Playback& playback, Scene& scene, const LightCarriers& carriers = {}) {
+    playback.pose(scene, carriers);
+    return scene.instances[0].world_from_object[3].x;
+}
+
+TEST(PlaybackTest, PlaysPausesAndStepsAtItsSpeed) {
+    SceneGraph graph = moving_scene();
+    Playback playback;
+    EXPECT_FALSE(playback.has_motion());
+    EXPECT_FALSE(playback.advance(1.0)) << "there is nothing to play";
+    playback.take(graph, false);
+    EXPECT_TRUE(playback.is_playing());
+    EXPECT_NEAR(playback.duration(), 4.0, 1e-6) << "a turn of the light";
+    EXPECT_TRUE(playback.advance(0.5));
+    EXPECT_FLOAT_EQ(x_of(playback, graph.scene), 1.0F);
+    playback.set_speed(2.0F);
+    EXPECT_TRUE(playback.advance(0.25));
+    EXPECT_FLOAT_EQ(x_of(playback, graph.scene), 2.0F);
+    playback.set_playing(false);
+    EXPECT_FALSE(playback.advance(1.0));
+    EXPECT_EQ(playback.time(), 1.0);
+    playback.step(-3.0);
+    EXPECT_EQ(playback.time(), 0.0);
+    playback.set_time(4.5);
+    EXPECT_NEAR(playback.time_in_clip(), 0.5, 1e-6);
+}
+
+TEST(PlaybackTest, PlaysOneClipOrAll) {
+    SceneGraph graph = moving_scene();
+    Playback playback;
+    playback.take(graph, false);
+    EXPECT_THAT(playback.clips(), ElementsAre("walk", "run"));
+    playback.set_time(1.0);
+    playback.set_clip(1);
+    EXPECT_EQ(playback.time(), 0.0) << "from its start";
+    playback.set_time(1.0);
+    EXPECT_FLOAT_EQ(x_of(playback, graph.scene), 4.0F);
+    playback.set_time(1.0);
+    playback.take(graph, true);
+    EXPECT_EQ(playback.clip(), 1U) << "the same scene, read again";
+    EXPECT_EQ(playback.time(), 1.0);
+    playback.take(graph, false);
+    EXPECT_EQ(playback.clip(), 0U);
+    EXPECT_EQ(playback.time(), 0.0);
+}
+
+TEST(PlaybackTest, ReachesEverywhereThatItGoes) {
+    Playback playback;
+    playback.take(moving_scene(), false);
+    EXPECT_FLOAT_EQ(playback.reach().min.x, -1.0F);
+    EXPECT_GT(playback.reach().max.x, 4.0F);
+    EXPECT_LE(playback.reach().max.x, 5.0F);
+}
+
+TEST(PlaybackTest, MovesOnlyLightsOnNodes) {
+    SceneGraph graph = moving_scene();
+    Playback playback;
+    playback.take(graph, false);
+    playback.set_time(1.0);
+    graph.scene.point_lights[0].position_world = {7.0F, 7.0F, 7.0F};
+    playback.pose(graph.scene, {});
+    EXPECT_EQ(graph.scene.point_lights[0].position_world, glm::vec3(7.0F));
+    LightCarriers carriers;
+    carriers.point = graph.point_lights;
+    playback.pose(graph.scene, carriers);
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.x, 1.0F, rounding);
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.z, 0.0F, rounding);
+}
+
+TEST(PlaybackTest, AnOrbitChangesItsSpeedWithoutAJump) {
+    SceneGraph graph = moving_scene();
+    Playback playback;
+    playback.take(graph, false);
+    EXPECT_FALSE(playback.orbit_speed(0));
+    EXPECT_EQ(playback.orbit_speed(1), quarter);
+    LightCarriers carriers;
+    carriers.point = graph.point_lights;
+    playback.set_time(1.0);
+    playback.set_orbit_speed(1, -2.0F * quarter);
+    playback.pose(graph.scene, carriers);
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.x, 1.0F, rounding);
+    playback.set_time(1.5);
+    playback.pose(graph.scene, carriers);
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.z, 1.0F, rounding)
+        << "a quarter back in half a second";
+}
+
+class PlayingState : public testing::Test {
+  protected:
+    PlayingState() { state_.set_view({64, 48}); }
+
+    void show(const std::string& scene) {
+        workplace_.write_square("square.obj");
+        workplace_.write("scene.json", "{\"relief_scene\": 1, " + scene + "}");
+        show_again();
+    }
+    void show_again() {
+        Loaded loaded;
+        loaded.options = options_;
+        loaded.options.model = workplace_ / "scene.json";
+        Stages silent(true);
+        loaded.composed = compose_scene(loaded.options, silent, loaded.findings);
+        state_.take(std::move(loaded));
+    }
+    glm::vec3 light() const { return state_.scene().point_lights.at(0).position_world; }
+
+    Workplace workplace_;
+    ViewOptions options_;
+    ViewerState state_{ViewOptions{}};
+};
+
+constexpr const char* orbiting_light = R"("nodes": [{"model": "square.obj"},
+    {"orbit": {"radius": 2, "azimuth_speed": 90}, "light": {"type": "point", "intensity": 3}}])";
+
+TEST_F(PlayingState, MovesWithoutPreparingTheSceneAgain) {
+    show(orbiting_light);
+    EXPECT_TRUE(state_.is_turning());
+    const DrawRequest before = *state_.request();
+    EXPECT_TRUE(state_.advance(1.0));
+    const DrawRequest after = *state_.request();
+    EXPECT_EQ(after.revision, before.revision);
+    EXPECT_NE(after.pose, before.pose);
+    EXPECT_NEAR(light().x, 2.0F, rounding);
+    state_.act(Action::play);
+    EXPECT_FALSE(state_.is_turning()) << "a paused animation costs nothing";
+    EXPECT_FALSE(state_.advance(1.0));
+    EXPECT_EQ(state_.request()->pose, after.pose);
+    state_.act(Action::step_forward);
+    EXPECT_NE(state_.request()->pose, after.pose);
+}
+
+TEST_F(PlayingState, OpensPausedAtAGivenTime) {
+    options_.time = 2.0;
+    show(orbiting_light);
+    EXPECT_FALSE(state_.is_turning());
+    EXPECT_NEAR(light().z, -2.0F, rounding);
+}
+
+TEST_F(PlayingState, ListsTheTrueSpeedsAndChangesThem) {
+    show(orbiting_light);
+    std::vector<LightRow> rows = state_.light_rows();
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_NEAR(rows[0].speed, quarter, rounding);
+    state_.advance(1.0);
+    rows = state_.light_rows();
+    rows[0].speed = 2.0F * quarter;
+    state_.set_light_rows(rows);
+    state_.advance(1.0);
+    EXPECT_NEAR(light().x, -2.0F, rounding) << "half a turn from the right";
+}
+
+TEST_F(PlayingState, AColorFollowsTheNodeAndAPlaceLeavesIt) {
+    show(orbiting_light);
+    std::vector<LightRow> rows = state_.light_rows();
+    std::get<PointLight>(rows[0].light).intensity = glm::vec3(5.0F);
+    state_.set_light_rows(rows);
+    state_.advance(1.0);
+    EXPECT_NEAR(light().x, 2.0F, rounding);
+    EXPECT_EQ(state_.scene().point_lights[0].intensity, glm::vec3(5.0F));
+    rows = state_.light_rows();
+    std::get<PointLight>(rows[0].light).position_world = {0.0F, 9.0F, 0.0F};
+    state_.set_light_rows(rows);
+    state_.advance(1.0);
+    EXPECT_EQ(light(), glm::vec3(0.0F, 9.0F, 0.0F));
+    show_again();
+    EXPECT_EQ(light(), glm::vec3(0.0F, 9.0F, 0.0F)) << "an edit stays";
+}
+
+TEST_F(PlayingState, MotionIsNoEditOfTheFile) {
+    show(orbiting_light);
+    state_.advance(1.0);
+    EXPECT_NEAR(state_.scene_at_rest()->point_lights[0].position_world.z, 2.0F, rounding);
+    show_again();
+    EXPECT_EQ(state_.json(RenderedPicture{})["edits"]["kept"], 0);
+    EXPECT_NEAR(light().x, 2.0F, rounding) << "the time goes on";
+}
+
+TEST_F(PlayingState, TheCameraFollowsUntilItIsMoved) {
+    show(R"("nodes": [{"model": "square.obj"},
+        {"orbit": {"radius": 5, "azimuth_speed": 90, "faces_center": true}, "camera": {}}])");
+    state_.advance(1.0);
+    EXPECT_NEAR(state_.camera().azimuth, quarter, rounding);
+    orbit_by(state_.camera(), {5.0F, 0.0F}, 48);
+    const float azimuth = state_.camera().azimuth;
+    state_.advance(1.0);
+    EXPECT_EQ(state_.camera().azimuth, azimuth);
+}
+
+}  // namespace
+}  // namespace relief::tools
