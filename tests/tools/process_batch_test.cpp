@@ -55,6 +55,36 @@ TEST(ProcessJobs, RefusesFormatsThatDoNotServe) {
     EXPECT_EQ(model_refusal({{folder.path()}, "out/"}), folder.path().string() + ": is a folder");
 }
 
+TEST(ProcessBatch, AModelWithoutTextureCoordinatesIsAFindingUnlessTangentsAreRequired) {
+    const Workplace workplace;
+    workplace.write_square("a.obj");
+    workplace.write_square("plain.obj", true);
+    const std::string line =
+        "relief-mesh process a.obj plain.obj -o out/ --format glb --tangents mikktspace ";
+    const ProgramResult result = workplace.run(line + "--report out/r.json");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("out/plain.glb: 2 triangles, 4 vertices, normals computed, "
+                                      "averaged by angle, tangents none, 1 finding, "));
+    const json report = json::parse(workplace.read("out/r.json"));
+    EXPECT_TRUE(report["files"][0]["findings"].empty());
+    EXPECT_EQ(report["files"][1]["findings"][0]["kind"], "model without texture coordinates");
+    EXPECT_EQ(report["files"][1]["findings"][0]["outcome"], "gets no tangents");
+    EXPECT_EQ(workplace.run(line + "--strict --quiet").exit_code, 3);
+    // A glTF model is judged by its primitives, and the outcome is the same.
+    ASSERT_EQ(workplace.run("relief-mesh process plain.obj out/plain.gltf").exit_code, 0);
+    const ProgramResult document = workplace.run(
+        "relief-mesh process a.obj out/plain.gltf -o out/glb/ --format glb --tangents mikktspace");
+    EXPECT_EQ(document.exit_code, 0) << document.error;
+    EXPECT_THAT(document.out, HasSubstr("tangents none, 1 finding, "));
+    const ProgramResult required = workplace.run(line + "--require-tangents");
+    EXPECT_EQ(required.exit_code, 1);
+    EXPECT_THAT(required.error, HasSubstr("plain.obj: no texture coordinates, so there can be no "
+                                          "tangents"));
+    const ProgramResult useless =
+        workplace.run("relief-mesh process a.obj out/a.glb --require-tangents");
+    EXPECT_EQ(useless.exit_code, 2);
+}
+
 TEST(ProcessBatch, WritesEveryModelUnderItsNameInAFolderThatItMakes) {
     const Workplace workplace;
     workplace.write_square("a.obj");

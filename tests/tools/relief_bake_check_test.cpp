@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
 
 #include "relief/accuracy/ground_truth.h"
@@ -371,6 +372,79 @@ TEST_F(Verify, NoConventionExplainsAMapOfAnotherModel) {
     EXPECT_EQ(surface["convention"]["explained"], false);
     EXPECT_THAT(surface["trouble"][0].get<std::string>(),
                 HasSubstr("the map differs from this bake"));
+}
+
+/// Turns texels of a map to the side.
+void bend_texels(const std::filesystem::path& file, const std::vector<glm::ivec2>& texels) {
+    Image map = read_image(file, ImageUse::data);
+    for (const glm::ivec2& texel : texels) {
+        const auto index = static_cast<std::size_t>(texel.y * map.width + texel.x);
+        std::uint16_t* const codes = &map.as<std::uint16_t>()[3 * index];
+        codes[0] = 65535;
+        codes[1] = codes[2] = 32768;
+    }
+    write_image(file, map);
+}
+
+TEST_F(Verify, OutliersAtEdgesAreNotedAndDoNotMakeAnotherBake) {
+    bake();
+    std::vector<glm::ivec2> border;
+    for (int x = 10; x < 50; ++x)
+        border.emplace_back(x, 1);
+    bend_texels(workplace / "out/map.png", border);
+    const json surface = check("out/map.png", "--strict");
+    EXPECT_GT(surface["stages"]["other"]["rms"].get<double>(), 5.0);
+    EXPECT_TRUE(surface["trouble"].empty()) << surface["trouble"];
+    const json& outliers = surface["outliers"];
+    EXPECT_NEAR(outliers["percent"].get<double>(), 100.0 * 40 / 4096, 1e-9);
+    EXPECT_EQ(outliers["percent_at_edges"], outliers["percent"]);
+    EXPECT_LT(outliers["median"].get<double>(), 1e-6);
+    ASSERT_EQ(outliers["texels"].size(), 8U);
+    EXPECT_EQ(outliers["texels"][0]["y"], 1);
+    const ProgramResult result =
+        workplace.run("relief-bake check out/map.png --high high.obj --low low.obj");
+    EXPECT_THAT(result.out,
+                HasSubstr("outliers  0.98 % of the texels differ from this bake by more than 1 "
+                          "degree, 100 % of them at silhouettes and borders of charts: column "));
+    EXPECT_THAT(result.out, HasSubstr("verdict   matches this bake\n"));
+}
+
+TEST_F(Verify, TheSameOutliersInsideAreAnEdit) {
+    bake();
+    std::vector<glm::ivec2> inside;
+    for (int x = 10; x < 50; ++x)
+        inside.emplace_back(x, 32);
+    bend_texels(workplace / "out/map.png", inside);
+    int exit_code = -1;
+    const json surface = check("out/map.png", "--strict", &exit_code);
+    EXPECT_EQ(exit_code, 3);
+    EXPECT_EQ(surface["outliers"]["percent_at_edges"], 0.0);
+    EXPECT_THAT(
+        surface["trouble"][0].get<std::string>(),
+        HasSubstr("degrees (median), and 0.98 % of its texels by more than 1 degree (0.98 % away "
+                  "from edges); none of "));
+}
+
+TEST(MapCheckCommand, LeavesOpenWhatOnlyTheModelsOfABakeShow) {
+    const Workplace workplace;
+    const Image map = changed(hills(), [n = 0](auto c, int s) mutable {
+        const bool is_bent = n++ / 3 == 64 * 5 + 7;
+        return is_bent ? (c == 2 ? 20 : 160) : s;
+    });
+    write_image(workplace / "other.png", map);
+    write_image(workplace / "baked.png", map, {{"relief:bake", "--samples 1 --space tangent"}});
+    EXPECT_EQ(workplace.run("relief-bake check other.png --strict --quiet").exit_code, 3);
+    const ProgramResult result = workplace.run("relief-bake check baked.png --strict");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("baked.png: 64 x 64, 3 channels, 8 bit: sound\n"));
+    EXPECT_THAT(result.out,
+                HasSubstr("unjudged  1 x texel facing back (column 7, row 5): cannot be judged "
+                          "without the models: the high surface may lean so far\n"
+                          "          -> relief-bake check baked.png --high HIGH --low LOW\n"));
+    const json report =
+        json::parse(workplace.run("relief-bake check baked.png --json").out)["files"][0];
+    EXPECT_TRUE(report["trouble"].empty());
+    EXPECT_EQ(report["unjudged"][0]["kind"], "texel facing back");
 }
 
 TEST_F(Verify, ACageMustBeGivenAgain) {

@@ -68,6 +68,31 @@ TEST(HeightsCommand, PrintsTheInverseCommand) {
     }
 }
 
+TEST(HeightsCommand, AMapWithoutHeightsIsAFinding) {
+    const Workplace workplace;
+    // The slope along x depends on y only: its mean over a row is a ramp, and the rest a curl.
+    Image normals = make_image(32, 32, 3, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < 32 * 32; ++i) {
+        const bool leans_left = i / 32 % 16 < 8;
+        normals.as<float>()[3 * i] = leans_left ? 0.6F : -0.6F;
+        normals.as<float>()[3 * i + 2] = 0.8F;
+    }
+    Report report;
+    write_image(workplace / "curl.png", encode_normal_map(normals, {.bits = 16}, report));
+    const std::string line =
+        "relief-bake heights curl.png out/h.png --input-green up --wrap repeat --strict ";
+    const ProgramResult result = workplace.run(line + "--report out/r.json");
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.out,
+                HasSubstr("1 x map that is not the slopes of a height field (map 0): "));
+    EXPECT_THAT(result.out, HasSubstr("degrees (RMS) of it are lost, more than the limit of 5: "));
+    const json residual = json::parse(workplace.read("out/r.json"))["residual_degrees"];
+    // All of it: atan(0.75).
+    EXPECT_NEAR(residual["rms"].get<double>(), 36.87, 0.1);
+    EXPECT_EQ(workplace.run(line + "--max-residual 40").exit_code, 0);
+    EXPECT_EQ(workplace.run(line + "--max-residual 36").exit_code, 3);
+}
+
 TEST(HeightsCommand, DescribesTheHeightsInTheReportAndTheFile) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(

@@ -298,6 +298,70 @@ TEST_F(Sets, BothWordsGiveEveryTileOfEveryMaterial) {
     EXPECT_THAT(first_texel("out/1001_B.png"), near(0, 0.6, 0.8));
 }
 
+TEST(MeshPairs, AreBakedByTheNamesOfTheirFiles) {
+    const Workplace place;
+    const std::string high = "v -1 -1 0.05\nv 1 -1 0.05\nv 1 1 0.05\nv -1 1 0.05\n";
+    place.write("Rock_high.obj", high + "f 1 2 3 4\n");
+    place.write("pot-high.obj", high + "f 1 2 3 4\n");
+    place.write_square("Rock_low.obj");
+    place.write_square("pot-low.obj");
+    const std::string models =
+        "relief-bake mesh Rock_high.obj pot-high.obj pot-low.obj Rock_low.obj --size 8 ";
+    const ProgramResult result = place.run(models + "-o out/maps/ --report out/r.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("out/maps/pot.png: 8 x 8, 1 map, 0 texels missed, no "
+                                      "findings, "));
+    EXPECT_THAT(result.out, HasSubstr("out/maps/Rock.png: 8 x 8, "));
+    const json report = json::parse(place.read("out/r.json"));
+    ASSERT_EQ(report["files"].size(), 2U);
+    EXPECT_EQ(report["files"][1]["high"], json({"Rock_high.obj"}));
+    // A single bake writes the same bytes.
+    ASSERT_EQ(place.run("relief-bake mesh Rock_high.obj Rock_low.obj out/r.png --size 8").exit_code,
+              0);
+    EXPECT_EQ(place.read("out/maps/Rock.png"), place.read("out/r.png"));
+    // The name of the pair stands in the names of all files.
+    ASSERT_EQ(place
+                  .run(models + "-o 'out/<model>_n.png' --occlusion-map 'out/<model>_o.png' "
+                                "--quiet")
+                  .exit_code,
+              0);
+    EXPECT_TRUE(std::filesystem::exists(place / "out/pot_o.png"));
+    EXPECT_TRUE(std::filesystem::exists(place / "out/Rock_n.png"));
+    const auto refusal = [&](const std::string& line) {
+        const ProgramResult refused = place.run(line);
+        EXPECT_EQ(refused.exit_code, 2) << line;
+        return refused.first_error_line();
+    };
+    EXPECT_THAT(refusal(models + "-o out/ --occlusion-map out/o.png"),
+                HasSubstr("out/o.png: several bakes would write or read it"));
+    EXPECT_THAT(refusal("relief-bake mesh Rock_high.obj pot-low.obj -o out/"),
+                HasSubstr("has no "));
+    EXPECT_THAT(refusal("relief-bake mesh Rock_high.obj a.obj -o out/"),
+                HasSubstr("a.obj: has no pair name (name the models X_high and X_low)"));
+}
+
+TEST_F(Sets, IslandsBesideTheMapThatFitIntoItAreAdvisedToRepeat) {
+    const auto finding = [&](const std::string& corners) {
+        place_.write("high.obj",
+                     "v 0 0 0.1\nv 1 0 0.1\nv 1 1 0.1\nv 0 1 0.1\nv 2 0 0.1\n"
+                     "v 2 1 0.1\nf 1 2 3 4\nf 2 5 6 3\n");
+        place_.write("low.obj",
+                     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                     "vt 0 0\nvt 0.4 0\nvt 0.4 1\nvt 0 1\n" +
+                         corners + "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n");
+        return bake("out/n.png").out;
+    };
+    const std::string advice =
+        "2 x triangle outside of the map (triangle 2, 3): is not baked; --outside repeat moves it "
+        "into the map";
+    // Into a gap; as a mirrored copy; and onto other triangles, which only tiles can hold.
+    EXPECT_THAT(finding("vt 1.5 0\nvt 1.9 0\nvt 1.9 1\nvt 1.5 1\n"), HasSubstr(advice + "\n"));
+    EXPECT_THAT(finding("vt 1.4 0\nvt 1 0\nvt 1 1\nvt 1.4 1\n"), HasSubstr(advice + "\n"));
+    EXPECT_THAT(finding("vt 1.1 0\nvt 1.5 0\nvt 1.5 1\nvt 1.1 1\n"),
+                HasSubstr(advice + ", and <UDIM> in the map's name gives a map for each tile\n"));
+    EXPECT_THAT(finding("vt -0.9 0\nvt -0.5 0\nvt -0.5 1\nvt -0.9 1\n"), HasSubstr(advice + "\n"));
+}
+
 TEST_F(Sets, TrianglesOutsideTheMapAreCountedWithARemedy) {
     write({{"", 0, 0, leaning_right},
            {"", 1, 0, leaning_up},
@@ -305,7 +369,8 @@ TEST_F(Sets, TrianglesOutsideTheMapAreCountedWithARemedy) {
            {"", -1, 0, leaning_up}});
     EXPECT_THAT(bake("out/n.png").out,
                 HasSubstr("6 x triangle outside of the map (triangle 2, 3, 4, 5, 6, 7): is not "
-                          "baked; <UDIM> in the map's name gives a map for each tile"));
+                          "baked; --outside repeat moves it into the map, and <UDIM> in the map's "
+                          "name gives a map for each tile"));
     const ProgramResult tiles = bake("out/n.<UDIM>.png");
     EXPECT_THAT(tiles.out,
                 HasSubstr("2 x triangle outside of the map (triangle 6, 7): is not baked\n"));

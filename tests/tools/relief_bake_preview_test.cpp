@@ -118,6 +118,46 @@ TEST(MeshPreview, ShowsAllMapsOfOneBake) {
     }
 }
 
+TEST(MeshPreview, AnIslandOneTileAwayShowsTheRepeatedMap) {
+    const Workplace workplace;
+    write_pair(workplace);
+    workplace.write("low.mtl", "newmtl left\nnewmtl right\n");
+    workplace.write("low.obj", two_tiles);
+    const auto result = workplace.run(
+        "relief-bake mesh high.obj low.obj out/map.png --size 16 --preview out/preview.png "
+        "--preview-size 32x24");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    expect_alike(workplace / "out/preview.png", 13);
+    expect_alike(workplace / "out/preview.png", 19);
+}
+
+TEST(MeshPreview, TheHighModelIsShownWithItsOwnNormalMap) {
+    const Workplace workplace;
+    workplace.write_square("low.obj");
+    workplace.write("high.obj",
+                    "mtllib high.mtl\nv -1 -1 0.05\nv 1 -1 0.05\nv 1 1 0.05\nv -1 1 0.05\n"
+                    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\nusemtl bent\n"
+                    "f 1/1/1 2/2/1 3/3/1 4/4/1\n");
+    workplace.write("high.mtl", "newmtl bent\nnorm bent.png\n");
+    Image normals = make_image(4, 4, 3, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < 16; ++i) {
+        const std::array<float, 3> normal = {-0.48F, 0.36F, 0.8F};
+        std::copy(normal.begin(), normal.end(), &normals.as<float>()[3 * i]);
+    }
+    Report report;
+    write_image(workplace / "bent.png", encode_normal_map(normals, {.bits = 16}, report));
+    const std::string line =
+        "relief-bake mesh high.obj low.obj out/map.png --size 16 --preview out/preview.png "
+        "--preview-size 32x24";
+    ASSERT_EQ(workplace.run(line).exit_code, 0);
+    expect_alike(workplace / "out/preview.png");
+    // Without the map, all panels show a flat square.
+    ASSERT_EQ(workplace.run(line + " --high-normal-map none").exit_code, 0);
+    const auto flat = colors(workplace / "out/preview.png", 16);
+    EXPECT_NEAR(flat[0][0], flat[2][0], 2);
+    EXPECT_NEAR(flat[1][0], flat[2][0], 2);
+}
+
 TEST(MeshPreview, ModelsOfAnySizeAreDrawn) {
     const Workplace workplace;
     for (const std::string unit : {"1e-30", "1e30"}) {

@@ -318,6 +318,35 @@ TEST(SubdivideCommand, MakesFourOfEachAndKeepsMaterials) {
               json({{"levels", 2}, {"normals", "keep"}}));
 }
 
+TEST(Reshaping, SeveralModelsKeepTheirNames) {
+    const Workplace workplace;
+    write_sheet(workplace, "a.obj", 8);
+    write_sheet(workplace, "b.obj", 4);
+    workplace.write("bad.obj", "f 1 2 3\n");
+    const ProgramResult result = workplace.run(
+        "relief-mesh decimate a.obj bad.obj b.obj -o out/ --format glb --ratio 0.5 --report "
+        "out/r.json");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr("relief-mesh: error: bad.obj: "));
+    EXPECT_THAT(result.out, HasSubstr("out/a.glb: 128 -> 64 triangles, "));
+    EXPECT_THAT(result.out, HasSubstr("out/b.glb: 32 -> 16 triangles, "));
+    EXPECT_THAT(result.out, HasSubstr("in all    3 files, 1 failed\n"));
+    const json report = json::parse(workplace.read("out/r.json"));
+    EXPECT_EQ(report["tool"], "relief-mesh decimate");
+    ASSERT_EQ(report["files"].size(), 3U);
+    EXPECT_EQ(report["files"][0]["triangles_written"], 64);
+    EXPECT_TRUE(report["files"][0].contains("distance"));
+    EXPECT_EQ(workplace.outputs(), "a.glb b.glb r.json");
+    // Separate calls write the same bytes.
+    ASSERT_EQ(workplace.run("relief-mesh decimate a.obj out/alone.glb --ratio 0.5").exit_code, 0);
+    EXPECT_EQ(workplace.read("out/a.glb"), workplace.read("out/alone.glb"));
+    const ProgramResult finer =
+        workplace.run("relief-mesh subdivide a.obj b.obj -o out/ --format ply --quiet");
+    EXPECT_EQ(finer.exit_code, 0) << finer.error;
+    EXPECT_EQ(finer.out, "");
+    EXPECT_EQ(workplace.outputs(), "a.glb a.ply alone.glb b.glb b.ply r.json");
+}
+
 TEST(SubdivideCommand, ARiggedModelIsRefused) {
     RELIEF_NEEDS_SHARED(model, "data/models/gltf/CesiumMan/glTF-Binary/CesiumMan.glb");
     const Workplace workplace;

@@ -33,6 +33,7 @@ namespace {
 struct Console {
     std::FILE* out = stdout;
     std::FILE* err = stderr;
+    bool is_out_reserved = false;
 };
 Console console;
 
@@ -247,6 +248,14 @@ std::FILE* out() {
 
 std::FILE* err() {
     return console.err;
+}
+
+void reserve_out_for_report() {
+    console.is_out_reserved = true;
+}
+
+bool is_out_reserved() {
+    return console.is_out_reserved;
 }
 
 bool is_err_terminal() {

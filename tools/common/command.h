@@ -207,6 +207,16 @@ std::FILE* out();
 /// The stream for errors, warnings and progress, likewise.
 std::FILE* err();
 
+/// The name of standard input or output in place of a file.
+inline constexpr const char* standard_stream = "-";
+
+/// Reserves out() for a JSON report: print_entry() and run_batch() print nothing. Lasts until the
+/// tool ends.
+void reserve_out_for_report();
+
+/// Returns whether out() is reserved for a report.
+bool is_out_reserved();
+
 /// Returns whether err() is a terminal.
 bool is_err_terminal();
 

@@ -284,7 +284,7 @@ void run_all(const CLI::App& app, const Batch& batch, std::vector<Outcome>& outc
 ExitCode run_batch(const CLI::App& app, const Batch& batch, const ReportOptions& report,
                    const GeneralOptions& general) {
     std::vector<Outcome> outcomes(batch.jobs.size());
-    run_all(app, batch, outcomes, general.quiet);
+    run_all(app, batch, outcomes, general.quiet || is_out_reserved());
     const auto failed = static_cast<std::size_t>(std::count_if(
         outcomes.begin(), outcomes.end(), [](const Outcome& outcome) { return !outcome.done; }));
     if (!general.quiet) {

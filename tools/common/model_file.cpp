@@ -156,6 +156,30 @@ JobList model_jobs_of(const FileWords& words, std::optional<ModelFormat> format)
     return list;
 }
 
+void add_model_files(CLI::App& app, FileWords& words, std::optional<ModelFormat>& format) {
+    add_files(app, "FILE...", words.files,
+              "IN OUT: the model to read (.glb .gltf .obj .ply .stl .off) and the file to write "
+              "(.glb .gltf .obj .ply), which may be IN itself: it is replaced when the new file is "
+              "complete. With -o: any number of models to read. glTF compressed with Draco or "
+              "meshopt is written uncompressed.");
+    add_value(
+        app, "-o,--output", "PATH",
+        "The output: a folder (with / at the end, or existing), or a file for one model. In a "
+        "folder, each model keeps its name. If a model fails, the others are still processed.",
+        [&words](const std::string&, const std::string& text) { words.output = text; })
+        .group("Output");
+    add_choice(app, "--format", format, writable_choices(),
+               "The format of the files in an output folder. Default: the format of the input, or "
+               "glb for .stl and .off, which cannot be written.")
+        .group("Output");
+}
+
+bool may_share_companions(const std::vector<Job>& jobs) {
+    return std::any_of(jobs.begin(), jobs.end(), [](const Job& job) {
+        return writable_format(job.output) == ModelFormat::gltf;
+    });
+}
+
 std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
                                      const std::filesystem::path& input, bool has_tangents,
                                      Report& report) {

@@ -50,6 +50,13 @@ std::vector<std::string> compression_text(const GltfDocument& document, bool onl
 ///         unknown format
 JobList model_jobs_of(const FileWords& words, std::optional<ModelFormat> format);
 
+/// Adds the file arguments IN OUT or IN... with -o, and --format, for model_jobs_of().
+void add_model_files(CLI::App& app, FileWords& words, std::optional<ModelFormat>& format);
+
+/// Returns whether two jobs could write the same file: buffers and images beside two .gltf files
+/// may have the same name.
+bool may_share_companions(const std::vector<Job>& jobs);
+
 /// Writes a model in the format of the file.
 ///
 /// \param input         the file name in errors about the model

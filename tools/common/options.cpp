@@ -3,12 +3,15 @@
 #include "common/options.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "common/help.h"
+#include "file_bytes.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/limits.h"
 
@@ -154,13 +157,49 @@ AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::pa
     return add_path(app, name, target, description).required();
 }
 
+namespace {
+
+std::string text_of_standard_input() {
+    std::string text;
+    std::array<char, 1 << 14> part{};
+    for (std::size_t size = 0; (size = std::fread(part.data(), 1, part.size(), stdin)) > 0;)
+        text.append(part.data(), size);
+    if (std::ferror(stdin) != 0) throw FileError("standard input", "cannot be read");
+    return text;
+}
+
+/// Adds the names of a list: one a line, or ended by NUL as `find -print0` prints them.
+void add_names(const std::string& list, const std::string& text,
+               std::vector<std::filesystem::path>& names) {
+    const char end = text.find('\0') == std::string::npos ? '\n' : '\0';
+    const std::size_t before = names.size();
+    for (std::string name : split(text, end)) {
+        if (end == '\n' && name.ends_with('\r')) name.pop_back();
+        if (!name.empty()) names.emplace_back(std::move(name));
+    }
+    if (names.size() == before) throw UsageError(list + ": lists no file");
+}
+
+}  // namespace
+
 AddedOption add_files(CLI::App& app, const std::string& name,
                       std::vector<std::filesystem::path>& target, const std::string& description) {
     const auto callback = [&target](const CLI::results_t& values) {
-        target.assign(values.begin(), values.end());
+        target.clear();
+        for (const std::string& value : values) {
+            if (value == standard_stream) {
+                add_names(value, text_of_standard_input(), target);
+            } else if (value.starts_with('@') && value.size() > 1) {
+                add_names(value, read_file(value.substr(1)), target);
+            } else {
+                target.emplace_back(value);
+            }
+        }
         return true;
     };
-    CLI::Option* option = app.add_option(name, callback, description);
+    CLI::Option* option = app.add_option(
+        name, callback,
+        description + " @LIST reads names from a file, one per line, and - from standard input.");
     option->expected(-1);
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     return {app, *option};

@@ -125,7 +125,8 @@ AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
 AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
                      const std::string& description);
 
-/// Adds any number of file arguments. Callers check the number.
+/// Adds any number of file arguments. Callers check the number. "@LIST" stands for the names in a
+/// file, and "-" for those on standard input: one per line, or ended by NUL.
 AddedOption add_files(CLI::App& app, const std::string& name,
                       std::vector<std::filesystem::path>& target, const std::string& description);
 

@@ -97,6 +97,7 @@ std::string printable(std::string_view text) {
 }
 
 void print_entry(const std::string& label, const std::string& text) {
+    if (is_out_reserved()) return;
     fmt::print(out(), "{:<10}{}\n", label, printable(text));
 }
 
@@ -110,15 +111,33 @@ void print_json(const nlohmann::ordered_json& json) {
 }
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+    if (file == standard_stream) return print_json(json);
     const std::string text = dumped(json);
     replace_file(file, std::as_bytes(std::span(text)));
 }
 
 // Findings.
 
-void Findings::add(const std::string& where, const Report& report) {
+std::string to_string(const PlacedFinding& placed) {
+    const Finding& finding = placed.finding;
+    const std::string prefix = placed.where.empty() ? "" : placed.where + ": ";
+    if (finding.element != "texel" || placed.map_width == 0) return prefix + to_string(finding);
+    std::string texels;
+    for (const std::size_t index : finding.first)
+        texels += (texels.empty() ? "" : "; ") + texel_name(index, placed.map_width);
+    if (finding.count > finding.first.size()) texels += "; ...";
+    return fmt::format("{}{} x {} ({}): {}", prefix, finding.count, finding.kind, texels,
+                       finding.outcome);
+}
+
+std::string texel_name(std::size_t index, int width) {
+    const auto columns = static_cast<std::size_t>(width);
+    return fmt::format("column {}, row {}", index % columns, index / columns);
+}
+
+void Findings::add(const std::string& where, const Report& report, int map_width) {
     for (const Finding& finding : report.findings())
-        findings_.push_back({where, finding});
+        findings_.push_back({where, finding, map_width});
 }
 
 std::vector<std::string> Findings::lines(std::size_t limit) const {
@@ -128,8 +147,7 @@ std::vector<std::string> Findings::lines(std::size_t limit) const {
             lines.push_back(fmt::format("... and {} more", findings_.size() - limit));
             break;
         }
-        const std::string prefix = placed.where.empty() ? "" : placed.where + ": ";
-        lines.push_back(prefix + to_string(placed.finding));
+        lines.push_back(to_string(placed));
     }
     return lines;
 }
@@ -140,20 +158,28 @@ std::string Findings::count_text() const {
 
 nlohmann::ordered_json Findings::json() const {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const auto& [where, finding] : findings_) {
+    for (const auto& [where, finding, map_width] : findings_) {
         list.push_back({{"where", where},
                         {"kind", finding.kind},
                         {"element", finding.element},
                         {"count", finding.count},
                         {"first", finding.first},
                         {"outcome", finding.outcome}});
+        if (finding.element != "texel" || map_width == 0) continue;
+        nlohmann::ordered_json texels = nlohmann::ordered_json::array();
+        for (const std::size_t index : finding.first) {
+            const auto columns = static_cast<std::size_t>(map_width);
+            texels.push_back({{"column", index % columns}, {"row", index / columns}});
+        }
+        list.back()["texels"] = std::move(texels);
     }
     return list;
 }
 
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict) {
     add_path(app, "--report", options.file,
-             "Write a JSON report with results and findings to FILE.")
+             "Write a JSON report with results and findings to FILE; - prints it instead of the "
+             "summary.")
         .group("Report");
     add_switch(app, "--strict", options.strict,
                strict.empty() ? "Exit with 3 if there are findings on the input; the output is "
@@ -164,6 +190,7 @@ void add_report_options(CLI::App& app, ReportOptions& options, const std::string
 
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files) {
     if (!options.file) return;
+    if (*options.file == standard_stream) return reserve_out_for_report();
     for (const std::filesystem::path& file : files) {
         if (identity_of(*options.file) == identity_of(file))
             throw UsageError(fmt::format("--report {}: is also the input or the output",

@@ -51,7 +51,7 @@ void print_entry(const std::string& label, const std::vector<std::string>& lines
 /// Prints indented JSON, with invalid UTF-8 in names replaced.
 void print_json(const nlohmann::ordered_json& json);
 
-/// Replaces a file by indented JSON. \throws FileError
+/// Replaces a file by indented JSON, or prints it for standard_stream. \throws FileError
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 
 // Findings with the part of the input to which they belong.
@@ -60,11 +60,20 @@ void write_json(const std::filesystem::path& file, const nlohmann::ordered_json&
 struct PlacedFinding {
     std::string where;
     Finding finding;
+    /// The width of the map whose texels the finding counts; 0: unknown.
+    int map_width = 0;
 };
+
+/// Formats a finding as one line. Texels of a map of known width are named by column and row.
+std::string to_string(const PlacedFinding& placed);
+
+/// "column 12, row 3", counted from 0 at the upper left corner. \param index  row by row
+std::string texel_name(std::size_t index, int width);
 
 class Findings {
   public:
-    void add(const std::string& where, const Report& report);
+    /// \param map_width  of the map whose texels the findings count; 0: unknown
+    void add(const std::string& where, const Report& report, int map_width = 0);
 
     [[nodiscard]] bool empty() const { return findings_.empty(); }
     /// "no findings", "3 findings"
@@ -74,7 +83,8 @@ class Findings {
     /// Returns at most `limit` lines and the number of further findings.
     [[nodiscard]] std::vector<std::string> lines(std::size_t limit = 12) const;
 
-    /// [{"where", "kind", "element", "count", "first", "outcome"}, ...]
+    /// [{"where", "kind", "element", "count", "first", "outcome"}, ...], for the texels of a map of
+    /// known width with "texels" [{"column", "row"}].
     [[nodiscard]] nlohmann::ordered_json json() const;
 
   private:
@@ -82,7 +92,7 @@ class Findings {
 };
 
 struct ReportOptions {
-    std::optional<std::filesystem::path> file;
+    std::optional<std::filesystem::path> file;  ///< standard_stream: standard output.
     bool strict = false;
 };
 

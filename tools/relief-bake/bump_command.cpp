@@ -14,6 +14,7 @@
 #include <string>
 
 #include "commands.h"
+#include "common/material_maps.h"
 #include "common/options.h"
 #include "common/summary.h"
 #include "relief/accuracy/asset.h"
@@ -330,7 +331,7 @@ void convert_and_write(const HeightMapFile& map, const Job& job, Stages& stages,
     if (map.is_streamed()) stages.book("read", times.read);
     stages.book("convert", times.convert);
     stages.book("write", times.write);
-    conversion.findings.add("", report);
+    conversion.findings.add("", report, map.info().width);
 }
 
 }  // namespace
@@ -725,18 +726,77 @@ void check(const BumpAccuracyRequest& request, bool slope_moments, bool half) {
     if (half) throw UsageError(option + ", --half: errors of half floats are not measured");
 }
 
-ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& request) {
+/// The map of --write-into must be what glTF prescribes.
+void check_write_into(const BumpRequest& request, const WriteIntoOptions& write_into,
+                      const Job& job) {
+    const auto refuse = [](const char* option, const char* problem, const char* remedy) {
+        throw UsageError(fmt::format("{}, --write-into: {}", option, problem), remedy);
+    };
+    if (request.output.green == Green::down)
+        refuse("--green", "glTF has green up", "use --green up");
+    if (request.output.flat == FlatCode::middle)
+        refuse("--zero-code", "glTF decodes zero at 127.5", "use --zero-code 127.5");
+    if (request.xy_only) refuse("--xy", "glTF needs z in blue", "leave it out");
+    check_image("--write-into", job.output);
+    if (!std::filesystem::exists(*write_into.model))
+        throw failure(*write_into.model, "does not exist", "name a model that has the surface");
+    for (const std::filesystem::path& file : {job.input, job.output}) {
+        if (identity_of(file) == identity_of(*write_into.model)) {
+            throw UsageError(fmt::format("--write-into {}: is also the input or the output",
+                                         write_into.model->string()));
+        }
+    }
+}
+
+/// Stores the finished map in the model of --write-into.
+MaterialResult write_into_model(const WriteIntoOptions& write_into, const Job& job,
+                                Stages& stages) {
+    MaterialRequest request;
+    request.input = request.output = *write_into.model;
+    request.materials.push_back({write_into.material, {{GltfTextureSlot::normal, job.output}}});
+    request.embeds = write_into.embed;
+    request.normal_scale = write_into.scale;
+    try {
+        return store_maps(request, stages);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{} (the map is complete, but not in a model)", error.what()));
+    }
+}
+
+ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& given,
+             const WriteIntoOptions& write_into) {
+    BumpRequest request = given;
+    apply_engine(request.output);
+    check(app, write_into);
+    if (!write_into.model) refuse_given(app, {"--scale"}, "--write-into");
     MapWork work;
+    std::size_t jobs = 0;
     work.head = {{"tool", "relief-bake bump"}, {"version", version()}};
     work.check = [&](const Job& job) {
         bump_options_of(request);
         file_format_of(request, job.output);
         refuse_to_replace(job.input, "height map", job);
+        if (!write_into.model) return;
+        if (++jobs > 1) throw UsageError("--write-into: needs a single map");
+        check_write_into(request, write_into, job);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
-        const BumpConversion conversion = convert_bump(job, request, stages);
-        return {line_of(job, conversion, stages), conversion.findings,
-                summary_of(job, request, conversion, stages)};
+        BumpConversion conversion = convert_bump(job, request, stages);
+        std::optional<MaterialResult> stored;
+        if (write_into.model) {
+            stored = write_into_model(write_into, job, stages);
+            for (const PlacedFinding& placed : stored->findings.all()) {
+                Report report;
+                report.add(placed.finding);
+                conversion.findings.add(placed.where, report);
+            }
+        }
+        Summary summary = summary_of(job, request, conversion, stages);
+        if (stored) {
+            summary.add_part("stored", summary_of(*stored));
+            summary.add("", file_and_size(*write_into.model));
+        }
+        return {line_of(job, conversion, stages), conversion.findings, std::move(summary)};
     };
     return run_map_jobs(app, files, work);
 }
@@ -791,6 +851,7 @@ Command add_bump_command(CLI::App& tool) {
     struct Options {
         MapFiles files;
         BumpRequest request;
+        WriteIntoOptions write_into;
     };
     CLI::App& app =
         add_subcommand(tool, "bump", "Converts height maps to tangent-space normal maps.");
@@ -804,11 +865,18 @@ Command add_bump_command(CLI::App& tool) {
     add_map_folder(app, options->files);
     add_content_options(app, options->request);
     add_map_output_options(app, options->request.output);
+    add_write_into_options(app, options->write_into,
+                           "Store the finished map as the normal map of a material of this model "
+                           "(.glb .gltf), which is replaced.");
+    add_number(app, "--scale", "S", options->write_into.scale, {-100.0, 100.0, ""},
+               "Factor of the x and y of the normal map in the material. Default: that of the "
+               "material, or 1.")
+        .group("glTF");
     add_report_options(app, options->files.report);
     add_general_options(app, options->files.general);
     set_common_options(app, {"--channel", "--strength", "--height", "--texel-size", "--wrap",
                              "--kernel", "--max-error", "--compare", "--output", "--green",
-                             "--bits", "--dither", "--report", "--strict"});
+                             "--bits", "--dither", "--write-into", "--report", "--strict"});
     set_examples(
         app,
         {"relief-bake bump data/bricks-height.png out/bricks-normal.png --strength 12",
@@ -820,7 +888,9 @@ Command add_bump_command(CLI::App& tool) {
          "0.001",
          "relief-bake bump data/bricks-height.png out/bricks-parallax.png --alpha height",
          "relief-bake bump data/*-height.png -o out/maps/ --strength 8"});
-    return {&app, [&app, options] { return run(app, options->files, options->request); }};
+    return {&app, [&app, options] {
+                return run(app, options->files, options->request, options->write_into);
+            }};
 }
 
 }  // namespace relief::tools

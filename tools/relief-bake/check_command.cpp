@@ -4,6 +4,7 @@
 // files, even if one fails. Tests: tests/tools/relief_bake_check_test.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "commands.h"
@@ -31,10 +32,21 @@ struct CheckedMap {
     int channels = 0;
     int bits = 0;
     std::string color_tag;  ///< Empty: the file has no color tag.
+    bool is_baked = false;  ///< Its file has the record of a bake.
     NormalMapCheck check;
     double milliseconds = 0.0;  ///< Of the check, without reading.
 
-    [[nodiscard]] bool is_sound() const { return error.empty() && !check.has_problem(); }
+    /// Returns whether a condition is right or wrong by the map alone. Where the high surface leans
+    /// far over the low one, the normals of a sound bake face back.
+    [[nodiscard]] bool is_judged(MapCondition condition) const {
+        return !is_baked || condition != MapCondition::texel_facing_back;
+    }
+    [[nodiscard]] bool is_sound() const {
+        return error.empty() && std::ranges::none_of(check.found, [&](const auto& found) {
+                   return condition_info(found.condition).severity == Severity::problem &&
+                          is_judged(found.condition);
+               });
+    }
     [[nodiscard]] bool has_green() const {
         return check.content == MapContent::tangent_normals ||
                check.content == MapContent::xy_normals;
@@ -57,6 +69,7 @@ CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> gre
         const Image image = read_image(file, ImageUse::data);
         std::map<std::string, std::string> metadata = read_image_info(file).metadata;
         if (green) metadata["relief:green"] = enum_name(*green);
+        map.is_baked = metadata.contains("relief:bake");
         map.color_tag = color_tag(file);
         map.width = image.width;
         map.height = image.height;
@@ -163,16 +176,51 @@ std::vector<std::string> finding_lines(const CheckedMap& map, Severity severity)
     std::vector<std::string> lines;
     for (const MapConditionCount& found : map.check.found) {
         const MapConditionInfo& info = condition_info(found.condition);
-        if (info.severity != severity) continue;
+        if (info.severity != severity || !map.is_judged(found.condition)) continue;
         lines.push_back(
             info.element == "map"
                 ? fmt::format("{}: {}", info.word, info.meaning)
-                : to_string(Finding{std::string(info.word), std::string(info.element),
-                                    std::string(info.meaning), found.count, found.first}));
+                : to_string(PlacedFinding{"",
+                                          {std::string(info.word), std::string(info.element),
+                                           std::string(info.meaning), found.count, found.first},
+                                          map.width}));
         const std::string remedy = remedy_for(found.condition, map);
         if (!remedy.empty()) lines.push_back("-> " + remedy);
     }
     return lines;
+}
+
+/// The conditions that only the models of the map show to be right or wrong.
+std::vector<std::string> unjudged_lines(const CheckedMap& map) {
+    std::vector<std::string> lines;
+    for (const MapConditionCount& found : map.check.found) {
+        if (map.is_judged(found.condition)) continue;
+        const MapConditionInfo& info = condition_info(found.condition);
+        lines.push_back(to_string(
+            PlacedFinding{"",
+                          {std::string(info.word), std::string(info.element),
+                           "cannot be judged without the models: the high surface may lean so far",
+                           found.count, found.first},
+                          map.width}));
+    }
+    if (!lines.empty()) {
+        lines.push_back(
+            fmt::format("-> relief-bake check {} --high HIGH --low LOW", quoted(map.file)));
+    }
+    return lines;
+}
+
+Json unjudged_json(const CheckedMap& map) {
+    Json list = Json::array();
+    for (const MapConditionCount& found : map.check.found) {
+        if (map.is_judged(found.condition)) continue;
+        const MapConditionInfo& info = condition_info(found.condition);
+        list.push_back({{"kind", info.word},
+                        {"element", info.element},
+                        {"count", found.count},
+                        {"first", found.first}});
+    }
+    return list;
 }
 
 /// The findings of one severity.
@@ -180,7 +228,7 @@ Json findings_json(const CheckedMap& map, Severity severity) {
     Json list = Json::array();
     for (const MapConditionCount& found : map.check.found) {
         const MapConditionInfo& info = condition_info(found.condition);
-        if (info.severity != severity) continue;
+        if (info.severity != severity || !map.is_judged(found.condition)) continue;
         list.push_back({{"kind", info.word},
                         {"element", info.element},
                         {"count", found.count},
@@ -211,7 +259,8 @@ Json green_json(const CheckedMap& map) {
 }
 
 /// The text of a file that cannot be read is the error message.
-Summary summary_of(const CheckedMap& map) {
+/// \param has_models  whether the map is also compared with its models
+Summary summary_of(const CheckedMap& map, bool has_models) {
     Summary summary;
     summary.add_json({{"file", map.file.string()}, {"sound", map.is_sound()}});
     if (!map.error.empty()) {
@@ -260,6 +309,8 @@ Summary summary_of(const CheckedMap& map) {
     summary.add_json({{"alpha_correlation", or_null(check.alpha_correlation)}});
     summary.add("problems", finding_lines(map, Severity::problem),
                 {{"trouble", findings_json(map, Severity::problem)}});
+    summary.add("unjudged", has_models ? std::vector<std::string>{} : unjudged_lines(map),
+                {{"unjudged", unjudged_json(map)}});
     summary.add("notes", finding_lines(map, Severity::note),
                 {{"remarks", findings_json(map, Severity::note)}});
     summary.add("time",
@@ -456,7 +507,7 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
     for (const std::filesystem::path& file : options.files) {
         const CheckedMap map = stages.run("check", "check " + file.string(),
                                           [&] { return check_map(file, options.green); });
-        Summary summary = summary_of(map);
+        Summary summary = summary_of(map, options.surface.is_wanted());
         bool is_sound = map.is_sound();
         if (options.surface.is_wanted() && map.error.empty()) {
             SurfaceCheckRequest request = options.surface;
@@ -500,7 +551,8 @@ Command add_map_check_command(CLI::App& tool) {
         "bits, content, curve, color_tag, lengths and lengths_uncurved {mean, rms_deviation, "
         "within}, green {is, correlation, deviation, confidence, scale} or null, zero_code, seams "
         "[x, y], bits_used, alpha_correlation, trouble (problems) and remarks (notes) [kind, "
-        "element, count, first, meaning, remedy], milliseconds, megapixels_per_second, surface "
+        "element, count, first, meaning, remedy], unjudged (without the models) [kind, element, "
+        "count, first], milliseconds, megapixels_per_second, surface "
         "{baked, error and centre {rms, mean, p99, max, texels}, stages {share, rms}, worst, "
         "convention, trouble, remedies, ...}].");
     add_switch(app, "--strict", options->strict,

@@ -103,7 +103,7 @@ Tool relief_bake() {
     return {"relief-bake",
             "Makes normal maps.",
             {add_bump_command, add_mesh_command, add_convert_command, add_map_check_command,
-             add_heights_command}};
+             add_heights_command, add_pack_command}};
 }
 
 void add_map_files(CLI::App& app, MapFiles& files, const std::string& input,
@@ -161,6 +161,10 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
         return " Default: " + (follows_input ? std::string("as in the input.") : otherwise);
     };
     const Choices<int> depths = {{"8", 8}, {"16", 16}, {"32", 32}};
+    add_choice(app, "--for", options.engine, enum_choices<Engine>(),
+               "Write what an engine reads: green up for gltf, godot and unity, down for unreal; 8 "
+               "bits unless --bits is given; zero at 127.5.")
+        .group(group);
     add_choice(app, "--green", options.green, enum_choices<Green>(),
                "Direction of the green channel: up (OpenGL, glTF) or down (DirectX)." +
                    default_text("up."))
@@ -187,6 +191,23 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
     add_switch(app, "--fast", options.fast, "Compress for speed; the file is larger.").group(group);
     add_switch(app, "--small", options.small, "Compress for size; writing takes many times longer.")
         .group(group);
+}
+
+void apply_engine(MapOutputOptions& options) {
+    if (!options.engine) return;
+    const EngineRules& rules = rules_of(*options.engine);
+    const std::string engine = enum_name(*options.engine);
+    if (options.green && *options.green != rules.green) {
+        throw UsageError(fmt::format("--green {}, --for {}: contradict each other",
+                                     enum_name(*options.green), engine));
+    }
+    if (options.flat == FlatCode::middle) {
+        throw UsageError(fmt::format("--zero-code 128, --for {}: contradict each other", engine),
+                         "engines decode zero at 127.5");
+    }
+    options.green = rules.green;
+    if (!options.bits) options.bits = rules.bits;
+    if (options.bits != 32) options.flat = FlatCode::half;
 }
 
 NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem::path& output,

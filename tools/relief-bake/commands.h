@@ -15,6 +15,7 @@
 #include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "engines.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 
@@ -28,6 +29,14 @@ Command add_mesh_command(CLI::App& tool);
 Command add_convert_command(CLI::App& tool);
 Command add_map_check_command(CLI::App& tool);
 Command add_heights_command(CLI::App& tool);
+Command add_pack_command(CLI::App& tool);
+
+/// Adds --outside drop|repeat. Target: bool or an optional of it, true for repeat.
+template <typename Target>
+AddedOption add_outside_option(CLI::App& app, Target& repeats, const std::string& description) {
+    return add_choice(app, "--outside", repeats, Choices<bool>{{"drop", false}, {"repeat", true}},
+                      description);
+}
 
 // Commands that convert maps, one by one.
 
@@ -69,6 +78,7 @@ ExitCode run_map_jobs(const CLI::App& app, const MapFiles& files, const MapWork&
 
 /// Options for how a normal map is stored. Absent: the default of the command.
 struct MapOutputOptions {
+    std::optional<Engine> engine;
     std::optional<int> bits;
     std::optional<Green> green;
     std::optional<FlatCode> flat;
@@ -86,9 +96,13 @@ struct MapOutputDefaults {
     FlatCode flat = FlatCode::half;
 };
 
-/// Adds --bits, --green, --zero-code, --dither, --half, --fast and --small.
+/// Adds --for, --bits, --green, --zero-code, --dither, --half, --fast and --small.
 /// \param follows_input  whether --help names the input's format as the default
 void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follows_input = false);
+
+/// Sets the direction of green and the bits that the engine of --for needs, unless they are given.
+/// \throws UsageError if another direction or zero code is given
+void apply_engine(MapOutputOptions& options);
 
 /// The bit depths in which a file format can store normals, the default first; empty if it cannot
 /// store them.

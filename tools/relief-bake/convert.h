@@ -41,16 +41,13 @@ struct ResizeChoice {
     ResizeOptions options;
 };
 
-/// The treatment of texture coordinates outside the unit square.
-enum class UvOutside { ignore, repeat };
-
 /// The mesh of a conversion between tangent space and object space.
 struct SpaceOptions {
     std::optional<std::filesystem::path> to_object;
     std::optional<std::filesystem::path> to_tangent;
     std::optional<TangentMethod> tangents;
-    std::optional<UvOutside> outside;
-    std::optional<int> udim;  ///< From 1001.
+    std::optional<bool> repeats;  ///< Texture coordinates outside of the unit square.
+    std::optional<int> udim;      ///< From 1001.
 };
 
 struct MipOptions {

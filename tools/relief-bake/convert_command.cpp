@@ -265,10 +265,9 @@ void add_space_options(CLI::App& app, SpaceOptions& space) {
                "Method that computes the tangents of the mesh. Default: the tangents of the file, "
                "else mikktspace.")
         .group(group);
-    add_choice(app, "--outside", space.outside,
-               Choices<UvOutside>{{"ignore", UvOutside::ignore}, {"repeat", UvOutside::repeat}},
-               "Texture coordinates outside the unit square: ignore their triangles, or wrap them "
-               "into the square (repeat). Default: ignore.")
+    add_outside_option(app, space.repeats,
+                       "Texture coordinates outside the unit square: leave their triangles out "
+                       "(drop), or wrap them into the square (repeat). Default: drop.")
         .group(group);
     add_value(app, "--udim", "N",
               "UDIM tile of the map, from 1001; tile 1011 is above tile 1001. Default: 1001.",
@@ -298,7 +297,7 @@ void add_mip_options(CLI::App& app, MipOptions& mips) {
 void check(const SpaceOptions& space) {
     if (space.to_object && space.to_tangent)
         throw UsageError("--to-object, --to-tangent: contradict each other");
-    if (space.udim && space.outside)
+    if (space.udim && space.repeats)
         throw UsageError("--udim, --outside: both set what lies outside the unit square");
 }
 
@@ -351,7 +350,9 @@ void check_files(const Job& job, const ConvertRequest& request, InputByOutput& i
     }
 }
 
-ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& request) {
+ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& given) {
+    ConvertRequest request = given;
+    apply_engine(request.output);
     check(app, request);
     MapWork work;
     work.head = {{"tool", "relief-bake convert"}, {"version", version()}};

@@ -166,7 +166,7 @@ void convert_space(const Conversion& conversion, const SpaceOptions& space,
     constexpr int tiles_across = 10;
     const int index = space.udim.value_or(first_udim) - first_udim;
     const MapRegion placement = {{index % tiles_across, -(index / tiles_across)},
-                                 space.outside == UvOutside::repeat};
+                                 space.repeats.value_or(false)};
     ConvertedNormals converted = conversion(field.normals, target.mesh, placement, report);
     field.normals = std::move(converted.normals);
     const Coverage& coverage = converted.coverage;
@@ -595,7 +595,9 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
         about(job.input,
               [&] { convert_rows(request, input, source, axes, stages, writer, result); });
     }
-    result.findings.add("", report);
+    // Findings of resized maps and of mip levels count texels of other widths.
+    const bool has_one_size = !request.resize.size && !request.mips.wanted;
+    result.findings.add("", report, has_one_size ? result.width : 0);
     return result;
 }
 

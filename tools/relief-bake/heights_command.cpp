@@ -25,6 +25,7 @@ struct HeightsRequest {
     IntegrationOptions integration;  ///< All except the border mode.
     WrapsOrAuto wrap{};
     std::optional<int> bits{};
+    double max_residual = 5.0;  ///< RMS in degrees, above which the residual is a finding.
 };
 
 /// The result of a conversion.
@@ -96,6 +97,12 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
                "First remove the mean slope: a map whose flat texels are off by one code would "
                "tilt.")
         .group(group);
+    add_number(
+        app, "--max-residual", "DEG", request.max_residual, {0.0, 180.0, "degrees"},
+        fmt::format("Residual (RMS) above which the map is reported as no slopes of a height "
+                    "field. Default: {:g}.",
+                    HeightsRequest{}.max_residual))
+        .group(group);
     const Choices<int> depths = {{"8", 8}, {"16", 16}, {"32", 32}};
     add_choice(app, "--bits", request.bits, depths,
                "Bits of a height: 8 or 16 for .png; 8, 16 or 32 (float) for .tif; 32 for .exr. "
@@ -164,6 +171,17 @@ std::map<std::string, std::string> metadata_of(const HeightsConversion& conversi
             {"relief:wrap", name_of(conversion.integration.wrap)}};
 }
 
+/// Reports a map that contains much that no height field has.
+void report_residual(const HeightsRequest& request, const IntegratedHeights& result,
+                     Report& report) {
+    if (result.residual.rms <= request.max_residual) return;
+    report.add(
+        "map that is not the slopes of a height field", "map", 0,
+        fmt::format("{:.3g} degrees (RMS) of it are lost, more than the limit of {:g}: a bake, "
+                    "or maps that were blended?",
+                    result.residual.rms, request.max_residual));
+}
+
 /// Reads, integrates and writes. The stages are "read", "integrate" and "write".
 /// \throws FileError, UsageError
 HeightsConversion convert_heights(const Job& job, const HeightsRequest& request, Stages& stages) {
@@ -188,8 +206,9 @@ HeightsConversion convert_heights(const Job& job, const HeightsRequest& request,
             return take_stored_heights(conversion);
         });
     });
+    report_residual(request, conversion.result, report);
     stages.run("write", [&] { write_image(job.output, file, metadata_of(conversion)); });
-    conversion.findings.add("", report);
+    conversion.findings.add("", report, conversion.width);
     return conversion;
 }
 

@@ -290,21 +290,58 @@ std::vector<std::string> convention_remedies(const std::filesystem::path& map,
     }
 }
 
+/// The share of texels that a count is, in percent of those compared with this bake.
+double percent_of_compared(std::size_t count, const BakeCheck& check) {
+    const std::size_t all = check.stages.at(static_cast<std::size_t>(BakeStage::other)).error.count;
+    return all > 0 ? 100.0 * static_cast<double>(count) / static_cast<double>(all) : 0.0;
+}
+
+/// Returns whether the codes of a map are not those of this bake: because of other rays, another
+/// model, or an edit. Bakers treat silhouettes and borders of charts differently, so a map may have
+/// some outliers there.
+bool differs_from_bake(const BakeCheck& check) {
+    constexpr double max_percent = 5.0, max_percent_inside = 0.5;
+    const ErrorStats& other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).error;
+    return other.median > outlier_degrees ||
+           percent_of_compared(check.outliers, check) > max_percent ||
+           percent_of_compared(check.outliers - check.outliers_at_edges, check) >
+               max_percent_inside;
+}
+
+/// "1.2 % of the texels differ by more than 1 degree, 90 % of them at silhouettes ...: column 3,
+/// row 4 by 80 degrees; ..."; empty if there are none.
+std::string outlier_text(const BakeCheck& check) {
+    constexpr std::size_t max_named = 3;
+    if (check.outliers == 0) return "";
+    std::string text = fmt::format(
+        "{:.2g} % of the texels differ from this bake by more than {:g} degree, {:.0f} % of them "
+        "at silhouettes and borders of charts: ",
+        percent_of_compared(check.outliers, check), outlier_degrees,
+        100.0 * static_cast<double>(check.outliers_at_edges) / static_cast<double>(check.outliers));
+    for (std::size_t i = 0; i < std::min(max_named, check.worst_outliers.size()); ++i) {
+        const WorstTexel& texel = check.worst_outliers[i];
+        text += fmt::format("{}column {}, row {} by {:.3g}", i == 0 ? "" : "; ", texel.x, texel.y,
+                            texel.degrees);
+    }
+    return text + (check.outliers > max_named ? "; ..." : "");
+}
+
 /// Adds the problems of a map and their remedies.
 void add_problems(VerifiedMap& map, const MeshBakeRequest& bake, const BakeModels& models) {
-    // Above this, codes differ from those of the bake: other rays, another program, or an edit.
-    constexpr double max_other_degrees = 1.0;
     const BakeCheck& check = map.check;
     const ErrorBound& bound = map.request.bound;
-    const double other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).error.rms;
+    const ErrorStats& other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).error;
     if (check.convention.is_explained) {
         map.problems.push_back(describe(check.convention));
         map.remedies = convention_remedies(map.request.map, bake.low, check.convention);
-    } else if (other > max_other_degrees) {
-        map.problems.push_back(
-            fmt::format("the map differs from this bake by {:.3g} degrees (RMS), and none of {} "
-                        "conventions explains it (other models, other rays, or edited?)",
-                        other, check.convention.tried));
+    } else if (differs_from_bake(check)) {
+        map.problems.push_back(fmt::format(
+            "the map differs from this bake by {:.2g} degrees (median), and {:.2g} % of "
+            "its texels by more than {:g} degree ({:.2g} % away from edges); none of "
+            "{} conventions explains it (other models, other rays, or edited?)",
+            other.median, percent_of_compared(check.outliers, check), outlier_degrees,
+            percent_of_compared(check.outliers - check.outliers_at_edges, check),
+            check.convention.tried));
     }
     if (!bound.allows(check.error)) {
         map.problems.push_back(fmt::format("the error is {:.3g} degrees, more than the limit of {}",
@@ -351,7 +388,7 @@ std::string worst_text(const BakeCheck& check) {
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(check.worst.size(), 4); ++i) {
         const WorstTexel& texel = check.worst[i];
-        text += fmt::format("{}({}, {}): {:.3g}{}", i == 0 ? "" : "; ", texel.x, texel.y,
+        text += fmt::format("{}column {}, row {}: {:.3g}{}", i == 0 ? "" : "; ", texel.x, texel.y,
                             texel.degrees, texel.is_discontinuous ? " torn" : "");
     }
     return text;
@@ -458,6 +495,13 @@ Summary summary_of(const VerifiedMap& map) {
     summary.add("stages", stage_lines(check), {{"stages", std::move(stages)}});
     summary.add("worst", check.error.max > 0.0 ? worst_text(check) : "",
                 {{"worst", json_list(check.worst, worst_json)}});
+    const ErrorStats& other = check.stages.at(static_cast<std::size_t>(BakeStage::other)).error;
+    summary.add("outliers", outlier_text(check),
+                {{"outliers",
+                  {{"median", other.median},
+                   {"percent", percent_of_compared(check.outliers, check)},
+                   {"percent_at_edges", percent_of_compared(check.outliers_at_edges, check)},
+                   {"texels", json_list(check.worst_outliers, worst_json)}}}});
     summary.add("verdict", verdict_lines(map),
                 {{"convention", convention_json(check.convention)},
                  {"trouble", map.problems},

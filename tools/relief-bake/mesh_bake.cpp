@@ -70,7 +70,7 @@ class PendingMap {
   public:
     PendingMap(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
                const BakeOptions& options, MapProgress& progress, const NormalMapFormat& format)
-        : map_{std::move(plan), {}, {}, {}} {
+        : width_(request.size.x), map_{std::move(plan), {}, {}, {}} {
         BakeMapOptions map = map_options(options, map_.plan);
         map.progress = progress.next_map(request.size.y);
         map.measures_missed = true;
@@ -88,11 +88,12 @@ class PendingMap {
     /// Renames the files.
     BakedMap finish(Findings& findings) {
         writer_->finish();
-        findings.add(map_.plan.name(), report_);
+        findings.add(map_.plan.name(), report_, width_);
         return std::move(map_);
     }
 
   private:
+    int width_;
     Report report_;
     BakedMap map_;
     std::optional<MapWriter> writer_;
@@ -162,19 +163,62 @@ void draw_preview(MeshPreview& preview, const MeshBakeRequest& request, const Me
     const bool has_object_axes = request.bake.space == VectorSpace::object && models.world_from_low;
     std::vector<PreviewMap> maps;
     for (const BakedMap& map : bake.maps) {
-        const bool is_tile = map.plan.tile != glm::ivec2(0);
+        // An engine repeats a map on triangles outside of it.
+        const bool is_exceeded = map.plan.tile != glm::ivec2(0) || map.plan.is_exceeded;
         maps.push_back({.file = map.plan.output,
                         .triangles = map.plan.triangles,
-                        .repeats = is_tile || request.bake.map.placement.repeat});
+                        .repeats = is_exceeded || request.bake.map.placement.repeat});
     }
     preview.draw(
         request.preview,
         {.high = std::move(models.high),
+         .high_materials = models.textures.materials(),
          .low = std::move(models.low),
          .world_from_low = has_object_axes ? *models.world_from_low : glm::dmat3(1.0),
          .shows_back_faces = request.bake.back_faces == BackFaces::take},
         maps,
         {.format = bake.format, .space = is_tangent ? NormalSpace::tangent : NormalSpace::object});
+}
+
+/// The maps of a bake that glTF materials have.
+std::vector<MaterialMap> material_maps(const MeshBakeRequest& request, const MapPlan& plan) {
+    std::vector<MaterialMap> maps = {{GltfTextureSlot::normal, plan.output}};
+    const auto add = [&](LayerKind kind, GltfTextureSlot slot) {
+        const auto file = request.layers.files.find(kind);
+        if (file != request.layers.files.end()) maps.push_back({slot, plan.named(file->second)});
+    };
+    add(LayerKind::occlusion, GltfTextureSlot::occlusion);
+    add(LayerKind::color, GltfTextureSlot::base_color);
+    return maps;
+}
+
+/// Stores the finished maps in the model of --write-into, which is made from the low model if it
+/// does not exist.
+void write_into(const MeshBakeRequest& request, Stages& stages, MeshBake& bake) {
+    const std::filesystem::path& model = *request.write_into.model;
+    const bool exists = std::filesystem::exists(model);
+    MaterialRequest wanted;
+    wanted.input = exists ? model : request.low;
+    wanted.output = model;
+    wanted.are_baked = true;
+    wanted.embeds = request.write_into.embed;
+    // A map of the whole low model belongs to all of its materials.
+    wanted.all_materials = !exists || identity_of(model) == identity_of(request.low);
+    for (const BakedMap& map : bake.maps) {
+        wanted.materials.push_back(
+            {map.plan.material ? map.plan.material : request.write_into.material,
+             material_maps(request, map.plan)});
+    }
+    try {
+        bake.stored = store_maps(wanted, stages);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{} (the maps are complete, but not in a model)", error.what()));
+    }
+    for (const PlacedFinding& placed : bake.stored->findings.all()) {
+        Report report;
+        report.add(placed.finding);
+        bake.findings.add(placed.where, report);
+    }
 }
 
 /// The mean side of a texel over the area of the map, in the unit of the mesh.
@@ -269,6 +313,7 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
     if (preview) {
         stages.run("preview", [&] { draw_preview(*preview, request, bake, std::move(models)); });
     }
+    if (request.write_into.model) write_into(request, stages, bake);
     return bake;
 }
 
@@ -462,6 +507,7 @@ std::vector<std::string> written_files(const MeshBakeRequest& request, const Mes
         files.push_back(file_and_size(*request.preview.file) +
                         " (high, low with the map, low without)");
     }
+    if (bake.stored) files.push_back(file_and_size(*request.write_into.model));
     return files;
 }
 
@@ -637,6 +683,7 @@ Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const S
         if (map.verified) summary.add_lines(summary_of(*map.verified));
     }
     summary.add("layers", layer_lines(bake));
+    if (bake.stored) summary.add_part("stored", summary_of(*bake.stored));
     summary.add_findings(bake.findings);
     summary.add_times(stages);
     summary.add("wrote", written_files(request, bake));

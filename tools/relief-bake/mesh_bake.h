@@ -42,6 +42,7 @@ struct MeshBake {
     BakeFit fit;                             ///< Baker::fit()
     glm::dvec3 origin{0.0};                  ///< As in BakeModels.
     std::optional<BakeComparison> accuracy;  ///< If errors were measured before the bake.
+    std::optional<MaterialResult> stored;    ///< The materials of --write-into.
     Findings findings;
 };
 

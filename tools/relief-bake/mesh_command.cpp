@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
+#include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/summary.h"
 #include "mesh_bake.h"
@@ -266,6 +268,31 @@ void check_error_map_request(const MeshBakeRequest& request,
     check_error_map(request.error_map, files);
 }
 
+/// The maps of --write-into must be what glTF prescribes. The model may be LOW, but no other file.
+void check_write_into(const MeshBakeRequest& request,
+                      const std::vector<std::filesystem::path>& files) {
+    if (!request.write_into.model) return;
+    const auto refuse = [](const char* option, const char* problem, const char* remedy) {
+        throw UsageError(fmt::format("{}, --write-into: {}", option, problem), remedy);
+    };
+    if (request.bake.space != VectorSpace::tangent)
+        refuse("--space", "normals of glTF are in tangent space", "use --space tangent");
+    if (request.map.green == Green::down) refuse("--green", "glTF has green up", "use --green up");
+    if (request.map.flat == FlatCode::middle)
+        refuse("--zero-code", "glTF decodes zero at 127.5", "use --zero-code 127.5");
+    if (names_word(request.output, tile_word))
+        refuse("<UDIM>", "a material of glTF has one image", "use --outside repeat");
+    if (names_word(request.output, material_word) && request.write_into.material)
+        refuse("--material", "<material> names the materials", "leave it out");
+    check_image("--write-into", request.output);
+    for (const LayerKind kind : {LayerKind::occlusion, LayerKind::color}) {
+        if (request.layers.has(kind)) check_image("--write-into", request.layers.files.at(kind));
+    }
+    std::vector<std::filesystem::path> others = files;
+    std::erase(others, request.low);
+    check_distinct("--write-into", *request.write_into.model, others);
+}
+
 void check_files(const MeshBakeRequest& request, std::vector<std::filesystem::path> files) {
     if (request.cage) files.push_back(*request.cage);
     for (const auto& [kind, file] : request.layers.files)
@@ -274,6 +301,7 @@ void check_files(const MeshBakeRequest& request, std::vector<std::filesystem::pa
     if (request.report.file) files.push_back(*request.report.file);
     check(request.preview, files);
     if (request.preview.file) files.push_back(*request.preview.file);
+    check_write_into(request, files);
     check_error_map_request(request, files);
     require_folder_of(request.output);
     for (const auto& [kind, file] : request.layers.files)
@@ -284,6 +312,7 @@ void check_files(const MeshBakeRequest& request, std::vector<std::filesystem::pa
 
 struct MeshOptions {
     std::vector<std::filesystem::path> files;
+    std::optional<std::string> output;  ///< -o as typed, because a final '/' is significant.
     MeshBakeRequest request;
     GeneralOptions general;
 };
@@ -305,9 +334,125 @@ Findings strict_findings(const MeshBakeRequest& request, const Findings& finding
     return strict;
 }
 
+// Several bakes: models are paired by the names of their files.
+
+/// The placeholder of the name of a pair in output files.
+constexpr std::string_view model_word = "<model>";
+
+struct FilePair {
+    std::string name;  ///< As in the name of the low file.
+    std::vector<std::filesystem::path> high;
+    std::filesystem::path low;
+};
+
+/// Pairs X_low with all X_high. \throws UsageError
+std::vector<FilePair> file_pairs(const std::vector<std::filesystem::path>& files) {
+    std::map<std::string, FilePair> pairs;
+    for (const std::filesystem::path& file : files) {
+        const std::string stem = file.stem().string();
+        const std::optional<std::string> low = pair_name(stem, BakeSide::low);
+        const std::optional<std::string> high = pair_name(stem, BakeSide::high);
+        if (!low && !high) {
+            throw UsageError(file.string() + ": has no pair name",
+                             "name the models X_high and X_low");
+        }
+        FilePair& pair = pairs[low ? *low : *high];
+        if (!low) {
+            pair.high.push_back(file);
+            continue;
+        }
+        if (!pair.low.empty()) {
+            throw UsageError(fmt::format("{} and {}: are both the low model of '{}'",
+                                         pair.low.string(), file.string(), *low));
+        }
+        pair.low = file;
+        pair.name = stem.substr(0, low->size());
+    }
+    std::vector<FilePair> result;
+    for (auto& [name, pair] : pairs) {
+        if (pair.low.empty() || pair.high.empty()) {
+            throw UsageError(
+                fmt::format("'{}': has no {} model", name, pair.low.empty() ? "low" : "high"),
+                "name the models X_high and X_low");
+        }
+        result.push_back(std::move(pair));
+    }
+    if (result.empty()) throw UsageError("IN is missing");
+    return result;
+}
+
+/// The output of -o: in a folder, each map has the name of its pair.
+std::filesystem::path output_pattern(const std::string& output) {
+    if (output.ends_with('/') || std::filesystem::is_directory(output))
+        return std::filesystem::path(output) / fmt::format("{}.png", model_word);
+    return output;
+}
+
+/// The request of one pair, with its name in the names of all files.
+MeshBakeRequest request_of(const MeshOptions& options, const FilePair& pair, bool is_only,
+                           std::vector<std::filesystem::path>& files) {
+    const auto named = [&](const std::filesystem::path& file) {
+        if (!is_only && !names_word(file, model_word)) {
+            throw UsageError(fmt::format("{}: several bakes would write or read it", file.string()),
+                             fmt::format("write {} in its name", model_word));
+        }
+        return with_word(file, model_word, pair.name);
+    };
+    MeshBakeRequest request = options.request;
+    for (auto& [kind, file] : request.layers.files)
+        file = named(file);
+    for (auto* file :
+         {&request.cage, &request.preview.file, &request.write_into.model, &request.error_map}) {
+        if (*file) *file = named(**file);
+    }
+    files = pair.high;
+    files.push_back(pair.low);
+    files.push_back(named(output_pattern(*options.output)));
+    return request;
+}
+
+/// "out/rock.png: 1024 x 1024, 1 map, 3 texels missed, no findings, 2.1 s"
+std::string line_of(const MeshBakeRequest& request, const MeshBake& bake, const Stages& stages) {
+    return fmt::format("{}: {} x {}, {}, {} missed, {}, {}", request.output.string(),
+                       request.size.x, request.size.y, counted(bake.maps.size(), "map"),
+                       counted(bake.all.texels_missed, "texel"), bake.findings.count_text(),
+                       duration(stages.milliseconds()));
+}
+
+/// Bakes one pair after another, because each bake uses all threads.
+ExitCode bake_pairs(const CLI::App& app, const MeshOptions& options) {
+    const std::vector<FilePair> pairs = file_pairs(options.files);
+    if (options.output->ends_with('/')) make_folder(*options.output);
+    std::vector<MeshBakeRequest> requests;
+    Batch batch;
+    check(app, options.request.write_into);
+    for (const FilePair& pair : pairs) {
+        std::vector<std::filesystem::path> files;
+        MeshBakeRequest request = request_of(options, pair, pairs.size() == 1, files);
+        check_request(request, files);
+        check_files(request, files);
+        batch.jobs.push_back({request.low, request.output});
+        requests.push_back(std::move(request));
+    }
+    set_thread_limit(options.general.threads);
+    batch.one_by_one = true;
+    batch.head = {{"tool", "relief-bake mesh"}, {"version", version()}};
+    batch.work = [&](std::size_t index) -> FileOutcome {
+        const MeshBakeRequest& request = requests[index];
+        Stages stages(true);
+        const MeshBake bake = bake_maps(request, stages);
+        return {line_of(request, bake, stages), strict_findings(request, bake.findings),
+                summary_of(request, bake, stages)};
+    };
+    return run_batch(app, batch, options.request.report, options.general);
+}
+
 ExitCode run(const CLI::App& app, MeshOptions& options) {
     MeshBakeRequest& request = options.request;
+    apply_engine(request.map);
+    if (options.output) return bake_pairs(app, options);
     check_request(request, options.files);
+    check(app, request.write_into);
     check_files(request, options.files);
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
@@ -382,10 +527,9 @@ void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
                            "Default: {:g}.",
                            default_angle))
         .group(group);
-    add_choice(app, "--outside", request.bake.map.placement.repeat,
-               Choices<bool>{{"drop", false}, {"repeat", true}},
-               "Texture coordinates outside the unit square: do not bake them (drop), or wrap them "
-               "into the square (repeat). Default: drop.")
+    add_outside_option(app, request.bake.map.placement.repeat,
+                       "Texture coordinates outside the unit square: do not bake them (drop), or "
+                       "wrap them into the square (repeat). Default: drop.")
         .group(group);
 }
 
@@ -528,6 +672,13 @@ Command add_mesh_command(CLI::App& tool) {
               "simple model with texture coordinates, and the map to write (.png .tif .exr). "
               "<material> in the name of OUT writes a map for each material of LOW; <UDIM> writes "
               "a map for each UDIM tile that LOW uses.");
+    add_value(
+        app, "-o,--output", "PATH",
+        "Bake several pairs of models, each X_low from all X_high. PATH is a folder for the "
+        "maps X.png, or a name with <model>, which stands for X in the names of all files. If "
+        "a pair fails, the others are still baked.",
+        [&output = options->output](const std::string&, const std::string& text) { output = text; })
+        .group("Several bakes");
     add_ray_options(app, request);
     add_fit_options(app, request,
                     "If more are missed, the bake fails and writes nothing. If this option is "
@@ -541,16 +692,22 @@ Command add_mesh_command(CLI::App& tool) {
     add_map_output_options(app, request.map);
     add_preview_options(app, request.preview);
     add_accuracy_options(app, request);
+    add_write_into_options(
+        app, request.write_into,
+        "Store the finished maps in a material of this model (.glb .gltf): normals, occlusion and "
+        "colors. If it does not exist, it is made from LOW. It may be LOW itself, whose materials "
+        "all get a map without <material> in its name.");
     add_report_options(
         app, request.report,
         "Exit with 3 if there is a finding. The map is written in any case. Accepted findings: "
         "texels of mirrored triangles; missed texels, with --max-missed; normals behind the "
         "surface, with --max-error.");
     add_general_options(app, options->general);
-    set_common_options(app, {"--cage", "--offset", "--max-distance", "--match", "--size", "--space",
-                             "--samples", "--padding", "--height-map", "--occlusion-map",
-                             "--curvature-map", "--green", "--bits", "--preview", "--report",
-                             "--strict", "--verify", "--max-error", "--threads"});
+    set_common_options(
+        app, {"--cage",          "--offset",  "--max-distance", "--match",      "--size",
+              "--space",         "--samples", "--padding",      "--height-map", "--occlusion-map",
+              "--curvature-map", "--green",   "--bits",         "--preview",    "--report",
+              "--strict",        "--verify",  "--max-error",    "--threads",    "--write-into"});
     set_examples(
         app,
         {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
@@ -559,7 +716,10 @@ Command add_mesh_command(CLI::App& tool) {
          "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 256 --verify",
          "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 128 --max-error 1",
          "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 64 --compare",
-         "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'"});
+         "relief-bake mesh data/urn-high.ply data/urn-low.obj -o out/maps/ --size 64",
+         "relief-bake mesh out/high.obj data/vase.obj 'out/<material>-<UDIM>.png'",
+         "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 64 "
+         "--occlusion-map out/vase-occlusion.png --write-into out/vase-baked.glb"});
     return {&app, [&app, options] { return run(app, *options); }};
 }
 

@@ -14,6 +14,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <sstream>
 #include <type_traits>
@@ -86,6 +87,44 @@ void report_outside(const MapTiles& tiles, const std::string& remedy, Report& re
     }
 }
 
+/// Counts the texels that triangles cover if those outside of the unit square are shifted into it.
+Coverage shifted_coverage(const Mesh& low, std::vector<std::uint32_t> triangles) {
+    constexpr int side = 256;  // A count of texels, not of every triangle, decides.
+    std::ranges::sort(triangles);
+    const CoverageOptions options{.width = side,
+                                  .height = side,
+                                  .repeat = true,
+                                  .touched = false,
+                                  .only = std::move(triangles)};
+    return cover_texels(low.texcoords, low.triangles, options,
+                        [](int, std::span<const CoveredTexel>) {});
+}
+
+/// Advises what to do with triangles outside of the map. `--outside repeat` is meant if they fill
+/// gaps of the map, if they are mirrored copies of its charts, or if most lie in no UDIM tile.
+std::string outside_remedy(const Mesh& low,
+                           const std::optional<std::span<const std::uint32_t>>& triangles,
+                           const MapTiles& tiles) {
+    std::vector<std::uint32_t> outside = tiles.outside;
+    outside.insert(outside.end(), tiles.partly_outside.begin(), tiles.partly_outside.end());
+    if (outside.empty()) return "";
+    std::ranges::sort(outside);
+    const char* const repeat = "; --outside repeat moves it into the map";
+    const MapTiles udims = tiles_of(low.texcoords, low.triangles, outside, udim_tiles);
+    if (2 * (udims.outside.size() + udims.partly_outside.size()) > outside.size()) return repeat;
+    std::vector<std::uint32_t> all, inside;
+    for (std::uint32_t i = 0; i < (triangles ? triangles->size() : low.triangles.size()); ++i)
+        all.push_back(triangles ? (*triangles)[i] : i);
+    std::ranges::set_difference(all, outside, std::back_inserter(inside));
+    const std::size_t covered = shifted_coverage(low, outside).inside;
+    const Coverage before = shifted_coverage(low, std::move(inside));
+    const Coverage after = shifted_coverage(low, std::move(all));
+    const std::size_t overlap = after.shared - before.shared;
+    const std::size_t mirrored = after.mirrored - before.mirrored;
+    if (overlap <= covered / 10 || 2 * mirrored >= overlap) return repeat;
+    return std::string(repeat) + ", and <UDIM> in the map's name gives a map for each tile";
+}
+
 /// Adds the plan of some triangles: one map, or one per tile.
 void add_maps(const MeshBakeRequest& request, const Mesh& low, const MapPlan& plan,
               MapPlans& plans) {
@@ -99,10 +138,10 @@ void add_maps(const MeshBakeRequest& request, const Mesh& low, const MapPlan& pl
                        : std::nullopt;
     MapTiles tiles =
         tiles_of(low.texcoords, low.triangles, triangles, has_tiles ? udim_tiles : TileRange{});
-    report_outside(tiles, has_tiles ? "" : "; <UDIM> in the map's name gives a map for each tile",
-                   plans.report);
+    report_outside(tiles, has_tiles ? "" : outside_remedy(low, triangles, tiles), plans.report);
     if (!has_tiles) {
         plans.maps.push_back(plan);
+        plans.maps.back().is_exceeded = !tiles.outside.empty() || !tiles.partly_outside.empty();
         return;
     }
     for (const std::uint32_t triangle : tiles.not_finite)

@@ -29,6 +29,7 @@ struct MapPlan {
     std::optional<int> udim;
     glm::ivec2 tile{0, 0};
     std::optional<std::vector<std::uint32_t>> triangles;  ///< Absent: all.
+    bool is_exceeded = false;  ///< Some of its triangles lie outside of it, at least partly.
 
     /// "material 'Skin', tile 1001"; empty for a single map.
     [[nodiscard]] std::string name() const;

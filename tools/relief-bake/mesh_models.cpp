@@ -425,7 +425,7 @@ std::vector<std::string> missed_lines(const MeshBakeRequest& request, const Bake
     std::string places;
     for (std::size_t i = 0; i < std::min(max_places, result.first_missed.size()); ++i) {
         const MissedTexel& texel = result.first_missed[i];
-        places += fmt::format("{}({}, {}) at {}", i == 0 ? "" : "; ", texel.x, texel.y,
+        places += fmt::format("{}column {}, row {} at {}", i == 0 ? "" : "; ", texel.x, texel.y,
                               to_text(texel.position + origin));
     }
     if (result.texels_missed > max_places) places += "; ...";

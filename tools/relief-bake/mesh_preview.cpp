@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <numbers>
+#include <optional>
 
 #include "portable_math.h"
 #include "relief/mesh/image.h"
@@ -113,12 +115,80 @@ Scene low_scene(PreviewModels& models, const std::vector<PreviewMap>& maps, Norm
     return scene;
 }
 
+/// The material of a range of triangles; null if it has none.
+const HighMaterial* material_of(const MaterialRange& range, const HighMaterials& materials) {
+    if (range.material && *range.material < materials.materials.size())
+        return &materials.materials[*range.material];
+    return materials.otherwise ? &*materials.otherwise : nullptr;
+}
+
+/// The normal maps of the high models, as materials of a scene.
+class HighNormalMaps {
+  public:
+    explicit HighNormalMaps(Scene& scene) : scene_(scene) {}
+
+    /// Gives a high mesh gray materials with the normal maps that the bake adds to its normals. A
+    /// mesh is drawn with one texture transform, that of its first map; maps with another one are
+    /// left out.
+    void apply(Mesh& mesh, const HighMaterials& materials) {
+        std::optional<GltfTextureTransform> transform;
+        for (MaterialRange& range : mesh.material_ranges) {
+            const HighMaterial* const material = material_of(range, materials);
+            range.material = 0;
+            if (material == nullptr || !material->normal_map || mesh.texcoords.empty()) continue;
+            const SurfaceNormalMap& map = *material->normal_map;
+            if (!transform) transform = map.texture.transform;
+            if (*transform == map.texture.transform) range.material = material_index(map);
+        }
+        if (!transform || *transform == GltfTextureTransform{}) return;
+        for (glm::vec2& texcoord : mesh.texcoords)
+            texcoord = transformed(*transform, texcoord);
+        if (mesh.normals.empty()) return;
+        for (std::size_t v = 0; v < mesh.tangents.size(); ++v)
+            mesh.tangents[v] = transformed(*transform, mesh.tangents[v], mesh.normals[v]);
+    }
+
+  private:
+    std::uint32_t material_index(const SurfaceNormalMap& map) {
+        const auto [known, is_new] =
+            materials_.emplace(&map, static_cast<std::uint32_t>(scene_.materials.size()));
+        if (!is_new) return known->second;
+        const SurfaceTexture& texture = map.texture;
+        const auto [image, is_new_image] =
+            images_.emplace(texture.image.get(), scene_.images.size());
+        if (is_new_image) scene_.images.push_back({"normal map of the high model", *texture.image});
+        Material material = scene_.materials.front();
+        material.normal_map =
+            NormalMap{.texture = {image->second, texture.wrap_u, texture.wrap_v, texture.filter},
+                      .scale = map.scale,
+                      .green = map.green,
+                      .flat = map.flat};
+        scene_.materials.push_back(std::move(material));
+        return known->second;
+    }
+
+    Scene& scene_;
+    std::map<const SurfaceNormalMap*, std::uint32_t> materials_;
+    std::map<const Image*, std::size_t> images_;
+};
+
 Scene high_scene(PreviewModels& models) {
     Scene scene;
     scene.materials.push_back(gray());
     scene.materials[0].double_sided = models.shows_back_faces;
-    for (Mesh& mesh : models.high) {
-        mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
+    HighNormalMaps maps(scene);
+    for (std::size_t i = 0; i < models.high.size(); ++i) {
+        Mesh& mesh = models.high[i];
+        if (mesh.material_ranges.empty()) {
+            mesh.material_ranges = {
+                {0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt}};
+        }
+        if (i < models.high_materials.size()) {
+            maps.apply(mesh, models.high_materials[i]);
+        } else {
+            for (MaterialRange& range : mesh.material_ranges)
+                range.material = 0;
+        }
         add_mesh(scene, std::move(mesh));
     }
     return scene;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mesh_request.h"
+#include "relief/mesh/bake.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/shade/renderer.h"
@@ -37,6 +38,8 @@ struct PreviewReading {
 /// The models in one space. They are moved, because drawing reorders them.
 struct PreviewModels {
     std::vector<Mesh> high;
+    /// One for each high mesh, or empty. Only their normal maps are shown.
+    std::vector<HighMaterials> high_materials{};
     Mesh low;
     /// The axes of an object-space map.
     glm::dmat3 world_from_low{1.0};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "common/material_maps.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bake_check.h"
 #include "relief/mesh/statistics.h"
@@ -87,6 +88,7 @@ struct MeshBakeRequest {
     LayerOptions layers;
     HighTextureOptions textures;
     PreviewOptions preview;
+    WriteIntoOptions write_into;
     ReportOptions report;
     bool verify = false;
     std::optional<std::filesystem::path> error_map;

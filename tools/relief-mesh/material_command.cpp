@@ -2,7 +2,6 @@
 // `relief-mesh material IN OUT --normal MAP ...` stores maps in a material of a glTF file.
 // Tests: tests/tools/material_test.cpp.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <optional>
@@ -13,13 +12,12 @@
 #include "commands.h"
 #include "common/command.h"
 #include "common/file_jobs.h"
+#include "common/material_maps.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
 #include "common/text.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/image_file.h"
-#include "relief/mesh/model.h"
 
 namespace relief::tools {
 namespace {
@@ -43,131 +41,23 @@ struct MaterialCommand {
     GeneralOptions general;
 };
 
-/// A map of the command line.
-struct RequestedMap {
-    GltfTextureSlot slot;
-    std::string name;
-    std::filesystem::path file;
-};
-
-std::vector<RequestedMap> requested_maps(const MaterialCommand& command) {
-    std::vector<RequestedMap> maps;
-    const auto add = [&](GltfTextureSlot slot, const char* name, const OptionalFile& file) {
-        if (file) maps.push_back({slot, name, *file});
+MaterialRequest request_of(const MaterialCommand& command) {
+    MaterialRequest request;
+    request.input = command.input;
+    request.output = command.output;
+    request.embeds = command.embed;
+    request.adds_tangents = !command.no_tangents;
+    request.normal_scale = command.scale;
+    request.materials.push_back({command.material, {}});
+    const auto add = [&](GltfTextureSlot slot, const OptionalFile& file) {
+        if (file) request.materials.front().maps.push_back({slot, *file});
     };
-    add(GltfTextureSlot::base_color, "base color", command.base_color);
-    add(GltfTextureSlot::metallic_roughness, "metallic-roughness", command.metallic_roughness);
-    add(GltfTextureSlot::normal, "normal", command.normal);
-    add(GltfTextureSlot::occlusion, "occlusion", command.occlusion);
-    add(GltfTextureSlot::emissive, "emissive", command.emissive);
-    return maps;
-}
-
-struct MaterialResult {
-    std::string material;
-    bool is_new = false;
-    std::vector<RequestedMap> maps;
-    std::vector<FramedPart> parts;  ///< That got tangents.
-    Findings findings;
-};
-
-/// Returns the index of the material with a name, or of the only one. A model without materials
-/// gets one.
-std::size_t chosen_material(GltfDocument& document, const MaterialCommand& command,
-                            MaterialResult& done) {
-    const std::vector<GltfMaterial> materials = document.view().materials;
-    std::vector<std::string> names;
-    std::vector<std::size_t> fitting;
-    for (std::size_t i = 0; i < materials.size(); ++i) {
-        names.push_back("'" + materials[i].name + "'");
-        if (!command.material || materials[i].name == *command.material) fitting.push_back(i);
-    }
-    if (materials.empty()) {
-        done.material = command.material.value_or("material");
-        done.is_new = true;
-        return document.add_material(done.material);
-    }
-    if (!command.material && fitting.size() > 1) {
-        throw failure(command.input, fmt::format("has {} materials", materials.size()),
-                      fmt::format("choose one with --material: {}", fmt::join(names, ", ")));
-    }
-    if (fitting.empty()) {
-        throw failure(command.input, fmt::format("has no material '{}'", *command.material),
-                      fmt::format("available: {}", fmt::join(names, ", ")));
-    }
-    if (fitting.size() > 1) {
-        throw failure(command.input,
-                      fmt::format("has {} materials '{}'", fitting.size(), *command.material),
-                      "rename them first");
-    }
-    done.material = materials[fitting.front()].name;
-    return fitting.front();
-}
-
-/// Returns whether the images become files beside OUT.
-GltfImageStorage storage_of(const MaterialCommand& command) {
-    const bool is_glb = writable_format(command.output) == ModelFormat::glb;
-    if (command.embed || is_glb) return GltfImageStorage::embedded;
-    return GltfImageStorage::external;
-}
-
-MaterialResult store_maps(const MaterialCommand& command, Stages& stages) {
-    MaterialResult done;
-    Report read_report;
-    Model model = stages.run("read", [&] { return read_model(command.input, read_report); });
-    if (const auto* contents = std::get_if<MeshFile>(&model))
-        model =
-            about(command.input, [&] { return GltfDocument::from_mesh(*contents, read_report); });
-    done.findings.add("", read_report);
-    auto& document = std::get<GltfDocument>(model);
-    Report report;
-    about(command.input, [&] {
-        const std::size_t material = chosen_material(document, command, done);
-        done.maps = requested_maps(command);
-        for (const RequestedMap& map : done.maps) {
-            read_image_info(map.file);  // A damaged image is an error here, not in a renderer.
-            document.set_texture(material, map.slot, map.file, storage_of(command), report);
-        }
-        if (command.scale) document.set_normal_scale(material, *command.scale);
-        if (command.normal && !command.no_tangents)
-            done.parts = stages.run("tangents", [&] { return add_tangents(document, material); });
-    });
-    done.findings.add("", report);
-    for (const FramedPart& part : done.parts)
-        done.findings.add(part.name, part.report);
-    Report write_report;
-    stages.run("write",
-               [&] { write_model(command.output, model, command.input, true, write_report); });
-    done.findings.add("", write_report);
-    return done;
-}
-
-Summary material_summary(const MaterialCommand& command, const MaterialResult& done,
-                         const Stages& stages) {
-    Summary summary;
-    summary.add("material", fmt::format("'{}'{}", done.material, done.is_new ? ", new" : ""),
-                {{"material", done.material}, {"is_new", done.is_new}});
-    std::vector<std::string> lines;
-    Json maps = Json::array();
-    for (const RequestedMap& map : done.maps) {
-        lines.push_back(fmt::format("{}: {}", map.name, map.file.string()));
-        maps.push_back({{"map", map.name}, {"file", map.file.string()}});
-    }
-    summary.add("maps", lines, {{"maps", std::move(maps)}});
-    if (command.normal) {
-        std::size_t with_tangents = 0;
-        for (const FramedPart& part : done.parts)
-            with_tangents += part.tangents == AttributeOutcome::computed ? 1 : 0;
-        summary.add("tangents",
-                    with_tangents == 0 ? "unchanged"
-                                       : fmt::format("mikktspace, added to {}",
-                                                     counted(with_tangents, "primitive")),
-                    {{"primitives_with_new_tangents", with_tangents}});
-    }
-    summary.add_findings(done.findings);
-    summary.add_times(stages);
-    summary.add("wrote", file_and_size(command.output));
-    return summary;
+    add(GltfTextureSlot::base_color, command.base_color);
+    add(GltfTextureSlot::metallic_roughness, command.metallic_roughness);
+    add(GltfTextureSlot::normal, command.normal);
+    add(GltfTextureSlot::occlusion, command.occlusion);
+    add(GltfTextureSlot::emissive, command.emissive);
+    return request;
 }
 
 ExitCode store(const CLI::App& app, const MaterialCommand& command) {
@@ -180,7 +70,8 @@ ExitCode store(const CLI::App& app, const MaterialCommand& command) {
         throw UsageError("--embed and --external contradict each other", "give one of them");
     if (command.external && writable_format(command.output) == ModelFormat::glb)
         throw UsageError("--external: a .glb embeds its images", "write a .gltf");
-    if (requested_maps(command).empty())
+    const MaterialRequest request = request_of(command);
+    if (request.materials.front().maps.empty())
         throw UsageError("no map",
                          "give --normal, --base-color, --metallic-roughness, --occlusion or "
                          "--emissive");
@@ -189,8 +80,11 @@ ExitCode store(const CLI::App& app, const MaterialCommand& command) {
     require_folder_of(command.output);
     set_thread_limit(command.general.threads);
     Stages stages(command.general.quiet);
-    const MaterialResult done = store_maps(command, stages);
-    const Summary summary = material_summary(command, done, stages);
+    const MaterialResult done = store_maps(request, stages);
+    Summary summary = summary_of(done);
+    summary.add_findings(done.findings);
+    summary.add_times(stages);
+    summary.add("wrote", file_and_size(command.output));
     if (!command.general.quiet) summary.print();
     Json report = {{"tool", "relief-mesh " + command_name(app)},
                    {"version", version()},

@@ -36,6 +36,9 @@ struct ProcessRequest {
     double weld_tolerance = 0.0;           ///< For averaged or repaired normals, see frames.h.
     bool ignore_smoothing_groups = false;
     bool repair_normals = false;  ///< Replaces invalid normals among those that are kept.
+    /// A model without texture coordinates is an error if tangents are to be computed. Otherwise it
+    /// gets none, which is a finding.
+    bool requires_tangents = false;
 };
 
 /// The result for a model.
@@ -72,12 +75,19 @@ std::set<int> texcoord_sets(const Model& model) {
     return all;
 }
 
+/// Returns whether a model is a mesh without texture coordinates. Primitives of glTF are checked
+/// one by one.
+bool has_no_texcoords(const Model& model) {
+    const auto* file = std::get_if<MeshFile>(&model);
+    return file != nullptr && file->mesh.texcoords.empty();
+}
+
 /// Checks that some primitive has the texture coordinates for the request. \throws FileError
 void check_texcoords(const ProcessRequest& request, const Model& model) {
     const auto* document = std::get_if<GltfDocument>(&model);
     if (document != nullptr && document->triangle_primitives().empty()) return;
     const std::set<int> sets = texcoord_sets(model);
-    if (sets.empty() && computes_tangents(request.tangents)) {
+    if (sets.empty() && computes_tangents(request.tangents) && request.requires_tangents) {
         throw failure(request.input, "no texture coordinates, so there can be no tangents",
                       "unwrap the model first, or leave --tangents out");
     }
@@ -99,9 +109,15 @@ Processed process(const ProcessRequest& request, Stages& stages) {
         done.decompressed = compression_text(*document, true);
     stages.run("frames", [&] {
         check_texcoords(request, model);
-        done.parts = about(request.input, [&] {
-            return compute_frames(model, frame_options(request), request.uv_set);
-        });
+        FrameOptions options = frame_options(request);
+        Report report;
+        if (has_no_texcoords(model) && computes_tangents(request.tangents)) {
+            options.tangents = TangentMethod::none;
+            report.add("model without texture coordinates", "model", 0, "gets no tangents");
+        }
+        done.findings.add("", report);
+        done.parts =
+            about(request.input, [&] { return compute_frames(model, options, request.uv_set); });
     });
     for (const FramedPart& part : done.parts)
         done.findings.add(part.name, part.report);
@@ -308,13 +324,6 @@ Json head_json(const ProcessRequest& request) {
         {"tool", "relief-mesh process"}, {"version", version()}, {"options", std::move(options)}};
 }
 
-/// Buffers and images beside two .gltf files may have the same name.
-bool may_share_companions(const std::vector<ProcessRequest>& requests) {
-    return std::any_of(requests.begin(), requests.end(), [](const ProcessRequest& request) {
-        return writable_format(request.output) == ModelFormat::gltf;
-    });
-}
-
 FileOutcome outcome_of(const ProcessRequest& request) {
     Stages stages(true);
     const Processed done = process(request, stages);
@@ -332,7 +341,7 @@ ExitCode process_all(const CLI::App& app, const std::vector<ProcessRequest>& req
     for (const ProcessRequest& request : requests)
         batch.jobs.push_back({request.input, request.output});
     batch.work = [&](std::size_t index) { return outcome_of(requests[index]); };
-    batch.one_by_one = may_share_companions(requests);
+    batch.one_by_one = may_share_companions(batch.jobs);
     batch.head = head_json(requests.front());
     return run_batch(app, batch, report, general);
 }
@@ -388,16 +397,25 @@ void check_tangent_options(const ProcessRequest& request) {
                      "give --tangents mikktspace");
 }
 
+/// Refuses --require-tangents if no tangents are computed.
+void check_required_tangents(const ProcessRequest& request) {
+    if (!request.requires_tangents || computes_tangents(request.tangents)) return;
+    throw UsageError("--require-tangents: has no effect without computed tangents",
+                     "give --tangents mikktspace");
+}
+
 /// Returns a request per model. \throws UsageError, FileError
 std::vector<ProcessRequest> requests_of(const ProcessOptions& options, const JobList& list) {
     check_normal_options(options.request);
     check_tangent_options(options.request);
+    check_required_tangents(options.request);
     std::vector<ProcessRequest> requests;
     std::vector<std::filesystem::path> files;
     for (const Job& job : list.jobs) {
         ProcessRequest request = options.request;
         request.input = job.input;
         request.output = job.output;
+        if (list.is_single()) request.requires_tangents = true;
         check_formats(request);
         files.insert(files.end(), {job.input, job.output});
         requests.push_back(std::move(request));
@@ -427,25 +445,6 @@ ExitCode run(const CLI::App& app, const ProcessOptions& options) {
     set_thread_limit(options.general.threads);
     if (!list.is_single()) return process_all(app, requests, options.report, options.general);
     return process_one(app, requests.front(), options);
-}
-
-void add_file_options(CLI::App& app, ProcessOptions& options) {
-    FileWords& words = options.words;
-    add_files(app, "FILE...", words.files,
-              "IN OUT: the model to read (.glb .gltf .obj .ply .stl .off) and the file to write "
-              "(.glb .gltf .obj .ply), which may be IN itself: it is replaced when the new file is "
-              "complete. With -o: any number of models to read. glTF compressed with Draco or "
-              "meshopt is written uncompressed.");
-    add_value(
-        app, "-o,--output", "PATH",
-        "The output: a folder (with / at the end, or existing), or a file for one model. In a "
-        "folder, each model keeps its name. If a model fails, the others are still processed.",
-        [&words](const std::string&, const std::string& text) { words.output = text; })
-        .group("Output");
-    add_choice(app, "--format", options.format, writable_choices(),
-               "The format of the files in an output folder. Default: the format of the input, or "
-               "glb for .stl and .off, which cannot be written.")
-        .group("Output");
 }
 
 void add_normal_options(CLI::App& app, ProcessRequest& request) {
@@ -494,10 +493,15 @@ void add_tangent_options(CLI::App& app, ProcessRequest& request) {
                   request.uv_set = parse_integer(subject, text, 0, max_uv_set);
               })
         .group(group);
+    add_switch(app, "--require-tangents", request.requires_tangents,
+               "Fail for a model without texture coordinates, from which --tangents cannot compute "
+               "any, also among several models. Default: among several models, it gets only "
+               "normals, which is a finding.")
+        .group(group);
 }
 
 void add_options(CLI::App& app, ProcessOptions& options) {
-    add_file_options(app, options);
+    add_model_files(app, options.words, options.format);
     add_normal_options(app, options.request);
     add_tangent_options(app, options.request);
     add_report_options(app, options.report);

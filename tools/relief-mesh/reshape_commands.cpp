@@ -17,6 +17,7 @@
 
 #include "commands.h"
 #include "common/command.h"
+#include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
@@ -75,8 +76,8 @@ Json distance_json(const DistanceStats& stats) {
 namespace {
 
 struct ReshapeRequest {
-    std::filesystem::path input;
-    std::filesystem::path output;
+    FileWords words;
+    std::optional<ModelFormat> format;  ///< Of files in an output folder.
     NormalMode normals = NormalMode::keep;
     ReportOptions report;
     GeneralOptions general;
@@ -99,27 +100,34 @@ struct SurfacePair {
 /// Selects whether the distance between IN and OUT is measured.
 enum class Measuring { off, on };
 
+/// What a command does with each model.
+struct Reshaping {
+    std::string verb;  ///< "decimate", the name of the stage.
+    NormalMode normals = NormalMode::keep;
+    TriangleChange change;
+    Measuring measuring = Measuring::off;
+};
+
 /// Reads, changes and writes a model.
-Reshaped run(const ReshapeRequest& request, const std::string& verb, const TriangleChange& change,
-             Measuring measuring, Stages& stages) {
+Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     Reshaped done;
     Report read_report;
-    Model model = stages.run("read", [&] { return read_model(request.input, read_report); });
+    Model model = stages.run("read", [&] { return read_model(job.input, read_report); });
     done.findings.add("", read_report);
     std::vector<SurfacePair> pairs;
     const TriangleChange kept_change = [&](const Mesh& mesh, std::size_t all, Report& report) {
-        FramedMesh changed = change(mesh, all, report);
-        if (measuring == Measuring::on)
+        FramedMesh changed = reshaping.change(mesh, all, report);
+        if (reshaping.measuring == Measuring::on)
             pairs.push_back({without_attributes(mesh), without_attributes(changed.mesh)});
         return changed;
     };
-    done.changed = stages.run(verb, [&] {
-        return about(request.input,
-                     [&] { return change_triangles(model, request.normals, kept_change); });
+    done.changed = stages.run(reshaping.verb, [&] {
+        return about(job.input,
+                     [&] { return change_triangles(model, reshaping.normals, kept_change); });
     });
     for (const PartReport& part : done.changed.reports)
         done.findings.add(part.part, part.report);
-    if (measuring == Measuring::on)
+    if (reshaping.measuring == Measuring::on)
         done.distance = stages.run("measure", [&] {
             std::vector<SurfaceDistance> distances;
             for (const SurfacePair& pair : pairs) {
@@ -131,8 +139,8 @@ Reshaped run(const ReshapeRequest& request, const std::string& verb, const Trian
         });
     Report write_report;
     stages.run("write", [&] {
-        done.omitted = write_model(request.output, model, request.input, done.changed.has_tangents,
-                                   write_report);
+        done.omitted =
+            write_model(job.output, model, job.input, done.changed.has_tangents, write_report);
     });
     done.findings.add("", write_report);
     return done;
@@ -163,13 +171,12 @@ void add_distance(Summary& summary, const SurfaceDistance& distance, double corn
         {{"max_corner_degrees", corner_angle}});
 }
 
-Summary summary_of(const ReshapeRequest& request, const Reshaped& done, const Stages& stages) {
+Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
     const auto& changed = done.changed;
     Summary summary;
     summary.add(
         "read",
-        fmt::format("{}: {}, {}, {}", request.input.string(),
-                    format_name(readable_format(request.input)),
+        fmt::format("{}: {}, {}, {}", job.input.string(), format_name(readable_format(job.input)),
                     counted(changed.triangles_read, "triangle"),
                     counted(changed.vertices_read, "vertex", "vertices")),
         {{"triangles_read", changed.triangles_read}, {"vertices_read", changed.vertices_read}});
@@ -180,44 +187,87 @@ Summary summary_of(const ReshapeRequest& request, const Reshaped& done, const St
                  {"vertices_written", changed.vertices_written}});
     if (done.distance) add_distance(summary, *done.distance, done.corner_angle);
     summary.add_findings(done.findings);
-    add_omitted(summary, done.omitted, request.output);
+    add_omitted(summary, done.omitted, job.output);
     summary.add_times(stages);
-    summary.add("wrote", file_and_size(request.output));
+    summary.add("wrote", file_and_size(job.output));
     return summary;
 }
 
-/// Adds IN, OUT, --normals, --report, --strict, --threads and --quiet.
+std::string line_of(const Job& job, const Reshaped& done, const Stages& stages) {
+    return fmt::format(
+        "{}: {} -> {}, {}, {}{}, {}", job.output.string(), done.changed.triangles_read,
+        counted(done.changed.triangles_written, "triangle"),
+        counted(done.changed.vertices_written, "vertex", "vertices"), done.findings.count_text(),
+        done.omitted.empty() ? "" : fmt::format(", left out: {}", fmt::join(done.omitted, ", ")),
+        duration(stages.milliseconds()));
+}
+
+/// Adds the files, --normals, --report, --strict, --threads and --quiet.
 void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals) {
-    add_file(app, "IN", request.input, "Model to read: .glb .gltf .obj .ply .stl .off");
-    add_file(app, "OUT", request.output, "Model to write: .glb .gltf .obj .ply. May be IN itself.");
+    add_model_files(app, request.words, request.format);
     add_choice(app, "--normals", request.normals, enum_choices<NormalMode>(), about_normals)
         .group("Frames");
     add_report_options(app, request.report);
     add_general_options(app, request.general);
 }
 
-/// Runs a command: reads, changes and writes the model, and reports.
+/// Checks the files before the first is read. \throws UsageError, FileError
+void check_files(const ReshapeRequest& request, const JobList& list) {
+    std::vector<std::filesystem::path> files;
+    for (const Job& job : list.jobs) {
+        readable_format(job.input);
+        writable_format(job.output);
+        files.insert(files.end(), {job.input, job.output});
+    }
+    if (list.folder) make_folder(*list.folder);
+    check(request.report, files);
+    require_folder_of(list.jobs.front().output);
+}
+
+/// Changes one model, and prints its summary.
+ExitCode reshape_one(const CLI::App& app, const ReshapeRequest& request, const Job& job,
+                     const Reshaping& reshaping, Json head) {
+    Stages stages(request.general.quiet);
+    const Reshaped done = run(job, reshaping, stages);
+    const Summary summary = summary_of(job, done, stages);
+    if (!request.general.quiet) summary.print();
+    head["input"] = job.input.string();
+    head["output"] = job.output.string();
+    head.update(summary.json());
+    return finish(app, request.report, job.input, done.findings, head);
+}
+
+/// Changes several models, and prints a line for each. Distances are measured for the report only.
+ExitCode reshape_all(const CLI::App& app, const ReshapeRequest& request, const JobList& list,
+                     Reshaping reshaping, Json head) {
+    if (!request.report.file) reshaping.measuring = Measuring::off;
+    Batch batch;
+    batch.jobs = list.jobs;
+    batch.one_by_one = may_share_companions(list.jobs);
+    batch.head = std::move(head);
+    batch.work = [&](std::size_t index) -> FileOutcome {
+        const Job& job = list.jobs[index];
+        Stages stages(true);
+        const Reshaped done = run(job, reshaping, stages);
+        return {line_of(job, done, stages), done.findings, summary_of(job, done, stages)};
+    };
+    return run_batch(app, batch, request.report, request.general);
+}
+
+/// Runs a command: reads, changes and writes the models, and reports.
 ///
 /// \param options  the command's options for the report
 /// \throws UsageError, FileError; then no file is written
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const TriangleChange& change,
                  Measuring measuring, const Json& options) {
-    readable_format(request.input);
-    writable_format(request.output);
-    check(request.report, {request.input, request.output});
-    require_folder_of(request.output);
+    const JobList list = model_jobs_of(request.words, request.format);
+    check_files(request, list);
     set_thread_limit(request.general.threads);
-    Stages stages(request.general.quiet);
-    const Reshaped done = run(request, command_name(app), change, measuring, stages);
-    const Summary summary = summary_of(request, done, stages);
-    if (!request.general.quiet) summary.print();
-    Json report = {{"tool", "relief-mesh " + command_name(app)},
-                   {"version", version()},
-                   {"input", request.input.string()},
-                   {"output", request.output.string()},
-                   {"options", options}};
-    report.update(summary.json());
-    return finish(app, request.report, request.input, done.findings, report);
+    const Reshaping reshaping{command_name(app), request.normals, change, measuring};
+    const Json head = {
+        {"tool", "relief-mesh " + command_name(app)}, {"version", version()}, {"options", options}};
+    return list.is_single() ? reshape_one(app, request, list.jobs.front(), reshaping, head)
+                            : reshape_all(app, request, list, reshaping, head);
 }
 
 struct DecimateCommand {
@@ -370,6 +420,7 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
         app, {"relief-mesh decimate data/vase.obj out/vase-1000.glb --triangles 1000",
               "relief-mesh decimate data/vase.obj out/vase-tenth.obj --ratio 0.1 --normals angle",
               "relief-mesh decimate data/vase.obj out/vase-near.glb --max-error 0.01",
+              "relief-mesh decimate data/*.obj -o out/small/ --format glb --ratio 0.5",
               "relief-mesh decimate data/vase.obj out/vase-smooth.glb --ratio 0.2 "
               "--max-normal-error 30 --weights normals=0.1 --keep-seams"});
 }
@@ -401,6 +452,7 @@ void add_subdivide_options(CLI::App& app, SubdivideCommand& command) {
               })
         .group("Shape");
     set_examples(app, {"relief-mesh subdivide data/vase.obj out/vase-fine.glb",
+                       "relief-mesh subdivide data/*.obj -o out/fine/ --format glb",
                        "relief-mesh subdivide data/vase.obj out/vase-finer.ply --levels 2"});
 }
 

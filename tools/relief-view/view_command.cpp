@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "common/command.h"
+#include "common/material_maps.h"
 #include "common/model_file.h"
 #include "common/summary.h"
 #include "effect_options.h"
@@ -267,9 +268,48 @@ void add_save_options(CLI::App& app, ViewOptions& options) {
         .group(group);
     add_path(app, "--save-model", options.save_model,
              "Write the model as .glb or .gltf with the normals and tangents that it is drawn "
-             "with. The materials stay as they are in the model file.")
+             "with. --normal-map and --diffuse-map are stored in all of its materials, which "
+             "otherwise stay as they are in the model file.")
         .group(group);
 }
+
+namespace {
+
+/// The maps of --save-model must be what glTF prescribes.
+void check_saved_maps(const ViewOptions& options) {
+    const std::string option = "--save-model";
+    refuse(options.height_map.has_value(), option, "glTF has no height maps",
+           "convert it with relief-bake bump, or leave --height-map out");
+    for (const auto& file : {options.normal_map, options.diffuse_map}) {
+        if (file) check_image(option, *file);
+    }
+    if (!options.normal_map) return;
+    refuse(options.normal_space && *options.normal_space != NormalSpace::tangent, option,
+           "normals of glTF are in tangent space", "convert the map with relief-bake convert");
+    const auto metadata = read_image_info(*options.normal_map).metadata;
+    const auto stated = metadata.find("relief:green");
+    const bool is_down = options.green ? *options.green == Green::down
+                                       : stated != metadata.end() && stated->second == "down";
+    refuse(is_down, option, "glTF has green up",
+           "convert the map with relief-bake convert --flip green");
+}
+
+/// Stores the maps of the command line in the saved model.
+void save_maps(const ViewOptions& options) {
+    MaterialRequest request;
+    request.input = request.output = *options.save_model;
+    request.all_materials = true;
+    request.normal_scale = options.normal_scale;
+    std::vector<MaterialMap> maps;
+    if (options.normal_map) maps.push_back({GltfTextureSlot::normal, *options.normal_map});
+    if (options.diffuse_map) maps.push_back({GltfTextureSlot::base_color, *options.diffuse_map});
+    if (maps.empty()) return;
+    request.materials.push_back({std::nullopt, std::move(maps)});
+    Stages unused(true);
+    store_maps(request, unused);
+}
+
+}  // namespace
 
 void check_save_options(const ViewOptions& options) {
     const auto check = [&](const std::optional<std::filesystem::path>& file,
@@ -286,6 +326,7 @@ void check_save_options(const ViewOptions& options) {
     const std::string model = extension(options.save_model);
     check(options.save_model, "--save-model", model == ".glb" || model == ".gltf",
           "use .glb or .gltf");
+    if (options.save_model) check_saved_maps(options);
 }
 
 void save_files(const ViewOptions& options, const ComposedScene& composed, Stages& stages) {
@@ -298,8 +339,10 @@ void save_files(const ViewOptions& options, const ComposedScene& composed, Stage
         save_scene(*options.save_scene, {options.model, composed.scene(), composed.camera,
                                          options.size, scene_options(options)});
     });
-    save(options.save_model,
-         [&] { save_model(*options.save_model, options.model, scene_options(options)); });
+    save(options.save_model, [&] {
+        save_model(*options.save_model, options.model, scene_options(options));
+        save_maps(options);
+    });
 }
 
 void save_model(const std::filesystem::path& file, const std::filesystem::path& model,

@@ -63,10 +63,10 @@ struct CheckSums {
     std::array<ErrorAccumulator, bake_stage_count> stages;
     /// The part of each stage in the squared error vector.
     std::array<double, bake_stage_count> squares{};
-    std::size_t missed = 0, frameless = 0, discontinuous = 0;
+    std::size_t missed = 0, frameless = 0, discontinuous = 0, outliers = 0, outliers_at_edges = 0;
     /// Squared angles between codes and normals, in tangent and in object space.
     double tangent_squares = 0.0, object_squares = 0.0;
-    std::vector<WorstTexel> worst;
+    std::vector<WorstTexel> worst, worst_outliers;
     std::vector<KnownTexel> known;
 
     void add(const CheckSums& other);
@@ -259,7 +259,9 @@ class TexelCheck {
         const double in_object = degrees_between(rebaked, made);
         sums.stages[stage(BakeStage::sampling)].add(degrees_between(made, reference));
         sums.stages[stage(BakeStage::quantization)].add(in_map);
-        sums.stages[stage(BakeStage::other)].add(degrees_between(shown, rebaked));
+        const double other = degrees_between(shown, rebaked);
+        sums.stages[stage(BakeStage::other)].add(other);
+        if (other > outlier_degrees) add_outlier(texel, other, sums);
         sums.tangent_squares += in_map * in_map;
         sums.object_squares += in_object * in_object;
         sums.squares[stage(BakeStage::sampling)] += glm::dot(made - reference, whole);
@@ -267,6 +269,40 @@ class TexelCheck {
         sums.squares[stage(BakeStage::other)] += glm::dot(shown - rebaked, whole);
         // Conventions are compared at texels where sampling has no influence.
         keep_known(texel, made, in_object, sums);
+    }
+
+    void add_outlier(std::size_t texel, double degrees, CheckSums& sums) const {
+        ++sums.outliers;
+        if (is_at_edge(texel)) ++sums.outliers_at_edges;
+        keep_worst(sums.worst_outliers, {column(texel), row(texel), degrees, false});
+    }
+
+    /// Returns whether a texel is at most two texels from the border of a chart or of the map, or
+    /// from a texel that is missed or torn. Rows beyond the strip are not known.
+    [[nodiscard]] bool is_at_edge(std::size_t texel) const {
+        constexpr int radius = 2;
+        const int x = column(texel), y = row(texel) - rows_.first;
+        if (x < radius || x + radius >= rows_.width || row(texel) < radius ||
+            row(texel) + radius >= rows_.height)
+            return true;
+        const int rows = static_cast<int>(rows_.owners.size()) / rows_.width;
+        for (int v = std::max(y - radius, 0); v <= std::min(y + radius, rows - 1); ++v) {
+            for (int u = x - radius; u <= x + radius; ++u) {
+                const auto near =
+                    static_cast<std::size_t>(v) * static_cast<std::size_t>(rows_.width) +
+                    static_cast<std::size_t>(u);
+                if (is_edge(near)) return true;
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] bool is_edge(std::size_t texel) const {
+        const CoveredTexel& owner = rows_.owners[texel];
+        if (!owner.is_covered() || !rows_.reference->rows().is_baked(texel)) return true;
+        const MapToMesh to_mesh(baker_, owner);
+        return !to_mesh.is_usable() ||
+               tears(texel, to_mesh, to_mesh.shown(rows_.reference->rows().normal(texel)));
     }
 
     void keep_known(std::size_t texel, const glm::dvec3& reference, double expected,
@@ -375,6 +411,9 @@ void summarize(const CheckSums& sums, BakeCheck& check) {
     check.frameless = sums.frameless;
     check.discontinuous = sums.discontinuous;
     check.worst = sums.worst;
+    check.outliers = sums.outliers;
+    check.outliers_at_edges = sums.outliers_at_edges;
+    check.worst_outliers = sums.worst_outliers;
     double all = 0.0;
     for (const double squares : sums.squares)
         all += squares;
@@ -426,8 +465,12 @@ void CheckSums::add(const CheckSums& other) {
     discontinuous += other.discontinuous;
     tangent_squares += other.tangent_squares;
     object_squares += other.object_squares;
+    outliers += other.outliers;
+    outliers_at_edges += other.outliers_at_edges;
     for (const WorstTexel& texel : other.worst)
         keep_worst(worst, texel);
+    for (const WorstTexel& texel : other.worst_outliers)
+        keep_worst(worst_outliers, texel);
     known.insert(known.end(), other.known.begin(), other.known.end());
 }
 

@@ -236,6 +236,13 @@ TEST(BakeCheck, TheWorstTexelsAreNamed) {
     EXPECT_NEAR(check.worst[0].degrees, 20.0, 0.002);
     EXPECT_EQ(check.worst[1].x, 63);
     EXPECT_NEAR(check.worst[1].degrees, 10.0, 0.002);
+    // One of them is at the border of the map.
+    EXPECT_EQ(check.outliers, 2U);
+    EXPECT_EQ(check.outliers_at_edges, 1U);
+    ASSERT_EQ(check.worst_outliers.size(), 2U);
+    EXPECT_EQ(check.worst_outliers[1].x, 63);
+    EXPECT_EQ(check.worst_outliers[1].y, 3);
+    EXPECT_NEAR(check.worst_outliers[1].degrees, 10.0, 0.002);
     EXPECT_NEAR(check.error.rms, std::sqrt(500.0 / (64 * 200)), 1e-3);
     // Flat texels have an error of half a 16-bit code in x and y. Percentiles are read from bins.
     EXPECT_LT(check.error.p99, 0.0015);

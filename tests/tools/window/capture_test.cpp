@@ -185,5 +185,26 @@ TEST(SavedModel, HasTheFramesThatItIsDrawnWithAndDrawsTheSame) {
     EXPECT_EQ(workplace.run("relief-view data/vase.obj --save-model data/vase.obj").exit_code, 2);
 }
 
+TEST(SavedModel, HasTheMapsThatItIsDrawnWith) {
+    const Workplace workplace;
+    const std::string line = "relief-view data/vase.obj --save-model vase.glb ";
+    const std::string map = "data/scenes/bricks-normal.png";
+    ASSERT_EQ(workplace.run(line + "--normal-map " + map + " --normal-scale 0.5").exit_code, 0);
+    Report report;
+    const GltfView view = GltfDocument::read(workplace / "vase.glb", report).view();
+    ASSERT_TRUE(view.materials.front().normal_texture);
+    EXPECT_EQ(view.materials.front().normal_scale, 0.5F);
+    // Maps that glTF cannot hold are refused, and nothing is written.
+    std::filesystem::remove(workplace / "vase.glb");
+    for (const std::string& words :
+         {"--normal-map " + map + " --green down", "--normal-map " + map + " --normal-space object",
+          std::string("--height-map data/bricks-height.png")}) {
+        const test::ProgramResult refused = workplace.run(line + words);
+        EXPECT_EQ(refused.exit_code, 2) << words;
+        EXPECT_THAT(refused.error, HasSubstr("--save-model: ")) << words;
+    }
+    EXPECT_FALSE(std::filesystem::exists(workplace / "vase.glb"));
+}
+
 }  // namespace
 }  // namespace relief::tools

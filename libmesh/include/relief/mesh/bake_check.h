@@ -155,6 +155,9 @@ struct WorstTexel {
     bool is_discontinuous = false;  ///< The texel belongs to BakeStage::projection.
 };
 
+/// The difference from this bake above which BakeCheck counts a texel as an outlier, in degrees.
+inline constexpr double outlier_degrees = 1.0;
+
 struct BakeCheckOptions {
     BakeMapOptions map;      ///< The options of the bake of the map; the size is that of the image.
     NormalMapFormat format;  ///< The meaning of the codes; the number of bits is that of the image.
@@ -189,6 +192,12 @@ struct BakeCheck {
     std::size_t rays = 0;
     int reference_samples = 0;
     std::vector<WorstTexel> worst;  ///< At most 8, largest error first.
+    /// Texels of BakeStage::other that differ from this bake by more than `outlier_degrees`.
+    std::size_t outliers = 0;
+    /// Those of `outliers` at most two texels from an edge: the border of a chart, or a texel that
+    /// is missed or of BakeStage::projection. Other bakers differ there.
+    std::size_t outliers_at_edges = 0;
+    std::vector<WorstTexel> worst_outliers;  ///< At most 8, by the difference from this bake.
     ConventionFit convention;
 };
 
