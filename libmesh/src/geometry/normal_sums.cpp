@@ -203,8 +203,10 @@ void gather_doubtful(const BlockNormals& normals, std::size_t begin, std::size_t
 /// another contribution are rounded again at the end.
 class EarlyNormals {
   public:
-    EarlyNormals(PartialSums& sums, StridedSpan<glm::vec3> normals)
-        : sums_(sums), normals_(normals) {}
+    /// \param is_only_part  Of several parts, none rounds early: two threads could write one
+    /// normal.
+    EarlyNormals(PartialSums& sums, StridedSpan<glm::vec3> normals, bool is_only_part)
+        : sums_(sums), normals_(normals), is_only_part_(is_only_part) {}
 
     /// \param range  the vertices of a block of triangles, which were added to the sums
     void add(std::span<const glm::uvec3> triangles, const VertexRange& range) {
@@ -215,7 +217,7 @@ class EarlyNormals {
             }
         }
         lowest_ = std::min(lowest_, range.lowest);
-        if (++blocks_ % 16 != 0) return;
+        if (!is_only_part_ || ++blocks_ % 16 != 0) return;
         round_up_to(std::min(lowest_, lowest_before_));
         lowest_before_ = std::exchange(lowest_, std::numeric_limits<std::uint32_t>::max());
     }
@@ -235,6 +237,7 @@ class EarlyNormals {
 
     PartialSums& sums_;
     StridedSpan<glm::vec3> normals_;
+    bool is_only_part_;
     std::size_t end_ = 0;
     std::size_t blocks_ = 0;
     std::uint32_t lowest_ = std::numeric_limits<std::uint32_t>::max();
@@ -598,7 +601,7 @@ NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpa
         jobs.push_back({positions, triangles.subspan(begin, end - begin),
                         static_cast<std::uint32_t>(begin), scale, &result.parts[i],
                         result.ranges.data() + first, &odd[i],
-                        EarlyNormals(result.parts[i], normals)});
+                        EarlyNormals(result.parts[i], normals, parts == 1)});
     }
     parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
