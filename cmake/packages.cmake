@@ -43,7 +43,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librelief-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "relief (= ${version}), libglm-dev, libfmt-dev, libtbb-dev, libopenmesh-dev, libtinyobjloader-dev, \
-libmeshoptimizer-dev, libdraco-dev, libdeflate-dev, libisal-dev, libturbojpeg0-dev, libembree-dev")
+libmeshoptimizer-dev, libdraco-dev, libdeflate-dev, libisal-dev, libturbojpeg0-dev, libzstd-dev, libembree-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
     "surface detail: the C++ libraries
 relief computes vertex normals and MikkTSpace tangents, converts height maps to

@@ -20,6 +20,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/texture_file.h"
 #include "scene/scene_parts.h"
 
 namespace relief {
@@ -32,7 +33,10 @@ struct Decoder {
     const std::string& name;
     ImageUse use;
 
-    Image operator()(const std::filesystem::path& file) const { return read_image(file, use); }
+    Image operator()(const std::filesystem::path& file) const {
+        // Textures of two channels are x and y of normals.
+        return use == ImageUse::data ? read_normal_map_image(file) : read_image(file, use);
+    }
     Image operator()(const std::vector<std::byte>& bytes) const {
         return read_image(std::span(bytes), name, use);
     }

@@ -3,11 +3,11 @@
 /// Reads and writes image files, whole or by rows: PNG, JPEG, TIFF, EXR, HDR and other formats of
 /// OpenImageIO.
 ///
-/// Common PNG and JPEG files are decoded directly. OpenImageIO is in a module that is loaded by the
-/// first image that needs it, because loading it takes 0.2 s and 120 MB. Files are decoded with it
-/// in another process, relief-image-decoder, with limits of memory and time: a file that crashes or
-/// exceeds it gives a FileError. Both are searched in $RELIEF_MODULE_DIR, then in the tree of the
-/// library or the program, wherever it is moved.
+/// Common PNG, JPEG and texture files (texture_file.h) are decoded directly. OpenImageIO is in a
+/// module that is loaded by the first image that needs it, which takes 0.2 s and 120 MB. Files are
+/// decoded with it in another process, relief-image-decoder, with limits of memory and time: a file
+/// that crashes or exceeds it gives a FileError. Both are searched in $RELIEF_MODULE_DIR, then in
+/// the tree of the library or the program, wherever it is moved.
 #pragma once
 
 #include <cstddef>
@@ -52,8 +52,8 @@ struct ImageInfo {
 /// Largest image that is read, in samples. Larger ones are refused before memory is allocated.
 inline constexpr std::size_t max_image_samples = std::size_t{1} << 31;
 
-/// Reads a whole image: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, PNM, DDS, PSD or WebP. The content
-/// decides the format, not the name (except for TGA, which has no signature).
+/// Reads a whole image: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, PNM, DDS, KTX2, PSD or WebP. The
+/// content decides the format, not the name (except for TGA, which has no signature).
 ///
 /// \return 8, 16 or 32 bits as stored. 1, 2 and 4 bits widen to 8, 10 and 12 to 16, palettes to
 /// RGB, transparent colors of PNG to alpha; half becomes float; signed and 32-bit integers become

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads whole image files and PNG's color tags. TIFF, EXR and large PNG files are read by rows, all
-// others from memory: bytes -> container checks -> decoder -> Image. Common PNG and JPEG files have
-// a direct decoder; all others go to the image module. Damaged, truncated, empty and oversized
-// files are FileErrors.
+// others from memory: bytes -> container checks -> decoder -> Image. Common PNG and JPEG files and
+// textures (texture_container.h) have a direct decoder; all others go to the image module. Damaged,
+// truncated, empty and oversized files are FileErrors.
 //
 // JPEG is decoded with libjpeg-turbo, which OpenImageIO uses too, to the same samples. No other
 // file uses libjpeg-turbo.
@@ -24,6 +24,7 @@
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
 #include "io/image/row_codec.h"
+#include "io/image/texture_container.h"
 #include "io/png/png_format.h"
 #include "relief/mesh/report.h"
 
@@ -146,14 +147,28 @@ std::string read_bytes(const std::filesystem::path& file) {
     return read_file(file);
 }
 
+/// Opens KTX2 files, and DDS files whose format is one of TextureFormat.
+std::optional<TextureContainer> open_texture(const ImageContainer& container,
+                                             std::span<const std::byte> bytes,
+                                             const std::filesystem::path& name) {
+    const std::string_view format = container.format;
+    if (format == "ktx2") return open_ktx2(bytes, name);
+    if (format == "dds") return open_dds(bytes, name);
+    return std::nullopt;
+}
+
 Image read_encoded(std::span<const std::byte> bytes, const std::filesystem::path& name) {
     const ImageContainer container = examine_image(bytes, name);
+    if (const auto texture = open_texture(container, bytes, name))
+        return read_largest_level(*texture, bytes, name);
     if (std::optional<Image> image = read_directly(container, name)) return std::move(*image);
     return read_all(*module_rows(container, bytes, name), name);
 }
 
 ImageInfo info_of(std::span<const std::byte> bytes, const std::filesystem::path& name) {
     const ImageContainer container = examine_image(bytes, name);
+    if (const auto texture = open_texture(container, bytes, name))
+        return image_info_of(texture->header);
     if (std::optional<ImageInfo> info = read_info_directly(container)) return std::move(*info);
     return module_rows(container, bytes, name)->info();
 }

@@ -316,6 +316,7 @@ const char* format_by_signature(std::string_view start) {
         {"#?"sv, "hdr"},
         {"BM"sv, "bmp"},
         {"DDS "sv, "dds"},
+        {"\xABKTX 20\xBB\r\n\x1A\n"sv, "ktx2"},
         {"8BPS"sv, "psd"},
     };
     for (const Signature& signature : signatures) {
@@ -335,7 +336,7 @@ ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesy
     if (container.format == nullptr) {
         throw FileError(name,
                         "is no image that relief reads: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, "
-                        "PNM, DDS, PSD or WebP");
+                        "PNM, DDS, KTX2, PSD or WebP");
     }
     const std::string_view format = container.format;
     if (format == "png") strip_png(bytes, name, container);

@@ -24,7 +24,7 @@ namespace relief {
 
 /// An encoded image, ready for the module.
 struct ImageContainer {
-    const char* format = nullptr;     ///< OpenImageIO's name.
+    const char* format = nullptr;     ///< OpenImageIO's name, or "ktx2".
     std::vector<std::byte> stripped;  ///< PNG and JPEG: the bytes to decode instead of the input.
     std::map<std::string, std::string> text;  ///< PNG: tEXt and uncompressed iTXt entries.
 };
@@ -36,7 +36,7 @@ struct ImageContainer {
 ///         announces more samples than the bytes can hold
 ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-/// OpenImageIO's name for the format with these first bytes (16 are enough), or null.
+/// OpenImageIO's name for the format with these first bytes (16 are enough), "ktx2", or null.
 const char* format_by_signature(std::string_view start);
 
 /// Reads bytes of a file from an offset; the range must be inside the file.

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The block decoder against that of OpenGL (Mesa) on random blocks of BC4, BC5 and all modes of
+// BC7.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "gl/api.h"
+#include "gl/resources.h"
+#include "relief/mesh/block_compression.h"
+#include "support/gl_environment.h"
+
+namespace relief::gl {
+namespace {
+
+constexpr int side = 256;              ///< 4096 blocks.
+constexpr GLenum bptc_unorm = 0x8E8C;  // GL_COMPRESSED_RGBA_BPTC_UNORM, of OpenGL 4.2.
+
+/// Random blocks; those of BC7 have all modes equally often.
+std::vector<std::byte> random_blocks(BlockFormat format) {
+    std::vector<std::byte> blocks(block_data_size(format, side, side));
+    std::uint32_t state = 1;
+    for (std::byte& byte : blocks) {
+        state = 1664525U * state + 1013904223U;
+        byte = static_cast<std::byte>(state >> 24U);
+    }
+    for (std::size_t i = 0; format == BlockFormat::bc7 && i < blocks.size(); i += 16) {
+        const unsigned mode = static_cast<unsigned>(i / 16 % 8);
+        const auto kept = std::to_integer<unsigned>(blocks[i]) & (0xFFU << (mode + 1));
+        blocks[i] = static_cast<std::byte>((kept | 1U << mode) & 0xFFU);
+    }
+    return blocks;
+}
+
+/// The index of a texel in a block of one channel.
+unsigned index_of(const std::byte* block, std::size_t texel) {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < 8; ++i)
+        bits |= std::to_integer<std::uint64_t>(block[i]) << (8 * i);
+    return static_cast<unsigned>(bits >> (16 + 3 * texel) & 7U);
+}
+
+class BlockDecoding : public test::GlTest {
+  protected:
+    /// Uploads blocks, and reads the decoded texels back.
+    std::vector<float> decoded_by_gl(const std::vector<std::byte>& blocks, GLenum internal,
+                                     GLenum channels, std::size_t count) const {
+        const Texture texture(api());
+        api()->BindTexture(GL_TEXTURE_2D, texture.name());
+        api()->CompressedTexImage2D(GL_TEXTURE_2D, 0, internal, side, side, 0,
+                                    static_cast<GLsizei>(blocks.size()), blocks.data());
+        std::vector<float> texels(static_cast<std::size_t>(side) * side * count);
+        api()->GetTexImage(GL_TEXTURE_2D, 0, channels, GL_FLOAT, texels.data());
+        EXPECT_EQ(api()->GetError(), static_cast<GLenum>(GL_NO_ERROR));
+        api()->BindTexture(GL_TEXTURE_2D, 0);
+        return texels;
+    }
+
+    [[nodiscard]] bool has_extension(std::string_view wanted) const {
+        GLint count = 0;
+        api()->GetIntegerv(GL_NUM_EXTENSIONS, &count);
+        for (GLint i = 0; i < count; ++i) {
+            const auto* const name = reinterpret_cast<const char*>(
+                api()->GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+            if (wanted == name) return true;
+        }
+        return false;
+    }
+};
+RELIEF_ON_DEFAULT_BACKEND(BlockDecoding);
+
+TEST_P(BlockDecoding, Bc4AndBc5) {
+    struct Case {
+        BlockFormat format;
+        GLenum internal, channels;
+    };
+    for (const Case& each : {Case{BlockFormat::bc4, GL_COMPRESSED_RED_RGTC1, GL_RED},
+                             Case{BlockFormat::bc4_snorm, GL_COMPRESSED_SIGNED_RED_RGTC1, GL_RED},
+                             Case{BlockFormat::bc5, GL_COMPRESSED_RG_RGTC2, GL_RG},
+                             Case{BlockFormat::bc5_snorm, GL_COMPRESSED_SIGNED_RG_RGTC2, GL_RG}}) {
+        const auto blocks = random_blocks(each.format);
+        const auto expected = decoded_by_gl(blocks, each.internal, each.channels,
+                                            static_cast<std::size_t>(channels_of(each.format)));
+        const Image image = decode_blocks(blocks, each.format, side, side);
+        const auto samples = image.as<std::uint16_t>();
+        ASSERT_EQ(samples.size(), expected.size());
+        // The codes themselves are exact. Mesa computes values between them in integers of 8 bits,
+        // by products instead of divisions: within two codes.
+        const double code = is_signed(each.format) ? 1.0 / 127.0 : 1.0 / 255.0;
+        const auto channels = static_cast<std::size_t>(channels_of(each.format));
+        double worst = 0.0;
+        double worst_of_codes = 0.0;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const double value =
+                is_signed(each.format) ? (samples[i] - 32768.0) / 32767.0 : samples[i] / 65535.0;
+            // -128 is another code for -1.
+            const double error = std::abs(value - std::max(-1.0, static_cast<double>(expected[i])));
+            const std::size_t x = i / channels % side;
+            const std::size_t y = i / channels / side;
+            const std::size_t block = (y / 4 * (side / 4) + x / 4) * channels + i % channels;
+            if (index_of(&blocks[8 * block], 4 * (y % 4) + x % 4) < 2)
+                worst_of_codes = std::max(worst_of_codes, error);
+            worst = std::max(worst, error);
+            sum += error;
+        }
+        EXPECT_LT(worst_of_codes, 1e-4) << enum_name(each.format);
+        EXPECT_LT(worst, 2.0 * code) << enum_name(each.format);
+        EXPECT_LT(sum / static_cast<double>(samples.size()), 0.5 * code) << enum_name(each.format);
+    }
+}
+
+TEST_P(BlockDecoding, Bc7) {
+    if (!has_extension("GL_ARB_texture_compression_bptc"))
+        GTEST_SKIP() << "this OpenGL does not decode BC7";
+    const auto blocks = random_blocks(BlockFormat::bc7);
+    const auto expected = decoded_by_gl(blocks, bptc_unorm, GL_RGBA, 4);
+    const Image image = decode_blocks(blocks, BlockFormat::bc7, side, side);
+    const auto samples = image.as<std::uint8_t>();
+    std::array<std::size_t, 8> different{};
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t texel = i / 4;
+        const std::size_t block = texel / side / 4 * (side / 4) + texel % side / 4;
+        const float code = expected[i] * 255.0F;
+        different[block % 8] += std::abs(code - static_cast<float>(samples[i])) > 0.01F ? 1 : 0;
+    }
+    EXPECT_THAT(different, testing::Each(0U)) << "by mode";
+}
+
+}  // namespace
+}  // namespace relief::gl
