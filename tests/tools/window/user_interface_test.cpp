@@ -277,8 +277,8 @@ void Panel::change_lights() {
     window().click_on("Kind: Point");
     window().wait_for("a point light",
                       [](const json& now) { return now["lights"][0]["kind"] == "point"; });
-    const std::uint64_t revision = window().state()["revision"];
-    const auto moves = [&] { return window().state()["revision"] > revision + 12; };
+    const std::uint64_t frames = window().state()["drawn"]["frames"];
+    const auto moves = [&] { return window().state()["drawn"]["frames"] > frames + 4; };
     EXPECT_TRUE(eventually([&] {
         const json slider = window().state()["places"]["Rotation"];
         window().point_at(slider[0].get<int>() + 10, slider[1].get<int>());
