@@ -306,14 +306,16 @@ AttributeWeights weights_of(const std::map<std::string, double>& weights) {
 py::tuple py_decimated(const MeshObject& mesh, std::optional<std::size_t> triangles,
                        std::optional<double> max_error,
                        const std::optional<double>& max_normal_degrees, bool keep_borders,
-                       bool keep_seams, const std::map<std::string, double>& weights,
-                       const std::string& normals, const FindingList& report) {
+                       bool keep_seams, bool keep_positions,
+                       const std::map<std::string, double>& weights, const std::string& normals,
+                       const FindingList& report) {
     DecimateOptions options;
     options.triangles = triangles;
     options.max_error = max_error;
     options.max_normal_error = radians(max_normal_degrees);
     options.keep_borders = keep_borders;
     options.keep_seams = keep_seams;
+    options.fit_positions = !keep_positions;
     options.weights = weights_of(weights);
     options.frames.normals = value_of<NormalMode>(normals, "normals");
     Report findings;
@@ -567,13 +569,14 @@ void add_mesh_functions(py::module_& module) {
     module.def(
         "decimate", &py_decimated, arg("mesh"), py::kw_only(), arg("triangles") = py::none(),
         arg("max_error") = py::none(), arg("max_normal_degrees") = py::none(),
-        arg("keep_borders") = false, arg("keep_seams") = false,
+        arg("keep_borders") = false, arg("keep_seams") = false, arg("keep_positions") = false,
         arg("weights") = std::map<std::string, double>(), arg("normals") = "keep",
         arg("report") = py::none(),
         "Remove vertices by edge collapses until a number of triangles or an error.\n\n"
         "`max_error` is the distance between the surfaces, and `max_normal_degrees` the\n"
         "angle between a changed triangle and the surface. `keep_borders` and `keep_seams`\n"
-        "leave boundaries and seams unchanged. `weights` has any of \"texcoords\",\n"
+        "leave boundaries and seams unchanged. Without `keep_positions`, the vertices that\n"
+        "remain move to where the result fits the mesh best. `weights` has any of \"texcoords\",\n"
         "\"normals\" and \"colors\", as for `relief-mesh decimate --weights`. The result is\n"
         "(mesh, source_vertex).");
     module.def("subdivide", &py_subdivided, arg("mesh"), arg("levels"), py::kw_only(),

@@ -157,6 +157,7 @@ def decimate(
     max_normal_degrees: float | None = None,
     keep_borders: bool = False,
     keep_seams: bool = False,
+    keep_positions: bool = False,
     weights: Mapping[Literal["texcoords", "normals", "colors"], float] = ...,
     normals: NormalMode = "keep",
     report: Report | None = None,

@@ -95,8 +95,10 @@ class MeshTools(CommandLineCase):
         self.run_tool("relief-mesh", "decimate", DATA / "vase.obj", out, "--triangles", "1000")
         coarse, source = relief.decimate(mesh, triangles=1000)
         self.assert_equal_meshes(coarse, relief.read_mesh(out))
-        numpy.testing.assert_array_equal(coarse.positions, mesh.positions[source])
         numpy.testing.assert_array_equal(coarse.texcoords, mesh.texcoords[source])
+        kept, source = relief.decimate(mesh, triangles=1000, keep_positions=True)
+        numpy.testing.assert_array_equal(kept.positions, mesh.positions[source])
+        numpy.testing.assert_array_equal(kept.triangles, coarse.triangles)
         self.run_tool("relief-mesh", "decimate", DATA / "vase.obj", out, "--triangles", "1000", "--max-error", "0.02",
                       "--max-normal-error", "30", "--keep-borders", "--keep-seams", "--weights", "texcoords=2,normals=0.1")
         limited, _ = relief.decimate(mesh, triangles=1000, max_error=0.02, max_normal_degrees=30.0, keep_borders=True,

@@ -52,7 +52,7 @@ void write_sheet(const Workplace& workplace, const std::string& name, int cells)
 std::set<std::tuple<float, float, float>> places_near_the_border(const Mesh& mesh) {
     std::set<std::tuple<float, float, float>> places;
     for (const glm::vec3& p : mesh.positions) {
-        if (std::abs(p.x) < 1e-6F) places.emplace(p.x, p.y, p.z);
+        if (std::abs(p.x) < 0.01F) places.emplace(p.x, p.y, p.z);
     }
     return places;
 }
@@ -108,12 +108,17 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
     EXPECT_EQ(read_document(workplace / "out/a.glb").mesh({0, 0}).triangles.size(), 1000U);
     const json report = json::parse(workplace.read("out/a.json"));
     EXPECT_EQ(report["tool"], "relief-mesh decimate");
-    EXPECT_EQ(report["options"],
-              json({{"triangles", 1000},
-                    {"keep_borders", false},
-                    {"keep_seams", false},
-                    {"weights", {{"texcoords", 1.0}, {"normals", 0.0}, {"colors", 0.01}}},
-                    {"normals", "keep"}}));
+    EXPECT_EQ(report["options"], json({{"triangles", 1000},
+                                       {"keep_borders", false},
+                                       {"keep_seams", false},
+                                       {"keep_positions", false},
+                                       {"weights",
+                                        {{"texcoords", 1.0},
+                                         {"normals", 0.0},
+                                         {"colors", 0.01},
+                                         {"joints", 0.01},
+                                         {"targets", 1.0}}},
+                                       {"normals", "keep"}}));
     EXPECT_EQ(report["triangles_read"], 5760);
     EXPECT_EQ(report["triangles_written"], 1000);
 
@@ -180,8 +185,8 @@ TEST(DecimateCommand, TheDistanceAndTheAngleAreMeasuredInBothDirections) {
     EXPECT_TRUE(report["milliseconds"].contains("measure"));
     // Two triangles leave one side. The distance of the other one grows from 0 at the ridge to its
     // width, which is sqrt(1.25), and its normal differs by 53.13 degrees.
-    ProgramResult result =
-        workplace.run("relief-mesh decimate roof.obj out/b.ply --triangles 2 --report out/b.json");
+    const std::string to_two = "relief-mesh decimate roof.obj --triangles 2 --keep-positions ";
+    ProgramResult result = workplace.run(to_two + "out/b.ply --report out/b.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     report = json::parse(workplace.read("out/b.json"));
     ASSERT_EQ(report["triangles_written"], 2);
@@ -195,7 +200,7 @@ TEST(DecimateCommand, TheDistanceAndTheAngleAreMeasuredInBothDirections) {
     EXPECT_THAT(result.out, HasSubstr("          of OUT from IN: mean "));
     EXPECT_THAT(result.out, HasSubstr("angle     between normals of IN and OUT: mean "));
     // Without a report there is nothing to measure for.
-    result = workplace.run("relief-mesh decimate roof.obj out/c.ply --triangles 2 --quiet");
+    result = workplace.run(to_two + "out/c.ply --quiet");
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(workplace.read("out/b.ply"), workplace.read("out/c.ply"));
 }
@@ -272,10 +277,40 @@ TEST(DecimateCommand, WeightsChangeWhatCounts) {
     };
     const json plain = result("");
     const json shape_only = result("--weights texcoords=0,normals=0");
-    EXPECT_EQ(shape_only["options"]["weights"],
-              json({{"texcoords", 0.0}, {"normals", 0.0}, {"colors", 0.01}}));
+    EXPECT_EQ(shape_only["options"]["weights"], json({{"texcoords", 0.0},
+                                                      {"normals", 0.0},
+                                                      {"colors", 0.01},
+                                                      {"joints", 0.01},
+                                                      {"targets", 1.0}}));
     // Without the texture, only the shape counts, so it is nearer.
     EXPECT_LT(shape_only["distance"]["of_input"]["rms"], plain["distance"]["of_input"]["rms"]);
+}
+
+TEST(DecimateCommand, VerticesMoveToTheSurfaceUnlessTheyAreKept) {
+    const Workplace workplace;
+    const auto result = [&](const std::string& file, const std::string& options) {
+        const ProgramResult run =
+            workplace.run("relief-mesh decimate data/vase.obj " + file +
+                          " --ratio 0.1 --normals angle --report out/low.json" + options);
+        EXPECT_EQ(run.exit_code, 0) << run.error;
+        return json::parse(workplace.read("out/low.json"));
+    };
+    const json moved = result("out/moved.glb", "");
+    const json kept = result("out/kept.glb", " --keep-positions");
+    EXPECT_LT(moved["distance"]["of_input"]["rms"],
+              0.8 * double(kept["distance"]["of_input"]["rms"]));
+    EXPECT_LE(moved["distance"]["of_output"]["max"],
+              1.5 * double(kept["distance"]["of_output"]["max"]));
+    EXPECT_EQ(kept["options"]["keep_positions"], true);
+    const Mesh a = read_document(workplace / "out/moved.glb").mesh({0, 0});
+    const Mesh b = read_document(workplace / "out/kept.glb").mesh({0, 0});
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_EQ(a.texcoords, b.texcoords);
+    EXPECT_NE(a.positions, b.positions);
+    // The bounds in the file are those of the new positions.
+    Report report;
+    GltfDocument::read(workplace / "out/moved.glb", report);
+    EXPECT_TRUE(report.findings().empty());
 }
 
 TEST(DecimateCommand, ARiggedModelKeepsItsRigOnTheVerticesThatStay) {
@@ -380,7 +415,7 @@ TEST(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
          {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights normals", 2,
           "--weights normals: 'normals': not NAME=WEIGHT (for example normals=0.1,colors=0.01)"},
          {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights shine=1", 2,
-          "--weights shine=1: 'shine=1': not one of texcoords, normals, colors"},
+          "--weights shine=1: 'shine=1': not one of texcoords, normals, colors, joints, targets"},
          {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights colors=-1", 2,
           "--weights colors=-1: 'colors=-1': not at least 0"},
          {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights colors=1,colors=2", 2,

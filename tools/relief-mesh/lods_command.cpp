@@ -209,10 +209,11 @@ void LevelMaker::decimate(LodMesh& mesh, double ratio, LevelResult& level) {
     Mesh& surface = surfaces_.emplace_back();
     ChangedModel changed = change_triangles(
         document_, std::array{target}, NormalMode::keep,
-        [&](const Mesh& before, std::size_t, Report& report) {
+        [&](const TriangleInput& before, Report& report) {
             DecimateOptions options;
             options.triangles = static_cast<std::size_t>(std::max(1.0, std::round(wanted)));
-            FramedMesh after = decimated(before, options, report);
+            options.fit_positions = true;
+            FramedMesh after = decimated(before.mesh, options, report, before.deformation);
             surface = without_attributes(after.mesh);
             return after;
         });

@@ -94,7 +94,7 @@ struct Reshaped {
 /// A mesh without attributes, before and after a change.
 struct SurfacePair {
     Mesh before;
-    Mesh after;
+    FramedMesh after;
 };
 
 /// Selects whether the distance between IN and OUT is measured.
@@ -115,10 +115,11 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     Model model = stages.run("read", [&] { return read_model(job.input, read_report); });
     done.findings.add("", read_report);
     std::vector<SurfacePair> pairs;
-    const TriangleChange kept_change = [&](const Mesh& mesh, std::size_t all, Report& report) {
-        FramedMesh changed = reshaping.change(mesh, all, report);
+    const TriangleChange kept_change = [&](const TriangleInput& given, Report& report) {
+        FramedMesh changed = reshaping.change(given, report);
         if (reshaping.measuring == Measuring::on)
-            pairs.push_back({without_attributes(mesh), without_attributes(changed.mesh)});
+            pairs.push_back({without_attributes(given.mesh),
+                             {without_attributes(changed.mesh), changed.source_vertex}});
         return changed;
     };
     done.changed = stages.run(reshaping.verb, [&] {
@@ -131,7 +132,7 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
         done.distance = stages.run("measure", [&] {
             std::vector<SurfaceDistance> distances;
             for (const SurfacePair& pair : pairs) {
-                distances.push_back(surface_distance(pair.before, pair.after));
+                distances.push_back(surface_distance(pair.before, pair.after.mesh));
                 const double angle = max_corner_angle(pair.before, pair.after);
                 done.corner_angle = std::max(done.corner_angle, angle * 180.0 / std::numbers::pi);
             }
@@ -279,6 +280,7 @@ struct DecimateCommand {
     AttributeWeights weights;
     bool keep_borders = false;
     bool keep_seams = false;
+    bool keep_positions = false;
 };
 
 /// The attributes of --weights.
@@ -289,7 +291,9 @@ struct WeightWord {
 
 constexpr std::array weight_words = {WeightWord{"texcoords", &AttributeWeights::texcoord},
                                      WeightWord{"normals", &AttributeWeights::normal},
-                                     WeightWord{"colors", &AttributeWeights::color}};
+                                     WeightWord{"colors", &AttributeWeights::color},
+                                     WeightWord{"joints", &AttributeWeights::joint},
+                                     WeightWord{"targets", &AttributeWeights::target}};
 
 /// Parses "normals=0.1,colors=0.01". Attributes that are not named keep their weight.
 AttributeWeights parse_weights(const std::string& subject, const std::string& text) {
@@ -305,7 +309,7 @@ AttributeWeights parse_weights(const std::string& subject, const std::string& te
             std::find_if(weight_words.begin(), weight_words.end(),
                          [&](const WeightWord& candidate) { return candidate.word == name; });
         if (known == weight_words.end())
-            throw UsageError(here + ": not one of texcoords, normals, colors");
+            throw UsageError(here + ": not one of texcoords, normals, colors, joints, targets");
         if (std::find(given.begin(), given.end(), known->word) != given.end())
             throw UsageError(fmt::format("{}: {} is given twice", subject, name));
         given.push_back(known->word);
@@ -347,6 +351,7 @@ Json options_json(const DecimateCommand& command) {
     if (command.max_normal_error) json["max_normal_error"] = *command.max_normal_error;
     json["keep_borders"] = command.keep_borders;
     json["keep_seams"] = command.keep_seams;
+    json["keep_positions"] = command.keep_positions;
     Json weights = Json::object();
     for (const WeightWord& entry : weight_words)
         weights[std::string(entry.word)] = command.weights.*(entry.weight);
@@ -357,9 +362,10 @@ Json options_json(const DecimateCommand& command) {
 
 ExitCode decimate(const CLI::App& app, const DecimateCommand& command) {
     check_limits(command);
-    const auto change = [&](const Mesh& mesh, std::size_t all_triangles, Report& report) {
+    const auto change = [&](const TriangleInput& input, Report& report) {
         DecimateOptions options;
-        options.triangles = wanted_triangles(command, mesh.triangles.size(), all_triangles);
+        options.triangles =
+            wanted_triangles(command, input.mesh.triangles.size(), input.all_triangles);
         options.max_error = command.max_error;
         options.frames.normals = command.request.normals;
         options.weights = command.weights;
@@ -367,7 +373,8 @@ ExitCode decimate(const CLI::App& app, const DecimateCommand& command) {
             options.max_normal_error = *command.max_normal_error * std::numbers::pi / 180.0;
         options.keep_borders = command.keep_borders;
         options.keep_seams = command.keep_seams;
-        return decimated(mesh, options, report);
+        options.fit_positions = !command.keep_positions;
+        return decimated(input.mesh, options, report, input.deformation);
     };
     const bool reports = !command.request.general.quiet || command.request.report.file;
     return reshape(app, command.request, change, reports ? Measuring::on : Measuring::off,
@@ -405,13 +412,19 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
                "Keep all vertices of boundaries. Default: boundaries are simplified.")
         .group(preserved);
     add_switch(app, "--keep-seams", command.keep_seams,
-               "Keep all vertices of texture seams, hard edges and borders between materials or "
-               "colors. Default: they are simplified.")
+               "Keep all vertices of texture seams, hard edges and borders between materials, "
+               "colors, joints or morph targets. Default: they are simplified.")
+        .group(preserved);
+    add_switch(
+        app, "--keep-positions", command.keep_positions,
+        "Keep the positions of the vertices that remain. Default: they move to where OUT fits "
+        "IN best, which about halves the distance on curved surfaces.")
         .group(preserved);
     add_value(app, "--weights", "NAME=W,...",
               "How much differences of attributes count, each at least 0: texcoords, in lengths on "
-              "the surface (default: 1); normals and colors, as the fraction of the model's size "
-              "that a difference of 1 counts (default: 0 and 0.01).",
+              "the surface (default: 1); normals, colors and joints (the weights of skins), as the "
+              "fraction of the model's size that a difference of 1 counts (default: 0, 0.01 and "
+              "0.01); targets, displacements by morph targets, as lengths (default: 1).",
               [&command](const std::string& subject, const std::string& text) {
                   command.weights = parse_weights(subject, text);
               })
@@ -431,9 +444,10 @@ struct SubdivideCommand {
 };
 
 ExitCode subdivide(const CLI::App& app, const SubdivideCommand& command) {
-    const auto change = [&](const Mesh& mesh, std::size_t, Report& report) {
+    const auto change = [&](const TriangleInput& input, Report& report) {
         return FramedMesh{
-            subdivided(mesh, command.levels, {.normals = command.request.normals}, report), {}};
+            subdivided(input.mesh, command.levels, {.normals = command.request.normals}, report),
+            {}};
     };
     return reshape(app, command.request, change, Measuring::off,
                    {{"levels", command.levels}, {"normals", enum_name(command.request.normals)}});

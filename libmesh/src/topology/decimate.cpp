@@ -25,6 +25,7 @@
 #include "geometry/direction.h"
 #include "geometry/weld.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
 #include "topology/edge_collapse.h"
@@ -33,8 +34,16 @@
 namespace relief {
 namespace {
 
-void check(const Mesh& mesh, const DecimateOptions& options) {
+void check(const Mesh& mesh, const Deformation& deformation, const DecimateOptions& options) {
     validate(mesh);
+    const auto check_count = [&](std::size_t count, const char* values) {
+        if (count == 0 || count == mesh.positions.size()) return;
+        throw InvalidInput(
+            fmt::format("there are {} {}, but {} positions", count, values, mesh.positions.size()));
+    };
+    check_count(deformation.joints.size(), "joint weights");
+    for (const auto& displacements : deformation.displacements)
+        check_count(displacements.size(), "displacements");
     if (!options.triangles && !options.max_error)
         throw InvalidInput("decimation needs a number of triangles or an error to stop at");
     if (options.triangles && *options.triangles == 0)
@@ -44,8 +53,9 @@ void check(const Mesh& mesh, const DecimateOptions& options) {
     if (options.max_normal_error && !(*options.max_normal_error > 0.0))
         throw InvalidInput(fmt::format("an angle of {} between normals is not above 0",
                                        *options.max_normal_error));
+    const AttributeWeights& weights = options.weights;
     for (const double weight :
-         {options.weights.texcoord, options.weights.normal, options.weights.color}) {
+         {weights.texcoord, weights.normal, weights.color, weights.joint, weights.target}) {
         if (!(weight >= 0.0 && std::isfinite(weight)))
             throw InvalidInput(fmt::format("a weight of {} is not 0 or above", weight));
     }
@@ -104,17 +114,27 @@ std::strong_ordering compare(const Vector& a, const Vector& b) {
     return std::strong_ordering::equal;
 }
 
-/// Compares the attributes of two vertices that make seams.
-std::strong_ordering compare_attributes(const Mesh& mesh, bool with_normals, std::uint32_t a,
-                                        std::uint32_t b) {
-    auto order = std::strong_ordering::equal;
-    if (a == b) return order;
-    if (!mesh.texcoords.empty()) order = compare(mesh.texcoords[a], mesh.texcoords[b]);
-    if (order == 0 && !mesh.colors.empty()) order = compare(mesh.colors[a], mesh.colors[b]);
-    if (order == 0 && with_normals && !mesh.normals.empty())
-        order = compare(mesh.normals[a], mesh.normals[b]);
-    return order;
-}
+/// A mesh with the attributes that make seams where they differ.
+struct Surface {
+    const Mesh& mesh;
+    const Deformation& deformation;
+    bool with_normals = false;
+
+    [[nodiscard]] std::strong_ordering compare_attributes(std::uint32_t a, std::uint32_t b) const {
+        auto order = std::strong_ordering::equal;
+        if (a == b) return order;
+        const auto refine = [&](const auto& values) {
+            if (order == 0 && !values.empty()) order = compare(values[a], values[b]);
+        };
+        refine(mesh.texcoords);
+        refine(mesh.colors);
+        if (with_normals) refine(mesh.normals);
+        refine(deformation.joints);
+        for (const auto& displacements : deformation.displacements)
+            refine(displacements);
+        return order;
+    }
+};
 
 /// The corners of a surface that share position, part and attributes. A vertex that several parts
 /// use has a wedge for each.
@@ -134,8 +154,9 @@ struct Wedges {
 };
 
 /// Joins equal wedges at the same position; the one with the lowest index remains.
-Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> classes, const Parts& parts,
-                 bool with_normals) {
+Wedges wedges_of(const Surface& surface, std::span<const std::uint32_t> classes,
+                 const Parts& parts) {
+    const Mesh& mesh = surface.mesh;
     Wedges wedges;
     const std::size_t vertices = mesh.positions.size();
     wedges.vertex.resize(vertices);
@@ -173,7 +194,7 @@ Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> classes, const
         const std::uint32_t vb = wedges.vertex[b];
         if (classes[va] != classes[vb]) return classes[va] <=> classes[vb];
         if (part_at(a) != part_at(b)) return part_at(a) <=> part_at(b);
-        return compare_attributes(mesh, with_normals, va, vb);
+        return surface.compare_attributes(va, vb);
     };
     std::vector<std::uint32_t> sorted;
     for (std::uint32_t w = 0; w < wedges.vertex.size(); ++w) {
@@ -235,8 +256,9 @@ void radix_sort(std::vector<KeyedIndex>& values) {
 }
 
 /// Returns the triangles in an order that depends only on their values.
-std::vector<std::uint32_t> canonical_order(const Mesh& mesh, const UnitSpace& space,
-                                           const Parts& parts, bool with_normals) {
+std::vector<std::uint32_t> canonical_order(const Surface& surface, const UnitSpace& space,
+                                           const Parts& parts) {
+    const Mesh& mesh = surface.mesh;
     std::vector<KeyedIndex> keyed(mesh.triangles.size());
     parallel_for(keyed.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
@@ -254,7 +276,7 @@ std::vector<std::uint32_t> canonical_order(const Mesh& mesh, const UnitSpace& sp
             const std::uint32_t vb = mesh.triangles[b.index][i];
             if (va == vb) continue;
             auto order = compare(mesh.positions[va], mesh.positions[vb]);
-            if (order == 0) order = compare_attributes(mesh, with_normals, va, vb);
+            if (order == 0) order = surface.compare_attributes(va, vb);
             if (order != 0) return order < 0;
         }
         if (parts[a.index] != parts[b.index]) return parts[a.index] < parts[b.index];
@@ -299,21 +321,29 @@ double texture_scale_of(const Mesh& mesh, const CollapseInput& input,
 }
 
 /// Sets the attributes that the error considers, and their weights.
-void set_attributes(CollapseInput& input, const Mesh& mesh, const DecimateOptions& options,
+void set_attributes(CollapseInput& input, const Surface& surface, const AttributeWeights& weights,
                     std::span<const std::uint32_t> vertex_of_wedge) {
-    const AttributeWeights& weights = options.weights;
+    const Mesh& mesh = surface.mesh;
+    const Deformation& deformation = surface.deformation;
     double texture_scale = 0.0;
     if (!mesh.texcoords.empty()) texture_scale = texture_scale_of(mesh, input, vertex_of_wedge);
     input.has_texcoords = texture_scale > 0.0;
-    const bool with_normals =
-        weights.normal > 0.0 && !mesh.normals.empty() && options.frames.normals == NormalMode::keep;
+    const bool with_normals = weights.normal > 0.0 && !mesh.normals.empty() && surface.with_normals;
     const bool with_colors = weights.color > 0.0 && !mesh.colors.empty();
+    const bool with_joints = weights.joint > 0.0 && !deformation.joints.empty();
     const auto add = [&](bool is_used, std::size_t count, double weight) {
         if (is_used) input.attribute_weights.insert(input.attribute_weights.end(), count, weight);
     };
     add(input.has_texcoords, 2, weights.texcoord * weights.texcoord * texture_scale);
     add(with_normals, 3, weights.normal * weights.normal);
     add(with_colors, 4, weights.color * weights.color);
+    add(with_joints, 4, weights.joint * weights.joint);
+    std::vector<std::span<const glm::vec3>> displacements;
+    for (const std::vector<glm::vec3>& values : deformation.displacements) {
+        if (weights.target > 0.0 && !values.empty()) displacements.emplace_back(values);
+    }
+    const double target_weight = weights.target * input.scale;
+    add(true, 3 * displacements.size(), target_weight * target_weight);
     input.attributes.reserve(vertex_of_wedge.size() * input.attribute_weights.size());
     const auto append = [&](const auto& value) {
         for (int i = 0; i < value.length(); ++i)
@@ -323,6 +353,9 @@ void set_attributes(CollapseInput& input, const Mesh& mesh, const DecimateOption
         if (input.has_texcoords) append(mesh.texcoords[vertex]);
         if (with_normals) append(mesh.normals[vertex]);
         if (with_colors) append(mesh.colors[vertex]);
+        if (with_joints) append(deformation.joints[vertex]);
+        for (const std::span<const glm::vec3> values : displacements)
+            append(values[vertex]);
     }
 }
 
@@ -330,6 +363,8 @@ void set_attributes(CollapseInput& input, const Mesh& mesh, const DecimateOption
 struct Remains {
     std::vector<std::uint32_t> sources;  ///< Triangles of the input, ascending.
     std::vector<glm::uvec3> triangles;   ///< Their vertices, of the input.
+    /// New positions of vertices of the input.
+    std::vector<std::pair<std::uint32_t, glm::vec3>> moved;
 
     [[nodiscard]] std::size_t count() const { return triangles.size(); }
 };
@@ -361,6 +396,8 @@ Remains gathered_remains(const Mesh& mesh, const Collapsed& collapsed,
         remains.sources.push_back(source);
         remains.triangles.push_back(triangle);
     }
+    for (const auto& [wedge, position] : collapsed.moved)
+        remains.moved.emplace_back(vertex_of_wedge[wedge], position);
     return remains;
 }
 
@@ -374,17 +411,15 @@ struct Prepared {
 
 /// Arrays are freed as soon as they are not needed, because the memory for the input is the largest
 /// part of that for decimation.
-Prepared prepared(const Mesh& mesh, const DecimateOptions& options, Report& report) {
+Prepared prepared(const Surface& surface, const DecimateOptions& options, Report& report) {
+    const Mesh& mesh = surface.mesh;
     const UnitSpace space = unit_space(mesh);
     const Parts parts = parts_of(mesh);
-    const bool with_normals = options.frames.normals == NormalMode::keep;
     Prepared result;
     CollapseInput& input = result.input;
     std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
-    Wedges wedges = wedges_of(mesh, classes, parts, with_normals);
-    input.topology =
-        topology_of(mesh, classes, report, canonical_order(mesh, space, parts, with_normals));
-    free_memory(classes);
+    Wedges wedges = wedges_of(surface, classes, parts);
+    input.topology = topology_of(mesh, classes, report, canonical_order(surface, space, parts));
     result.sources = std::move(input.topology.source_triangle);
     result.set_aside = std::move(input.topology.set_aside);
     input.center = space.center;
@@ -392,6 +427,18 @@ Prepared prepared(const Mesh& mesh, const DecimateOptions& options, Report& repo
     input.positions.reserve(input.topology.position_vertex.size());
     for (const std::uint32_t vertex : input.topology.position_vertex)
         input.positions.push_back(mesh.positions[vertex]);
+    input.fits_positions = options.fit_positions;
+    if (options.fit_positions && !result.set_aside.empty()) {
+        // Triangles that are set aside keep their vertices.
+        std::vector<bool> is_fixed(mesh.positions.size(), false);
+        for (const std::uint32_t t : result.set_aside) {
+            for (int i = 0; i < 3; ++i)
+                is_fixed[classes[mesh.triangles[t][i]]] = true;
+        }
+        for (const std::uint32_t vertex : input.topology.position_vertex)
+            input.is_fixed.push_back(is_fixed[vertex]);
+    }
+    free_memory(classes);
     free_memory(input.topology.position_vertex);
     input.wedges.reserve(result.sources.size());
     for (const std::uint32_t source : result.sources) {
@@ -403,22 +450,23 @@ Prepared prepared(const Mesh& mesh, const DecimateOptions& options, Report& repo
     input.wedge_count = wedges.vertex.size();
     result.vertex_of_wedge = std::move(wedges.vertex);
     wedges = {};
-    set_attributes(input, mesh, options, result.vertex_of_wedge);
+    set_attributes(input, surface, options.weights, result.vertex_of_wedge);
     input.keeps_borders = options.keep_borders;
     input.keeps_seams = options.keep_seams;
     if (options.triangles)
         input.triangles =
             *options.triangles - std::min(*options.triangles, result.set_aside.size());
     if (options.max_error) input.max_error = *options.max_error * space.scale;
-    if (options.max_normal_error) input.min_normal_cosine = std::cos(*options.max_normal_error);
+    if (options.max_normal_error)
+        input.min_normal_cosine = portable::cos(*options.max_normal_error);
     return result;
 }
 
-Remains remains_of(const Mesh& mesh, const DecimateOptions& options, Report& report) {
-    Prepared surface = prepared(mesh, options, report);
-    const Collapsed collapsed = collapse_edges(std::move(surface.input));
-    return gathered_remains(mesh, collapsed, surface.sources, surface.set_aside,
-                            surface.vertex_of_wedge);
+Remains remains_of(const Surface& surface, const DecimateOptions& options, Report& report) {
+    Prepared input = prepared(surface, options, report);
+    const Collapsed collapsed = collapse_edges(std::move(input.input));
+    return gathered_remains(surface.mesh, collapsed, input.sources, input.set_aside,
+                            input.vertex_of_wedge);
 }
 
 /// Returns the larger of the maximum distances in both directions.
@@ -430,6 +478,8 @@ double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
     before.positions = mesh.positions;
     before.triangles = mesh.triangles;
     after.positions = mesh.positions;
+    for (const auto& [vertex, position] : remains.moved)
+        after.positions[vertex] = position;
     after.triangles = remains.triangles;
     const SurfaceDistance distance = surface_distance(before, after);
     if (const std::size_t omitted = distance.from_a.omitted + distance.from_b.omitted) {
@@ -442,7 +492,8 @@ double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
 /// Decimates until the measured distance reaches `max_error`. The error of a collapse only
 /// estimates that distance, so its limit is adjusted: the result with the fewest triangles within
 /// the distance is returned.
-Remains remains_within(const Mesh& mesh, const DecimateOptions& options, Report& report) {
+Remains remains_within(const Surface& surface, const DecimateOptions& options, Report& report) {
+    const Mesh& mesh = surface.mesh;
     constexpr int max_attempts = 10;
     constexpr double well_used = 0.7;  ///< The part of the distance at which the search ends.
     constexpr double rounding = 2.5e-7;
@@ -455,7 +506,7 @@ Remains remains_within(const Mesh& mesh, const DecimateOptions& options, Report&
     double bad = std::numeric_limits<double>::infinity();
     for (int i = 0; i < max_attempts; ++i) {
         Report found;
-        Remains remains = remains_of(mesh, attempt, found);
+        Remains remains = remains_of(surface, attempt, found);
         const double distance = distance_from(mesh, remains, found);
         const double limit = *attempt.max_error;
         const bool is_within = distance <= allowed;
@@ -477,7 +528,7 @@ Remains remains_within(const Mesh& mesh, const DecimateOptions& options, Report&
     if (!best) {
         // Not even collapses without an error keep the distance.
         attempt.triangles = mesh.triangles.size();
-        best = remains_of(mesh, attempt, best_report);
+        best = remains_of(surface, attempt, best_report);
     }
     report.merge(best_report);
     return *std::move(best);
@@ -528,6 +579,8 @@ FramedMesh gathered(const Mesh& mesh, const Remains& remains, Report& report) {
     }
     FramedMesh result;
     result.mesh = carried(mesh, left);
+    for (const auto& [vertex, position] : remains.moved)
+        result.mesh.positions[place[vertex]] = position;
     result.mesh.tangents.clear();  // The tangents are those of removed triangles.
     result.mesh.material_ranges = std::move(ranges);
     result.mesh.smoothing_groups = std::move(groups);
@@ -556,10 +609,12 @@ FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Repo
 
 }  // namespace
 
-FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& report) {
-    check(mesh, options);
-    const Remains remains = options.max_error ? remains_within(mesh, options, report)
-                                              : remains_of(mesh, options, report);
+FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& report,
+                     const Deformation& deformation) {
+    check(mesh, deformation, options);
+    const Surface surface{mesh, deformation, options.frames.normals == NormalMode::keep};
+    const Remains remains = options.max_error ? remains_within(surface, options, report)
+                                              : remains_of(surface, options, report);
     // One interior move removes two triangles, so the result may be one less than requested.
     if (options.triangles && !options.max_error && remains.count() > *options.triangles) {
         report.add("number of triangles out of reach", "mesh", 0,
@@ -569,12 +624,20 @@ FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& r
     return framed(mesh, gathered(mesh, remains, report), options.frames, report);
 }
 
-double max_corner_angle(const Mesh& original, const Mesh& decimated) {
+double max_corner_angle(const Mesh& original, const FramedMesh& result) {
+    const Mesh& decimated = result.mesh;
     validate(original);
     validate(decimated);
-    std::vector<glm::vec3> positions = original.positions;
-    positions.insert(positions.end(), decimated.positions.begin(), decimated.positions.end());
-    const std::vector<std::uint32_t> classes = weld_positions(positions);
+    if (result.source_vertex.size() != decimated.positions.size()) {
+        throw InvalidInput(fmt::format("there are {} source vertices, but {} positions",
+                                       result.source_vertex.size(), decimated.positions.size()));
+    }
+    for (const std::uint32_t source : result.source_vertex) {
+        if (source < original.positions.size()) continue;
+        throw InvalidInput(fmt::format("source vertex {} is named, but there are only {}", source,
+                                       original.positions.size()));
+    }
+    const std::vector<std::uint32_t> classes = weld_positions(original.positions);
     const auto normal_of = [](const Mesh& mesh, const glm::uvec3& t) {
         const glm::dvec3 a(mesh.positions[t.x]);
         const glm::dvec3 cross =
@@ -590,7 +653,6 @@ double max_corner_angle(const Mesh& original, const Mesh& decimated) {
             at.emplace_back(classes[original.triangles[t][i]], t);
     }
     std::sort(at.begin(), at.end());
-    const std::size_t offset = original.positions.size();
     const double infinite = std::numeric_limits<double>::infinity();
     std::vector<double> largest(decimated.triangles.size(), 0.0);
     parallel_for(largest.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -598,7 +660,8 @@ double max_corner_angle(const Mesh& original, const Mesh& decimated) {
             const glm::dvec3 normal = normal_of(decimated, decimated.triangles[t]);
             if (normal == glm::dvec3(0.0)) continue;
             for (int i = 0; i < 3; ++i) {
-                const std::uint32_t position = classes[offset + decimated.triangles[t][i]];
+                const std::uint32_t position =
+                    classes[result.source_vertex[decimated.triangles[t][i]]];
                 const auto first = std::lower_bound(at.begin(), at.end(), std::pair(position, 0U));
                 double nearest = infinite;
                 std::size_t count = 0;

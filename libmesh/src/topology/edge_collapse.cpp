@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "parallel.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {
@@ -27,12 +28,18 @@ constexpr float no_collapse = std::numeric_limits<float>::infinity();
 /// The maximum rotation of a triangle in one move: about 78 degrees.
 constexpr double min_turn_cosine = 0.2;
 
+/// The same for the adjustment of positions at the end: 45 degrees.
+constexpr double min_fit_cosine = 0.7071067811865476;
+
 /// The weight of the squared length, which prefers short edges if costs are otherwise equal.
 constexpr double length_preference = 1e-7;
 
 /// The part of the possible collapses that a pass executes. Smaller fractions follow the order of
 /// cost more exactly and take more passes.
 constexpr double pass_fraction = 0.25;
+
+/// The number of vertices in a group, neighbors along the curve, that one thread executes.
+constexpr std::size_t group_size = 16384;
 
 /// A candidate whose cost has grown by at most this factor since its pass began is executed.
 constexpr float tolerance = 1.5F;
@@ -183,10 +190,17 @@ class Collapser {
 
     float best_move(std::uint32_t vertex, const Ring& ring, Move& best) const;
     float evaluate(std::uint32_t vertex, std::size_t& examined) const;
-    void collapse(std::uint32_t vertex, const Ring& ring, const Move& move);
+    std::size_t collapse(std::uint32_t vertex, const Ring& ring, const Move& move);
     void remove(Corner first, Corner second);
+    std::size_t collapse_if_cheap(std::uint32_t vertex, const Ring& ring, float limit);
     std::size_t execute(std::span<const std::uint64_t> order, float limit, std::size_t most);
+    void assign_groups();
+    std::size_t execute_groups(std::span<const std::uint64_t> order, float limit);
     void run_pass(double fraction);
+
+    [[nodiscard]] glm::dvec3 fitted_offset(std::uint32_t vertex, const Ring& ring) const;
+    [[nodiscard]] bool may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec3& position);
+    void fit_positions();
 
     CollapseInput input_;
     std::size_t attribute_count_ = 0;
@@ -207,6 +221,10 @@ class Collapser {
     std::size_t sums_per_wedge_ = 0;
 
     std::vector<std::uint32_t> alive_;  ///< The vertices that may move, ascending.
+    // Only if there are at least two groups:
+    std::vector<std::uint32_t> groups_;    ///< By vertex; none for locked ones.
+    std::vector<std::uint8_t> at_border_;  ///< By vertex: a neighbor may be in another group.
+    std::size_t grouped_ = 0;              ///< The number of vertices that may move at the time.
     std::size_t triangles_ = 0;
     std::size_t target_ = 0;
     Collapsed result_;
@@ -650,10 +668,10 @@ void Collapser::remove(Corner first, Corner second) {
     const Corner start = first - first % 3;
     for (Corner corner = start; corner < start + 3; ++corner)
         corners_[corner].vertex = none;
-    --triangles_;
 }
 
-void Collapser::collapse(std::uint32_t vertex, const Ring& ring, const Move& move) {
+/// \return the number of triangles that it removes
+std::size_t Collapser::collapse(std::uint32_t vertex, const Ring& ring, const Move& move) {
     errors_[move.target] += std::max(0.0, own_cost(vertex, move));
     quadrics_[move.target] += quadrics_[vertex];
     if (!areas_.empty()) areas_[move.target] += areas_[vertex];
@@ -695,6 +713,25 @@ void Collapser::collapse(std::uint32_t vertex, const Ring& ring, const Move& mov
     corner_of_[vertex] = no_corner;
     for (std::size_t i = 0; i < ring.spokes; ++i)
         flags_[ring.neighbors[i]] |= is_dirty;
+    return (left != no_side ? 1U : 0U) + (right != no_side ? 1U : 0U);
+}
+
+/// Collapses a vertex if that costs no more than a limit on the current surface: previous collapses
+/// may have changed its ring or the error of the target.
+///
+/// \param ring  that of the vertex; of size 0 if it is too large
+/// \return the number of triangles that were removed
+std::size_t Collapser::collapse_if_cheap(std::uint32_t vertex, const Ring& ring, float limit) {
+    Move move;
+    flags_[vertex] &= static_cast<std::uint8_t>(~is_dirty);
+    costs_[vertex] = ring.size > 0 ? best_move(vertex, ring, move) : no_collapse;
+    if (!(costs_[vertex] <= limit)) return 0;
+    if ((flags_[vertex] & is_careful) == 0 && !is_valid(vertex, ring, move)) {
+        costs_[vertex] = no_collapse;
+        flags_[vertex] |= is_careful | is_dirty;
+        return 0;
+    }
+    return collapse(vertex, ring, move);
 }
 
 /// Executes collapses in the given order (cost in the upper half, vertex in the lower half) if
@@ -707,29 +744,110 @@ std::size_t Collapser::execute(std::span<const std::uint64_t> order, float limit
     for (const std::uint64_t entry : order) {
         if (done == most || triangles_ <= target_) break;
         const auto vertex = static_cast<std::uint32_t>(entry);
-        // Previous collapses may have changed the ring or the error of the target.
-        Move move;
         const bool is_small = find_ring(vertex, ring);
         examined += ring.size;
-        flags_[vertex] &= static_cast<std::uint8_t>(~is_dirty);
-        costs_[vertex] = is_small ? best_move(vertex, ring, move) : no_collapse;
-        if (!(costs_[vertex] <= limit)) continue;
-        if ((flags_[vertex] & is_careful) == 0 && !is_valid(vertex, ring, move)) {
-            costs_[vertex] = no_collapse;
-            flags_[vertex] |= is_careful | is_dirty;
-            continue;
-        }
-        collapse(vertex, ring, move);
+        if (!is_small) ring.size = 0;
+        const std::size_t removed = collapse_if_cheap(vertex, ring, limit);
+        if (removed == 0) continue;
+        triangles_ -= removed;
         ++done;
+        // The rings around now may contain vertices of other groups.
+        for (std::size_t i = 0; !groups_.empty() && i < ring.spokes; ++i)
+            at_border_[ring.neighbors[i]] = 1;
     }
     examined_ += examined;
     return done;
+}
+
+/// Divides the vertices that may move into groups, anew whenever their number has halved.
+void Collapser::assign_groups() {
+    if (alive_.size() < 2 * group_size) {
+        free_memory(groups_);
+        free_memory(at_border_);
+        return;
+    }
+    if (!groups_.empty() && 2 * alive_.size() > grouped_) return;
+    grouped_ = alive_.size();
+    groups_.assign(corner_of_.size(), none);
+    at_border_.assign(corner_of_.size(), 0);
+    for (std::size_t i = 0; i < alive_.size(); ++i)
+        groups_[alive_[i]] = static_cast<std::uint32_t>(i / group_size);
+    parallel_for(corners_.size() / 3, group_size, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t first = 3 * begin; first < 3 * end; first += 3) {
+            if (corners_[first].vertex == none) continue;
+            const std::uint32_t group = groups_[corners_[first].vertex];
+            if (group != none && groups_[corners_[first + 1].vertex] == group &&
+                groups_[corners_[first + 2].vertex] == group)
+                continue;
+            // Other threads may write the same value.
+            for (std::size_t corner = first; corner < first + 3; ++corner)
+                std::atomic_ref(at_border_[corners_[corner].vertex])
+                    .store(1, std::memory_order_relaxed);
+        }
+    });
+}
+
+/// Executes the collapses in the order of the vertices, the groups in parallel.
+///
+/// A collapse reads and writes only the triangles around the vertex and around its neighbors. So a
+/// group executes those whose neighbors have no neighbors in other groups, which collapses within
+/// the group do not change. The others follow afterwards, so the result does not depend on the
+/// number of threads. \return how many there were
+std::size_t Collapser::execute_groups(std::span<const std::uint64_t> order, float limit) {
+    struct Work {
+        std::size_t begin = 0;
+        std::size_t end = 0;
+        std::size_t done = 0;
+        std::size_t removed = 0;
+        std::size_t examined = 0;
+        std::vector<std::uint64_t> left;
+    };
+    std::vector<Work> works;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::uint32_t group = groups_[static_cast<std::uint32_t>(order[i])];
+        if (i == 0 || groups_[static_cast<std::uint32_t>(order[i - 1])] != group)
+            works.emplace_back().begin = i;
+        works.back().end = i + 1;
+    }
+    parallel_for(works.size(), 1, [&](std::size_t first, std::size_t last) {
+        Ring ring;
+        for (std::size_t w = first; w < last; ++w) {
+            Work& work = works[w];
+            for (std::size_t i = work.begin; i < work.end; ++i) {
+                const auto vertex = static_cast<std::uint32_t>(order[i]);
+                bool is_inside = at_border_[vertex] == 0;
+                if (is_inside) {
+                    if (!find_ring(vertex, ring)) ring.size = ring.spokes = 0;
+                    for (std::size_t k = 0; k < ring.spokes; ++k)
+                        is_inside = is_inside && at_border_[ring.neighbors[k]] == 0;
+                    work.examined += ring.size;
+                }
+                if (!is_inside) {
+                    work.left.push_back(order[i]);
+                    continue;
+                }
+                const std::size_t removed = collapse_if_cheap(vertex, ring, limit);
+                work.removed += removed;
+                work.done += removed > 0 ? 1 : 0;
+            }
+        }
+    });
+    std::size_t done = 0;
+    std::vector<std::uint64_t> left;
+    for (const Work& work : works) {
+        done += work.done;
+        triangles_ -= work.removed;
+        examined_ += work.examined;
+        left.insert(left.end(), work.left.begin(), work.left.end());
+    }
+    return done + execute(left, limit, left.size());
 }
 
 /// Computes costs, chooses candidates and executes them.
 void Collapser::run_pass(double fraction) {
     constexpr std::size_t grain = 4096;
     std::erase_if(alive_, [&](std::uint32_t v) { return corner_of_[v] == no_corner; });
+    assign_groups();
     parallel_for(alive_.size(), grain, [&](std::size_t begin, std::size_t end) {
         std::size_t examined = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -762,10 +880,113 @@ void Collapser::run_pass(double fraction) {
         for (const std::uint32_t v : alive_) {
             if (key_of(v) <= bound) order.push_back(key_of(v));
         }
+        result_.collapses += groups_.empty() ? execute(order, tolerance * limit, wanted)
+                                             : execute_groups(order, tolerance * limit);
     } else {
         std::sort(order.begin(), order.end());
+        result_.collapses += execute(order, tolerance * limit, wanted);
     }
-    result_.collapses += execute(order, tolerance * limit, wanted);
+}
+
+/// Returns where a vertex fits the planes and attributes of its quadric best, relative to its
+/// position. Directions that the quadric does not determine are left out.
+///
+/// The minimum is the mean height of the planes above the vertex. On a curved surface, triangles
+/// between such vertices still lie below the surface by about half as much (measured on tori), so
+/// the vertex moves on by that. There, a quarter of the quadric remains at the minimum; at a
+/// corner, which the minimum restores exactly, nothing does.
+glm::dvec3 Collapser::fitted_offset(std::uint32_t vertex, const Ring& ring) const {
+    constexpr double damping = 1e-3;
+    constexpr double beyond = 0.55;
+    constexpr double remainder_of_curvature = 0.25;
+    const Quadric& q = quadrics_[vertex];
+    const glm::dvec3 p = point(vertex);
+    double before = q(p);
+    glm::dvec3 slope(q.xx * p.x + q.xy * p.y + q.xz * p.z + q.linear.x,
+                     q.xy * p.x + q.yy * p.y + q.yz * p.z + q.linear.y,
+                     q.xz * p.x + q.yz * p.y + q.zz * p.z + q.linear.z);
+    std::uint32_t last = none;
+    for (std::size_t i = 0; sums_per_wedge_ > 0 && i < ring.size; ++i) {
+        const std::uint32_t wedge = corners_[ring.corners[i]].wedge;
+        if (wedge == last) continue;
+        last = wedge;
+        // On a closed ring with a line, the first wedge may come again at the end.
+        if (i > 0 && wedge == corners_[ring.corners[0]].wedge) break;
+        const double* sums = &attribute_sums_[wedge * sums_per_wedge_];
+        const std::span<const float> values = attributes(wedge);
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const double* s = sums + 4 * k + 1;
+            const double value = values[k];
+            slope -= value * glm::dvec3(s[0], s[1], s[2]);
+            before += value * (sums[0] * input_.attribute_weights[k] * value -
+                               2.0 * (s[0] * p.x + s[1] * p.y + s[2] * p.z + s[3]));
+        }
+    }
+    const double trace = q.xx + q.yy + q.zz;
+    const double xx = q.xx + damping * trace;
+    const double yy = q.yy + damping * trace;
+    const double zz = q.zz + damping * trace;
+    const glm::dvec3 row_x(xx, q.xy, q.xz);
+    const glm::dvec3 row_y(q.xy, yy, q.yz);
+    const glm::dvec3 row_z(q.xz, q.yz, zz);
+    const glm::dvec3 yz = glm::cross(row_y, row_z);
+    const double determinant = glm::dot(row_x, yz);
+    if (!(determinant > 0.0) || !(before > rounding * trace)) return glm::dvec3(0.0);
+    const glm::dvec3 offset =
+        -(slope.x * yz + slope.y * glm::cross(row_z, row_x) + slope.z * glm::cross(row_x, row_y)) /
+        determinant;
+    const double after = before + glm::dot(slope, offset);
+    const double remainder = std::clamp(after / (remainder_of_curvature * before), 0.0, 1.0);
+    return (1.0 + beyond * remainder) * offset;
+}
+
+/// Returns whether a vertex can be at another position: no triangle turns over or leaves the
+/// normals of the input. The vertex is there afterwards.
+bool Collapser::may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec3& position) {
+    const glm::dvec3 before = point(vertex);
+    input_.positions[vertex] = position;
+    const glm::dvec3 after = point(vertex);
+    for (std::size_t i = 0; i < ring.size; ++i) {
+        const std::uint32_t vb = corners_[next_in_triangle(ring.corners[i])].vertex;
+        const std::uint32_t vc = corners_[previous_in_triangle(ring.corners[i])].vertex;
+        const glm::dvec3 b = point(vb);
+        const glm::dvec3 c = point(vc);
+        const glm::dvec3 cross_before = glm::cross(b - before, c - before);
+        const glm::dvec3 cross_after = glm::cross(b - after, c - after);
+        const double lengths = glm::length(cross_before) * glm::length(cross_after);
+        if (!(glm::dot(cross_before, cross_after) > min_fit_cosine * lengths)) return false;
+        if (input_.min_normal_cosine &&
+            (!has_normal_near(vertex, cross_after) || !has_normal_near(vb, cross_after) ||
+             !has_normal_near(vc, cross_after)))
+            return false;
+    }
+    return true;
+}
+
+/// Moves the remaining vertices to where they fit the input best, one after another. Boundaries
+/// stay in place, because another mesh may meet them.
+void Collapser::fit_positions() {
+    Ring ring;
+    std::vector<bool> has_moved(input_.positions.size(), false);
+    for (const std::uint32_t v : alive_) {
+        if (corner_of_[v] == none || (!input_.is_fixed.empty() && input_.is_fixed[v])) continue;
+        const bool is_small = find_ring(v, ring);
+        examined_ += ring.size;
+        if (!is_small || ring.has_border || !may_move(v, ring)) continue;
+        const glm::dvec3 offset = fitted_offset(v, ring);
+        const glm::vec3 before = input_.positions[v];
+        const glm::vec3 after(input_.center + (point(v) + offset) / input_.scale);
+        if (after == before || !is_finite(after)) continue;
+        if (may_be_at(v, ring, after)) {
+            has_moved[v] = true;
+        } else {
+            input_.positions[v] = before;
+        }
+    }
+    for (const CornerData& corner : corners_) {
+        if (corner.vertex != none && has_moved[corner.vertex])
+            result_.moved.emplace_back(corner.wedge, input_.positions[corner.vertex]);
+    }
 }
 
 Collapsed Collapser::run() {
@@ -789,6 +1010,7 @@ Collapsed Collapser::run() {
             costs_[v] = no_collapse;
         }
     }
+    if (input_.fits_positions && !quadrics_.empty()) fit_positions();
     result_.triangles = triangles_;
     result_.examined = examined_;
     result_.remaining.reserve(triangles_);

@@ -4,11 +4,13 @@
 ///
 /// The error is a quadric of distance and attributes ([Garland and Heckbert 1997], [Hoppe 1999]),
 /// in squared units of length weighted by area. A collapse moves a vertex onto a neighbor, so the
-/// result uses a subset of the vertices with all their attributes.
+/// result uses a subset of the vertices with all their attributes. On request, the vertices that
+/// remain move at the end: to the minimum of their quadrics, and beyond it on curved surfaces.
 ///
 /// The work is done in passes. A pass computes the cheapest collapse of each vertex whose cost is
 /// unknown (in parallel), takes the cheapest fraction of them as candidates, and executes these on
-/// the current surface (serially), in the order of the vertices or, in the last pass, of cost. Each
+/// the current surface, in the order of the vertices or, in the last pass, of cost. Groups of
+/// neighboring vertices are executed in parallel, then the collapses at their borders. Each
 /// collapse examines at most `max_valence` triangles around each of a few vertices, so the time is
 /// linear for all shapes.
 #pragma once
@@ -17,6 +19,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "topology/topology.h"
@@ -29,8 +32,8 @@ void free_memory(std::vector<T>& values) {
     std::vector<T>().swap(values);
 }
 
-/// The maximum number of attributes of a wedge: texture coordinates, normal and color.
-constexpr std::size_t max_attributes = 9;
+/// The maximum number of attributes of a wedge: texture coordinates, normal, color and deformation.
+constexpr std::size_t max_attributes = 22;
 
 /// The input of collapse_edges(), which consumes it.
 struct CollapseInput {
@@ -48,8 +51,10 @@ struct CollapseInput {
     /// By attribute: the squared length for which a squared difference of 1 counts.
     std::vector<double> attribute_weights;
     bool has_texcoords = false;
-    bool keeps_borders = false;  ///< Vertices at a boundary do not move.
-    bool keeps_seams = false;    ///< Vertices at a seam or at the border of a part do not move.
+    bool keeps_borders = false;   ///< Vertices at a boundary do not move.
+    bool keeps_seams = false;     ///< Vertices at a seam or at the border of a part do not move.
+    bool fits_positions = false;  ///< Remaining vertices move to where they fit the input best.
+    std::vector<bool> is_fixed;   ///< By vertex: does not move then. Empty: none.
     std::optional<std::size_t> triangles;  ///< The number of triangles to stop at.
     /// The maximum error of a collapse: the root of its cost divided by the area, in the unit of
     /// the points.
@@ -64,7 +69,9 @@ struct Collapsed {
     std::vector<std::uint32_t>
         remaining;                   ///< The triangles of the topology that remain, ascending.
     std::vector<glm::uvec3> wedges;  ///< The wedges at the corners of each of these.
-    std::size_t triangles = 0;       ///< Their number.
+    /// New positions of wedges; those at one vertex have the same.
+    std::vector<std::pair<std::uint32_t, glm::vec3>> moved;
+    std::size_t triangles = 0;  ///< Their number.
     std::size_t collapses = 0;
     std::size_t passes = 0;
     /// The number of triangles that were examined, a measure of the work.

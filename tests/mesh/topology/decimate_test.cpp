@@ -649,8 +649,8 @@ TEST(Decimate, AMaximumAngleOfNormalsHoldsAtHardEdgesAndDoesNotKeepFlatFaces) {
         options.triangles = 12;
         options.max_normal_error = angle;
         Report report;
-        const Mesh small = decimated(cube, options, report).mesh;
-        EXPECT_EQ(small.triangles.size(), 12U) << angle;
+        const FramedMesh small = decimated(cube, options, report);
+        EXPECT_EQ(small.mesh.triangles.size(), 12U) << angle;
         EXPECT_NEAR(max_corner_angle(cube, small), 0.0, 1e-6) << angle;
     }
     const Mesh torus = make_torus(0.4F, 64, 32);
@@ -661,14 +661,16 @@ TEST(Decimate, AMaximumAngleOfNormalsHoldsAtHardEdgesAndDoesNotKeepFlatFaces) {
         options.frames.normals = NormalWeight::angle;
         options.max_normal_error = angle;
         Report report;
-        const Mesh small = decimated(torus, options, report).mesh;
-        const double measured = max_corner_angle(torus, small);
-        EXPECT_LE(measured, angle * (1.0 + 1e-6));
-        EXPECT_GT(measured, 0.6 * angle) << "the limit is made use of";
-        EXPECT_GT(small.triangles.size(), more);
-        more = small.triangles.size();
+        for (const bool fits : {true, false}) {
+            options.fit_positions = fits;
+            const FramedMesh small = decimated(torus, options, report);
+            const double measured = max_corner_angle(torus, small);
+            EXPECT_LE(measured, angle * (1.0 + 1e-6));
+            EXPECT_GT(measured, 0.6 * angle) << "the limit is made use of";
+            EXPECT_GT(small.mesh.triangles.size(), fits ? more : more - 1);
+            more = small.mesh.triangles.size();
+        }
     }
-    EXPECT_EQ(max_corner_angle(torus, torus), 0.0);
 }
 
 TEST(Decimate, KeptBordersAndSeamsDoNotChange) {
@@ -715,6 +717,195 @@ TEST(Decimate, PaintedColorsOnAPlaneCount) {
     options.weights.color = 0.0;
     options.triangles = 2;
     EXPECT_EQ(decimated(grid, options, report).mesh.triangles.size(), 2U);
+}
+
+/// Returns the largest difference between a value of the vertices, interpolated at the centers of
+/// the triangles, and its formula.
+template <typename Formula>
+double worst_at_centers(const FramedMesh& small, const std::vector<double>& values,
+                        const Formula& formula) {
+    double worst = 0.0;
+    for (const glm::uvec3& t : small.mesh.triangles) {
+        glm::dvec3 center(0.0);
+        double value = 0.0;
+        for (int i = 0; i < 3; ++i) {
+            center += glm::dvec3(small.mesh.positions[t[i]]) / 3.0;
+            value += values[small.source_vertex[t[i]]] / 3.0;
+        }
+        worst = std::max(worst, std::abs(value - formula(center.x)));
+    }
+    return worst;
+}
+
+TEST(Decimate, JointWeightsAndDisplacementsOnAPlaneCount) {
+    // A plane that bends at x = 0.5, by a joint or by a morph target.
+    const Mesh grid = test::grid(32);
+    const auto bent = [](double x) { return std::clamp(8.0 * (x - 0.5), 0.0, 1.0); };
+    std::vector<double> values;
+    Deformation joints;
+    Deformation target;
+    for (const glm::vec3& p : grid.positions) {
+        const auto value = static_cast<float>(bent(double(p.x)));
+        values.push_back(double(value));
+        joints.joints.emplace_back(value, -value, 0.0F, 0.0F);
+        target.displacements[1].emplace_back(0.0F, 0.0F, 0.2F * value);
+    }
+    DecimateOptions options;
+    options.triangles = 12;
+    options.weights.joint = 0.1;
+    Report report;
+    for (const Deformation* deformation : {&joints, &target}) {
+        const FramedMesh small = decimated(grid, options, report, *deformation);
+        EXPECT_EQ(small.mesh.triangles.size(), 12U);
+        EXPECT_LT(worst_at_centers(small, values, bent), 0.05);
+    }
+    EXPECT_GT(worst_at_centers(decimated(grid, options, report), values, bent), 0.2);
+    options.weights.joint = 0.0;
+    EXPECT_GT(worst_at_centers(decimated(grid, options, report, joints), values, bent), 0.2);
+    options.weights.target = 0.0;
+    EXPECT_GT(worst_at_centers(decimated(grid, options, report, target), values, bent), 0.2);
+    target.displacements[1].pop_back();
+    EXPECT_EQ(message_of<InvalidInput>([&] { decimated(grid, options, report, target); }),
+              "there are 1088 displacements, but 1089 positions");
+}
+
+TEST(Decimate, LinearJointWeightsCostNothing) {
+    Mesh grid = test::grid(32);
+    Deformation deformation;
+    for (const glm::vec3& p : grid.positions)
+        deformation.joints.emplace_back(p.x, 1.0F - p.x, 0.0F, p.y);
+    DecimateOptions options;
+    options.max_error = 1e-6;
+    Report report;
+    EXPECT_EQ(decimated(grid, options, report, deformation).mesh.triangles.size(), 2U);
+}
+
+TEST(Decimate, PartsThatTouchAtRestStayApart) {
+    // Lips: two grids with common positions at x = 1 that move apart, by a morph target or because
+    // they belong to different joints. Nothing else differs between the vertices there.
+    const Mesh grid = test::grid(8);
+    Mesh lips;
+    const auto count = static_cast<std::uint32_t>(grid.positions.size());
+    for (const float shift : {0.0F, 1.0F}) {
+        const auto first = static_cast<std::uint32_t>(lips.positions.size());
+        for (const glm::vec3& p : grid.positions)
+            lips.positions.push_back(p + glm::vec3(shift, 0.0F, 0.0F));
+        for (const glm::uvec3& t : grid.triangles)
+            lips.triangles.push_back(t + first);
+    }
+    Deformation by_target;
+    Deformation by_joint;
+    for (std::uint32_t v = 0; v < 2 * count; ++v) {
+        const float side = v < count ? 1.0F : -1.0F;
+        by_target.displacements[0].emplace_back(0.0F, 0.0F, side);
+        by_joint.joints.emplace_back(side, 0.0F, 0.0F, 0.0F);
+    }
+    DecimateOptions options;
+    options.triangles = 4;
+    Report report;
+    for (const Deformation* deformation : {&by_target, &by_joint}) {
+        const FramedMesh small = decimated(lips, options, report, *deformation);
+        EXPECT_EQ(small.mesh.triangles.size(), 4U);
+        EXPECT_EQ(small.mesh.positions.size(), 8U);
+        for (const glm::uvec3& t : small.mesh.triangles) {
+            const bool is_left = small.source_vertex[t.x] < count;
+            EXPECT_EQ(small.source_vertex[t.y] < count, is_left);
+            EXPECT_EQ(small.source_vertex[t.z] < count, is_left);
+        }
+    }
+    options.triangles = 2;
+    EXPECT_EQ(decimated(lips, options, report).mesh.triangles.size(), 2U) << "one sheet at rest";
+}
+
+/// Returns the RMS distance of the triangles of a mesh from the torus of radii 1 and 0.4 about y.
+double distance_from_torus(const Mesh& mesh) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for_each_sample(mesh, [&](const glm::dvec3& p, const glm::dvec2&) {
+        const double ring = std::hypot(p.x, p.z) - 1.0;
+        const double distance = std::hypot(ring, p.y) - 0.4;
+        sum += distance * distance;
+        ++count;
+    });
+    return std::sqrt(sum / static_cast<double>(count));
+}
+
+TEST(DecimateFit, HalvesTheDistanceOnCurvedSurfacesAndKeepsTheRest) {
+    const Mesh torus = make_torus(0.4F, 128, 64);
+    DecimateOptions options;
+    options.triangles = 800;
+    Report report;
+    const FramedMesh subset = decimated(torus, options, report);
+    options.fit_positions = true;
+    const FramedMesh fitted = decimated(torus, options, report);
+    EXPECT_LT(distance_from_torus(fitted.mesh), 0.5 * distance_from_torus(subset.mesh));
+    EXPECT_EQ(fitted.mesh.triangles, subset.mesh.triangles);
+    EXPECT_EQ(fitted.mesh.texcoords, subset.mesh.texcoords);
+    EXPECT_EQ(fitted.mesh.normals, subset.mesh.normals);
+    EXPECT_EQ(fitted.source_vertex, subset.source_vertex);
+    EXPECT_EQ(boundary_edges(fitted.mesh), 0U) << "vertices at one position move together";
+    for (std::size_t v = 0; v < fitted.mesh.positions.size(); ++v)
+        EXPECT_LT(glm::length(fitted.mesh.positions[v] - subset.mesh.positions[v]), 0.02F);
+}
+
+TEST(DecimateFit, FlatFacesEdgesAndCornersDoNotMove) {
+    DecimateOptions options;
+    options.triangles = 24;
+    options.fit_positions = true;
+    Report report;
+    for (const Mesh& mesh : {test::grid(12), test::cube()}) {
+        const FramedMesh small = decimated(mesh, options, report);
+        for (std::size_t v = 0; v < small.mesh.positions.size(); ++v) {
+            EXPECT_LT(glm::length(small.mesh.positions[v] - mesh.positions[small.source_vertex[v]]),
+                      1e-6F);
+        }
+    }
+}
+
+TEST(DecimateFit, KeptBordersAndTrianglesSetAsideDoNotMove) {
+    Mesh hill = test::grid(24);
+    for (glm::vec3& p : hill.positions)
+        p.z = 0.5F * p.x * p.x - 0.3F * p.y * p.y;
+    hill.normals.clear();
+    // A triangle with a corner that is not finite, at a vertex inside.
+    const std::uint32_t inside = 12 * 25 + 12;
+    hill.positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
+    hill.texcoords.emplace_back(0.0F);
+    hill.tangents.clear();
+    hill.material_ranges.clear();
+    hill.triangles.emplace_back(inside, inside + 1, hill.positions.size() - 1);
+    DecimateOptions options;
+    options.triangles = 150;
+    options.fit_positions = true;
+    options.keep_borders = true;
+    Report report;
+    const FramedMesh small = decimated(hill, options, report);
+    std::size_t moved = 0;
+    for (std::size_t v = 0; v < small.mesh.positions.size(); ++v) {
+        const std::uint32_t source = small.source_vertex[v];
+        const glm::vec3 before = hill.positions[source];
+        if (small.mesh.positions[v] == before) continue;
+        moved += std::isnan(before.x) ? 0 : 1;
+        EXPECT_FALSE(source == inside || source == inside + 1);
+        if (std::isnan(before.x)) continue;
+        EXPECT_TRUE(before.x > 0.0F && before.x < 1.0F && before.y > 0.0F && before.y < 1.0F);
+    }
+    EXPECT_GT(moved, 10U);
+}
+
+TEST(DecimateFit, NeitherTheOrderOfTrianglesNorTheThreadsMatter) {
+    Mesh sphere = test::sphere(64, 32);
+    DecimateOptions options;
+    options.triangles = 300;
+    options.fit_positions = true;
+    const auto expected = triangle_positions(decimated(sphere, options).mesh);
+    std::mt19937 random(6);
+    for (const int threads : {1, 2}) {
+        std::shuffle(sphere.triangles.begin(), sphere.triangles.end(), random);
+        set_thread_limit(threads);
+        EXPECT_EQ(triangle_positions(decimated(sphere, options).mesh), expected);
+    }
+    set_thread_limit(0);
 }
 
 }  // namespace

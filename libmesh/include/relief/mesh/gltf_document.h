@@ -29,6 +29,8 @@
 
 namespace RELIEF_API relief {
 
+struct Deformation;  // deformation.h
+
 /// One primitive of one mesh of a document.
 struct GltfPrimitiveId {
     std::size_t mesh = 0;
@@ -324,6 +326,11 @@ class GltfDocument {
     /// \throws InvalidInput if an attribute has the wrong type, or as mesh()
     [[nodiscard]] GltfDeformation deformation(GltfPrimitiveId id) const;
 
+    /// Returns how the vertices of mesh(id) move with joints and morph targets. Attributes of other
+    /// types than glTF allows count as absent.
+    /// \throws InvalidInput as mesh() does
+    [[nodiscard]] Deformation deformation_sums(GltfPrimitiveId id) const;
+
     /// Returns the texture coordinate sets of a primitive, ascending.
     [[nodiscard]] std::vector<int> texcoord_sets(GltfPrimitiveId id) const;
 
@@ -337,12 +344,12 @@ class GltfDocument {
     /// \throws InvalidInput if there is no such primitive
     [[nodiscard]] GltfTangentTexcoords tangent_texcoords(GltfPrimitiveId id) const;
 
-    /// Replaces NORMAL and TANGENT of a primitive by those of `framed`, the result of with_frames()
-    /// or decimated() for mesh(id). If vertices were split or removed, indices are rewritten, and
-    /// all other attributes and morph targets follow, in their own types. Unchanged attributes keep
-    /// their bytes. Primitives that shared the replaced data keep it, and share the new data if it
-    /// is equal. Without normals or tangents in `framed`, the primitive and its morph targets lose
-    /// them.
+    /// Replaces NORMAL, TANGENT and POSITION of a primitive by those of `framed`, the result of
+    /// with_frames() or decimated() for mesh(id). If vertices were split or removed, indices are
+    /// rewritten, and all other attributes and morph targets follow, in their own types. Unchanged
+    /// attributes keep their bytes. Primitives that shared the replaced data keep it, and share the
+    /// new data if it is equal. Without normals or tangents in `framed`, the primitive and its
+    /// morph targets lose them.
     /// \throws InvalidInput if `framed` does not belong to this primitive
     void set_frames(GltfPrimitiveId id, const FramedMesh& framed);
 

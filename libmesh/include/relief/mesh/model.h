@@ -17,6 +17,7 @@
 
 #include "relief/export.h"
 #include "relief/mesh/compare.h"
+#include "relief/mesh/deformation.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh_file.h"
@@ -69,10 +70,16 @@ std::vector<FramedPart> compute_frames(Model& model, FrameOptions options,
 /// \return the changed primitives
 std::vector<FramedPart> add_tangents(GltfDocument& document, std::size_t material);
 
+/// A mesh whose triangles are to be changed.
+struct TriangleInput {
+    const Mesh& mesh;
+    const Deformation& deformation;  ///< Of a glTF mesh.
+    std::size_t all_triangles = 0;   ///< Of the whole model.
+};
+
 /// Returns a mesh with other triangles. `source_vertex` of the result is empty if its vertices are
-/// not copies of the given ones. `all_triangles` is the number of triangles of the whole model.
-using TriangleChange =
-    std::function<FramedMesh(const Mesh& mesh, std::size_t all_triangles, Report& report)>;
+/// not copies of the given ones.
+using TriangleChange = std::function<FramedMesh(const TriangleInput& input, Report& report)>;
 
 /// A report on a part of a model.
 struct PartReport {

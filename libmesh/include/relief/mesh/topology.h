@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "relief/export.h"
+#include "relief/mesh/deformation.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
@@ -26,6 +27,8 @@ struct AttributeWeights {
     /// counts. Only kept normals count.
     double normal = 0.0;
     double color = 0.01;  ///< The same for a difference of 1 between colors.
+    double joint = 0.01;  ///< The same for a difference of 1 between weights of joints.
+    double target = 1.0;  ///< Of displacements by morph targets, which are lengths.
 };
 
 /// The limits of a decimation; at least one must be given, and the first one that is reached ends
@@ -45,6 +48,9 @@ struct DecimateOptions {
     std::optional<double> max_normal_error = std::nullopt;
     bool keep_borders = false;  ///< Boundaries do not change.
     bool keep_seams = false;    ///< Texture seams, hard edges and material borders do not change.
+    /// Moves the vertices that remain to where the result fits the input best, which about halves
+    /// the distance on curved surfaces. Boundaries, and vertices that could not be removed, stay.
+    bool fit_positions = false;
 };
 
 /// Removes vertices by edge collapses in order of increasing error until a limit is reached.
@@ -53,7 +59,10 @@ struct DecimateOptions {
 /// \param report  counts omitted elements (collapsed triangles, isolated vertices), elements that
 ///         are not simplified (non-manifold edges and their ends, triangles with a non-finite
 ///         corner), and a target number of triangles that could not be reached
-/// \return a subset of the vertices with all attributes, in their order, and the remaining
+/// \param deformation  how the vertices move, by vertex; where it differs between vertices at one
+///         position, there is a seam
+/// \return a subset of the vertices with all attributes, in their order; with `fit_positions`, at
+///         other positions; and the remaining
 ///         triangles in the original order, with their material ranges and smoothing groups.
 ///         `source_vertex` holds the input's index of each vertex. If `frames` does not keep
 ///         normals, vertices may be split in addition
@@ -69,16 +78,17 @@ struct DecimateOptions {
 ///
 /// Source: [Garland and Heckbert 1997], [Hoppe 1999].
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options,
-                     Report& report = IgnoredReport());
+                     Report& report = IgnoredReport(), const Deformation& deformation = {});
 
 /// Measures what DecimateOptions::max_normal_error limits.
 ///
-/// \param original, decimated  valid (mesh.h). Vertices at equal positions correspond
-/// \return the maximum, over the corners of `decimated`, of the angle between the triangle and the
+/// \param original  valid (mesh.h)
+/// \param result  that of decimated() for it
+/// \return the maximum, over the corners of `result`, of the angle between the triangle and the
 ///         nearest normal of the original's triangles at that position, in radians; 0 if there is
 ///         none. Triangles without area, non-finite ones and positions where more than 64 triangles
 ///         of the original meet are ignored
-double max_corner_angle(const Mesh& original, const Mesh& decimated);
+double max_corner_angle(const Mesh& original, const FramedMesh& result);
 
 /// The distances of the points of a surface from another one, and the angles between the normals
 /// of the triangles there.

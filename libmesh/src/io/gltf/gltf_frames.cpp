@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces normals and tangents of a glTF primitive and of its morph targets, in object space.
+// Replaces normals, tangents and positions of a glTF primitive, and normals and tangents of its
+// morph targets, in object space.
 //
 // Changed values become new accessors, so that other users of the old ones are not affected. The
 // old ones are retired: the writer leaves them out. Unchanged values keep their accessor, or at
@@ -18,6 +19,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "io/gltf/gltf_accessor.h"
@@ -135,8 +137,8 @@ bool is_stored(const GltfContents& contents, std::size_t accessor,
     return true;
 }
 
-/// Replaces NORMAL or TANGENT. Without values the attribute is removed. Unchanged values are left
-/// for carry_all(); others are written as floats.
+/// Replaces an attribute. Without values it is removed. Unchanged values are left for carry_all();
+/// others are written as floats.
 template <typename Vector>
 void FrameReplacement::replace(const char* name, const std::vector<Vector>& values) {
     const auto accessor = index_in(primitive()["attributes"], name);
@@ -166,6 +168,7 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
     json["type"] = fmt::format("VEC{}", Vector::length());
     const std::string elements(reinterpret_cast<const char*>(values.data()),
                                values.size() * sizeof(Vector));
+    if (std::string_view(name) == "POSITION") update_bounds(json, elements);
     const std::size_t number = add(std::move(json), elements, gltf_code::array_buffer);
     primitive()["attributes"][name] = number;
     carried_.emplace(number, number);  // These elements already have the new order.
@@ -257,10 +260,12 @@ void FrameReplacement::run() {
         return accessor ? !values.empty() && is_stored(contents_, *accessor, sources_, values)
                         : values.empty();
     };
-    if (same_triangles_ && is_as_wanted("NORMAL", framed_.mesh.normals) &&
+    if (same_triangles_ && is_as_wanted("POSITION", framed_.mesh.positions) &&
+        is_as_wanted("NORMAL", framed_.mesh.normals) &&
         is_as_wanted("TANGENT", framed_.mesh.tangents)) {
         return;
     }
+    replace("POSITION", framed_.mesh.positions);
     replace("NORMAL", framed_.mesh.normals);
     replace("TANGENT", framed_.mesh.tangents);
     if (!same_vertices_) carry_all();

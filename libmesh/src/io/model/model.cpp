@@ -174,6 +174,7 @@ class JoinedPrimitives {
     JoinedPrimitives(const GltfDocument& document, std::vector<GltfPrimitiveId> ids);
 
     [[nodiscard]] const Mesh& mesh() const { return joined_; }
+    [[nodiscard]] const Deformation& deformation() const { return deformation_; }
     [[nodiscard]] const std::vector<GltfPrimitiveId>& ids() const { return ids_; }
 
     /// Returns primitive `i` of the changed mesh, with indices into its own vertices.
@@ -181,7 +182,7 @@ class JoinedPrimitives {
                                   Report& report) const;
 
   private:
-    void add(Mesh primitive);
+    void add(Mesh primitive, const Deformation& deformation);
     FramedMesh with_new_tangents(FramedMesh part, const FramedMesh& changed, std::size_t i,
                                  Report& report) const;
 
@@ -191,6 +192,7 @@ class JoinedPrimitives {
     std::vector<std::vector<glm::vec2>> tangent_texcoords_;
     std::vector<std::uint32_t> first_vertex_;
     Mesh joined_;
+    Deformation deformation_;  ///< Of joined_.
 };
 
 /// Appends values. If only some primitives have values, `filler` completes the others.
@@ -203,12 +205,16 @@ void append(std::vector<T>& values, const std::vector<T>& more, std::size_t befo
     values.resize(before + count, filler);
 }
 
-void JoinedPrimitives::add(Mesh primitive) {
+void JoinedPrimitives::add(Mesh primitive, const Deformation& deformation) {
     const std::size_t before = joined_.positions.size();
     const std::size_t count = primitive.positions.size();
     append(joined_.normals, primitive.normals, before, count, glm::vec3(0.0F));
     append(joined_.texcoords, primitive.texcoords, before, count, glm::vec2(0.0F));
     append(joined_.colors, primitive.colors, before, count, glm::vec4(1.0F));
+    append(deformation_.joints, deformation.joints, before, count, glm::vec4(0.0F));
+    for (std::size_t i = 0; i < deformation.displacements.size(); ++i)
+        append(deformation_.displacements[i], deformation.displacements[i], before, count,
+               glm::vec3(0.0F));
     joined_.positions.insert(joined_.positions.end(), primitive.positions.begin(),
                              primitive.positions.end());
     const auto first = static_cast<std::uint32_t>(before);
@@ -228,7 +234,7 @@ JoinedPrimitives::JoinedPrimitives(const GltfDocument& document, std::vector<Glt
         const int set = document.tangent_texcoords(id).set;
         const bool differs = !mesh.tangents.empty() && set != 0;
         tangent_texcoords_.push_back(differs ? document.mesh(id, set).texcoords : mesh.texcoords);
-        add(std::move(mesh));
+        add(std::move(mesh), document.deformation_sums(id));
     }
     joined_.name = primitives_.front().name;
 }
@@ -312,7 +318,7 @@ void change_joined(GltfDocument& document, const JoinedPrimitives& joined,
                    const TriangleChange& change, NormalMode normals, std::size_t all_triangles,
                    ChangedModel& done) {
     Report report;
-    const FramedMesh changed = change(joined.mesh(), all_triangles, report);
+    const FramedMesh changed = change({joined.mesh(), joined.deformation(), all_triangles}, report);
     for (std::size_t i = 0; i < joined.ids().size(); ++i) {
         const GltfPrimitiveId id = joined.ids()[i];
         if (changed.mesh.material_ranges[i].triangle_count == 0) {
@@ -352,7 +358,7 @@ void change_mesh(Mesh& mesh, const TriangleChange& change, ChangedModel& done) {
     Report report;
     done.triangles_read = mesh.triangles.size();
     done.vertices_read = mesh.positions.size();
-    mesh = change(mesh, mesh.triangles.size(), report).mesh;
+    mesh = change({mesh, {}, mesh.triangles.size()}, report).mesh;
     if (mesh.triangles.empty()) throw InvalidInput("none of its triangles has an area");
     done.triangles_written = mesh.triangles.size();
     done.vertices_written = mesh.positions.size();
