@@ -18,7 +18,7 @@ set(RELIEF_PACKAGES_bake embree)
 set(RELIEF_LIBRARIES_bake -lembree3)
 set(RELIEF_NEEDED_BY_shade files)
 set(RELIEF_NEEDED_BY_reference shade bake)
-set(RELIEF_NEEDED_BY_accuracy reference)
+set(RELIEF_NEEDED_BY_accuracy reference topology)
 
 set(RELIEF_COMPONENTS "${RELIEF_ALL}" CACHE STRING "Components to build; those that they need are added")
 set(RELIEF_BUILT ${RELIEF_COMPONENTS})

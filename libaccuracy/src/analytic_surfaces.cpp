@@ -33,6 +33,8 @@ struct Parametrised {
     bool t_closes;
 };
 
+constexpr glm::dvec3 ellipsoid_axes(1.0, 0.7, 0.4);
+
 PlacedPoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
     // The poles are omitted, because triangles there do not keep their shape when they shrink.
     constexpr double from_pole = 0.15 * std::numbers::pi;
@@ -48,16 +50,17 @@ PlacedPoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
             axes * east * (2.0 * std::numbers::pi * std::sin(polar)), axes * down * pole_to_pole};
 }
 
+constexpr double torus_minor = 0.4;
+
 PlacedPoint on_torus(double s, double t) {
-    constexpr double minor = 0.4;
     const double around = 2.0 * std::numbers::pi * s;
     const double across = 2.0 * std::numbers::pi * t;
     const glm::dvec3 out(std::cos(around), std::sin(around), 0.0);
     const glm::dvec3 normal = std::cos(across) * out + std::sin(across) * glm::dvec3(0.0, 0.0, 1.0);
     const glm::dvec3 on(-std::sin(around), std::cos(around), 0.0);
-    return {out + minor * normal, normal,
-            on * 2.0 * std::numbers::pi * (1.0 + minor * std::cos(across)),
-            2.0 * std::numbers::pi * minor *
+    return {out + torus_minor * normal, normal,
+            on * 2.0 * std::numbers::pi * (1.0 + torus_minor * std::cos(across)),
+            2.0 * std::numbers::pi * torus_minor *
                 (std::cos(across) * glm::dvec3(0.0, 0.0, 1.0) - std::sin(across) * out)};
 }
 
@@ -84,6 +87,59 @@ struct Cubic {
     }
 };
 
+/// A function that is zero on a surface and positive on the side of its normals.
+struct Implicit {
+    double value = 0.0;
+    glm::dvec3 gradient{};
+};
+
+Implicit off_ellipsoid(const glm::dvec3& axes, const glm::dvec3& p) {
+    const glm::dvec3 scaled = p / axes;
+    return {glm::dot(scaled, scaled) - 1.0, 2.0 * scaled / axes};
+}
+
+Implicit off_torus(const glm::dvec3& p) {
+    const glm::dvec3 center = glm::normalize(glm::dvec3(p.x, p.y, 0.0));
+    const double distance = glm::length(p - center);
+    return {distance - torus_minor, (p - center) / distance};
+}
+
+Implicit off_cubic(const Cubic& cubic, const glm::dvec3& p) {
+    const std::array<double, 4> x = {1.0, p.x, p.x * p.x, p.x * p.x * p.x};
+    const std::array<double, 4> y = {1.0, p.y, p.y * p.y, p.y * p.y * p.y};
+    Implicit result{p.z, {0.0, 0.0, 1.0}};
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; i + j < 4; ++j) {
+            const double factor = cubic.c[i][j];
+            result.value -= factor * x[i] * y[j];
+            if (i > 0) result.gradient.x -= factor * static_cast<double>(i) * x[i - 1] * y[j];
+            if (j > 0) result.gradient.y -= factor * static_cast<double>(j) * x[i] * y[j - 1];
+        }
+    }
+    return result;
+}
+
+/// Finds the nearest point by moving tangentially below the given one and back to the surface. The
+/// error falls by the factor distance * curvature in each step.
+ExactPoint nearest_zero(const std::function<Implicit(const glm::dvec3&)>& off,
+                        const glm::dvec3& place) {
+    constexpr int max_steps = 60;
+    constexpr double negligible = 1e-13;
+    glm::dvec3 p = place;
+    for (int step = 0; step < max_steps; ++step) {
+        const Implicit here = off(p);
+        const glm::dvec3 normal = glm::normalize(here.gradient);
+        const glm::dvec3 below = place - normal * glm::dot(place - p, normal);
+        const Implicit there = off(below);
+        const glm::dvec3 next =
+            below - there.gradient * (there.value / glm::dot(there.gradient, there.gradient));
+        const double moved = glm::length(next - p);
+        p = next;
+        if (moved < negligible) break;
+    }
+    return {p, glm::normalize(off(p).gradient)};
+}
+
 /// \param lowest  the lowest degree of a term: with 2 the surface is level at the origin
 Cubic random_cubic(Random& random, int lowest, double size) {
     Cubic cubic;
@@ -96,6 +152,15 @@ Cubic random_cubic(Random& random, int lowest, double size) {
     }
     return cubic;
 }
+
+Cubic saddle() {
+    Cubic saddle;
+    saddle.c[2][0] = 0.5;
+    saddle.c[0][2] = -0.5;
+    return saddle;
+}
+
+constexpr double cubic_size = 0.5;
 
 Parametrised parametrised(AnalyticSurface surface, Random& random) {
     const auto over_square = [](auto at) {
@@ -113,20 +178,15 @@ Parametrised parametrised(AnalyticSurface surface, Random& random) {
         case AnalyticSurface::torus:
             return {on_torus, true, true};
         case AnalyticSurface::ellipsoid:
-            return {[](double s, double t) {
-                        return on_ellipsoid({1.0, 0.7, 0.4}, s, t);
-                    },
-                    true, false};
-        case AnalyticSurface::saddle: {
-            Cubic saddle;
-            saddle.c[2][0] = 0.5;
-            saddle.c[0][2] = -0.5;
-            return {over_square([=](double x, double y) { return saddle.at(x, y); }), false, false};
-        }
+            return {[](double s, double t) { return on_ellipsoid(ellipsoid_axes, s, t); }, true,
+                    false};
+        case AnalyticSurface::saddle:
+            return {over_square([cubic = saddle()](double x, double y) { return cubic.at(x, y); }),
+                    false, false};
         case AnalyticSurface::cubic:
             break;
     }
-    const Cubic cubic = random_cubic(random, 1, 0.5);
+    const Cubic cubic = random_cubic(random, 1, cubic_size);
     return {over_square([=](double x, double y) { return cubic.at(x, y); }), false, false};
 }
 
@@ -276,6 +336,33 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
         return frame_of(where.at(parameters.x, parameters.y), layout, parameters.x);
     };
     return result;
+}
+
+std::function<ExactPoint(const glm::dvec3& place)> nearest_on_surface(AnalyticSurface surface,
+                                                                      std::uint32_t seed) {
+    std::function<Implicit(const glm::dvec3&)> off;
+    switch (surface) {
+        case AnalyticSurface::sphere:
+            off = [](const glm::dvec3& p) { return off_ellipsoid(glm::dvec3(1.0), p); };
+            break;
+        case AnalyticSurface::torus:
+            off = off_torus;
+            break;
+        case AnalyticSurface::ellipsoid:
+            off = [](const glm::dvec3& p) { return off_ellipsoid(ellipsoid_axes, p); };
+            break;
+        case AnalyticSurface::saddle:
+            off = [cubic = saddle()](const glm::dvec3& p) { return off_cubic(cubic, p); };
+            break;
+        case AnalyticSurface::cubic: {
+            Random random(seed);
+            off = [cubic = random_cubic(random, 1, cubic_size)](const glm::dvec3& p) {
+                return off_cubic(cubic, p);
+            };
+            break;
+        }
+    }
+    return [off = std::move(off)](const glm::dvec3& place) { return nearest_zero(off, place); };
 }
 
 TexturedMesh beveled_plate(double width) {

@@ -223,6 +223,7 @@ constexpr std::array subject_entries = {
     SubjectEntry{Subject::bump, "bump", bump_plan},
     SubjectEntry{Subject::storage, "storage", storage_plan},
     SubjectEntry{Subject::bake, "bake", bake_plan},
+    SubjectEntry{Subject::decimation, "decimation", decimation_plan},
     SubjectEntry{Subject::shading, "shading", shading_plan, true},
     SubjectEntry{Subject::stability, "stability", stability_plan},
 };

@@ -135,6 +135,10 @@ std::vector<PlannedExperiment> storage_plan(const PlanOptions& options);
 /// 8 and 16 bits and in float.
 std::vector<PlannedExperiment> bake_plan(const PlanOptions& options);
 
+/// Decimation of analytic surfaces: the distance from the surface and the angle of triangles, with
+/// charts over the number of triangles; and a large mesh for time and memory.
+std::vector<PlannedExperiment> decimation_plan(const PlanOptions& options);
+
 /// Interpolation, highlights, Fresnel factors, unit normals, cube maps and antialiasing. Without
 /// OpenGL, those that render measure nothing, and their findings give the reason.
 std::vector<PlannedExperiment> shading_plan(const PlanOptions& options);

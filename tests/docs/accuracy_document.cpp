@@ -32,11 +32,12 @@ struct ShownExperiment {
     const char* id;
     bool is_chart = false;  ///< The page shows the first chart instead of the costs.
 };
-constexpr std::array<ShownExperiment, 7> shown_experiments = {{{"normals/torus-jittered"},
+constexpr std::array<ShownExperiment, 8> shown_experiments = {{{"normals/torus-jittered"},
                                                                {"tangents/torus-jittered"},
                                                                {"bump/mixed-8"},
                                                                {"storage/frames"},
                                                                {"bake/samples"},
+                                                               {"decimation/torus-distance"},
                                                                {"shading/interpolation"},
                                                                {"stability/tangents-scale", true}}};
 

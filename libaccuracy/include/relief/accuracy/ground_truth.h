@@ -174,6 +174,21 @@ struct AnalyticMesh {
 AnalyticMesh analytic_mesh(AnalyticSurface surface, Triangulation triangulation, int cells,
                            std::uint32_t seed);
 
+/// A point of an exact surface.
+struct ExactPoint {
+    glm::dvec3 position;
+    glm::dvec3 normal;  ///< Unit.
+};
+
+/// Returns a function that finds the point of the exact surface nearest to a point. The surface is
+/// the whole sphere, ellipsoid or polynomial, beyond the boundaries of analytic_mesh().
+///
+/// \param seed  that of the mesh
+/// \return for a point whose distance from the surface is well below the radii of curvature there;
+///         far points may get another point of the surface. Positions have an error of about 1e-12
+std::function<ExactPoint(const glm::dvec3& place)> nearest_on_surface(AnalyticSurface surface,
+                                                                      std::uint32_t seed);
+
 /// Creates the experiment of [Max 1999]: a closed fan around a vertex at the origin of a cubic
 /// surface z(x, y), with `valence` neighbors on the surface at random directions and distances. The
 /// exact normal of the vertex is (0,0,1).
