@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzz targets on files of the repository, on inputs that were faults once (fuzz/inputs), and
-// on mutations of both. The mutations are the same in every run.
+// The fuzz targets on files of the repository, on inputs like earlier faults (fuzz/inputs), and
+// on mutations of both. The mutations are the same in every run. Real files are added if present.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "relief/mesh/limits.h"
+#include "support/shared_data.h"
 #include "targets.h"
 
 namespace relief {
@@ -71,7 +72,9 @@ std::vector<Bytes> inputs_of(const FuzzTarget& target) {
     if (const auto extension = extensions.find(name); extension != extensions.end()) {
         for (const char* const folder : {"data", "conformance/kit", "docs/images"})
             add_files(source / folder, extension->second, inputs);
+        add_files(test::shared_directory() / "data/hostile", extension->second, inputs);
     }
+    if (name == "stl") add_files(test::shared_directory() / "data/hostile", ".stl", inputs);
     if (name == "scene") add_files(source / "data/scenes", ".json", inputs);
     // Bytes for the algorithms, and inputs for readers without a file.
     Random random;
