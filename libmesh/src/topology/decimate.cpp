@@ -115,7 +115,7 @@ std::strong_ordering compare(const Vector& a, const Vector& b) {
 }
 
 /// A mesh with the attributes that make seams where they differ.
-struct Surface {
+struct AttributedMesh {
     const Mesh& mesh;
     const Deformation& deformation;
     bool with_normals = false;
@@ -154,7 +154,7 @@ struct Wedges {
 };
 
 /// Joins equal wedges at the same position; the one with the lowest index remains.
-Wedges wedges_of(const Surface& surface, std::span<const std::uint32_t> classes,
+Wedges wedges_of(const AttributedMesh& surface, std::span<const std::uint32_t> classes,
                  const Parts& parts) {
     const Mesh& mesh = surface.mesh;
     Wedges wedges;
@@ -256,7 +256,7 @@ void radix_sort(std::vector<KeyedIndex>& values) {
 }
 
 /// Returns the triangles in an order that depends only on their values.
-std::vector<std::uint32_t> canonical_order(const Surface& surface, const UnitSpace& space,
+std::vector<std::uint32_t> canonical_order(const AttributedMesh& surface, const UnitSpace& space,
                                            const Parts& parts) {
     const Mesh& mesh = surface.mesh;
     std::vector<KeyedIndex> keyed(mesh.triangles.size());
@@ -321,7 +321,8 @@ double texture_scale_of(const Mesh& mesh, const CollapseInput& input,
 }
 
 /// Sets the attributes that the error considers, and their weights.
-void set_attributes(CollapseInput& input, const Surface& surface, const AttributeWeights& weights,
+void set_attributes(CollapseInput& input, const AttributedMesh& surface,
+                    const AttributeWeights& weights,
                     std::span<const std::uint32_t> vertex_of_wedge) {
     const Mesh& mesh = surface.mesh;
     const Deformation& deformation = surface.deformation;
@@ -411,7 +412,7 @@ struct Prepared {
 
 /// Arrays are freed as soon as they are not needed, because the memory for the input is the largest
 /// part of that for decimation.
-Prepared prepared(const Surface& surface, const DecimateOptions& options, Report& report) {
+Prepared prepared(const AttributedMesh& surface, const DecimateOptions& options, Report& report) {
     const Mesh& mesh = surface.mesh;
     const UnitSpace space = unit_space(mesh);
     const Parts parts = parts_of(mesh);
@@ -462,7 +463,7 @@ Prepared prepared(const Surface& surface, const DecimateOptions& options, Report
     return result;
 }
 
-Remains remains_of(const Surface& surface, const DecimateOptions& options, Report& report) {
+Remains remains_of(const AttributedMesh& surface, const DecimateOptions& options, Report& report) {
     Prepared input = prepared(surface, options, report);
     const Collapsed collapsed = collapse_edges(std::move(input.input));
     return gathered_remains(surface.mesh, collapsed, input.sources, input.set_aside,
@@ -492,7 +493,8 @@ double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
 /// Decimates until the measured distance reaches `max_error`. The error of a collapse only
 /// estimates that distance, so its limit is adjusted: the result with the fewest triangles within
 /// the distance is returned.
-Remains remains_within(const Surface& surface, const DecimateOptions& options, Report& report) {
+Remains remains_within(const AttributedMesh& surface, const DecimateOptions& options,
+                       Report& report) {
     const Mesh& mesh = surface.mesh;
     constexpr int max_attempts = 10;
     constexpr double well_used = 0.7;  ///< The part of the distance at which the search ends.
@@ -612,7 +614,7 @@ FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Repo
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& report,
                      const Deformation& deformation) {
     check(mesh, deformation, options);
-    const Surface surface{mesh, deformation, options.frames.normals == NormalMode::keep};
+    const AttributedMesh surface{mesh, deformation, options.frames.normals == NormalMode::keep};
     const Remains remains = options.max_error ? remains_within(surface, options, report)
                                               : remains_of(surface, options, report);
     // One interior move removes two triangles, so the result may be one less than requested.

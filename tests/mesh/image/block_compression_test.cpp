@@ -31,7 +31,7 @@ using testing::ElementsAreArray;
 
 constexpr BlockQuality all_qualities[] = {BlockQuality::fast, BlockQuality::normal,
                                           BlockQuality::best};
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
 using Blocks = std::vector<std::byte>;
 
@@ -230,7 +230,7 @@ TEST(BlockEncoder, TheLastTexelsAreRepeatedToFillBlocks) {
 
 TEST(BlockEncoder, SamplesThatAreNotFiniteAreCountedAndBecomeZero) {
     const float infinity = std::numeric_limits<float>::infinity();
-    const Image image = image_of(1, std::vector<float>{0.5F, nan, -infinity});
+    const Image image = image_of(1, std::vector<float>{0.5F, quiet_nan, -infinity});
     Report report;
     const auto blocks = encode_blocks(image, BlockFormat::bc4, BlockQuality::normal, report);
     EXPECT_EQ(report.count("sample that is not finite"), 2U);
@@ -348,7 +348,7 @@ TEST(NormalBlocks, GreenDownIsTheMirroredMap) {
 TEST(NormalBlocks, OddNormalsAreCountedAndStoredAsStated) {
     // A whole block of each; the tiny and the huge one are normalized in double.
     const std::array<std::array<float, 3>, 6> kinds = {{{0.0F, 0.0F, 0.0F},
-                                                        {nan, 0.0F, 1.0F},
+                                                        {quiet_nan, 0.0F, 1.0F},
                                                         {3.0F, 4.0F, -1.0F},
                                                         {0.0F, 0.0F, -1.0F},
                                                         {0.0F, 6e-30F, 8e-30F},
