@@ -305,9 +305,10 @@ TEST(DamagedTextures, EveryTruncatedFileIsRefused) {
     for (const char* name : {"whole.ktx2", "whole.dds"}) {
         write_texture(temporary(name), texture_of(TextureFormat::bc4));
         const auto bytes = bytes_of(temporary(name));
-        for (std::size_t size = 12; size < bytes.size(); ++size) {
-            const auto part = std::span(bytes).first(size);
-            EXPECT_NE(message_of<FileError>([&] { read_texture(part, "x"); }), "no error") << size;
+        for (std::size_t length = 12; length < bytes.size(); ++length) {
+            const auto part = std::span(bytes).first(length);
+            EXPECT_NE(message_of<FileError>([&] { read_texture(part, "x"); }), "no error")
+                << length;
         }
     }
 }
