@@ -310,7 +310,8 @@ TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
         {"mesh", "libmesh", ""},
         {"topology", "libmesh", "-lrelief_mesh $(pkg-config --libs openmesh)"},
         {"files", "libmesh",
-         "-lrelief_mesh $(pkg-config --libs tinyobjloader libdeflate libisal libturbojpeg libzstd draco) "
+         "-lrelief_mesh $(pkg-config --libs tinyobjloader libdeflate libisal libturbojpeg libzstd "
+         "draco) "
          "-lmeshoptimizer"},
         {"bake", "libmesh", "-lrelief_mesh -lembree3"},
         {"shade", "libshade", "-lrelief_files -lrelief_mesh"},

@@ -78,9 +78,9 @@ TEST_F(Pack, MapsThatAreNotGivenAreConstant) {
 }
 
 TEST_F(Pack, KeepsSixteenBits) {
-    using Words = std::vector<std::uint16_t>;
+    using Samples = std::vector<std::uint16_t>;
     EXPECT_EQ(packed<std::uint16_t>("--occlusion o.png --roughness r.png --bits 16"),
-              (Words{2570, 65535, 0, 5140, 7710, 0}));
+              (Samples{2570, 65535, 0, 5140, 7710, 0}));
 }
 
 TEST_F(Pack, RefusesInputsThatDoNotFit) {

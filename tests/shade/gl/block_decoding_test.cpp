@@ -20,12 +20,12 @@
 namespace relief::gl {
 namespace {
 
-constexpr int side = 256;              ///< 4096 blocks.
+constexpr int texels_across = 256;     ///< 4096 blocks.
 constexpr GLenum bptc_unorm = 0x8E8C;  // GL_COMPRESSED_RGBA_BPTC_UNORM, of OpenGL 4.2.
 
 /// Random blocks; those of BC7 have all modes equally often.
 std::vector<std::byte> random_blocks(BlockFormat format) {
-    std::vector<std::byte> blocks(block_data_size(format, side, side));
+    std::vector<std::byte> blocks(block_data_size(format, texels_across, texels_across));
     std::uint32_t state = 1;
     for (std::byte& byte : blocks) {
         state = 1664525U * state + 1013904223U;
@@ -54,9 +54,9 @@ class BlockDecoding : public test::GlTest {
                                      GLenum channels, std::size_t count) const {
         const Texture texture(api());
         api()->BindTexture(GL_TEXTURE_2D, texture.name());
-        api()->CompressedTexImage2D(GL_TEXTURE_2D, 0, internal, side, side, 0,
+        api()->CompressedTexImage2D(GL_TEXTURE_2D, 0, internal, texels_across, texels_across, 0,
                                     static_cast<GLsizei>(blocks.size()), blocks.data());
-        std::vector<float> texels(static_cast<std::size_t>(side) * side * count);
+        std::vector<float> texels(static_cast<std::size_t>(texels_across) * texels_across * count);
         api()->GetTexImage(GL_TEXTURE_2D, 0, channels, GL_FLOAT, texels.data());
         EXPECT_EQ(api()->GetError(), static_cast<GLenum>(GL_NO_ERROR));
         api()->BindTexture(GL_TEXTURE_2D, 0);
@@ -88,7 +88,7 @@ TEST_P(BlockDecoding, Bc4AndBc5) {
         const auto blocks = random_blocks(each.format);
         const auto expected = decoded_by_gl(blocks, each.internal, each.channels,
                                             static_cast<std::size_t>(channels_of(each.format)));
-        const Image image = decode_blocks(blocks, each.format, side, side);
+        const Image image = decode_blocks(blocks, each.format, texels_across, texels_across);
         const auto samples = image.as<std::uint16_t>();
         ASSERT_EQ(samples.size(), expected.size());
         // The codes themselves are exact. Mesa computes values between them in integers of 8 bits,
@@ -103,9 +103,10 @@ TEST_P(BlockDecoding, Bc4AndBc5) {
                 is_signed(each.format) ? (samples[i] - 32768.0) / 32767.0 : samples[i] / 65535.0;
             // -128 is another code for -1.
             const double error = std::abs(value - std::max(-1.0, static_cast<double>(expected[i])));
-            const std::size_t x = i / channels % side;
-            const std::size_t y = i / channels / side;
-            const std::size_t block = (y / 4 * (side / 4) + x / 4) * channels + i % channels;
+            const std::size_t x = i / channels % texels_across;
+            const std::size_t y = i / channels / texels_across;
+            const std::size_t block =
+                (y / 4 * (texels_across / 4) + x / 4) * channels + i % channels;
             if (index_of(&blocks[8 * block], 4 * (y % 4) + x % 4) < 2)
                 worst_of_codes = std::max(worst_of_codes, error);
             worst = std::max(worst, error);
@@ -122,12 +123,13 @@ TEST_P(BlockDecoding, Bc7) {
         GTEST_SKIP() << "this OpenGL does not decode BC7";
     const auto blocks = random_blocks(BlockFormat::bc7);
     const auto expected = decoded_by_gl(blocks, bptc_unorm, GL_RGBA, 4);
-    const Image image = decode_blocks(blocks, BlockFormat::bc7, side, side);
+    const Image image = decode_blocks(blocks, BlockFormat::bc7, texels_across, texels_across);
     const auto samples = image.as<std::uint8_t>();
     std::array<std::size_t, 8> different{};
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::size_t texel = i / 4;
-        const std::size_t block = texel / side / 4 * (side / 4) + texel % side / 4;
+        const std::size_t block =
+            texel / texels_across / 4 * (texels_across / 4) + texel % texels_across / 4;
         const float code = expected[i] * 255.0F;
         different[block % 8] += std::abs(code - static_cast<float>(samples[i])) > 0.01F ? 1 : 0;
     }
