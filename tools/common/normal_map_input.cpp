@@ -16,6 +16,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map_check.h"
 #include "relief/mesh/normal_map_file.h"
+#include "relief/mesh/texture_file.h"
 
 namespace relief::tools {
 namespace {
@@ -113,10 +114,14 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
 InputMap open_normal_map(const std::filesystem::path& file, const MapInputOptions& options,
                          std::size_t max_memory) {
     InputMap map;
+    bool has_new_z = false;
     map.info = read_image_info(file);
     check_channels(file, map.info.channels);
     if (options.detects_green || !leaves_samples(file, map.info, max_memory)) {
-        map.image = read_image(file, ImageUse::data);
+        map.image =
+            options.is_signed ? read_image(file, ImageUse::data) : read_normal_map_image(file);
+        has_new_z = map.image.channels != map.info.channels;
+        map.info.channels = map.image.channels;
         check_signs(file, options.is_signed, map.info,
                     [&] { return count_negative(map.image.as<float>()); });
         if (options.is_signed) remove_signs(map.image);
@@ -137,6 +142,7 @@ InputMap open_normal_map(const std::filesystem::path& file, const MapInputOption
         map.flat = detect_flat_code(any, map.metadata);
     }
     map.conventions = green_text(options, map) + ", " + zero_text(options, map);
+    if (has_new_z) map.conventions += ", z computed from x and y";
     return map;
 }
 

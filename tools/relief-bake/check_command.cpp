@@ -16,6 +16,7 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map_check.h"
+#include "relief/mesh/texture_file.h"
 
 namespace relief::tools {
 namespace {
@@ -66,7 +67,7 @@ CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> gre
     CheckedMap map;
     map.file = file;
     try {
-        const Image image = read_image(file, ImageUse::data);
+        const Image image = read_normal_map_image(file);
         std::map<std::string, std::string> metadata = read_image_info(file).metadata;
         if (green) metadata["relief:green"] = enum_name(*green);
         map.is_baked = metadata.contains("relief:bake");

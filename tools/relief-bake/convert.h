@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// `relief-bake convert`: the request, the conversion of one normal map, and its summary.
-/// Tests: tests/tools/relief_bake_convert_test.cpp.
+/// Tests: tests/tools/relief_bake_convert_test.cpp, tests/tools/relief_bake_texture_test.cpp.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,8 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/statistics.h"
+#include "relief/mesh/texture_file.h"
 
 namespace relief::tools {
 
@@ -56,6 +60,14 @@ struct MipOptions {
     std::optional<double> roughness;  ///< Of the surface.
 };
 
+/// The options of KTX2 and DDS files.
+struct TextureOptions {
+    std::optional<TextureFormat> format;
+    std::optional<BlockQuality> quality;
+    std::optional<double> max_error;  ///< Mean of the largest level, in degrees.
+    std::optional<int> zstd_level;
+};
+
 /// The options of a conversion, the same for every map of a call.
 struct ConvertRequest {
     MapInputOptions input;
@@ -70,6 +82,7 @@ struct ConvertRequest {
     MipOptions mips;
     AlphaChoice alpha = AlphaChoice::keep;
     MapOutputOptions output;
+    TextureOptions texture;
 };
 
 /// The names of choices, for options and summaries.
@@ -89,6 +102,13 @@ struct WrittenLevel {
     double min_length = 1.0;
     std::optional<std::filesystem::path> roughness_file;
     std::optional<double> mean_roughness;
+    std::optional<ErrorStats> error;  ///< Of levels in textures, in degrees.
+};
+
+/// A format and the effort of encoding it.
+struct TextureEncoding {
+    TextureFormat format = TextureFormat::bc5;
+    BlockQuality quality = BlockQuality::normal;
 };
 
 /// The result of a conversion.
@@ -101,8 +121,9 @@ struct MapConversion {
     std::vector<std::string> steps;      ///< The operations, in order.
     std::optional<LengthRange> lengths;  ///< Of the input's vectors, if they were measured.
     NormalMapFormat format;
-    std::optional<Green> green;          ///< Absent: unknown.
-    std::optional<std::string> content;  ///< The new "relief:content", if it changes.
+    std::optional<TextureEncoding> texture;  ///< Instead of `format`, if the file is a texture.
+    std::optional<Green> green;              ///< Absent: unknown.
+    std::optional<std::string> content;      ///< The new "relief:content", if it changes.
     std::vector<WrittenLevel> levels;
     Findings findings;
 };
@@ -110,6 +131,33 @@ struct MapConversion {
 /// Converts a file. The stages are "read", "convert" and "write".
 /// \throws FileError, UsageError
 MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages& stages);
+
+/// Returns whether a file is a texture, by its extension.
+bool is_texture(const std::filesystem::path& file);
+
+void add_texture_options(CLI::App& app, TextureOptions& options);
+
+/// \throws UsageError if options contradict each other, or have no effect on this file
+void check_texture_options(const CLI::App& app, const ConvertRequest& request,
+                           const std::filesystem::path& output);
+
+/// A level of a texture, with the angles between its decoded normals and the exact ones.
+struct EncodedLevel {
+    std::vector<std::byte> bytes;
+    ErrorStats error;
+};
+
+/// Chooses the encoding for --max-error, or returns the given one.
+/// \throws UsageError if no encoding has so small an error
+TextureEncoding choose_encoding(const TextureOptions& options, const Image& normals);
+
+/// \param normals  three float channels, y as it is stored
+/// \throws UsageError if there is alpha, but the format stores none
+EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alpha,
+                          const TextureEncoding& encoding, Report& report);
+
+/// The text entries of a texture with this direction of green.
+std::map<std::string, std::string> texture_metadata(Green green, TextureFormat format);
 
 /// All files that the output may consist of, with as many mip levels as the largest map has.
 std::vector<std::filesystem::path> output_files(const std::filesystem::path& output,

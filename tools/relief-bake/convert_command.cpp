@@ -18,6 +18,15 @@ namespace relief::tools {
 namespace {
 
 std::string format_text(const MapConversion& conversion) {
+    if (conversion.texture) {
+        const TextureFormat format = conversion.texture->format;
+        const std::string green = conversion.green ? enum_name(*conversion.green) : "unknown";
+        const std::string quality =
+            block_format_of(format)
+                ? fmt::format(", quality {}", enum_name(conversion.texture->quality))
+                : "";
+        return fmt::format("{}{}, green {}", enum_name(format), quality, green);
+    }
     NormalMapFormat format = conversion.format;
     format.green = conversion.green.value_or(Green::up);
     const std::string text = to_string(format);
@@ -32,6 +41,17 @@ std::string format_text(const MapConversion& conversion) {
 std::vector<std::string> level_lines(const MapConversion& conversion) {
     std::vector<std::string> lines;
     for (const WrittenLevel& level : conversion.levels) {
+        if (level.error) {
+            std::string line = fmt::format(
+                "{}level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, greatest: "
+                "{:.3f})",
+                lines.empty() ? file_and_size(level.file) + ", " : "", lines.size(), level.width,
+                level.height, level.error->mean, level.error->p99, level.error->max);
+            if (level.mean_roughness)
+                line += fmt::format(", roughness {:.4f}", *level.mean_roughness);
+            lines.push_back(line);
+            continue;
+        }
         std::string line = file_and_size(level.file);
         if (conversion.levels.size() > 1) {
             line += fmt::format(", {} x {}, mean length {:.4f}", level.width, level.height,
@@ -52,6 +72,10 @@ Json json_of(const WrittenLevel& level) {
     if (level.roughness_file) {
         json["roughness_file"] = level.roughness_file->string();
         json["mean_roughness"] = *level.mean_roughness;
+    }
+    if (level.error) {
+        json["error"] = {
+            {"mean", level.error->mean}, {"p99", level.error->p99}, {"max", level.error->max}};
     }
     return json;
 }
@@ -75,11 +99,19 @@ Summary summary_of(const Job& job, const MapConversion& conversion, const Stages
                 {{"input_size", {conversion.width, conversion.height}},
                  {"input_lengths", std::move(lengths)}});
     summary.add("steps", conversion.steps, {{"done", conversion.steps}});
-    summary.add("format", format_text(conversion),
-                {{"bits", format.bits},
-                 {"green", conversion.green ? Json(enum_name(*conversion.green)) : Json()},
-                 {"zero_code", enum_name(format.flat)},
-                 {"dither", enum_name(format.dither)}});
+    const Json green = conversion.green ? Json(enum_name(*conversion.green)) : Json();
+    if (conversion.texture) {
+        summary.add("format", format_text(conversion),
+                    {{"texture_format", enum_name(conversion.texture->format)},
+                     {"quality", enum_name(conversion.texture->quality)},
+                     {"green", green}});
+    } else {
+        summary.add("format", format_text(conversion),
+                    {{"bits", format.bits},
+                     {"green", green},
+                     {"zero_code", enum_name(format.flat)},
+                     {"dither", enum_name(format.dither)}});
+    }
     summary.add_findings(conversion.findings);
     summary.add_times(stages);
     summary.add("wrote", level_lines(conversion),
@@ -281,7 +313,8 @@ void add_mip_options(CLI::App& app, MipOptions& mips) {
     const std::string group = "Mip levels";
     add_switch(app, "--mips", mips.wanted,
                "Also write all smaller mip levels: OUT-mip01 at half the size, and so on, with "
-               "OUT's extension. Each stores normalized averages of the normals.")
+               "OUT's extension; .ktx2 and .dds store all levels in OUT. Each stores normalized "
+               "averages of the normals.")
         .group(group);
     add_switch(app, "--mip-lengths", mips.lengths,
                "Store the lengths of the averaged normals in the alpha of OUT and of each level: 1 "
@@ -290,7 +323,7 @@ void add_mip_options(CLI::App& app, MipOptions& mips) {
     add_number(app, "--roughness-from-variance", "R", mips.roughness, {0.0, 1.0, ""},
                "For a surface of glTF roughness R, also write the roughness that compensates for "
                "the averaged normals, for OUT and each level: OUT-roughness, OUT-roughness-mip01, "
-               "and so on.")
+               "and so on; for textures OUT-roughness in bc4.")
         .group(group);
 }
 
@@ -358,8 +391,12 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& g
     work.head = {{"tool", "relief-bake convert"}, {"version", version()}};
     InputByOutput inputs;
     work.check = [&](const Job& job) {
-        format_of(request.output, job.output);
-        write_options_of(request.output, job.output);
+        // For textures, --for sets only the direction of green.
+        check_texture_options(app, given, job.output);
+        if (!is_texture(job.output)) {
+            format_of(request.output, job.output);
+            write_options_of(request.output, job.output);
+        }
         check_files(job, request, inputs);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
@@ -404,7 +441,8 @@ Command add_convert_command(CLI::App& tool) {
     const auto options = std::make_shared<Options>();
     ConvertRequest& request = options->request;
     add_map_files(app, options->files, "normal map",
-                  "OUT may be IN, which is replaced when the new map is complete. The operations "
+                  "OUT may be IN, which is replaced when the new map is complete, or a texture for "
+                  "engines (.ktx2 .dds). The operations "
                   "run in a fixed order: z, axes, size, slopes, detail, mip levels, encoding.");
     add_input_options(app, request);
     add_axis_options(app, request);
@@ -418,11 +456,13 @@ Command add_convert_command(CLI::App& tool) {
     add_mip_options(app, request.mips);
     add_map_folder(app, options->files);
     add_map_output_options(app, request.output, true);
+    add_texture_options(app, request.texture);
     add_report_options(app, options->files.report);
     add_general_options(app, options->files.general);
-    set_common_options(app, {"--input-green", "--flip", "--resize", "--strength", "--detail",
-                             "--to-object", "--to-tangent", "--mips", "--roughness-from-variance",
-                             "--output", "--green", "--bits", "--dither", "--report", "--strict"});
+    set_common_options(
+        app, {"--input-green", "--flip", "--resize", "--strength", "--detail", "--to-object",
+              "--to-tangent", "--mips", "--roughness-from-variance", "--output", "--green",
+              "--bits", "--dither", "--format", "--max-error", "--report", "--strict"});
     set_examples(app, {"relief-bake bump data/bricks-height.png out/bricks.png",
                        "relief-bake convert out/bricks.png out/bricks-dx.png --flip green",
                        "relief-bake convert out/bricks.png out/bricks8.png --bits 8 --dither "
@@ -431,7 +471,8 @@ Command add_convert_command(CLI::App& tool) {
                        "relief-bake convert out/bricks.png out/fine.png --detail out/small.png "
                        "--detail-repeat 4",
                        "relief-bake convert out/bricks.png out/mips.png --mips "
-                       "--roughness-from-variance 0.3"});
+                       "--roughness-from-variance 0.3",
+                       "relief-bake convert out/bricks.png out/bricks.ktx2 --format bc5 --mips"});
     return {&app, [&app, options] { return run(app, options->files, options->request); }};
 }
 

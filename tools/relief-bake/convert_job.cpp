@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts a normal map file. If only the axes change, the stored codes are mapped exactly;
 // otherwise the normals are decoded to unit floats, pass through a list of steps, and are encoded.
-// The library does both by bands of rows. Mip levels and conversions of the space need the whole
-// map in memory. Tests: tests/tools/relief_bake_convert_test.cpp.
+// The library does both by bands of rows. Mip levels, conversions of the space and textures
+// for GPUs need the whole map in memory.
+// Tests: tests/tools/relief_bake_convert_test.cpp, tests/tools/relief_bake_texture_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -312,12 +313,13 @@ class LevelWriter {
                 fmt::format("--mip-lengths: {} has an alpha channel", job_.input.string()),
                 "give --alpha drop");
         }
+        if (is_texture(job_.output)) return write_texture_levels(field);
         if (request_.mips.wanted) return write_all_levels(field);
         const Image codes =
             stages_.run("convert", [&] { return encode(field.normals, field.alpha); });
         field = NormalField{};  // Before writing, which needs memory itself.
         stages_.run("write", [&] { write(job_.output, codes, metadata()); });
-        result_.levels.push_back({job_.output, codes.width, codes.height, 1.0, 1.0, {}, {}});
+        result_.levels.push_back({job_.output, codes.width, codes.height, 1.0, 1.0, {}, {}, {}});
     }
 
     /// Converts and writes the map by rows.
@@ -333,7 +335,7 @@ class LevelWriter {
         stages_.book("write", converted.times.write);
         result_.lengths = converted.lengths;
         result_.levels.push_back(
-            {job_.output, conversion.width, conversion.height, 1.0, 1.0, {}, {}});
+            {job_.output, conversion.width, conversion.height, 1.0, 1.0, {}, {}, {}});
     }
 
   private:
@@ -369,6 +371,7 @@ class LevelWriter {
                              mean_of(lengths),
                              static_cast<double>(*std::min_element(all.begin(), all.end())),
                              {},
+                             {},
                              {}};
         stages_.run("write", [&] { write(written.file, codes, metadata()); });
         if (request_.mips.roughness) write_roughness(written, level, lengths);
@@ -387,6 +390,77 @@ class LevelWriter {
                 file, encode_channel(roughness, result_.format.bits),
                 {{"relief:content", "roughness"}, {"relief:roughness", fmt::format("{:g}", base)}});
         });
+    }
+
+    // Textures have all levels in one file.
+
+    void write_texture_levels(NormalField& field) {
+        const TextureEncoding encoding = stages_.run(
+            "convert", [&] { return choose_encoding(request_.texture, field.normals); });
+        result_.texture = encoding;
+        GpuTexture texture;
+        texture.format = encoding.format;
+        texture.width = field.normals.width;
+        texture.height = field.normals.height;
+        if (channels_of(encoding.format) == 2) texture.swizzle = "rg01";
+        texture.metadata = texture_entries(encoding.format);
+        GpuTexture roughness = texture;
+        roughness.format = TextureFormat::bc4;
+        roughness.swizzle.clear();
+        Image lengths =
+            make_image(field.normals.width, field.normals.height, 1, 32, ColorSpace::data);
+        std::ranges::fill(lengths.as<float>(), 1.0F);
+        add_level(field.normals, field.alpha, lengths, encoding, texture, roughness);
+        if (request_.mips.wanted) {
+            std::vector<Image> levels =
+                stages_.run("convert", [&] { return normal_mip_levels(field.normals); });
+            field.normals = Image{};
+            result_.steps.push_back(describe_levels(levels.size()));
+            const std::vector<Image> alphas =
+                field.alpha ? mip_levels(*field.alpha) : std::vector<Image>{};
+            for (std::size_t i = 0; i < levels.size(); ++i) {
+                lengths = stages_.run("convert", [&] { return split_lengths(levels[i], report_); });
+                add_level(levels[i],
+                          alphas.empty() ? std::nullopt : std::optional<Image>(alphas[i]), lengths,
+                          encoding, texture, roughness);
+            }
+        }
+        const TextureWriteOptions options{request_.texture.zstd_level};
+        stages_.run("write", [&] { write_texture(job_.output, texture, options); });
+        if (!request_.mips.roughness) return;
+        const std::filesystem::path file = level_file(job_.output, 0, true);
+        roughness.metadata = {{"relief:content", "roughness"},
+                              {"relief:roughness", fmt::format("{:g}", *request_.mips.roughness)}};
+        stages_.run("write", [&] { write_texture(file, roughness, options); });
+        for (WrittenLevel& level : result_.levels)
+            level.roughness_file = file;
+    }
+
+    /// Adds a level to the texture of normals, and to that of roughness if it is wanted.
+    void add_level(const Image& normals, const std::optional<Image>& alpha, const Image& lengths,
+                   const TextureEncoding& encoding, GpuTexture& texture, GpuTexture& roughness) {
+        EncodedLevel level =
+            stages_.run("convert", [&] { return encode_level(normals, alpha, encoding, report_); });
+        texture.levels.push_back(std::move(level.bytes));
+        const auto all = lengths.as<float>();
+        WrittenLevel written{job_.output,
+                             normals.width,
+                             normals.height,
+                             mean_of(lengths),
+                             static_cast<double>(*std::min_element(all.begin(), all.end())),
+                             {},
+                             {},
+                             level.error};
+        if (request_.mips.roughness) {
+            const Image values = stages_.run("convert", [&] {
+                return roughness_from_lengths(lengths, *request_.mips.roughness);
+            });
+            written.mean_roughness = mean_of(values);
+            roughness.levels.push_back(stages_.run("convert", [&] {
+                return encode_texture_level(values, roughness.format, encoding.quality, report_);
+            }));
+        }
+        result_.levels.push_back(std::move(written));
     }
 
     [[nodiscard]] std::string describe_levels(std::size_t count) const {
@@ -414,7 +488,15 @@ class LevelWriter {
     [[nodiscard]] std::map<std::string, std::string> metadata() const {
         NormalMapFormat format = result_.format;
         format.green = result_.green.value_or(Green::up);
-        std::map<std::string, std::string> entries = normal_map_metadata(format);
+        return with_kept_entries(normal_map_metadata(format));
+    }
+
+    [[nodiscard]] std::map<std::string, std::string> texture_entries(TextureFormat format) const {
+        return with_kept_entries(texture_metadata(result_.green.value_or(Green::up), format));
+    }
+
+    [[nodiscard]] std::map<std::string, std::string> with_kept_entries(
+        std::map<std::string, std::string> entries) const {
         if (!result_.green) entries.erase("relief:green");
         if (result_.content) entries["relief:content"] = *result_.content;
         for (const auto& [key, value] : kept_) {
@@ -451,8 +533,9 @@ bool keeps_codes(const ConvertRequest& request, const InputMap& input,
 }
 
 /// Returns whether the whole map must be in memory.
-bool needs_whole_map(const ConvertRequest& request) {
-    return request.mips.wanted || request.space.to_object || request.space.to_tangent;
+bool needs_whole_map(const Job& job, const ConvertRequest& request) {
+    return is_texture(job.output) || request.mips.wanted || request.space.to_object ||
+           request.space.to_tangent;
 }
 
 std::string describe_lengths(const LengthRange& lengths) {
@@ -549,6 +632,10 @@ void convert_floats(const ConvertRequest& request, InputMap& input, const AxisCo
 std::vector<std::filesystem::path> output_files(const std::filesystem::path& output,
                                                 const MipOptions& mips) {
     std::vector<std::filesystem::path> files = {output};
+    if (is_texture(output)) {
+        if (mips.roughness) files.push_back(level_file(output, 0, true));
+        return files;
+    }
     constexpr std::size_t max_level = 31;  // The side of an image is an int.
     for (std::size_t level = 0; mips.wanted && level <= max_level; ++level) {
         if (level > 0) files.push_back(level_file(output, level, false));
@@ -561,7 +648,7 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
     MapConversion result;
     Report report;
     InputMap input = stages.run("read", [&] {
-        if (needs_whole_map(request)) return read_normal_map(job.input, request.input);
+        if (needs_whole_map(job, request)) return read_normal_map(job.input, request.input);
         // A map that fits is read once instead of three times.
         const std::size_t max_memory =
             std::min<std::uint64_t>(max_normal_map_in_memory, input_limits().memory / 4);
@@ -577,14 +664,17 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
     if (request.space.to_tangent) input.green = request.output.green;
     const AxisConversion axes = axis_conversion(job, request, input);
     result.green = axes.green;
-    result.format = format_of(request.output, job.output,
-                              {.bits = result.bits_read, .green = Green::up, .flat = input.flat});
+    if (!is_texture(job.output)) {
+        result.format =
+            format_of(request.output, job.output,
+                      {.bits = result.bits_read, .green = Green::up, .flat = input.flat});
+    }
     LevelWriter writer(job, request, input.metadata, stages, report, result);
     const NormalMapSource source = {job.input, input.image.empty() ? nullptr : &input.image,
                                     input.flat, request.input.is_signed};
-    if (keeps_codes(request, input, result.format)) {
+    if (!is_texture(job.output) && keeps_codes(request, input, result.format)) {
         about(job.input, [&] { convert_codes(request, input, source, axes, writer, result); });
-    } else if (needs_whole_map(request)) {
+    } else if (needs_whole_map(job, request)) {
         NormalField field;
         about(job.input, [&] {
             stages.run("convert",

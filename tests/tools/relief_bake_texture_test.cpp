@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs relief-bake convert with textures as output and input: formats, levels, errors, limits.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "relief/mesh/image.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/texture_file.h"
+#include "support/images.h"
+#include "tools/refusal.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusals;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+
+/// Runs relief-bake convert, which must succeed.
+ProgramResult run_texture(const Workplace& workplace, const std::string& words) {
+    ProgramResult result = workplace.run("relief-bake convert " + words);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return result;
+}
+
+/// Writes the exact normals of a surface of 20 x 12 texels.
+void write_waves(const Workplace& workplace, const std::string& name) {
+    Image slopes = make_image(20, 12, 2, 32, ColorSpace::data);
+    for (int i = 0; i < 240; ++i) {
+        float* const slope = slopes.as<float>().data() + 2 * i;
+        slope[0] = static_cast<float>(0.4 * std::cos(0.3 * (i % 20)));
+        slope[1] = static_cast<float>(0.3 * std::sin(0.4 * (i / 20)));
+    }
+    write_image(workplace / name, encode_normal_map(normals_from_slopes(slopes), {}),
+                {{"relief:green", "up"}});
+}
+
+TEST(ConvertToTexture, AllLevelsAreInOneFileAndTheirErrorsAreStated) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    const ProgramResult result =
+        run_texture(workplace, "map.png out/m.ktx2 --mips --zstd 9 --report out/r.json");
+    EXPECT_EQ(workplace.outputs(), "m.ktx2 r.json");
+    EXPECT_THAT(result.out, HasSubstr("bc5, quality normal, green up"));
+    EXPECT_THAT(result.out, HasSubstr("level 4, 1 x 1: error "));
+    const GpuTexture texture = read_texture(workplace / "out/m.ktx2");
+    EXPECT_EQ(texture.format, TextureFormat::bc5);
+    EXPECT_EQ(texture.levels.size(), 5U);
+    EXPECT_EQ(texture.swizzle, "rg01");
+    EXPECT_EQ(texture.metadata.at("relief:green"), "up");
+    EXPECT_EQ(texture.metadata.at("relief:flat"), "32767.5");
+    const json levels = json::parse(workplace.read("out/r.json"))["levels"];
+    ASSERT_EQ(levels.size(), 5U);
+    for (const json& level : levels) {
+        const double mean = level["error"]["mean"];
+        EXPECT_LT(mean, 1.0);
+        EXPECT_LE(mean, level["error"]["p99"]);
+        EXPECT_LE(level["error"]["p99"].get<double>(), level["error"]["max"].get<double>() + 1e-9);
+    }
+    EXPECT_GT(levels[0]["error"]["mean"].get<double>(), 0.01);
+    // A single texel is almost exact: within 1/14 of a code, 0.03 degrees per component.
+    EXPECT_LT(levels[4]["error"]["mean"].get<double>(), 0.06);
+}
+
+TEST(ConvertToTexture, FormatsDifferInError) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    struct Case {
+        const char* format;
+        double least, most;
+    };
+    for (const auto& [format, least, most] :
+         {Case{"bc5", 0.01, 1.0}, Case{"bc5-snorm", 0.01, 1.0}, Case{"bc7", 0.01, 2.0},
+          Case{"rg8", 0.05, 0.3}, Case{"rgba8", 0.05, 0.3}, Case{"rg16", 0.0, 0.01},
+          Case{"rgba16", 0.0, 0.01}, Case{"rg16f", 0.0, 0.1}, Case{"rgba16f", 0.0, 0.1}}) {
+        for (const char* extension : {"ktx2", "dds"}) {
+            const std::string output = std::string("out/m.") + extension;
+            run_texture(workplace,
+                        "map.png " + output + " --format " + format + " --report out/r.json");
+            const double mean =
+                json::parse(workplace.read("out/r.json"))["levels"][0]["error"]["mean"];
+            EXPECT_GE(mean, least) << format;
+            EXPECT_LE(mean, most) << format;
+            EXPECT_STREQ(enum_name(read_texture(workplace / output).format), format);
+        }
+    }
+}
+
+TEST(ConvertToTexture, MaxErrorChoosesTheSmallestFormat) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    const auto chosen = [&](const std::string& words) {
+        run_texture(workplace, "map.png out/m.ktx2 --report out/r.json --max-error " + words);
+        const json report = json::parse(workplace.read("out/r.json"));
+        return report["texture_format"].get<std::string>() + " " +
+               report["quality"].get<std::string>();
+    };
+    EXPECT_EQ(chosen("2"), "bc5 fast");
+    EXPECT_EQ(chosen("0.2"), "rg8 normal");
+    EXPECT_EQ(chosen("0.01"), "rg16 normal");
+    EXPECT_EQ(chosen("2 --quality best"), "bc5 best");
+    EXPECT_EQ(chosen("1 --format rgba16"), "rgba16 normal");
+}
+
+TEST(ConvertToTexture, EnginesSetTheDirectionOfGreen) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    run_texture(workplace, "map.png out/m.ktx2 --for unreal");
+    const GpuTexture texture = read_texture(workplace / "out/m.ktx2");
+    EXPECT_EQ(texture.format, TextureFormat::bc5);
+    EXPECT_EQ(texture.metadata.at("relief:green"), "down");
+    // The fourth row rises upwards by 0.3 sin(1.2), so its normals point down.
+    constexpr std::size_t y_of_fourth_row = 2 * 20 * 3 + 1;
+    const Image down_image = decode_texture_level(texture, 0);
+    EXPECT_GT(down_image.as<std::uint16_t>()[y_of_fourth_row], 36000);
+    run_texture(workplace, "map.png out/m.ktx2 --for unity");
+    const Image up_image = decode_texture_level(read_texture(workplace / "out/m.ktx2"), 0);
+    EXPECT_LT(up_image.as<std::uint16_t>()[y_of_fourth_row], 30000);
+}
+
+TEST(ConvertToTexture, RoughnessIsWrittenWithAllLevels) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    run_texture(workplace, "map.png out/m.dds --mips --roughness-from-variance 0.5");
+    EXPECT_EQ(workplace.outputs(), "m-roughness.dds m.dds");
+    const GpuTexture roughness = read_texture(workplace / "out/m-roughness.dds");
+    EXPECT_EQ(roughness.format, TextureFormat::bc4);
+    ASSERT_EQ(roughness.levels.size(), 5U);
+    const Image largest = decode_texture_level(roughness, 0);
+    EXPECT_NEAR(largest.as<std::uint16_t>()[0], 0.5 * 65535, 20);
+    const Image smallest = decode_texture_level(roughness, 4);
+    EXPECT_GT(smallest.as<std::uint16_t>()[0], 0.6 * 65535);
+}
+
+TEST(ConvertFromTexture, TheMapIsReadBackWithItsConventions) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    for (const char* format : {"bc5", "bc5-snorm", "bc7", "rg16"}) {
+        run_texture(workplace, std::string("map.png out/m.ktx2 --green down --format ") + format);
+        const ProgramResult result =
+            run_texture(workplace, "out/m.ktx2 out/back.png --bits 16 --green up");
+        EXPECT_THAT(result.out, HasSubstr("green down (from its metadata)"));
+        const Image exact = decode_normal_map(read_image(workplace / "map.png", ImageUse::data),
+                                              Green::up, FlatCode::half);
+        const Image back = decode_normal_map(read_image(workplace / "out/back.png", ImageUse::data),
+                                             Green::up, FlatCode::half);
+        for (std::size_t i = 0; i < exact.sample_count(); ++i)
+            ASSERT_NEAR(exact.as<float>()[i], back.as<float>()[i], 0.08) << format;
+    }
+    EXPECT_EQ(workplace.run("relief-bake check out/m.ktx2").exit_code, 0);
+}
+
+TEST(ConvertToTexture, Refusals) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    write_image(workplace / "alpha.png", make_image(4, 4, 4, 8, ColorSpace::data));
+    write_image(workplace / "old.png", make_image(4, 4, 3, 8, ColorSpace::data));
+    expect_refusals(
+        workplace, "relief-bake", "old.png",
+        {{"relief-bake convert map.png out/m.png --format bc5", 2,
+          "--format: has no effect without an output file .ktx2 or .dds"},
+         {"relief-bake convert map.png out/m.dds --zstd 3", 2, "--zstd: compresses .ktx2 files"},
+         {"relief-bake convert map.png out/m.ktx2 --bits 8", 2,
+          "--bits, --half: --format sets the bits of textures"},
+         {"relief-bake convert map.png out/m.ktx2 --format rg8 --quality best", 2,
+          "--quality: has no effect on rg8"},
+         {"relief-bake convert map.png out/m.ktx2 --mips --mip-lengths", 2,
+          "--mip-lengths: textures store no lengths"},
+         {"relief-bake convert map.png out/m.ktx2 --format bc5 --max-error 0.001", 2,
+          "--max-error 0.001: the least mean error of the formats is"},
+         {"relief-bake convert alpha.png out/m.ktx2", 2,
+          "--format bc5: stores no alpha, which the map has"}});
+}
+
+}  // namespace
+}  // namespace relief::tools

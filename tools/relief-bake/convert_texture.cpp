@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures of `relief-bake convert`: their options, the choice of format and quality, and the
+// encoding of levels with their errors. Tests: tests/tools/relief_bake_texture_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "common/options.h"
+#include "convert.h"
+#include "relief/mesh/block_compression.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/statistics.h"
+
+namespace relief::tools {
+namespace {
+
+/// The formats that can store normals.
+constexpr TextureFormat normal_formats[] = {
+    TextureFormat::bc5,    TextureFormat::bc5_snorm, TextureFormat::bc7,
+    TextureFormat::rg8,    TextureFormat::rgba8,     TextureFormat::rg16,
+    TextureFormat::rgba16, TextureFormat::rg16f,     TextureFormat::rgba16f};
+
+/// The encodings that --max-error tries, the smallest and fastest first.
+constexpr TextureEncoding tried_encodings[] = {{TextureFormat::bc5, BlockQuality::fast},
+                                               {TextureFormat::bc5, BlockQuality::normal},
+                                               {TextureFormat::bc5, BlockQuality::best},
+                                               {TextureFormat::rg8, BlockQuality::normal},
+                                               {TextureFormat::rg16, BlockQuality::normal}};
+
+Choices<TextureFormat> format_choices() {
+    Choices<TextureFormat> choices;
+    for (const TextureFormat format : normal_formats)
+        choices.emplace_back(enum_name(format), format);
+    return choices;
+}
+
+/// How the samples of a format code components.
+NormalMapFormat normal_format_of(TextureFormat format) {
+    const std::optional<BlockFormat> blocks = block_format_of(format);
+    const bool has_sign = blocks && is_signed(*blocks);
+    return {.bits = bits_of(format),
+            .green = Green::up,
+            .flat = has_sign ? FlatCode::middle : FlatCode::half,
+            .dither = Dither::none};
+}
+
+/// The first channels of an image.
+Image first_channels(const Image& image, int channels) {
+    if (image.channels == channels) return image;
+    Image result = make_image(image.width, image.height, channels, image.bits(), image.color_space);
+    std::visit(
+        [&]<typename Sample>(std::vector<Sample>& samples) {
+            const auto from = image.as<Sample>();
+            const auto held = static_cast<std::size_t>(image.channels);
+            const auto kept = static_cast<std::size_t>(channels);
+            for (std::size_t i = 0; i < samples.size(); ++i)
+                samples[i] = from[i / kept * held + i % kept];
+        },
+        result.samples);
+    return result;
+}
+
+std::vector<std::byte> encoded(const Image& normals, const std::optional<Image>& alpha,
+                               const TextureEncoding& encoding, Report& report) {
+    const std::optional<BlockFormat> blocks = block_format_of(encoding.format);
+    if (blocks && channels_of(*blocks) == 2) {
+        return encode_normal_blocks(normals, {.format = *blocks, .quality = encoding.quality},
+                                    report);
+    }
+    NormalMapFormat format = normal_format_of(encoding.format);
+    // BC7 is encoded from the exact components, not from codes of 8 bits.
+    if (blocks) format.bits = 32;
+    Image codes = encode_normal_map(normals, format, report);
+    if (alpha) codes = with_alpha(codes, *alpha);
+    codes = first_channels(codes, std::min(codes.channels, channels_of(encoding.format)));
+    return encode_texture_level(codes, encoding.format, encoding.quality, report);
+}
+
+Image decoded(const EncodedLevel& level, TextureFormat format, int width, int height) {
+    GpuTexture texture;
+    texture.format = format;
+    texture.width = width;
+    texture.height = height;
+    texture.levels.push_back(level.bytes);
+    const Image image = decode_texture_level(texture, 0);
+    const FlatCode flat = normal_format_of(format).flat;
+    if (image.channels == 2) return decode_xy_map(image, {0, 1}, Green::up, flat);
+    return decode_normal_map(image, Green::up, flat);
+}
+
+ErrorStats error_of(const Image& exact, const Image& result) {
+    const std::span<const float> a = exact.as<float>();
+    const std::span<const float> b = result.as<float>();
+    std::vector<float> errors(a.size() / 3);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        errors[i] = static_cast<float>(degrees_between({a[3 * i], a[3 * i + 1], a[3 * i + 2]},
+                                                       {b[3 * i], b[3 * i + 1], b[3 * i + 2]}));
+    }
+    return error_stats(std::move(errors));
+}
+
+}  // namespace
+
+bool is_texture(const std::filesystem::path& file) {
+    const std::string extension = extension_of(file);
+    return extension == ".ktx2" || extension == ".dds";
+}
+
+void add_texture_options(CLI::App& app, TextureOptions& options) {
+    const std::string group = "Textures (.ktx2 and .dds)";
+    add_choice(app, "--format", options.format, format_choices(),
+               "Format of the texels. bc5: 8 bits per texel, x and y only, as engines read it; "
+               "bc5-snorm: the same with signed codes, flat is exact; bc7: 8 bits per texel, with "
+               "z and alpha; the others are not compressed, and rg formats have no z. --mips "
+               "stores all levels in the file. Default: bc5.")
+        .group(group);
+    add_choice(app, "--quality", options.quality, enum_choices<BlockQuality>(),
+               "Search for block formats: fast, normal or best. Default: normal.")
+        .group(group);
+    add_number(app, "--max-error", "DEG", options.max_error, {0.0, 180.0, "degrees"},
+               "Choose the smallest and fastest of bc5, rg8 and rg16, and the quality, whose mean "
+               "error is at most DEG in the largest level. --format or --quality limit the choice.")
+        .group(group);
+    add_value(app, "--zstd", "LEVEL",
+              "Compress .ktx2 with zstd, from 1 (fast) to 22 (small). Default: not compressed.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.zstd_level = parse_integer(subject, text, 1, 22);
+              })
+        .group(group);
+}
+
+void check_texture_options(const CLI::App& app, const ConvertRequest& request,
+                           const std::filesystem::path& output) {
+    if (!is_texture(output)) {
+        refuse_given(app, {"--format", "--quality", "--max-error", "--zstd"},
+                     "an output file .ktx2 or .dds");
+        return;
+    }
+    const MapOutputOptions& given = request.output;
+    if (given.bits || given.half)
+        throw UsageError("--bits, --half: --format sets the bits of textures");
+    if (given.flat || given.dither)
+        throw UsageError("--zero-code, --dither: have no effect on textures");
+    if (given.fast || given.small)
+        throw UsageError("--fast, --small: --quality and --zstd set the effort for textures");
+    if (request.mips.lengths) throw UsageError("--mip-lengths: textures store no lengths");
+    if (request.texture.zstd_level && extension_of(output) == ".dds")
+        throw UsageError("--zstd: compresses .ktx2 files only");
+    const std::optional<TextureFormat> format = request.texture.format;
+    if (request.texture.quality && format && !block_format_of(*format)) {
+        throw UsageError(
+            fmt::format("--quality: has no effect on {}, which has no blocks", enum_name(*format)));
+    }
+}
+
+EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alpha,
+                          const TextureEncoding& encoding, Report& report) {
+    if (alpha && channels_of(encoding.format) < 4) {
+        throw UsageError(fmt::format("--format {}: stores no alpha, which the map has",
+                                     enum_name(encoding.format)),
+                         "give --alpha drop, or a format with alpha");
+    }
+    EncodedLevel level;
+    level.bytes = encoded(normals, alpha, encoding, report);
+    level.error = error_of(normals, decoded(level, encoding.format, normals.width, normals.height));
+    return level;
+}
+
+TextureEncoding choose_encoding(const TextureOptions& options, const Image& normals) {
+    TextureEncoding encoding{options.format.value_or(TextureFormat::bc5),
+                             options.quality.value_or(BlockQuality::normal)};
+    if (!options.max_error) return encoding;
+    std::vector<TextureEncoding> tried(std::begin(tried_encodings), std::end(tried_encodings));
+    if (options.format) {
+        tried.clear();
+        for (const auto& entry : enum_names<BlockQuality>)
+            tried.push_back({*options.format, entry.value});
+        if (!block_format_of(*options.format))
+            tried.assign(1, {*options.format, BlockQuality::normal});
+    }
+    if (options.quality) {
+        std::erase_if(tried, [&](const TextureEncoding& each) {
+            return block_format_of(each.format) && each.quality != *options.quality;
+        });
+    }
+    double least = 180.0;
+    for (const TextureEncoding& each : tried) {
+        Report unread;
+        const double error = encode_level(normals, std::nullopt, each, unread).error.mean;
+        if (error <= *options.max_error) return each;
+        least = std::min(least, error);
+    }
+    throw UsageError(
+        fmt::format("--max-error {:g}: the least mean error of the formats is {:.3g} "
+                    "degrees",
+                    *options.max_error, least));
+}
+
+std::map<std::string, std::string> texture_metadata(Green green, TextureFormat format) {
+    NormalMapFormat stored = normal_format_of(format);
+    stored.green = green;
+    return normal_map_metadata(stored);
+}
+
+}  // namespace relief::tools
