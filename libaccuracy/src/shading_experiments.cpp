@@ -221,24 +221,24 @@ PreparedExperiment highlight_experiment(const PlanOptions& options) {
                              });
 }
 
-constexpr int texels = 512;
+constexpr int wave_texels = 512;
 
 /// The normal map of waves whose periods divide the map.
 Image bumpy_normals() {
-    Image normals = make_image(texels, texels, 3, 32, ColorSpace::data);
+    Image normals = make_image(wave_texels, wave_texels, 3, 32, ColorSpace::data);
     const std::span<float> to = normals.as<float>();
     const auto slope = [](double u, double v, double fast, double slow) {
         return 0.22 * std::cos(2.0 * std::numbers::pi * (fast * u + slow * v));
     };
-    for (int y = 0; y < texels; ++y) {
-        for (int x = 0; x < texels; ++x) {
-            const double u = (x + 0.5) / texels;
-            const double v = (y + 0.5) / texels;
+    for (int y = 0; y < wave_texels; ++y) {
+        for (int x = 0; x < wave_texels; ++x) {
+            const double u = (x + 0.5) / wave_texels;
+            const double v = (y + 0.5) / wave_texels;
             const glm::dvec3 normal =
                 glm::normalize(glm::dvec3(slope(u, v, 67, 23) + slope(u, v, 41, -31),
                                           slope(u, v, 19, 71) + slope(u, v, -29, 47), 1.0));
             for (int i = 0; i < 3; ++i)
-                to[static_cast<std::size_t>(3 * (y * texels + x) + i)] =
+                to[static_cast<std::size_t>(3 * (y * wave_texels + x) + i)] =
                     static_cast<float>(normal[i]);
         }
     }
@@ -302,7 +302,7 @@ RenderedMethod method_of(const AliasingChoice& choice, const Image& map, double 
 
 /// The parameter `away` of plane() for a number of texels per pixel.
 double distance_for(double texels_per_pixel, int size) {
-    return texels_per_pixel * size / texels;
+    return texels_per_pixel * size / wave_texels;
 }
 
 /// \param size  of the images; nearly all of the time goes into the rays of the ground truth
