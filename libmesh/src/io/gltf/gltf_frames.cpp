@@ -168,7 +168,14 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
     json["type"] = fmt::format("VEC{}", Vector::length());
     const std::string elements(reinterpret_cast<const char*>(values.data()),
                                values.size() * sizeof(Vector));
-    if (std::string_view(name) == "POSITION") update_bounds(json, elements);
+    if (std::string_view(name) == "POSITION") {
+        json["min"] = json["max"] = Json();  // glTF requires them; update_bounds() replaces them.
+        update_bounds(json, elements);
+        if (json["min"].is_null()) {  // A coordinate is not finite.
+            json.erase("min");
+            json.erase("max");
+        }
+    }
     const std::size_t number = add(std::move(json), elements, gltf_code::array_buffer);
     primitive()["attributes"][name] = number;
     carried_.emplace(number, number);  // These elements already have the new order.
