@@ -55,7 +55,7 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
             .group(group);
     };
     add_count("--turntable", options.turntable,
-              "Draw N pictures in which the model rotates once about its vertical axis. A .png or "
+              "Draw N pictures while the model rotates once about its vertical axis. A .png or "
               ".exr output becomes numbered files (spin-0001.png, or # in the name for each "
               "digit); an .apng output becomes an animation.");
     add_count("--frames", options.frames,
