@@ -138,7 +138,7 @@ TEST(SavedScene, DrawsTheSamePixelsForAllOptions) {
           "--material gold --light point:2,2,2,4,#ff8040 --camera 10,40@0.1,0.6,0,2.5 --fov 41.7",
           "--height-map data/bricks-height.png --strength 9 --ambient 0.2 --exposure 0.7 "
           "--tone-mapping aces",
-          "--height-map data/bricks-height.png --height-as bump_map --interpolation flat",
+          "--height-map data/bricks-height.png --height-as bump_map", "--interpolation flat",
           "--environment data/sky --reflectivity 0.4 --light spot:2,3,2,0,0,0,23,5 --no-skybox",
           "--diffuse-map data/bricks-diffuse.png --shininess 80 --background '#204060'"}) {
         const std::string line = "data/vase.obj" + std::string(small) + options;
