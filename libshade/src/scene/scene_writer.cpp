@@ -53,8 +53,11 @@ class SceneWriter {
   public:
     SceneWriter(const std::filesystem::path& file, const SceneToSave& saved)
         : file_(file), saved_(saved), scene_(saved.scene) {
+        // Scene files read materials as they are, so the differences are from those.
+        SceneOptions options = saved.options;
+        options.model = SceneOptions::MaterialModel::as_authored;
         Report ignored;
-        loaded_ = load_scene(saved.source, saved.options, ignored);
+        loaded_ = load_scene(saved.source, options, ignored);
         name_default_material(loaded_);
         name_default_material(scene_);
     }

@@ -147,6 +147,11 @@ TEST(SavedScene, DrawsTheSamePixelsForAllOptions) {
         std::filesystem::remove(workplace / "saved.json");
         std::filesystem::remove(workplace / "saved-image-1.png");
     }
+    // glTF materials are metallic-roughness, which a classic material replaces.
+    ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj vase.glb").exit_code, 0);
+    const std::string gold = "vase.glb" + std::string(small) + "--material gold";
+    ASSERT_EQ(workplace.run("relief-view " + gold + " --save-scene saved.json").exit_code, 0);
+    EXPECT_EQ(differing(workplace, gold, "saved.json --samples 1"), 0U);
 }
 
 TEST(SavedScene, OfASceneFileIsInItsFolderAndCanBeSavedAgain) {
