@@ -44,7 +44,7 @@ void naive_area_normals(const Mesh& mesh, std::span<glm::vec3> normals) {
         normal = glm::normalize(normal);
 }
 
-/// What all contenders share: the result and the memory for intermediate results.
+/// The memory that all contenders share, for the result and for intermediate results.
 struct Memory {
     std::vector<glm::vec3> normals;
     Workspace workspace;

@@ -23,7 +23,7 @@ struct TriangleSample {
 /// Returns points of a mesh that are spread evenly over its area, without random numbers.
 std::vector<TriangleSample> area_samples(const Mesh& mesh, std::size_t count);
 
-/// What the error of a decimation is.
+/// The quantity that an error of a decimation measures.
 enum class DecimationError {
     distance,  ///< From the exact surface.
     angle,     ///< Between a triangle and the exact surface at the nearest point, in degrees.

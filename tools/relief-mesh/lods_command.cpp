@@ -30,7 +30,7 @@ namespace {
 
 constexpr int max_lod_levels = 16;
 
-/// What decides on the size at which a level takes over.
+/// The measurement that determines the size at which a level takes over.
 enum class SwitchRule { flip, distance };
 
 struct LodsCommand {

@@ -100,7 +100,7 @@ struct SurfacePair {
 /// Selects whether the distance between IN and OUT is measured.
 enum class Measuring { off, on };
 
-/// What a command does with each model.
+/// The operation of a command on each model.
 struct Reshaping {
     std::string verb;  ///< "decimate", the name of the stage.
     NormalMode normals = NormalMode::keep;

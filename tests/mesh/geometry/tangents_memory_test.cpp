@@ -150,7 +150,7 @@ TEST(BufferMemory, AWorkspaceServesTheNextCall) {
     // Blocks of memory are exchanged for larger ones at first.
     compute();
     compute();
-    // What remains are small arrays: kinds of triangles, classes and ranges.
+    // Only small arrays remain: kinds of triangles, classes and ranges.
     EXPECT_LT(peak_of(compute), first / 10);
 }
 

@@ -156,7 +156,7 @@ struct GltfJoints {
     std::vector<glm::vec4> weights;
 };
 
-/// What deforms a primitive, for the vertices of GltfDocument::mesh().
+/// The skin and the morph targets of a primitive, for the vertices of GltfDocument::mesh().
 struct GltfDeformation {
     std::vector<GltfMorphTarget> targets;
     std::vector<GltfJoints> joints;  ///< Those of JOINTS_0, JOINTS_1, ...

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Normals and tangents again and again without new memory: a Workspace for intermediate results,
-/// and tangents of corners in the caller's memory. Tests: tests/mesh/geometry/workspace_test.cpp.
+/// A Workspace reuses the memory of intermediate results in repeated computations of normals and
+/// tangents, and corner_tangents() writes into the caller's memory. Tests:
+/// tests/mesh/geometry/workspace_test.cpp.
 #pragma once
 
 #include <cstddef>

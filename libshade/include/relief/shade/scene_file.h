@@ -55,7 +55,8 @@ struct SceneOptions {
     /// In radians, 0 to pi: sharper edges are hard in normals that are computed. If absent, STL
     /// has stl_crease_angle, and others have the smoothing groups of their file.
     std::optional<double> crease_angle = std::nullopt;
-    /// Of a model file; models within scene files stand as the scene file says.
+    /// The axis of a model file that points up. Models within scene files stand as the scene file
+    /// says.
     UpAxis up = UpAxis::automatic;
 };
 
