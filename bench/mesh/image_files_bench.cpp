@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/file_bytes.h"
+#include "base/files.h"
 #include "bench_support.h"
 #include "io/image/image_module_client.h"
 #include "relief/accuracy/ground_truth.h"

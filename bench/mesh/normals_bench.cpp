@@ -15,7 +15,6 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/statistics.h"
-#include "relief/mesh/workspace.h"
 
 #ifdef RELIEF_HAS_OPENMESH
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>

@@ -18,7 +18,6 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/workspace.h"
 
 namespace relief::bench {
 namespace {

@@ -15,7 +15,7 @@
 #include "experiment_parts.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

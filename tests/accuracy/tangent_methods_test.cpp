@@ -9,7 +9,7 @@
 #include <set>
 
 #include "relief/mesh/tangents.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

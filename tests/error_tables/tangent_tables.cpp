@@ -13,7 +13,7 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/frames.h"
 #include "storage_experiments.h"
-#include "support/random_frames.h"
+#include "support/shapes.h"
 
 namespace relief::test {
 namespace {

@@ -14,7 +14,6 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
 

@@ -16,7 +16,6 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/tangents.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
 #include "support/shapes.h"

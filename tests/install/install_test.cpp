@@ -17,7 +17,7 @@
 
 #include "relief/version.h"
 #include "support/shared_data.h"
-#include "tools/run_program.h"
+#include "tools/workplace.h"
 
 namespace relief::test {
 namespace {

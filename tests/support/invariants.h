@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Checks of promises that hold for every mesh: the order of triangles changes no bit, and
-/// tangents are unit, perpendicular and handed.
+/// Checks that many tests share: promises that hold for every mesh (the order of triangles changes
+/// no bit; tangents are unit, perpendicular and handed), angles between directions, messages of
+/// errors.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::test {
 
+using relief::degrees_between;
 /// Returns the mesh with its triangles in another order: triangle i is triangle order[i] of the
 /// original.
 Mesh with_triangle_order(const Mesh& mesh, const std::vector<std::size_t>& order);
@@ -43,5 +47,19 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 /// vectors resolve 6e-8). w is +1 or -1 and equal at the corners of a triangle. A zero or
 /// non-finite normal restricts nothing.
 std::string broken_tangents(const Mesh& mesh, const std::vector<glm::vec4>& tangents);
+
+/// Returns the message of the Error that `call` throws, or "no error". Other exceptions pass
+/// through.
+template <class Error, class Call>
+std::string message_of(const Call& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+inline constexpr float half_turn = std::numbers::pi_v<float>;
 
 }  // namespace relief::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Meshes whose exact normals and tangents are known in closed form.
+/// Meshes whose exact normals and tangents are known in closed form, and random frames in double.
 #pragma once
 
 #include <cstdint>
@@ -44,5 +44,18 @@ Mesh with_tangents(Mesh mesh, TangentMethod mode = TangentMethod::mikktspace);
 inline std::uint32_t vertex_at(const Mesh& mesh, std::size_t corner) {
     return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
 }
+
+/// Frames in double, and the same frames rounded to float.
+struct ReferenceFrames {
+    std::vector<glm::dvec3> normals;
+    std::vector<glm::dvec3> tangents;
+    std::vector<glm::vec3> float_normals;
+    std::vector<glm::vec4> float_tangents;
+
+    void add(const glm::dvec3& normal, const glm::dvec3& tangent, float w);
+};
+
+/// Uniformly distributed frames with alternating handedness, the same on every machine.
+ReferenceFrames random_frames(std::size_t count);
 
 }  // namespace relief::test

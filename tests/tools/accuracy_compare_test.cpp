@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "accuracy_report.h"
-#include "tools/refusal.h"
 #include "tools/report_sample.h"
 #include "tools/schema_page.h"
 #include "tools/workplace.h"

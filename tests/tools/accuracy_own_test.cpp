@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/image_file.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

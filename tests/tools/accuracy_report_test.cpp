@@ -10,7 +10,6 @@
 
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
-#include "tools/refusal.h"
 #include "tools/report_sample.h"
 #include "tools/schema_page.h"
 #include "tools/workplace.h"

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/refusal.h"
 #include "tools/schema_page.h"
 #include "tools/workplace.h"
 

@@ -16,7 +16,6 @@
 #include "relief/mesh/tangents.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
-#include "tools/run_program.h"
 #include "tools/tangent_definition.h"
 #include "tools/workplace.h"
 

@@ -10,8 +10,7 @@
 
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
-#include "support/message_of.h"
-#include "tools/refusal.h"
+#include "support/invariants.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "relief/mesh/image_file.h"
-#include "tools/run_program.h"
 #include "tools/workplace.h"
 
 namespace relief::test {

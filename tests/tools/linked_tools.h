@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/run_program.h"
+#include "tools/workplace.h"
 
 namespace relief::test {
 

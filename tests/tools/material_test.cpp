@@ -8,8 +8,6 @@
 #include <string>
 
 #include "relief/mesh/gltf_document.h"
-#include "tools/read_files.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

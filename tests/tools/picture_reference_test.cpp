@@ -9,7 +9,6 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

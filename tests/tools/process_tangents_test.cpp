@@ -8,9 +8,8 @@
 #include <set>
 
 #include "relief/mesh/gltf_document.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -10,9 +10,8 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

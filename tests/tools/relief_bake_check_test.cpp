@@ -13,7 +13,6 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -13,9 +13,8 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/statistics.h"
 #include "support/images.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -14,7 +14,6 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/statistics.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

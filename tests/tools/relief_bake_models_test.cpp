@@ -14,7 +14,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

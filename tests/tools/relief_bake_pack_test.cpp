@@ -10,7 +10,6 @@
 
 #include "engines.h"
 #include "relief/mesh/image_file.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -12,7 +12,6 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh.h"
 #include "relief/shade/scene.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

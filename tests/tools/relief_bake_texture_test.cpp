@@ -12,7 +12,6 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/texture_file.h"
 #include "support/images.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "support/shared_data.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -6,10 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/gltf_document.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
-#include "tools/read_files.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

@@ -15,8 +15,6 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/topology.h"
 #include "support/shared_data.h"
-#include "tools/read_files.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

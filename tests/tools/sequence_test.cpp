@@ -9,8 +9,6 @@
 #include <fstream>
 
 #include "relief/mesh/image_file.h"
-#include "tools/read_files.h"
-#include "tools/refusal.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {

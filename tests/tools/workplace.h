@@ -1,16 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A folder laid out like a checkout that was built in release mode, so that commands can be run as
-/// the documents show them, and small inputs to run them on.
+/// Runs programs of the project as a user does, in a folder with the layout of a checkout that was
+/// built in release mode, so that commands run as the documents show them; small inputs; refusals.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/image_file.h"
 #include "support/shared_data.h"
-#include "tools/run_program.h"
 
 namespace relief::test {
+
+struct ProgramResult {
+    int exit_code = 0;  ///< 128 + the signal's number, if one ended it.
+    std::string out;
+    std::string error;
+
+    /// The first line of stderr, without its end.
+    [[nodiscard]] std::string first_error_line() const;
+};
+
+/// Runs words[0] with the others as arguments; stdin is empty, neither output is a terminal.
+///
+/// \param words   words[0] without a slash is looked for among the project's own programs
+/// \param folder  the program's working directory
+ProgramResult run_program(const std::vector<std::string>& words,
+                          const std::filesystem::path& folder);
+
+/// The same, but for a signal that is sent as soon as `is_time` says so; not, where the program
+/// ends before.
+ProgramResult run_program_until(const std::vector<std::string>& words,
+                                const std::filesystem::path& folder,
+                                const std::function<bool()>& is_time, int signal);
+
+/// The same as run_program() for a line as typed in a shell; the project's programs are found
+/// first.
+ProgramResult run_line(const std::string& line, const std::filesystem::path& folder);
 
 /// A normal map of the project's own.
 inline const std::string bricks_map = "data/scenes/bricks-normal.png";
@@ -48,5 +77,28 @@ class Workplace {
   private:
     TemporaryDirectory folder_;
 };
+
+/// A command line that must fail.
+struct Refused {
+    std::string line;  ///< With or without the tool's name.
+    int exit_code;
+    std::string error;  ///< A part of the line on stderr, after "TOOL: error: ".
+};
+
+/// Runs a line where out/ contains only `old_file`, with "old" in it.
+void expect_refusal(const Workplace& workplace, const std::string& tool, const Refused& refused,
+                    const std::string& old_file);
+/// The same for each row of a table.
+void expect_refusals(const Workplace& workplace, const std::string& tool,
+                     const std::string& old_file, const std::vector<Refused>& rows);
+
+inline GltfDocument read_document(const std::filesystem::path& file) {
+    Report report;
+    return GltfDocument::read(file, report);
+}
+
+inline Image picture_in(const std::filesystem::path& file) {
+    return read_image(file, ImageUse::color);
+}
 
 }  // namespace relief::test

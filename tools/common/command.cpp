@@ -20,7 +20,7 @@
 
 #include "common/help.h"
 #include "common/text.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "near_names.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/limits.h"

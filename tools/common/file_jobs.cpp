@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All checks are made before a file is opened. Jobs run in parallel; their lines are printed in the
 // order of the command line.
-// Tests: tests/tools/file_jobs_test.cpp, batch_test.cpp, process_batch_test.cpp.
+// Tests: tests/tools/file_jobs_test.cpp, batch_test.cpp.
 #include "common/file_jobs.h"
 
 #include <fmt/format.h>

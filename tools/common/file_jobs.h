@@ -7,7 +7,7 @@
 /// all existing tiles from 1001. Ambiguous command lines are errors.
 ///
 /// Jobs run in parallel. An error in one file does not stop the others.
-/// Tests: tests/tools/file_jobs_test.cpp, batch_test.cpp, process_batch_test.cpp.
+/// Tests: tests/tools/file_jobs_test.cpp, batch_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/help.h"
-#include "file_bytes.h"
+#include "files.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/limits.h"
 

@@ -13,7 +13,7 @@
 
 #include "common/file_jobs.h"
 #include "common/options.h"
-#include "file_replacement.h"
+#include "files.h"
 
 namespace relief::tools {
 namespace {

@@ -13,7 +13,7 @@
 #include "accuracy_report.h"
 #include "common/command.h"
 #include "common/text.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"

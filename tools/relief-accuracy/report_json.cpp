@@ -10,7 +10,7 @@
 
 #include "common/command.h"
 #include "common/text.h"
-#include "file_bytes.h"
+#include "files.h"
 #include "json_cursor.h"
 #include "relief/accuracy/experiment.h"
 

@@ -25,7 +25,7 @@
 #include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/text.h"
-#include "file_bytes.h"
+#include "files.h"
 #include "plots.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/report.h"

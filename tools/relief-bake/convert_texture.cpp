@@ -35,7 +35,7 @@ Choices<TextureFormat> format_choices() {
     return choices;
 }
 
-/// How the samples of a format code components.
+/// The codes of components in the samples of a format.
 NormalMapFormat normal_format_of(TextureFormat format) {
     const std::optional<BlockFormat> blocks = block_format_of(format);
     const bool has_sign = blocks && is_signed(*blocks);

@@ -17,7 +17,7 @@
 #include "common/summary.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/model_check.h"
+#include "relief/mesh/model.h"
 #include "relief/mesh/tangents.h"
 
 namespace relief::tools {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `relief-mesh process IN OUT` and `IN... -o DIR/` process one or more models, print a summary and
 // write the report. Options that could have no effect are refused before a file is read.
-// Tests: tests/tools/relief_mesh_test.cpp, process_batch_test.cpp, process_tangents_test.cpp.
+// Tests: tests/tools/relief_mesh_test.cpp, batch_test.cpp, process_tangents_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -10,7 +10,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
-#include "variant.h"
+#include "view_options.h"
 #include "window/orbit_camera.h"
 
 namespace relief::tools {

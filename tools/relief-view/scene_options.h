@@ -35,7 +35,7 @@ void add_model_options(CLI::App& app, ViewOptions& options);
 /// \throws UsageError if an option has no effect on this file
 void check_model(const ViewOptions& options);
 
-/// How the model file is read.
+/// The options with which the model file is read.
 SceneOptions scene_options(const ViewOptions& options);
 
 // Maps, materials, highlights and reflection, which the options set for all materials of a scene.

@@ -15,7 +15,6 @@
 #include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "scene_options.h"
-#include "variant.h"
 #include "view_command.h"
 #include "window/window_system.h"
 

@@ -10,13 +10,14 @@
 ///
 /// The intensity is irradiance over pi (at distance 1 for point and spot), so a white surface that
 /// faces a directional light of intensity 1 is white. Tests: tests/tools/relief_view_test.cpp,
-/// light_option_test.cpp.
+/// scene_options_test.cpp, variant_test.cpp.
 #pragma once
 
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -24,12 +25,13 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
-#include "variant.h"
+#include "relief/shade/scene_variant.h"
 
 namespace relief::tools {
 
@@ -46,6 +48,36 @@ LightOption parse_light(const std::string& subject, const std::string& text);
 /// \param azimuth  radians from +z towards +x
 /// \param elevation  radians above the horizon
 glm::vec3 towards(float azimuth, float elevation);
+
+// The variants of --compare as text, and their preparation from the options
+// (relief/shade/scene_variant.h):
+//
+//     interpolation=flat  map=bump_map  kernel=central3  tangents=lengyel  bits=8  normals=area
+
+struct ViewOptions;
+
+using Variant = SceneVariant;
+
+/// All variants of one property.
+struct VariantTopic {
+    std::string name;  ///< For example "kernel".
+    std::string what;  ///< For example "The kernel that computes slopes from heights".
+    std::vector<std::pair<std::string, Variant>> choices;
+};
+const std::vector<VariantTopic>& variant_topics();
+
+/// \throws UsageError with the valid names
+Variant parse_variant(const std::string& subject, const std::string& text);
+
+/// For example "kernel=central3". The inverse of parse_variant().
+std::string to_text(const Variant& variant);
+
+/// Prepares a variant.
+/// \param options  the options of the scene, which contain its height map
+/// \throws UsageError if the variant would change nothing
+/// \throws FileError if a map cannot be read
+PreparedVariant prepare(const Variant& variant, const Scene& scene, const ViewOptions& options,
+                        Report& report);
 
 inline constexpr float default_split = 0.5F;
 

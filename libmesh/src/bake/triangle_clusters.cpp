@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "parallel.h"
-#include "vector_targets.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Large pages for memory of many megabytes. They change only the time.
+/// Memory of many megabytes: checks of the limits of this process (relief/mesh/limits.h) before it
+/// is allocated, and large pages, which change only the time.
 #pragma once
 
 #include <sys/mman.h>
-
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <vector>
 
-namespace relief {
+#include "relief/export.h"
+
+namespace RELIEF_API relief {
+
+/// \throws InvalidInput if `count` elements of `size` bytes exceed the limit of memory
+void require_memory(std::uint64_t count, std::uint64_t size);
+
+/// \throws FileError if `count` elements of `size` bytes exceed the limit of memory
+void require_memory_for(const std::filesystem::path& file, std::uint64_t count,
+                        std::uint64_t size = 1);
+
+/// \throws FileError if an image exceeds the limit of pixels
+void require_pixels(const std::filesystem::path& file, int width, int height);
 
 /// Tells the system that untouched memory will be filled completely.
 ///

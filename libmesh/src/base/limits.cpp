@@ -10,8 +10,8 @@
 #include <atomic>
 #include <fstream>
 
+#include "large_memory.h"
 #include "relief/mesh/report.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

@@ -11,8 +11,6 @@
 #include <numbers>
 #include <string_view>
 
-#include "vector_targets.h"
-
 namespace relief::portable {
 namespace {
 

@@ -31,7 +31,7 @@ inline void check_cancelled(std::size_t index) {
     if ((index & 0xFFFF) == 0) check_cancelled();
 }
 
-/// Records a file that is about to be read. The functions of file_bytes.h do this for their files.
+/// Records a file that is about to be read. The functions of files.h do this for their files.
 void note_file(const std::filesystem::path& file);
 
 /// A stage of the operation during the lifetime of this object; nested stages replace it

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "relief/export.h"
-#include "relief/mesh/workspace.h"
+#include "relief/mesh/execution.h"
 
 namespace RELIEF_API relief {
 

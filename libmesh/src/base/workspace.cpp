@@ -4,7 +4,7 @@
 // An operation takes the smallest block that is large enough. If there is none, the largest block
 // is freed and a new one is allocated, so that growing meshes do not leave their smaller blocks
 // behind.
-#include "relief/mesh/workspace.h"
+#include "relief/mesh/execution.h"
 
 #include <algorithm>
 #include <mutex>

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "image/dither_tile.h"
+#include "portable_math.h"
 #include "relief/export.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/normal_map.h"
-#include "vector_targets.h"
 
 namespace RELIEF_API relief {
 

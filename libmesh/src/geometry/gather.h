@@ -11,8 +11,8 @@
 #include <limits>
 #include <span>
 
+#include "portable_math.h"
 #include "relief/mesh/buffers.h"
-#include "vector_targets.h"
 
 namespace relief {
 

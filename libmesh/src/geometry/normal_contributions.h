@@ -20,7 +20,6 @@
 
 #include "portable_math.h"
 #include "relief/mesh/normals.h"
-#include "vector_targets.h"
 
 namespace relief {
 

@@ -25,9 +25,9 @@
 #include "geometry/normal_contributions.h"
 #include "geometry/normal_sums.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "progress_stage.h"
 #include "relief/mesh/execution.h"
-#include "vector_targets.h"
 
 namespace relief {
 namespace {

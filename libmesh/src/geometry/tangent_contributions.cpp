@@ -18,7 +18,6 @@
 #include "geometry/tangent_contributions.h"
 #include "parallel.h"
 #include "portable_math.h"
-#include "vector_targets.h"
 
 namespace relief {
 namespace {

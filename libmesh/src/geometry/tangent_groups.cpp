@@ -26,7 +26,6 @@
 #include "geometry/tangent_signs.h"
 #include "parallel.h"
 #include "portable_math.h"
-#include "vector_targets.h"
 
 namespace relief {
 namespace {

@@ -24,7 +24,7 @@
 #include "geometry/gather.h"
 #include "geometry/tangent_contributions.h"
 #include "geometry/texture_gradient.h"
-#include "vector_targets.h"
+#include "portable_math.h"
 
 namespace relief {
 /// An edge of a triangle, relative to the vertex at its end.

@@ -36,8 +36,8 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "progress_stage.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
-#include "relief/mesh/workspace.h"
 #include "work_array.h"
 
 namespace relief {

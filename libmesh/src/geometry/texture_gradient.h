@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "portable_math.h"
 #include "relief/mesh/buffers.h"
-#include "vector_targets.h"
 
 namespace relief {
 

@@ -26,7 +26,7 @@
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
-#include "vector_targets.h"
+#include "portable_math.h"
 
 namespace relief {
 namespace {

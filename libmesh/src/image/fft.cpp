@@ -16,7 +16,6 @@
 
 #include "image/fft.h"
 #include "portable_math.h"
-#include "vector_targets.h"
 
 namespace relief {
 /// One pass: `count` groups of `radix` samples at a distance. Each sample is `stride` lanes wide.

@@ -22,7 +22,6 @@
 #include "parallel.h"
 #include "portable_math.h"
 #include "relief/mesh/report.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

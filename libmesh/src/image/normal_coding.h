@@ -12,8 +12,8 @@
 #include <optional>
 #include <type_traits>
 
+#include "portable_math.h"
 #include "relief/mesh/normal_map.h"
-#include "vector_targets.h"
 
 namespace relief {
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -22,7 +23,6 @@
 #include "geometry/weld.h"
 #include "portable_math.h"
 #include "relief/mesh/report.h"
-#include "topology/openmesh.h"
 #include "topology/topology.h"
 
 namespace relief {
@@ -33,7 +33,78 @@ struct LoopPoints {
     std::vector<glm::dvec3> on_edges;     ///< One per corner: on the edge to the next corner.
 };
 
+// The surface as an OpenMesh mesh. Half-edges are linked one by one instead of face by face,
+// because OpenMesh's add_face refuses some orders of faces and prints to stderr. Vertices and faces
+// keep their indices. The time is linear.
+
+struct SurfaceTraits : OpenMesh::DefaultTraits {
+    using Point = OpenMesh::Vec3d;
+    using Normal = OpenMesh::Vec3d;
+};
+using SurfaceMesh = OpenMesh::TriMesh_ArrayKernelT<SurfaceTraits>;
 using Halfedge = SurfaceMesh::HalfedgeHandle;
+using Vertex = SurfaceMesh::VertexHandle;
+
+Vertex vertex_at(const Topology& topology, Corner corner) {
+    return Vertex(static_cast<int>(vertex_of(corner, topology.triangles)));
+}
+
+/// Creates one edge for each pair of opposite corners, and for each corner at a boundary.
+std::vector<Halfedge> add_edges(SurfaceMesh& mesh, const Topology& topology) {
+    std::vector<Halfedge> halfedges(topology.opposite.size());
+    for (Corner corner = 0; corner < halfedges.size(); ++corner) {
+        const Corner beyond = topology.opposite[corner];
+        if (beyond != no_corner && beyond < corner) continue;
+        halfedges[corner] = mesh.new_edge(vertex_at(topology, corner),
+                                          vertex_at(topology, next_in_triangle(corner)));
+        if (beyond != no_corner)
+            halfedges[beyond] = mesh.opposite_halfedge_handle(halfedges[corner]);
+    }
+    return halfedges;
+}
+
+void add_faces(SurfaceMesh& mesh, const Topology& topology,
+               const std::vector<Halfedge>& halfedges) {
+    for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
+        const SurfaceMesh::FaceHandle face = mesh.new_face();
+        const auto first = static_cast<Corner>(3 * t);
+        mesh.set_halfedge_handle(face, halfedges[first]);
+        for (Corner corner = first; corner < first + 3; ++corner) {
+            mesh.set_face_handle(halfedges[corner], face);
+            mesh.set_next_halfedge_handle(halfedges[corner], halfedges[next_in_triangle(corner)]);
+            mesh.set_halfedge_handle(vertex_at(topology, corner), halfedges[corner]);
+        }
+    }
+}
+
+/// Links the outer sides of boundary edges around each hole. The outgoing half-edge of a boundary
+/// vertex is its boundary half-edge, as OpenMesh requires.
+void link_boundaries(SurfaceMesh& mesh, const Topology& topology,
+                     const std::vector<Halfedge>& halfedges) {
+    for (Corner corner = 0; corner < halfedges.size(); ++corner) {
+        if (topology.opposite[corner] != no_corner) continue;
+        // Walks around the vertex at which the outer side arrives, to the edge where its fan ends.
+        Corner arriving = previous_in_triangle(corner);
+        while (topology.opposite[arriving] != no_corner)
+            arriving = previous_in_triangle(topology.opposite[arriving]);
+        const Halfedge next = mesh.opposite_halfedge_handle(halfedges[arriving]);
+        mesh.set_next_halfedge_handle(mesh.opposite_halfedge_handle(halfedges[corner]), next);
+        mesh.set_halfedge_handle(vertex_at(topology, corner), next);
+    }
+}
+
+/// \param points  one point per vertex of the topology
+/// \return the half-edge from each corner to the next
+std::vector<Halfedge> build(SurfaceMesh& mesh, const Topology& topology,
+                            std::span<const glm::dvec3> points) {
+    mesh.reserve(points.size(), 3 * topology.triangles.size() / 2 + 1, topology.triangles.size());
+    for (const glm::dvec3& point : points)
+        mesh.new_vertex({point.x, point.y, point.z});
+    std::vector<Halfedge> halfedges = add_edges(mesh, topology);
+    add_faces(mesh, topology, halfedges);
+    link_boundaries(mesh, topology, halfedges);
+    return halfedges;
+}
 
 /// The rule for vertices. Every vertex of a topology has triangles.
 OpenMesh::Vec3d moved_vertex(const SurfaceMesh& mesh, SurfaceMesh::VertexHandle vertex) {
@@ -73,8 +144,7 @@ OpenMesh::Vec3d middle_of_edge(const SurfaceMesh& mesh, SurfaceMesh::EdgeHandle 
 /// \param points  one per vertex of the topology
 LoopPoints loop_points(const Topology& topology, std::span<const glm::dvec3> points) {
     SurfaceMesh mesh;
-    std::vector<std::uint32_t> edges;
-    build(mesh, topology, points, &edges);
+    const std::vector<Halfedge> halfedges = build(mesh, topology, points);
     const auto plain = [](const OpenMesh::Vec3d& p) { return glm::dvec3(p[0], p[1], p[2]); };
     LoopPoints result;
     for (const auto& vertex : mesh.vertices())
@@ -82,8 +152,9 @@ LoopPoints loop_points(const Topology& topology, std::span<const glm::dvec3> poi
     std::vector<glm::dvec3> middles;
     for (const auto& edge : mesh.edges())
         middles.push_back(plain(middle_of_edge(mesh, edge)));
-    for (const std::uint32_t edge : edges)
-        result.on_edges.push_back(middles[edge]);
+    for (const Halfedge halfedge : halfedges)
+        result.on_edges.push_back(
+            middles[static_cast<std::size_t>(mesh.edge_handle(halfedge).idx())]);
     return result;
 }
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <utility>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"

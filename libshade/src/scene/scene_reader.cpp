@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "portable_math.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"

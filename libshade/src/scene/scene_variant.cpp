@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prepares variants of scenes: converts maps between heights and normals, and recomputes frames.
-// Tests: tests/tools/variant_scene_test.cpp.
+// Tests: tests/tools/variant_test.cpp.
 #include "relief/shade/scene_variant.h"
 
 #include <fmt/format.h>

@@ -9,8 +9,7 @@
 #include <numbers>
 #include <span>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"

@@ -17,7 +17,7 @@
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

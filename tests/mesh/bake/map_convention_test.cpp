@@ -21,7 +21,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

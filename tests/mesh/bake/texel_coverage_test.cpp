@@ -13,7 +13,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/texel_coverage.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

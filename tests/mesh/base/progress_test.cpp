@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "support/shared_data.h"

@@ -15,9 +15,9 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
 #include "support/images.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -15,7 +15,7 @@
 #include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
 #include "support/hard_meshes.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

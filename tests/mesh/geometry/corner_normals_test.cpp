@@ -12,8 +12,8 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

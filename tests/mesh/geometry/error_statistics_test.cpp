@@ -13,7 +13,7 @@
 #include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

@@ -15,9 +15,9 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
-#include "support/random_frames.h"
+#include "support/invariants.h"
+#include "support/shapes.h"
 
 namespace relief {
 namespace {

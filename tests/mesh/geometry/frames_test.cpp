@@ -9,8 +9,8 @@
 
 #include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -14,9 +14,8 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

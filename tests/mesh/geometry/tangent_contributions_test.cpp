@@ -13,8 +13,8 @@
 #include "geometry/tangent_contributions.h"
 #include "geometry/tangent_signs.h"
 #include "geometry/texture_gradient.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -17,8 +17,8 @@
 
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/tangents.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief::test {

@@ -10,7 +10,6 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
-#include "relief/mesh/workspace.h"
 #include "support/shapes.h"
 
 namespace {

@@ -14,8 +14,8 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
-#include "support/angle.h"
 #include "support/hard_meshes.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normals and tangents with memory that is used again, and tangents of corners in the caller's
 // memory.
-#include "relief/mesh/workspace.h"
+#include "relief/mesh/execution.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -17,7 +17,7 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map.h"
 #include "support/images.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

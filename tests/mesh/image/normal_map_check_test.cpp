@@ -18,7 +18,7 @@
 #include "relief/mesh/normal_map_check.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -15,7 +15,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "support/images.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

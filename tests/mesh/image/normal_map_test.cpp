@@ -15,8 +15,8 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
-#include "support/angle.h"
 #include "support/images.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

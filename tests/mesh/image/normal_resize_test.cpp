@@ -14,7 +14,7 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

@@ -18,7 +18,7 @@
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 #include "topology/edge_collapse.h"

@@ -16,8 +16,7 @@
 #include "mesh/topology/boundary_edges.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
-#include "support/angle.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "topology/topology.h"
 

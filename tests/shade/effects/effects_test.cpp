@@ -12,7 +12,7 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 #include "shade/effects/feature_sets.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

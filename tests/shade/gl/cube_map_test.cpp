@@ -20,8 +20,8 @@
 #include "relief/shade/image_compare.h"
 #include "relief/shade/renderer.h"
 #include "shade/environment/test_environments.h"
-#include "support/angle.h"
 #include "support/gl_environment.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief::gl {

@@ -16,9 +16,9 @@
 #include "gl/resources.h"
 #include "relief/mesh/frames.h"
 #include "relief/shade/renderer.h"
-#include "support/angle.h"
 #include "support/gl_environment.h"
 #include "support/images.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief::gl {

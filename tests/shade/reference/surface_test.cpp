@@ -9,7 +9,7 @@
 
 #include "reference/reference_parts.h"
 #include "shade/reference/traced.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief::reference {

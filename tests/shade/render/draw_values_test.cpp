@@ -12,8 +12,8 @@
 #include "render/overlays.h"
 #include "render/program_cache.h"
 #include "shade/effects/feature_sets.h"
-#include "support/angle.h"
 #include "support/gl_environment.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

@@ -11,7 +11,7 @@
 #include "relief/shade/image_compare.h"
 #include "relief/shade/scene_file.h"
 #include "shade/render/draw_support.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

@@ -10,7 +10,7 @@
 
 #include "relief/mesh/report.h"
 #include "shade/render/draw_support.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -9,7 +9,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/reference.h"
 #include "shade/render/draw_support.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

@@ -11,7 +11,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief {

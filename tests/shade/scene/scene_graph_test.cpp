@@ -13,7 +13,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

@@ -9,7 +9,7 @@
 #include <regex>
 
 #include "relief/mesh/report.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "tools/accuracy_page/sample_report.h"
 
 namespace relief::tools {

@@ -6,7 +6,7 @@
 
 #include "report_page.h"
 #include "tools/accuracy_page/sample_report.h"
-#include "tools/run_program.h"
+#include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {

@@ -20,7 +20,7 @@
 #include <thread>
 #include <utility>
 
-#include "tools/run_program.h"
+#include "tools/workplace.h"
 
 namespace relief::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "support/angle.h"
+#include "support/invariants.h"
 
 namespace relief::tools {
 namespace {

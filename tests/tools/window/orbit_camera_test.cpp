@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 
 namespace relief::tools {

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "picture_comparison.h"
-#include "variant.h"
+#include "view_options.h"
 #include "window/background_jobs.h"
 #include "window/viewer_state.h"
 

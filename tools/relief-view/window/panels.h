@@ -19,7 +19,7 @@
 #include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/scene_fields.h"
-#include "variant.h"
+#include "view_options.h"
 #include "window/background_jobs.h"
 #include "window/capture.h"
 #include "window/viewer_state.h"

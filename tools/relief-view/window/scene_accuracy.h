@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "relief/accuracy/asset.h"
-#include "variant.h"
+#include "view_options.h"
 #include "window/background_jobs.h"
 #include "window/viewer_state.h"
 

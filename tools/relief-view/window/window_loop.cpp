@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "common/command.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "view_command.h"
 #include "window/background_jobs.h"
 #include "window/capture.h"

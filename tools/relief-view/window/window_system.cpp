@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "common/command.h"
-#include "file_replacement.h"
+#include "files.h"
 
 namespace relief::tools {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The execution of functions: precision, number of threads, progress and cancellation.
-/// Tests: tests/mesh/base/progress_test.cpp, tests/mesh/io/mesh/mesh_file_test.cpp.
+/// The execution of functions: precision, number of threads, progress, cancellation, and memory for
+/// intermediate results. Tests: tests/mesh/base/progress_test.cpp,
+/// tests/mesh/io/mesh/mesh_file_test.cpp, tests/mesh/geometry/workspace_test.cpp.
 #pragma once
 
 #include <atomic>
@@ -163,6 +164,58 @@ class ExecutionScope {
   private:
     unsigned limit_before_;
     Progress* progress_before_;
+};
+
+// Reuses the memory of intermediate results in repeated computations of normals and tangents.
+
+/// Memory for intermediate results, which normals and tangents leave to the next call. The system
+/// clears new memory at its first use, which costs up to a tenth of the time.
+///
+///     Workspace workspace;
+///     for (each frame) {
+///         const WorkspaceScope scope(workspace);
+///         vertex_normals(positions, triangles, {}, normals);
+///     }
+///
+/// Operations of several threads may share it; each has memory of its own then.
+class Workspace {
+  public:
+    Workspace() = default;
+    ~Workspace();
+    Workspace(const Workspace&) = delete;
+    Workspace& operator=(const Workspace&) = delete;
+
+    /// The number of bytes that wait for the next call: at most what the calls so far used at once.
+    [[nodiscard]] std::size_t size() const;
+    /// Frees them.
+    void clear();
+
+  private:
+    friend class WorkMemory;
+
+    struct Block {
+        void* memory = nullptr;
+        std::size_t size = 0;
+    };
+    Block take(std::size_t size);
+    void give_back(const Block& block) noexcept;
+
+    mutable std::mutex mutex_;
+    std::vector<Block> free_;  ///< Ascending by size.
+    std::size_t taken_ = 0;
+};
+
+/// Lets everything that this thread calls use `workspace`, which must outlive the scope. In nested
+/// scopes, the innermost one is used. Results do not depend on it.
+class WorkspaceScope {
+  public:
+    explicit WorkspaceScope(Workspace& workspace);
+    ~WorkspaceScope();
+    WorkspaceScope(const WorkspaceScope&) = delete;
+    WorkspaceScope& operator=(const WorkspaceScope&) = delete;
+
+  private:
+    Workspace* before_;
 };
 
 }  // namespace relief

@@ -29,7 +29,7 @@
 
 namespace RELIEF_API relief {
 
-struct Deformation;  // deformation.h
+struct Deformation;  // mesh.h
 
 /// One primitive of one mesh of a document.
 struct GltfPrimitiveId {
@@ -181,8 +181,8 @@ struct KeyChannel {
     /// One for each time, or three for cubic_spline: in-tangent, value, out-tangent. Quaternions
     /// are x, y, z, w of any length but 0; w of other properties is ignored.
     std::vector<glm::vec4> values;
-    /// Of Property::weights, which has no values: for each time, or three times for each, the
-    /// weights of all morph targets of the node's mesh.
+    /// The weights of all morph targets of the node's mesh, for each time, or three times for each;
+    /// only for Property::weights, which has no `values`.
     std::vector<float> weights{};
 };
 

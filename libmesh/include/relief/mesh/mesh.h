@@ -8,6 +8,7 @@
 /// Tests: tests/mesh/geometry/mesh_test.cpp.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -141,5 +142,17 @@ Mesh make_torus(float tube_radius = 0.4F, int slices = 96, int sides = 48);
 /// from +z, v down from the upper rim. The caps show the image upright, with +x to the right.
 /// \throws InvalidInput unless slices are 3 to 4096
 Mesh make_cylinder(int slices = 64);
+
+/// Describes in a few numbers how joints and morph targets move the vertices of a mesh.
+///
+/// Each array is empty or has the length of `positions`. The numbers are linear in the weights of
+/// joints and in the displacements. If there are more joints or targets than numbers, they are
+/// projections, whose squared differences between vertices are about those of the weights and of
+/// the displacements.
+struct Deformation {
+    std::vector<glm::vec4> joints;
+    /// Object space.
+    std::array<std::vector<glm::vec3>, 3> displacements;
+};
 
 }  // namespace relief

@@ -92,6 +92,17 @@ std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> position
                                            TriangleSpan triangles,
                                            Report& report = IgnoredReport());
 
+/// Writes the tangents of mikktspace_tangents() into the caller's memory.
+///
+/// \param tangents  three per triangle, in corner order; must not overlap the inputs
+/// \param execution  threads, progress and cancellation; the tangents do not depend on it
+/// \throws InvalidInput as mikktspace_tangents(), and if there are not three tangents per triangle;
+///         Cancelled, and then the tangents are undefined
+void corner_tangents(StridedSpan<const glm::vec3> positions, StridedSpan<const glm::vec3> normals,
+                     StridedSpan<const glm::vec2> texcoords, TriangleSpan triangles,
+                     std::span<glm::vec4> tangents, Report& report = IgnoredReport(),
+                     const ExecutionOptions& execution = {});
+
 /// Writes one tangent per vertex into the caller's memory, for meshes whose vertices are already
 /// split where the texture is mirrored or has a seam.
 ///

@@ -83,8 +83,8 @@ struct GpuTexture {
     std::vector<std::vector<std::byte>> levels;
     /// Text entries. KTX2 stores them; DDS stores none.
     std::map<std::string, std::string> metadata;
-    /// How shaders read the channels, as four letters of "rgba01"; empty for all as they are. Only
-    /// KTX2 stores it.
+    /// The order in which shaders read the channels, as four letters of "rgba01"; empty for the
+    /// stored order. Only KTX2 stores it.
     std::string swizzle;
 };
 

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "relief/export.h"
-#include "relief/mesh/deformation.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"

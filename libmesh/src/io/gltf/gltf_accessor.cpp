@@ -21,7 +21,6 @@
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
-#include "relief/mesh/deformation.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

@@ -20,7 +20,7 @@
 #include <new>
 #include <string_view>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_compression.h"
 #include "io/gltf/gltf_contents.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"

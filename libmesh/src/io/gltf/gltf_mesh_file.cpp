@@ -14,7 +14,7 @@
 #include <cmath>
 #include <map>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/gltf_document.h"

@@ -18,9 +18,9 @@
 #include <optional>
 
 #include "io/gltf/gltf_contents.h"
+#include "large_memory.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

@@ -23,8 +23,7 @@
 #include <string_view>
 #include <vector>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/report.h"

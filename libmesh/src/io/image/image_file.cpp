@@ -20,7 +20,7 @@
 #include <string_view>
 #include <utility>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
 #include "io/image/row_codec.h"

@@ -14,7 +14,7 @@
 #include <optional>
 #include <string_view>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

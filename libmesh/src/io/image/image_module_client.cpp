@@ -20,10 +20,10 @@
 #include <utility>
 #include <vector>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/image/decoder_process.h"
+#include "large_memory.h"
 #include "relief/mesh/report.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

@@ -16,15 +16,14 @@
 #include <string_view>
 #include <utility>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
 #include "io/image/row_codec.h"
 #include "io/png/png_format.h"
+#include "large_memory.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

@@ -12,12 +12,12 @@
 #include <new>
 #include <string_view>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/image/row_codec.h"
 #include "io/image/texture_container.h"
+#include "large_memory.h"
 #include "relief/mesh/report.h"
 #include "relief/version.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

@@ -15,15 +15,14 @@
 #include <string_view>
 #include <utility>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
 #include "io/image/row_codec.h"
 #include "io/image/texture_container.h"
+#include "large_memory.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
-#include "require_memory.h"
 
 namespace relief {
 namespace {

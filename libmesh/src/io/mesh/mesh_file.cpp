@@ -12,7 +12,7 @@
 #include <cmath>
 #include <new>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "relief/mesh/report.h"
 

@@ -26,8 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/obj_parser.h"
 #include "io/mesh/polygon_mesh.h"

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"

@@ -25,8 +25,7 @@
 #include <utility>
 #include <vector>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"

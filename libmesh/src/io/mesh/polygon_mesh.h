@@ -33,7 +33,7 @@
 
 namespace relief {
 
-/// How a polygon was cut.
+/// The method that cut a polygon.
 enum class PolygonCut {
     ears,          ///< Completely, or it has four corners at most.
     fan,           ///< The rest is a fan: no plane, crossing edges, or non-finite corners.

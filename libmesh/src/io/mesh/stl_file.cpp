@@ -11,7 +11,7 @@
 #include <cstring>
 #include <utility>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/polygon_mesh.h"
 #include "progress_stage.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks the parts of glTF documents and mesh files, whose materials decide the severities.
 // Tests: tests/tools/relief_mesh_check_test.cpp.
-#include "relief/mesh/model_check.h"
+#include "relief/mesh/model.h"
 
 #include <algorithm>
 #include <array>

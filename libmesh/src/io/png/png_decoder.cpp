@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"
 #include "large_memory.h"

@@ -22,8 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "io/image/row_codec.h"
 #include "io/png/png_format.h"
 #include "parallel.h"

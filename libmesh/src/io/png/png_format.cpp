@@ -2,7 +2,7 @@
 // Chunks, filters, checksums and decompression of PNG files. The loops that apply filters are
 // compiled for several vector widths. This is the only file that uses libdeflate and ISA-L.
 #include "io/png/png_format.h"
-#include "vector_targets.h"
+#include "portable_math.h"
 
 #include <isa-l/igzip_lib.h>
 #include <libdeflate.h>

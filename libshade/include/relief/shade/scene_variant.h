@@ -11,7 +11,7 @@
 ///
 /// Heights come from bump maps, or from the height map that the normal maps were converted from. A
 /// variant is prepared once for the meshes and maps of a scene; later edits of lights and colors do
-/// not need another preparation. Tests: tests/tools/variant_scene_test.cpp.
+/// not need another preparation. Tests: tests/tools/variant_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "mesh/io/gltf/gltf_support.h"
-#include "relief/mesh/deformation.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "support/shared_data.h"
 

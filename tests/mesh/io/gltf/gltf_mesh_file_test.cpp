@@ -15,13 +15,13 @@
 #include <limits>
 #include <map>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "file_bytes.h"
+#include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/gltf_document.h"

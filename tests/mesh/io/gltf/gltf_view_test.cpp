@@ -12,7 +12,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
-#include "support/angle.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

@@ -13,7 +13,7 @@
 
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief {

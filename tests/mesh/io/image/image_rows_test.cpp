@@ -14,7 +14,7 @@
 #include "mesh/io/image/module_reference.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief {

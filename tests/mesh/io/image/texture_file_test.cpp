@@ -14,12 +14,12 @@
 #include <string>
 #include <utility>
 
-#include "base/file_bytes.h"
+#include "base/files.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "relief/version.h"
 #include "support/images.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 
 namespace relief {
 namespace {

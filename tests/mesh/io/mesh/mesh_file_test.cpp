@@ -20,8 +20,7 @@
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
-#include "support/angle.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 

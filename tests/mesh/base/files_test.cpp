@@ -12,11 +12,10 @@
 #include <span>
 #include <string>
 
-#include "file_bytes.h"
-#include "file_replacement.h"
+#include "files.h"
 #include "large_memory.h"
 #include "relief/mesh/report.h"
-#include "support/message_of.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief {

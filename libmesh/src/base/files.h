@@ -1,15 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Writing a file such that a failure leaves the old file intact and no partial file.
+/// Reading files as a whole or in parts, with errors that tell the reason; text and numbers in
+/// their bytes; writing a file such that a failure leaves the old file intact and no partial file.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+
+/// Returns the bytes of a file, as text. \throws FileError if it is missing, a folder or unreadable
+std::string read_file(const std::filesystem::path& file);
+
+/// The bytes of a large file, read on all threads into memory that is not cleared first.
+class FileContents {
+  public:
+    /// \throws FileError as read_file()
+    explicit FileContents(const std::filesystem::path& file);
+
+    [[nodiscard]] std::string_view text() const { return {bytes_.get(), size_}; }
+
+  private:
+    std::unique_ptr<char[]> bytes_;
+    std::size_t size_ = 0;
+};
+
+/// A file that is opened for reading, whose parts can be read in any order and in parallel.
+class RandomAccessFile {
+  public:
+    /// \throws FileError if it is missing, a folder or unreadable
+    explicit RandomAccessFile(std::filesystem::path file);
+    ~RandomAccessFile();
+    RandomAccessFile(const RandomAccessFile&) = delete;
+    RandomAccessFile& operator=(const RandomAccessFile&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// Returns the size in bytes when it was opened.
+    [[nodiscard]] std::uint64_t size() const { return size_; }
+
+    [[nodiscard]] int descriptor() const { return descriptor_; }
+
+    /// Fills `to` with the bytes from an offset on. \throws FileError if this fails, or if the file
+    /// is too short
+    void read(std::uint64_t offset, std::span<std::byte> to) const;
+
+  private:
+    std::filesystem::path path_;
+    int descriptor_ = -1;
+    std::uint64_t size_ = 0;
+};
+
+/// Returns the extension in lower case with its dot (".obj"); empty if there is none.
+std::string lower_extension(const std::filesystem::path& file);
+
+// Bytes of a file.
+
+inline std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Returns the big-endian number at an offset.
+inline std::uint32_t big32(std::span<const std::byte> bytes, std::size_t offset = 0) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        value = value << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
+    return value;
+}
 
 /// A temporary file beside the file that it will replace.
 ///
