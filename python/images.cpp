@@ -12,12 +12,14 @@
 
 #include "arrays.h"
 #include "mesh_type.h"
+#include "relief/mesh/block_compression.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normal_map_check.h"
+#include "relief/mesh/texture_file.h"
 #include "relief/shade/image_compare.h"
 
 namespace relief::python {
@@ -100,6 +102,46 @@ void py_write_image(const std::filesystem::path& file, const py::object& image,
         write_image(file, copy, metadata, options, findings);
     });
     append(findings, report);
+}
+
+void py_write_texture(const std::filesystem::path& file, const py::list& levels,
+                      const std::string& format, const std::string& quality, bool srgb,
+                      const Metadata& metadata, std::optional<int> zstd,
+                      const FindingList& report) {
+    GpuTexture texture;
+    texture.format = value_of<TextureFormat>(format, "format");
+    texture.is_srgb = srgb;
+    texture.metadata = metadata;
+    const auto effort = value_of<BlockQuality>(quality, "quality");
+    const std::optional<BlockFormat> blocks = block_format_of(texture.format);
+    const bool has_two = blocks && channels_of(*blocks) == 2;
+    std::vector<Image> images;
+    for (const py::handle& level : levels)
+        images.push_back(image_of(level, "levels"));
+    if (images.empty()) throw InvalidInput("levels: is empty");
+    texture.width = images.front().width;
+    texture.height = images.front().height;
+    Report findings;
+    without_gil([&] {
+        for (const Image& image : images) {
+            const bool is_normals = has_two && image.channels == 3 && image.bits() == 32;
+            texture.levels.push_back(
+                is_normals
+                    ? encode_normal_blocks(image, {.format = *blocks, .quality = effort}, findings)
+                    : encode_texture_level(image, texture.format, effort, findings));
+        }
+        write_texture(file, texture, {.zstd_level = zstd});
+    });
+    append(findings, report);
+}
+
+py::list py_normal_mip_levels(const py::object& normals) {
+    const Image image = image_of(normals, "normals");
+    std::vector<Image> levels = without_gil([&] { return normal_mip_levels(image); });
+    py::list result;
+    for (Image& level : levels)
+        result.append(array_of(std::move(level)));
+    return result;
 }
 
 // Height maps.
@@ -423,6 +465,9 @@ void add_normal_map_functions(py::module_& module) {
     module.def("resize_normals", &py_resize, arg("normals"), arg("width"), arg("height"),
                py::kw_only(), arg("filter") = "best", arg("domain") = "slopes",
                arg("wrap") = "repeat", arg("report") = none, "Resize decoded normals.");
+    module.def("normal_mip_levels", &py_normal_mip_levels, arg("normals"),
+               "Average decoded normals to all mip levels, from the map itself to one texel.\n\n"
+               "The vectors are means, with a length of at most 1.");
     module.def("convert_space", &py_convert_space, arg("normals"), arg("mesh"), py::kw_only(),
                arg("to"), arg("repeat") = false, arg("report") = none,
                "Convert decoded normals between the tangent and the object space of a mesh.\n\n"
@@ -443,6 +488,15 @@ void add_images(py::module_& module) {
                arg("color_space") = "data", arg("metadata") = Metadata{}, arg("half") = false,
                arg("report") = py::none(),
                "Write an image. The extension decides the format: .png .tif .exr .hdr .jpg.");
+    module.def(
+        "write_texture", &py_write_texture, arg("file"), arg("levels"), py::kw_only(),
+        arg("format") = "bc5", arg("quality") = "normal", arg("srgb") = false,
+        arg("metadata") = Metadata{}, arg("zstd") = py::none(), arg("report") = py::none(),
+        "Write a texture with its mip levels, the largest first, as .ktx2 or .dds.\n\n"
+        "Formats and qualities are those of `relief-bake convert`. Levels are arrays of the\n"
+        "format's channels and bits; for \"bc5\" and \"bc5-snorm\" also decoded normals:\n"
+        "three channels of float32. read_image() reads the largest level. `zstd`\n"
+        "compresses .ktx2, 1 to 22.");
     add_height_functions(module);
     add_normal_map_functions(module);
     module.def("compare_images", &py_compare_images, arg("a"), arg("b"), py::kw_only(),

@@ -324,6 +324,47 @@ py::tuple py_decimated(const MeshObject& mesh, std::optional<std::size_t> triang
     return pair_of(std::move(framed), mesh);
 }
 
+/// Returns the statistics with the keys of `relief-mesh decimate --report`.
+py::dict to_dict(const DistanceStats& stats) {
+    py::dict result;
+    result["mean"] = stats.mean;
+    result["rms"] = stats.rms;
+    result["max"] = stats.max;
+    result["mean_degrees"] = stats.mean_degrees;
+    result["max_degrees"] = stats.max_degrees;
+    result["omitted"] = stats.omitted;
+    return result;
+}
+
+py::tuple py_surface_distance(const MeshObject& a, const MeshObject& b) {
+    const SurfaceDistance distance = without_gil([&] { return surface_distance(a, b); });
+    return py::make_tuple(to_dict(distance.from_a), to_dict(distance.from_b));
+}
+
+py::list py_levels_of_detail(const MeshObject& mesh, const std::vector<std::size_t>& triangles,
+                             const std::map<std::string, double>& weights,
+                             const FindingList& report) {
+    DecimateOptions options;
+    options.fit_positions = true;
+    options.weights = weights_of(weights);
+    Report findings;
+    std::vector<MeshObject> levels;
+    without_gil([&] {
+        const MeshObject* before = &mesh;
+        levels.reserve(triangles.size());
+        for (const std::size_t count : triangles) {
+            options.triangles = count;
+            levels.emplace_back(decimated(*before, options, findings).mesh, mesh.origin);
+            before = &levels.back();
+        }
+    });
+    append(findings, report);
+    py::list result;
+    for (MeshObject& level : levels)
+        result.append(std::move(level));
+    return result;
+}
+
 MeshObject py_subdivided(const MeshObject& mesh, int levels, const std::string& normals,
                          const FindingList& report) {
     FrameOptions options;
@@ -579,6 +620,17 @@ void add_mesh_functions(py::module_& module) {
         "remain move to where the result fits the mesh best. `weights` has any of \"texcoords\",\n"
         "\"normals\" and \"colors\", as for `relief-mesh decimate --weights`. The result is\n"
         "(mesh, source_vertex).");
+    module.def(
+        "levels_of_detail", &py_levels_of_detail, arg("mesh"), arg("triangles"), py::kw_only(),
+        arg("weights") = std::map<std::string, double>(), arg("report") = py::none(),
+        "Decimate a mesh to several numbers of triangles, each level from the one before.\n\n"
+        "All levels have the texture coordinates of the mesh, so that one normal map serves\n"
+        "all. The result is a list of meshes without the input.");
+    module.def(
+        "surface_distance", &py_surface_distance, arg("a"), arg("b"),
+        "Measure the distances between two surfaces and the angles of their normals.\n\n"
+        "The result is (from_a, from_b): dictionaries with the keys of the reports of\n"
+        "`relief-mesh decimate`, of the points of `a` from `b` and of those of `b` from `a`.");
     module.def("subdivide", &py_subdivided, arg("mesh"), arg("levels"), py::kw_only(),
                arg("normals") = "keep", arg("report") = py::none(),
                "Apply Loop subdivision: each level splits every triangle into four.");

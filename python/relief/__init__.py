@@ -45,7 +45,9 @@ from ._relief import (
     encode_normals,
     flip_green,
     heights,
+    levels_of_detail,
     mean_curvatures,
+    normal_mip_levels,
     read_image,
     read_mesh,
     resize_normals,
@@ -54,12 +56,14 @@ from ._relief import (
     slopes,
     split_vertices,
     subdivide,
+    surface_distance,
     triangle_normals,
     vertex_normals,
     vertex_tangents,
     with_frames,
     write_image,
     write_mesh,
+    write_texture,
 )
 
 if TYPE_CHECKING:
@@ -67,12 +71,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BakeMismatch", "Baked", "Cancelled", "Error", "Execution", "FileError", "Finding", "GpuError", "InvalidInput",
-    "Mesh", "Scene", "ToolError", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options", "check_mesh",
-    "check_normal_map", "compare_images", "compare_meshes", "compare_normals", "convert_space",
-    "corner_normals", "corner_tangents", "decimate", "decode_normals", "encode_normals", "flip_green",
-    "heights", "mean_curvatures", "read_image", "read_mesh", "resize_normals", "run", "scale_slopes",
-    "set_thread_limit", "slopes", "split_vertices", "subdivide", "triangle_normals", "vertex_normals",
-    "vertex_tangents", "with_frames", "write_image", "write_mesh",
+    "Mesh", "Scene", "ToolError", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options",
+    "check_mesh", "check_normal_map", "compare_images", "compare_meshes", "compare_normals", "convert_space",
+    "corner_normals", "corner_tangents", "decimate", "decode_normals", "encode_normals", "flip_green", "heights",
+    "levels_of_detail", "mean_curvatures", "normal_mip_levels", "read_image", "read_mesh", "resize_normals", "run",
+    "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
+    "triangle_normals", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
+    "write_texture",
 ]
 
 

@@ -38,6 +38,10 @@ Dither = Literal["none", "ordered", "blue-noise"]
 Blend = Literal["reoriented", "partial-derivative", "whiteout", "udn", "unity", "linear", "overlay"]
 Filter = Literal["best", "box", "triangle", "cubic", "lanczos"]
 ColorSpace = Literal["data", "linear", "srgb"]
+TextureFormat = Literal[
+    "r8", "rg8", "rgba8", "r16", "rg16", "rgba16", "r16f", "rg16f", "rgba16f", "r32f", "rg32f", "rgba32f",
+    "bc4", "bc4-snorm", "bc5", "bc5-snorm", "bc7",
+]
 Layer = Literal["normals", "heights", "occlusion", "curvature", "positions", "colors"]
 Space = Literal["tangent", "object", "world"]
 Rays = Literal["averaged", "shading", "face"]
@@ -162,6 +166,14 @@ def decimate(
     normals: NormalMode = "keep",
     report: Report | None = None,
 ) -> tuple[Mesh, Indices]: ...
+def levels_of_detail(
+    mesh: Mesh,
+    triangles: Sequence[int],
+    *,
+    weights: Mapping[Literal["texcoords", "normals", "colors"], float] = ...,
+    report: Report | None = None,
+) -> list[Mesh]: ...
+def surface_distance(a: Mesh, b: Mesh) -> tuple[dict[str, float], dict[str, float]]: ...
 def subdivide(mesh: Mesh, levels: int, *, normals: NormalMode = "keep", report: Report | None = None) -> Mesh: ...
 def check_mesh(mesh: Mesh, *, for_baking: bool = False, for_tangents: bool = True) -> dict[str, Any]: ...
 def compare_meshes(
@@ -182,6 +194,18 @@ def write_image(
     half: bool = False,
     report: Report | None = None,
 ) -> None: ...
+def write_texture(
+    file: File,
+    levels: list[Image],
+    *,
+    format: TextureFormat = "bc5",
+    quality: Literal["fast", "normal", "best"] = "normal",
+    srgb: bool = False,
+    metadata: dict[str, str] = ...,
+    zstd: int | None = None,
+    report: Report | None = None,
+) -> None: ...
+def normal_mip_levels(normals: Floats) -> list[Floats]: ...
 def bump(
     height: Image,
     *,

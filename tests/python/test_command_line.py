@@ -105,6 +105,15 @@ class MeshTools(CommandLineCase):
                                      keep_seams=True, weights={"texcoords": 2.0, "normals": 0.1})
         self.assert_equal_meshes(limited, relief.read_mesh(out))
         self.assertGreater(len(limited.triangles), len(coarse.triangles))
+        from_a, from_b = relief.surface_distance(mesh, coarse)
+        report = relief.run("relief-mesh", "decimate", str(DATA / "vase.obj"), str(out), "--triangles", "1000", report=True)
+        for key in ("mean", "rms", "max", "mean_degrees", "max_degrees"):
+            self.assertEqual(from_a[key], report["distance"]["of_input"][key], key)
+            self.assertEqual(from_b[key], report["distance"]["of_output"][key], key)
+        levels = relief.levels_of_detail(mesh, [1000, 300])
+        self.assert_equal_meshes(levels[0], coarse, "texcoords")
+        again, _ = relief.decimate(levels[0], triangles=300)
+        self.assert_equal_meshes(levels[1], again, "texcoords")
         with self.assertRaisesRegex(relief.InvalidInput, "weights: 'uv' is not one of texcoords, normals, colors"):
             relief.decimate(mesh, triangles=1000, weights={"uv": 1.0})
         self.run_tool("relief-mesh", "subdivide", DATA / "vase.obj", out, "--levels", "2")
@@ -185,6 +194,26 @@ class MapTools(CommandLineCase):
         stored, _ = relief.read_image(out)
         numpy.testing.assert_array_equal(heights / numpy.float32(1), stored)
         self.assertGreater(details["highest"], 0.0)
+
+    def test_textures(self):
+        file = self.folder / "map.png"
+        decoded = relief.decode_normals(self.map, exact_flat=True)
+        relief.write_image(file, self.map)
+        expected = self.folder / "expected.ktx2"
+        self.run_tool("relief-bake", "convert", file, expected, "--format", "bc5", "--input-zero-code", "127.5")
+        result = self.folder / "result.ktx2"
+        relief.write_texture(result, [decoded], format="bc5")
+        numpy.testing.assert_array_equal(relief.read_image(result)[0], relief.read_image(expected)[0])
+        levels = relief.normal_mip_levels(decoded)
+        self.assertEqual(levels[0].shape, decoded.shape)
+        self.assertEqual(levels[-1].shape, (1, 1, 3))
+        numpy.testing.assert_allclose(levels[-1][0, 0], decoded.mean(axis=(0, 1), dtype=numpy.float64), atol=1e-6)
+        relief.write_texture(result, levels, format="bc5-snorm", quality="fast", zstd=3)
+        self.assertLess(result.stat().st_size, decoded.shape[0] * decoded.shape[1] * 4 // 3)
+        with self.assertRaisesRegex(relief.InvalidInput, "levels: is empty"):
+            relief.write_texture(result, [])
+        with self.assertRaisesRegex(relief.InvalidInput, "format: 'bc6' is not one of r8"):
+            relief.write_texture(result, [decoded], format="bc6")
 
     def test_convert(self):
         file = DATA / "scenes" / "bricks-normal.png"
