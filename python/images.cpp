@@ -466,7 +466,7 @@ void add_normal_map_functions(py::module_& module) {
                py::kw_only(), arg("filter") = "best", arg("domain") = "slopes",
                arg("wrap") = "repeat", arg("report") = none, "Resize decoded normals.");
     module.def("normal_mip_levels", &py_normal_mip_levels, arg("normals"),
-               "Average decoded normals to all mip levels, from the map itself to one texel.\n\n"
+               "Average decoded normals to all mip levels, from half the size to one texel.\n\n"
                "The vectors are means, with a length of at most 1.");
     module.def("convert_space", &py_convert_space, arg("normals"), arg("mesh"), py::kw_only(),
                arg("to"), arg("repeat") = false, arg("report") = none,

@@ -93,4 +93,4 @@ class Tutorial(unittest.TestCase):
             self.assertEqual(done.stdout.splitlines()[0], "(3038, 3) (5760, 3, 4)")
             self.assertIn("expected float32 of shape (n, 3)", done.stdout)
             names = {file.name for file in (root / "out").iterdir()}
-            self.assertEqual(names, {"bricks.png", "urn.png", "vase-python.png", "vase-python.glb"})
+            self.assertEqual(names, {"bricks.ktx2", "bricks.png", "urn.png", "vase-bricks.glb", "vase-python.png", "vase-python.glb"})

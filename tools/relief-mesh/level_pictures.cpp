@@ -243,12 +243,33 @@ std::optional<LevelSwitch> LevelPictures::find_switch(std::size_t mesh, double s
     int step = std::min(step_below(start), last);
     LevelSwitch at = implementation_->difference(subject, step);
     const auto is_within = [](const LevelSwitch& here) { return here.flip <= here.moved_flip; };
-    const int direction = is_within(at) ? 1 : -1;
-    for (int next = step + direction; next >= min_step && next <= last; next += direction) {
+    // Doubles the stride until a size lies on the other side of the limit, then bisects.
+    const bool grows = is_within(at);
+    std::optional<int> beyond;
+    for (int stride = 1; !beyond; stride *= 2) {
+        const int next = grows ? std::min(step + stride, last) : std::max(step - stride, min_step);
+        if (next == step) return at;
         const LevelSwitch here = implementation_->difference(subject, next);
-        if (direction > 0 && !is_within(here)) break;
-        at = here;
-        if (direction < 0 && is_within(here)) break;
+        if (is_within(here) == grows) {
+            step = next;
+            at = here;
+        } else {
+            beyond = next;
+            if (!grows) {
+                std::swap(step, *beyond);
+                at = here;
+            }
+        }
+    }
+    while (*beyond - step > 1) {
+        const int middle = (step + *beyond) / 2;
+        const LevelSwitch here = implementation_->difference(subject, middle);
+        if (is_within(here)) {
+            step = middle;
+            at = here;
+        } else {
+            beyond = middle;
+        }
     }
     return at;
 }
