@@ -243,10 +243,11 @@ std::optional<LevelSwitch> LevelPictures::find_switch(std::size_t mesh, double s
     int step = std::min(step_below(start), last);
     LevelSwitch at = implementation_->difference(subject, step);
     const auto is_within = [](const LevelSwitch& here) { return here.flip <= here.moved_flip; };
-    // Doubles the stride until a size lies on the other side of the limit, then bisects.
+    // The time of a picture grows with its area. Upwards, the stride is therefore small; downwards,
+    // it doubles. Then the search bisects.
     const bool grows = is_within(at);
     std::optional<int> beyond;
-    for (int stride = 1; !beyond; stride *= 2) {
+    for (int stride = grows ? 2 : 1; !beyond; stride *= grows ? 1 : 2) {
         const int next = grows ? std::min(step + stride, last) : std::max(step - stride, min_step);
         if (next == step) return at;
         const LevelSwitch here = implementation_->difference(subject, next);
