@@ -23,11 +23,13 @@ target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,$<OR:${i
 if(RELIEF_SANITIZE)
     # Instrumented code is slow to compile, and two thirds of it was the tests' own. Tests are therefore
     # compiled with AddressSanitizer only, without optimization and line numbers, and the tools, which are thin,
-    # without optimization. Some checks of UndefinedBehaviorSanitizer are off, because AddressSanitizer reports
+    # without optimization. Failed checks of UndefinedBehaviorSanitizer are illegal instructions, whose stack
+    # AddressSanitizer prints (handle_sigill below); calls with descriptions of the values take a fifth of the time
+    # of compiling more. Some checks of UndefinedBehaviorSanitizer are off, because AddressSanitizer reports
     # the accesses that they predict (null pointers, sizes of objects, overflow of pointers) and there is hardly a
     # class hierarchy (dynamic types): compiling takes a quarter less time. GCC 12 warns of uninitialized parts
     # of std::regex in instrumented code; other builds keep the warning.
-    set(undefined -fsanitize=undefined)
+    set(undefined -fsanitize=undefined -fsanitize-undefined-trap-on-error)
     foreach(check null object-size pointer-overflow vptr)
         list(APPEND undefined -fno-sanitize=${check})
     endforeach()
@@ -52,19 +54,20 @@ if(RELIEF_TSAN)
 endif()
 
 # Most of the time of compiling a file is spent on headers and their templates. Headers that never change are
-# precompiled. Libraries and tools compile each file alone. Test files are compiled in batches, which takes half of the
-# time. The sanitized build, whose instrumented templates cost most, compiles all files in batches. With
-# RELIEF_UNITY=OFF each file is compiled alone, as in the debug preset.
+# precompiled. Libraries and tools compile each file alone, so that a change compiles little. Test files are compiled
+# in batches, which takes half of the time. The sanitized build, whose instrumented templates cost most, compiles all
+# files in batches, and so does CI (RELIEF_UNITY=ALL), which starts from nothing. With RELIEF_UNITY=OFF each file is
+# compiled alone, as in the debug preset.
 option(RELIEF_PCH "Precompile the headers that nearly every file includes" ON)
-option(RELIEF_UNITY "Compile test files in batches, and all files under sanitizers" ON)
+set(RELIEF_UNITY ON CACHE STRING "Compile in batches: ON: tests, and all files under sanitizers; ALL: all files; OFF")
 set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
 
-# relief_batch(TARGET SIZE): compiles the files of a target in batches of so many if it is a test or a sanitized build.
+# relief_batch(TARGET SIZE): compiles the files of a target in batches of so many, as RELIEF_UNITY says.
 # A batch should not take so long that one processor waits for it at the end.
 function(relief_batch target size)
     set(tests ${PROJECT_SOURCE_DIR}/tests)
     cmake_path(IS_PREFIX tests ${CMAKE_CURRENT_SOURCE_DIR} in_tests)
-    if(RELIEF_UNITY AND (RELIEF_SANITIZE OR in_tests))
+    if(RELIEF_UNITY AND (RELIEF_UNITY STREQUAL ALL OR RELIEF_SANITIZE OR in_tests))
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
     endif()
 endfunction()
@@ -126,6 +129,9 @@ if(RELIEF_SANITIZE OR RELIEF_TSAN)
 endif()
 set(RELIEF_TEST_LABELS unit gl cli window docs)
 
+if(RELIEF_SANITIZE)
+    list(APPEND RELIEF_TEST_ENVIRONMENT ASAN_OPTIONS=handle_sigill=1)
+endif()
 if(RELIEF_TSAN)
     list(APPEND RELIEF_TEST_ENVIRONMENT
          TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp)
