@@ -4,9 +4,8 @@
 #part phong
 // The material's share of the scene's ambient light, scattered.
 
+#include "inputs.glsl#ambient"
 #include <occlusion>
-
-uniform vec3 ambient_scattered;
 
 void add_ambient(Surface surface, inout Lighting lighting) {
     lighting.scattered += ambient_scattered * occlusion();
@@ -15,9 +14,8 @@ void add_ambient(Surface surface, inout Lighting lighting) {
 #part metallic_roughness
 // Ambient light both scatters and mirrors.
 
+#include "inputs.glsl#ambient"
 #include <occlusion>
-
-uniform vec3 ambient_scattered;
 
 void add_ambient(Surface surface, inout Lighting lighting) {
     vec3 received = ambient_scattered * occlusion();

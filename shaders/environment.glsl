@@ -31,19 +31,29 @@ vec3 blurred_radiance(vec3 direction_world, float roughness) {
            environment_intensity;
 }
 
-#part brdf
-// The share of the environment's light that GGX facets mirror: f0 times the first channel of a
-// table over sqrt(n.v) and roughness, plus its second channel. Source: [Karis, SIGGRAPH 2013].
+#part brdf_table
+// GGX's directional albedo at n.v and a roughness: the factors of f0 and f90, from a table over
+// sqrt(n.v) and roughness. Source: [Karis, SIGGRAPH 2013].
 
 uniform sampler2D environment_brdf;
 
-vec3 directional_albedo(Surface surface) {
-    float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
+vec2 albedo_factors(float n_dot_v, float roughness) {
     // From the center of the first texel to that of the last.
     vec2 size = vec2(textureSize(environment_brdf, 0));
-    vec2 place = (vec2(sqrt(n_dot_v), surface.roughness) * (size - 1.0) + 0.5) / size;
-    vec2 scale_bias = texture(environment_brdf, place).rg;
-    return surface.f0 * scale_bias.x + scale_bias.y;
+    vec2 place = (vec2(sqrt(n_dot_v), roughness) * (size - 1.0) + 0.5) / size;
+    return texture(environment_brdf, place).rg;
+}
+
+#part brdf
+// The share of the environment's light that glTF's facets mirror.
+
+#include "environment.glsl#brdf_table"
+#include <grazing>
+
+vec3 directional_albedo(Surface surface, vec3 f0) {
+    float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
+    vec2 factors = albedo_factors(n_dot_v, surface.roughness);
+    return f0 * factors.x + grazing_reflectance(surface) * factors.y;
 }
 
 #part irradiance
@@ -84,5 +94,6 @@ void add_environment_light(Surface surface, inout Lighting lighting) {
 
 void add_environment_light(Surface surface, inout Lighting lighting) {
     vec3 received = environment_irradiance(surface.normal_world) * occlusion();
-    lighting.scattered += received * (vec3(1.0) - directional_albedo(surface));
+    vec3 blocked = directional_albedo(surface, blocking_f0(surface));
+    lighting.scattered += received * (vec3(1.0) - blocked);
 }

@@ -20,3 +20,18 @@ uniform vec3 eye_world;
 // The share of light that the surface scatters.
 
 uniform vec3 diffuse_color;
+
+#part normal
+// The interpolated normal, neither normalized nor turned to the visible side.
+
+in vec3 normal_world;
+
+#part ambient
+// The scattered share of ambient light. For glTF's model, the ambient light itself.
+
+uniform vec3 ambient_scattered;
+
+#part min_roughness
+// The smallest roughness of glTF's facets.
+
+const float min_roughness = 0.045;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // glTF's metallic-roughness model: the surface's parameters and its reflection of one light.
 // ambient.glsl, environment.glsl and reflection.glsl hold the rest of the model.
-// Source: glTF 2.0, appendix B.
+// Source: glTF 2.0, appendix B, with KHR_materials_ior and KHR_materials_specular.
 
 #part surface
 // Base color, metallic and roughness as the color that scatters, the reflectance at normal
@@ -9,6 +9,7 @@
 // normal float.
 
 #include "inputs.glsl#eye"
+#include "inputs.glsl#min_roughness"
 #include "vector.glsl#normalized_or"
 #include <position>
 #include <normal>
@@ -16,11 +17,9 @@
 #include <diffuse_texture>
 #include <vertex_color>
 #include <metallic_roughness>
+#include <dielectric>
 
 uniform vec3 base_color;
-
-const float dielectric_f0 = 0.04;
-const float min_roughness = 0.045;
 
 struct Surface {
     vec3 normal_world;
@@ -28,6 +27,7 @@ struct Surface {
     vec3 view_world;
     vec3 scattered_color;
     vec3 f0;
+    float dielectric_share;  // 1 minus metallic.
     float roughness;
     float alpha_squared;  // The fourth power of roughness.
 };
@@ -39,8 +39,8 @@ Surface surface_here() {
     float widened_roughness = widened(max(kind.y, min_roughness));
     float alpha = widened_roughness * widened_roughness;
     return Surface(normal, position_world, normalized_or(eye_world - position_world, normal),
-                   base * (1.0 - kind.x), mix(vec3(dielectric_f0), base, kind.x),
-                   widened_roughness, alpha * alpha);
+                   base * (1.0 - kind.x), mix(dielectric_reflectance(), base, kind.x),
+                   1.0 - kind.x, widened_roughness, alpha * alpha);
 }
 
 #part surface_colors
@@ -50,10 +50,9 @@ Surface surface_here() {
 #include <diffuse_texture>
 #include <vertex_color>
 #include <metallic_roughness>
+#include <dielectric>
 
 uniform vec3 base_color;
-
-const float dielectric_f0 = 0.04;
 
 struct Surface {
     vec3 scattered_color;
@@ -63,7 +62,33 @@ struct Surface {
 Surface surface_here() {
     vec3 base = base_color * diffuse_texel().rgb * vertex_tint().rgb;
     float metal = clamp(metallic_and_roughness().x, 0.0, 1.0);
-    return Surface(base * (1.0 - metal), mix(vec3(dielectric_f0), base, metal));
+    return Surface(base * (1.0 - metal), mix(dielectric_reflectance(), base, metal));
+}
+
+#part dielectric
+// The reflectance of dielectrics at normal incidence, from index, weight and color.
+// Source: KHR_materials_ior, KHR_materials_specular.
+
+uniform vec3 dielectric_f0;
+
+vec3 dielectric_reflectance() { return dielectric_f0; }
+
+#part grazing
+// The reflectance at grazing incidence, which the weight lowers; and the reflectance at normal
+// incidence of the light that scattering lacks. It has the largest channel of the dielectric share,
+// so that a colored reflection does not tint the scattered light. Source: KHR_materials_specular.
+
+#include "metallic_roughness.glsl#dielectric"
+
+uniform float dielectric_f90;
+
+vec3 grazing_reflectance(Surface surface) {
+    return vec3(1.0 + (dielectric_f90 - 1.0) * surface.dielectric_share);
+}
+
+vec3 blocking_f0(Surface surface) {
+    float largest = max(max(dielectric_f0.r, dielectric_f0.g), dielectric_f0.b);
+    return surface.f0 + (vec3(largest) - dielectric_f0) * surface.dielectric_share;
 }
 
 #part factors
@@ -92,13 +117,9 @@ vec2 metallic_and_roughness() {
 
 vec3 scattering_tint(Surface surface) { return surface.scattered_color; }
 
-#part receive
-// Adds the light of one source: GGX facets mirror by Schlick's Fresnel factor, and the rest is
-// scattered. pi is in the irradiance. 1 - (n.h)^2 is computed from the cross product, since a float
-// next to 1 is too coarse for smooth surfaces. If light and view are opposite, there is no half
-// vector, and nothing is mirrored. Source: [Walter et al. 2007].
-
-#include "vector.glsl#normalized_or"
+#part ggx
+// GGX facets. 1 - (n.h)^2 is computed from the cross product, since a float next to 1 is too coarse
+// for smooth surfaces. Source: [Walter et al. 2007].
 
 // GGX's D times pi. A normal map may turn the normal away from the half vector; n.h then counts as
 // 0. Its square alone would mirror the lobe to the other side of the surface.
@@ -117,8 +138,21 @@ float visibility(float n_dot_l, float n_dot_v, float alpha_squared) {
     return 0.5 / (masked + shadowed);
 }
 
+#part receive
+// Adds the light of one source: GGX facets mirror by Schlick's Fresnel factor, and the rest is
+// scattered. pi is in the irradiance. If light and view are opposite, there is no half vector, and
+// nothing is mirrored. Layers on top receive the light as well.
+
+#include "vector.glsl#normalized_or"
+#include "metallic_roughness.glsl#ggx"
+#include <grazing>
+#include <sheen_lights>
+#include <clearcoat_lights>
+
 void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_irradiance,
              inout Lighting lighting) {
+    receive_sheen(surface, light_world, irradiance);
+    receive_clearcoat(surface, light_world, irradiance);
     float n_dot_l = dot(surface.normal_world, light_world);
     if (!(n_dot_l > 0.0)) return;
     vec3 received = irradiance * n_dot_l;
@@ -128,10 +162,14 @@ void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_
         return;
     }
     float m = 1.0 - clamp(dot(surface.view_world, half_world), 0.0, 1.0);
-    vec3 fresnel = surface.f0 + (vec3(1.0) - surface.f0) * (m * m * m * m * m);
+    float towards_grazing = m * m * m * m * m;
+    vec3 f90 = grazing_reflectance(surface);
+    vec3 fresnel = surface.f0 + (f90 - surface.f0) * towards_grazing;
+    vec3 blocking = blocking_f0(surface);
+    vec3 blocked = blocking + (f90 - blocking) * towards_grazing;
     float n_dot_v = max(dot(surface.normal_world, surface.view_world), 0.0);
     float mirrored = facets(surface.normal_world, half_world, surface.alpha_squared) *
                      visibility(n_dot_l, n_dot_v, surface.alpha_squared);
-    lighting.scattered += received * (vec3(1.0) - fresnel);
+    lighting.scattered += received * (vec3(1.0) - blocked);
     lighting.highlights += received * fresnel * mirrored;
 }

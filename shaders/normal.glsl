@@ -4,10 +4,9 @@
 #part interpolated
 // The interpolated normal, normalized; (0,0,1) if it is zero.
 
+#include "inputs.glsl#normal"
 #include "vector.glsl#normalized_or"
 #include <facing>
-
-in vec3 normal_world;
 
 vec3 shading_normal() { return facing() * normalized_or(normal_world, vec3(0.0, 0.0, 1.0)); }
 

@@ -26,11 +26,10 @@ vec3 normal_tangent() { return normal_texel(); }
 // The shading normal from a map in object space; the interpolated normal if the map's vector is
 // zero.
 
+#include "inputs.glsl#normal"
 #include "vector.glsl#normalized_or"
 #include "normal_map.glsl#texel"
 #include <facing>
-
-in vec3 normal_world;
 
 uniform mat3 world_from_object_normal;
 

@@ -30,7 +30,7 @@ vec3 with_reflection(Surface surface, vec3 scattered) {
 vec3 with_reflection(Surface surface, vec3 scattered) {
     vec3 mirrored_world = reflect(-surface.view_world, surface.normal_world);
     vec3 mirrored = blurred_radiance(mirrored_world, surface.roughness) * occlusion();
-    return scattered + mirrored * directional_albedo(surface);
+    return scattered + mirrored * directional_albedo(surface, surface.f0);
 }
 
 #part refraction_only

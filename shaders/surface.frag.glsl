@@ -13,7 +13,9 @@ invariant out vec4 color;
 #include <tint>
 #include <specular_texture>
 #include <reflection>
+#include <sheen>
 #include <emission>
+#include <clearcoat>
 #include <output>
 
 void main() {
@@ -27,6 +29,7 @@ void main() {
 
     vec3 scattered = lighting.scattered * scattering_tint(surface);
     vec3 highlights = lighting.highlights * specular_texture_color();
-    vec3 radiance = with_reflection(surface, scattered) + highlights + emitted_radiance();
+    vec3 reflected = with_sheen(surface, with_reflection(surface, scattered) + highlights);
+    vec3 radiance = with_clearcoat(surface, reflected + emitted_radiance());
     color = vec4(coded(radiance), alpha);
 }

@@ -5,7 +5,8 @@
 // The mesh's tangent frame as interpolated, neither normalized nor orthogonalized. The bitangent is
 // computed here. A baker that assumes the same (MikkTSpace) is then inverted exactly.
 
-in vec3 normal_world;
+#include "inputs.glsl#normal"
+
 in vec4 tangent_world;
 
 mat3 world_from_tangent() {
@@ -19,12 +20,11 @@ mat3 world_from_tangent() {
 // interpolated normal. Bitangents point to decreasing v. If the texture coordinates are constant,
 // tangent and bitangent are 0. Source: [Mikkelsen 2008] for the frame of one triangle.
 
+#include "inputs.glsl#normal"
 #include "vector.glsl#normalized_or"
 #include "vector.glsl#rescaled"
 #include "inputs.glsl#texcoord"
 #include <position>
-
-in vec3 normal_world;
 
 mat3 world_from_tangent() {
     vec3 n = normalized_or(normal_world, vec3(0.0, 0.0, 1.0));

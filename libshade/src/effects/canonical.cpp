@@ -53,7 +53,7 @@ void settle_model(Features& f) {
         if (f.reflection != ReflectionTerm::none) f.reflection = ReflectionTerm::glossy;
         if (f.interpolation == Interpolation::gouraud) f.interpolation = Interpolation::per_pixel;
     } else {
-        f.metallic_roughness_texture = false;
+        f.metallic_roughness_texture = f.dielectric_reflectance = false;
     }
     if (f.reflection == ReflectionTerm::none) f.fresnel = FresnelTerm::constant;
 }
@@ -79,17 +79,31 @@ void drop_lights(Features& f) {
     }
 }
 
+/// True if light of any kind reaches glTF's surface, apart from its emission.
+bool is_lit_anyhow(const Features& f) {
+    return light_count(f) > 0 || f.ambient || f.environment_diffuse ||
+           f.reflection != ReflectionTerm::none;
+}
+
+/// Sheen and coat belong to glTF's model. Sheen needs light; a coat also dims the emission.
+void drop_layers(Features& f) {
+    if (!f.metallic_roughness || !is_lit_anyhow(f)) f.sheen = false;
+    if (!f.metallic_roughness || !(is_lit_anyhow(f) || f.emission)) f.clearcoat = false;
+}
+
 void drop_normal(Features& f) {
     const bool per_pixel_lights = light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
     const bool seen = per_pixel_lights || f.reflection != ReflectionTerm::none || f.refraction ||
-                      f.environment_diffuse;
-    if (!seen) {
-        f.detail = NormalDetail::none;
-        if (f.interpolation == Interpolation::flat) f.interpolation = Interpolation::per_pixel;
+                      f.environment_diffuse || f.sheen;
+    // A coat shows the normal without its map.
+    const bool plain_seen = seen || f.clearcoat;
+    if (!seen) f.detail = NormalDetail::none;
+    if (!plain_seen && f.interpolation == Interpolation::flat) {
+        f.interpolation = Interpolation::per_pixel;
     }
     if (f.interpolation != Interpolation::per_pixel) f.detail = NormalDetail::none;
     // Gouraud shading has two sides as well; a triangle's plane turns to the eye by itself.
-    if ((!seen && light_count(f) == 0) || f.interpolation == Interpolation::flat) {
+    if ((!plain_seen && light_count(f) == 0) || f.interpolation == Interpolation::flat) {
         f.double_sided = false;
     }
     if (f.detail == NormalDetail::none || f.detail == NormalDetail::object_normal_map) {
@@ -108,7 +122,8 @@ void drop_colors(Features& f) {
                                  (f.metallic_roughness && f.reflection != ReflectionTerm::none);
     if (!from_everywhere) f.occlusion_texture = false;
     if (!from_everywhere && !f.diffuse) {
-        f.metallic_roughness = f.metallic_roughness_texture = false;
+        f.metallic_roughness &= f.clearcoat;
+        f.metallic_roughness_texture = f.dielectric_reflectance = false;
         if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
     }
     if (!f.emission) f.emission_texture = false;
@@ -203,6 +218,7 @@ Features canonical(Features f) {
     if (f.unlit) return unlit_only(f);
     settle_model(f);
     drop_lights(f);
+    drop_layers(f);
     drop_normal(f);
     drop_colors(f);
     drop_alpha(f);

@@ -57,6 +57,7 @@ Effect lights(const char* name) {
 
 // Reasons of canonical() that several rows share.
 const char* const no_light = "no light reaches the surface, or it does nothing with it";
+const char* const no_layer = "the material is not metallic-roughness, or nothing shines on it";
 const char* const no_normal = "neither light nor reflection shows the normal";
 const char* const no_color = "nothing is scattered that it could tint";
 const char* const no_highlights = "there are no highlights";
@@ -111,6 +112,19 @@ Decision of_material(Subject s, bool on, const char* if_on, const char* if_off) 
 
 bool is_physical(Subject s) {
     return s.material.metallic_roughness.has_value();
+}
+
+Decision of_dielectric_reflectance(Subject s) {
+    if (!is_physical(s)) return {false, s.name + " is Phong's model"};
+    const MetallicRoughness& model = *s.material.metallic_roughness;
+    const bool differs =
+        dielectric_reflectance(model) != dielectric_reflectance(MetallicRoughness{}) ||
+        model.specular != 1.0F;
+    if (!differs) return {false, s.name + " reflects the 4% of the index 1.5"};
+    const bool textured = model.texture && !s.mesh.texcoords.empty();
+    const bool is_metal = model.metallic == 1.0F && !textured;
+    return of_material(s, !is_metal, "has an index, weight or color of its own",
+                       "is a metal everywhere");
 }
 
 /// A texture shows only on a mesh with texture coordinates.
@@ -283,6 +297,22 @@ std::vector<EffectRow> model_rows() {
              [](Subject s) {
                  return of_texture(
                      s, is_physical(s) && s.material.metallic_roughness->texture.has_value());
+             }},
+        {.effect = one_switch<&F::dielectric_reflectance>("dielectric reflectance",
+                                                          "the material is not metallic-roughness"),
+         .decide = of_dielectric_reflectance},
+        {.effect = one_switch<&F::sheen>("sheen", no_layer),
+         .decide =
+             [](Subject s) {
+                 const bool has =
+                     is_physical(s) && is_not_black(s.material.metallic_roughness->sheen_color);
+                 return of_material(s, has, "has a sheen color", "has none");
+             }},
+        {.effect = one_switch<&F::clearcoat>("clearcoat", no_layer),
+         .decide =
+             [](Subject s) {
+                 const bool has = is_physical(s) && s.material.metallic_roughness->clearcoat > 0.0F;
+                 return of_material(s, has, "has a clear coat", "has none");
              }},
         {.effect = one_value<&F::interpolation, Interpolation::gouraud>("Gouraud",
                                                                         "no light is interpolated"),

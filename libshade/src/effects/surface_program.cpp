@@ -55,6 +55,16 @@ bool is_flat(By f) {
     return f.interpolation == Interpolation::flat;
 }
 
+/// True if the surface under sheen and coat sends light to the eye, apart from its emission.
+bool has_lit_base(By f) {
+    return has_lights(f) || f.ambient || f.environment_diffuse ||
+           f.reflection != ReflectionTerm::none;
+}
+/// True if glTF's roughness and Fresnel factors show. Ambient light has neither.
+bool has_lit_facets(By f) {
+    return has_lights(f) || f.environment_diffuse || f.reflection != ReflectionTerm::none;
+}
+
 /// The values that a stage needs of the surface.
 struct Needs {
     bool lights = false;
@@ -69,9 +79,10 @@ Needs needs_of(By f, bool lights, bool rest) {
     const bool lit_around = rest && f.environment_diffuse;
     Needs needs;
     needs.lights = lights && has_lights(f);
-    needs.normal = needs.lights || reflects || lit_around;
+    const bool layered = rest && (f.sheen || f.clearcoat);
+    needs.normal = needs.lights || reflects || lit_around || layered;
     needs.position = needs.lights && has_positional_lights(f);
-    needs.view = (needs.lights && f.specular != SpecularTerm::none) || reflects ||
+    needs.view = (needs.lights && f.specular != SpecularTerm::none) || reflects || layered ||
                  (f.metallic_roughness && needs.normal);
     return needs;
 }
@@ -152,7 +163,9 @@ Steps passing_steps(By f) {
 
 /// Returns the step of the values of the surface at a point.
 Step surface_step(By f, const Needs& needs) {
-    const bool physical = f.metallic_roughness;
+    const bool physical = f.metallic_roughness && has_lit_base(f);
+    Takes facets{.uniforms = {"eye_world", "base_color", "metallic"}};
+    if (has_lit_facets(f)) facets.uniforms.emplace_back("roughness");
     return {"surface",
             "",
             {{"surface.glsl#none", !needs.normal && !physical},
@@ -162,9 +175,69 @@ Step surface_step(By f, const Needs& needs) {
              {"metallic_roughness.glsl#surface_colors",
               physical && !needs.normal,
               {.uniforms = {"base_color", "metallic"}}},
-             {"metallic_roughness.glsl#surface",
-              physical && needs.normal,
-              {.uniforms = {"eye_world", "base_color", "metallic", "roughness"}}}}};
+             {"metallic_roughness.glsl#surface", physical && needs.normal, facets}}};
+}
+
+/// Returns the steps of the reflectance of glTF's dielectrics.
+Steps dielectric_steps(By f) {
+    const bool own = f.dielectric_reflectance;
+    const bool by_angle = own && has_lit_facets(f);
+    return {{"dielectric",
+             "vec3 dielectric_reflectance() { return vec3(0.04); }",
+             {{"metallic_roughness.glsl#dielectric", own, {.uniforms = {"dielectric_f0"}}}}},
+            {"grazing",
+             "vec3 grazing_reflectance(Surface surface) { return vec3(1.0); } "
+             "vec3 blocking_f0(Surface surface) { return surface.f0; }",
+             {{"metallic_roughness.glsl#grazing",
+               by_angle,
+               {.uniforms = {"dielectric_f0", "dielectric_f90"}}}}}};
+}
+
+/// Returns the steps of the layers on glTF's surfaces. A view of one term has the layers' share of
+/// that term; their highlights belong to highlights.
+Steps layer_steps(By f) {
+    const bool highlights = has_lights(f) && f.view != DebugView::diffuse;
+    const bool mirrors = f.clearcoat && f.reflection != ReflectionTerm::none;
+    return {
+        {"sheen",
+         "vec3 with_sheen(Surface surface, vec3 radiance) { return radiance; }",
+         {{"sheen.glsl#layer", f.sheen, {.uniforms = {"sheen_color", "sheen_albedo"}}}}},
+        {"sheen_lights",
+         "void receive_sheen(Surface surface, vec3 light_world, vec3 irradiance) {} "
+         "vec3 sheen_from_lights() { return vec3(0.0); }",
+         {{"sheen.glsl#lights", f.sheen && highlights, {.uniforms = {"sheen_alpha"}}}}},
+        {"sheen_ambient",
+         "vec3 sheen_from_ambient() { return vec3(0.0); }",
+         {{"sheen.glsl#ambient", f.sheen && f.ambient, {.uniforms = {"ambient_scattered"}}}}},
+        {"sheen_environment",
+         "vec3 sheen_from_environment(Surface surface) { return vec3(0.0); }",
+         {{"sheen.glsl#environment",
+           f.sheen && f.environment_diffuse,
+           {.uniforms = {"irradiance_sh"}}}}},
+        {"clearcoat",
+         "vec3 with_clearcoat(Surface surface, vec3 radiance) { return radiance; }",
+         {{"clearcoat.glsl#layer", f.clearcoat, {.uniforms = {"clearcoat", "eye_world"}}}}},
+        {"clearcoat_normal",
+         "vec3 clearcoat_normal(Surface surface) { return surface.normal_world; }",
+         {{"clearcoat.glsl#normal", f.clearcoat && f.detail != NormalDetail::none}}},
+        {"clearcoat_lights",
+         "void receive_clearcoat(Surface surface, vec3 light_world, vec3 irradiance) {} "
+         "vec3 clearcoat_from_lights() { return vec3(0.0); }",
+         {{"clearcoat.glsl#lights",
+           f.clearcoat && highlights,
+           {.uniforms = {"clearcoat_roughness"}}}}},
+        {"clearcoat_ambient",
+         "vec3 clearcoat_from_ambient() { return vec3(0.0); }",
+         {{"clearcoat.glsl#ambient",
+           f.clearcoat && f.ambient,
+           {.uniforms = {"ambient_scattered"}}}}},
+        {"clearcoat_reflection",
+         "vec3 clearcoat_reflection(Surface surface) { return vec3(0.0); }",
+         {{"clearcoat.glsl#reflection",
+           mirrors,
+           {.uniforms = {"clearcoat_roughness", "environment_intensity", "blurred_levels"},
+            .samplers = {"blurred_environment", "environment_brdf"}}}}},
+    };
 }
 
 /// Returns the steps of the normal at a fragment.
@@ -285,7 +358,7 @@ Steps ambient_steps(By f) {
 
 /// Returns the steps of textures and colors that multiply.
 Steps color_steps(By f) {
-    const bool physical = f.metallic_roughness;
+    const bool physical = f.metallic_roughness && has_lit_base(f);
     // Lights of glTF's model scatter and mirror at once; a view of one of the two blackens the
     // other.
     const bool black_scattering = physical && f.view == DebugView::specular;
@@ -468,6 +541,8 @@ Steps lit_steps(By f) {
                       {"gouraud.glsl#interpolated", is_gouraud(f) && !both_sides},
                       {"gouraud.glsl#interpolated_both_sides", both_sides}}},
                     surface_step(f, fragment_needs(f))},
+                   dielectric_steps(f),
+                   layer_steps(f),
                    normal_steps(f),
                    light_steps(f, lights_here),
                    scattering_steps(f, lights_here),

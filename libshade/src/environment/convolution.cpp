@@ -182,6 +182,82 @@ Image environment_brdf_table(int size) {
     return table;
 }
 
+// Sheen
+
+double sheen_alpha(double roughness) {
+    constexpr double min_roughness = 0.045;
+    const double used = std::max(roughness, min_roughness);
+    return used * used;
+}
+
+double sheen_distribution(double n_h, double alpha) {
+    const double sine_squared = (1.0 - n_h) * (1.0 + n_h);
+    return (2.0 + 1.0 / alpha) * portable::pow(sine_squared, 0.5 / alpha) /
+           (2.0 * std::numbers::pi);
+}
+
+namespace {
+
+/// Returns L, the logarithm of Lambda for cosines below 1/2: [Estevez and Kulla 2017], table 1.
+double log_lambda(double cosine, double alpha) {
+    const double smooth = (1.0 - alpha) * (1.0 - alpha);
+    const double a = glm::mix(21.5473, 25.3245, smooth);
+    const double b = glm::mix(3.82987, 3.32435, smooth);
+    const double c = glm::mix(0.19823, 0.16801, smooth);
+    const double d = glm::mix(-1.97760, -1.27393, smooth);
+    const double e = glm::mix(-4.32054, -4.85967, smooth);
+    return a / (1.0 + b * portable::pow(cosine, c)) + d * cosine + e;
+}
+
+double sheen_lambda(double cosine, double alpha) {
+    if (cosine < 0.5) return portable::exp(log_lambda(cosine, alpha));
+    return portable::exp(2.0 * log_lambda(0.5, alpha) - log_lambda(1.0 - cosine, alpha));
+}
+
+}  // namespace
+
+double sheen_visibility(double n_l, double n_v, double alpha) {
+    const double seen = std::max(n_v, 1e-4);
+    return 1.0 / (4.0 * seen * (1.0 + sheen_lambda(seen, alpha) + sheen_lambda(n_l, alpha)));
+}
+
+SheenAlbedo sheen_albedo_table(double roughness) {
+    // Midpoints over the light's angle phi and the root of n.l, since Lambda changes fastest at
+    // grazing angles.
+    constexpr int steps = 32;
+    const double alpha = sheen_alpha(roughness);
+    SheenAlbedo table{};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const double root = static_cast<double>(i) / static_cast<double>(table.size() - 1);
+        const double n_v = std::max(root * root, 1e-4);
+        const double across_v = std::sqrt((1.0 - n_v) * (1.0 + n_v));
+        double sum = 0.0;
+        for (int j = 0; j < steps; ++j) {
+            const double root_l = (j + 0.5) / steps;
+            const double n_l = root_l * root_l;
+            const double across_l = std::sqrt((1.0 - n_l) * (1.0 + n_l));
+            double distribution = 0.0;
+            for (int k = 0; k < steps; ++k) {
+                const double phi = std::numbers::pi * (k + 0.5) / steps;
+                const glm::dvec3 half(across_v + across_l * portable::cos(phi),
+                                      across_l * portable::sin(phi), n_v + n_l);
+                distribution += sheen_distribution(half.z / glm::length(half), alpha);
+            }
+            // d n.l = 2 root d root, and both halves of the circle are alike.
+            sum += distribution * sheen_visibility(n_l, n_v, alpha) * root_l;
+        }
+        table[i] = std::min(sum * 4.0 * std::numbers::pi / (steps * steps), 1.0);
+    }
+    return table;
+}
+
+double sheen_albedo(const SheenAlbedo& table, double n_v) {
+    const double place =
+        std::sqrt(std::clamp(n_v, 0.0, 1.0)) * static_cast<double>(table.size() - 1);
+    const std::size_t first = std::min(static_cast<std::size_t>(place), table.size() - 2);
+    return glm::mix(table[first], table[first + 1], place - static_cast<double>(first));
+}
+
 // Blurred radiance
 
 namespace {

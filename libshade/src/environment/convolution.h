@@ -5,7 +5,8 @@
 ///
 /// GGX is the distribution of a rough surface's facets, in double, with alpha = roughness^2 as
 /// glTF 2.0 (appendix B) defines it. Its directions are unit, and the surface's normal is +z.
-/// Source: [Walter et al. 2007], [Heitz 2014] (masking and shadowing).
+/// Source: [Walter et al. 2007], [Heitz 2014] (masking and shadowing). Sheen is
+/// that of KHR_materials_sheen: [Estevez and Kulla 2017].
 #pragma once
 
 #include <array>
@@ -55,6 +56,32 @@ glm::dvec2 environment_brdf(double n_v, double roughness);
 ///         table of 64 have an error within 3e-3 for roughness of at least 0.045.
 /// \throws InvalidInput if size is less than 2
 Image environment_brdf_table(int size);
+
+// Sheen
+
+/// Returns alpha of Charlie's distribution: roughness^2, with a roughness of at least 0.045.
+double sheen_alpha(double roughness);
+
+/// Returns Charlie's distribution D' of the directions of fibers: (2 + 1 / alpha) sin^(1 / alpha) /
+/// (2 pi). \param n_h  from 0 to 1
+double sheen_distribution(double n_h, double alpha);
+
+/// Returns n.l V' of the sheen: 1 / (4 n.v (1 + Lambda(n.v) + Lambda(n.l))), with the fit of
+/// Lambda by [Estevez and Kulla 2017]. \param n_v, n_l  within [0,1]; n.v counts as at least 1e-4
+double sheen_visibility(double n_l, double n_v, double alpha);
+
+/// The directional albedo of a sheen of the color 1: entry i for sqrt(n.v) = i / 31.
+using SheenAlbedo = std::array<double, 32>;
+
+/// Returns the share of even light from all directions that the sheen reflects to the eye. Smooth
+/// fibers would reflect more than they receive at grazing angles; that counts as 1.
+///
+/// \return within 1e-3 of the integral for a roughness of at least 0.1, and linear lookups
+///         (sheen_albedo()) within 5e-3
+SheenAlbedo sheen_albedo_table(double roughness);
+
+/// Returns the linear interpolation of a table at n.v, which is clamped to [0,1].
+double sheen_albedo(const SheenAlbedo& table, double n_v);
 
 // Blurred radiance
 

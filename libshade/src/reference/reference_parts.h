@@ -225,13 +225,15 @@ struct PreparedScene {
     std::map<std::size_t, FlatCode> detected_flat_codes;  ///< By image.
     std::map<std::size_t, int> normal_map_bits;           ///< By image.
     std::optional<EnvironmentLookup> environment;
+    std::map<float, SheenAlbedo> sheen_albedos;  ///< By sheen roughness.
 };
 
 /// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal
 /// or bump map.
 struct Surface {
     glm::dvec3 position_world{0.0};
-    glm::dvec3 normal_world{0.0, 0.0, 1.0};  ///< Unit, on the visible side.
+    glm::dvec3 normal_world{0.0, 0.0, 1.0};        ///< Unit, on the visible side.
+    glm::dvec3 plain_normal_world{0.0, 0.0, 1.0};  ///< The same without a map.
     glm::dvec3 view_world{0.0, 0.0,
                           1.0};  ///< Unit, to the eye; the normal if the eye is at the surface.
     glm::dvec2 texcoord{0.0};

@@ -280,9 +280,9 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
 struct Microfacets {
     glm::dvec3 scattering;  ///< c
     glm::dvec3 f0;
+    glm::dvec3 blocking_f0;  ///< f0'
+    double f90;
     double roughness;
-
-    [[nodiscard]] double alpha() const { return roughness * roughness; }
 };
 
 Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
@@ -291,31 +291,49 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
     const double metallic = static_cast<double>(model.metallic) * texel.b;
     const double roughness = static_cast<double>(model.roughness) * texel.g;
     const glm::dvec3 base = glm::dvec3(model.base_color) * tint;
-    return {base * (1.0 - metallic), glm::mix(glm::dvec3(0.04), base, metallic),
+    const double specular = static_cast<double>(model.specular);
+    const double index = static_cast<double>(model.refractive_index);
+    const glm::dvec3 dielectric =
+        specular * glm::min(fresnel(index, 1.0) * glm::dvec3(model.specular_color), 1.0);
+    const double largest = std::max({dielectric.r, dielectric.g, dielectric.b});
+    return {base * (1.0 - metallic), glm::mix(dielectric, base, metallic),
+            glm::mix(glm::dvec3(largest), base, metallic), glm::mix(specular, 1.0, metallic),
             std::max(roughness, min_roughness)};
 }
 
-/// Returns pi D V f + (1 - f) c, the factor of one light. \param n_dot_l  positive
-glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm::dvec3& light,
-                        double n_dot_l) {
+/// Returns the unit half vector, or zero if light and eye are opposite: then nothing is reflected.
+glm::dvec3 half_vector(const glm::dvec3& light, const Surface& at) {
     const glm::dvec3 sum = light + at.view_world;
     const double length = glm::length(sum);
-    // Without a half vector there is no reflection.
-    if (!(length > 1e-15)) return facets.scattering;
-    const glm::dvec3 half = sum / length;
-    const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
-    const double n_dot_h = std::clamp(glm::dot(at.normal_world, half), 0.0, 1.0);
-    const double v_dot_h = std::clamp(glm::dot(at.view_world, half), 0.0, 1.0);
-    const double squared = facets.alpha() * facets.alpha();
+    return length > 1e-15 ? sum / length : glm::dvec3(0.0);
+}
 
+/// Returns pi D V of GGX about a normal. \param n_dot_l  positive
+double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface& at, double n_dot_l,
+                double roughness) {
+    const double alpha = roughness * roughness;
+    const double squared = alpha * alpha;
+    const double n_dot_v = std::clamp(glm::dot(normal, at.view_world), 0.0, 1.0);
+    const double n_dot_h = std::clamp(glm::dot(normal, half), 0.0, 1.0);
     const double spread = n_dot_h * n_dot_h * (squared - 1.0) + 1.0;
     const double distribution = squared / (std::numbers::pi * spread * spread);
     const double visibility =
         0.5 / (n_dot_l * std::sqrt(n_dot_v * n_dot_v * (1.0 - squared) + squared) +
                n_dot_v * std::sqrt(n_dot_l * n_dot_l * (1.0 - squared) + squared));
-    const glm::dvec3 fresnel = facets.f0 + (1.0 - facets.f0) * portable::pow(1.0 - v_dot_h, 5.0);
-    return (1.0 - fresnel) * facets.scattering +
-           fresnel * (std::numbers::pi * distribution * visibility);
+    return std::numbers::pi * distribution * visibility;
+}
+
+/// Returns pi D V f + (1 - f') c, the factor of one light. \param n_dot_l  positive
+glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm::dvec3& light,
+                        double n_dot_l) {
+    const glm::dvec3 half = half_vector(light, at);
+    if (half == glm::dvec3(0.0)) return facets.scattering;
+    const double v_dot_h = std::clamp(glm::dot(at.view_world, half), 0.0, 1.0);
+    const double grazing = portable::pow(1.0 - v_dot_h, 5.0);
+    return (1.0 - glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)) *
+               facets.scattering +
+           glm::mix(facets.f0, glm::dvec3(facets.f90), grazing) *
+               ggx_lobe(at.normal_world, half, at, n_dot_l, facets.roughness);
 }
 
 /// Returns the light from all directions: ambient light, and the scattered and reflected
@@ -326,17 +344,78 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
         const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
-        const glm::dvec3 mirrors = facets.f0 * albedo.x + albedo.y;
-        light += (1.0 - mirrors) * facets.scattering * environment_irradiance(context);
+        const glm::dvec3 mirrors = facets.f0 * albedo.x + facets.f90 * albedo.y;
+        const glm::dvec3 blocked = facets.blocking_f0 * albedo.x + facets.f90 * albedo.y;
+        light += (1.0 - blocked) * facets.scattering * environment_irradiance(context);
         light += mirrors * reflected(context, facets.roughness);
     }
     return light;
 }
 
+/// Returns the sums of light that a layer receives about a normal: sum_i L lobe(n.l, h).
+template <typename Lobe>
+glm::dvec3 received(const Context& context, const glm::dvec3& normal, Lobe lobe) {
+    const Surface& at = context.surface;
+    glm::dvec3 sum(0.0);
+    for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
+        const double n_dot_l = glm::dot(normal, light.light_world);
+        context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
+        if (!(n_dot_l > 0.0)) continue;
+        const glm::dvec3 half = half_vector(light.light_world, at);
+        if (half != glm::dvec3(0.0)) sum += light.irradiance * lobe(n_dot_l, half);
+    }
+    return sum;
+}
+
+/// Returns the term `sheened` of the formula.
+glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
+    const MetallicRoughness& model = *context.material.metallic_roughness;
+    const glm::dvec3 color(model.sheen_color);
+    if (color == glm::dvec3(0.0)) return base;
+    const Surface& at = context.surface;
+    const glm::dvec3& n = at.normal_world;
+    const double alpha = sheen_alpha(static_cast<double>(model.sheen_roughness));
+    const double n_dot_v = std::clamp(glm::dot(n, at.view_world), 0.0, 1.0);
+    const double albedo =
+        sheen_albedo(context.prepared.sheen_albedos.at(model.sheen_roughness), n_dot_v);
+    const glm::dvec3 lights = received(context, n, [&](double n_dot_l, const glm::dvec3& half) {
+        const double n_dot_h = std::clamp(glm::dot(n, half), 0.0, 1.0);
+        return std::numbers::pi * sheen_distribution(n_dot_h, alpha) *
+               sheen_visibility(n_dot_l, n_dot_v, alpha);
+    });
+    const glm::dvec3 around = occlusion(context) * (glm::dvec3(context.prepared.scene.ambient) +
+                                                    environment_irradiance(context));
+    const double largest = std::max({color.r, color.g, color.b});
+    return (1.0 - largest * albedo) * base + color * (lights + albedo * around);
+}
+
+/// Returns the term `coated` of the formula.
+glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
+    const MetallicRoughness& model = *context.material.metallic_roughness;
+    const double weight = static_cast<double>(model.clearcoat);
+    if (weight == 0.0) return base;
+    const double roughness =
+        std::max(static_cast<double>(model.clearcoat_roughness), min_roughness);
+    Surface at = context.surface;
+    at.normal_world = at.plain_normal_world;
+    const Context plain{context.prepared, context.material, at, context.trace};
+    const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
+    glm::dvec3 coat = received(plain, at.normal_world, [&](double n_dot_l, const glm::dvec3& half) {
+        return n_dot_l * ggx_lobe(at.normal_world, half, at, n_dot_l, roughness);
+    });
+    glm::dvec3 around(context.prepared.scene.ambient);
+    if (context.prepared.environment) {
+        const glm::dvec2 albedo = directional_albedo(n_dot_v, roughness);
+        around += (albedo.x + albedo.y) * reflected(plain, roughness);
+    }
+    coat += occlusion(context) * around;
+    return glm::mix(base, coat, weight * (0.04 + 0.96 * portable::pow(1.0 - n_dot_v, 5.0)));
+}
+
 glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3& tint) {
     const Surface& at = context.surface;
     const Microfacets facets = microfacets_at(context, tint);
-    glm::dvec3 radiance = occlusion(context) * indirect_light(context, facets) + emitted(context);
+    glm::dvec3 radiance = occlusion(context) * indirect_light(context, facets);
     for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
@@ -344,7 +423,7 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3&
         radiance +=
             light.irradiance * n_dot_l * scattered_by(facets, at, light.light_world, n_dot_l);
     }
-    return radiance;
+    return with_clearcoat(context, with_sheen(context, radiance) + emitted(context));
 }
 
 }  // namespace

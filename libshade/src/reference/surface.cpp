@@ -218,6 +218,13 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
             prepared(instance, meshes[instance.mesh], glm::inverse(world_from_view)));
     }
     if (scene.environment) environment.emplace(*scene.environment, report);
+    for (const Material& material : materials) {
+        if (!material.metallic_roughness) continue;
+        const float roughness = material.metallic_roughness->sheen_roughness;
+        if (material.metallic_roughness->sheen_color != glm::vec3(0.0F))
+            sheen_albedos.try_emplace(roughness,
+                                      sheen_albedo_table(static_cast<double>(roughness)));
+    }
 }
 
 std::size_t PreparedScene::range_of(std::uint32_t instance, std::uint32_t triangle) const {
@@ -414,7 +421,10 @@ Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
 }
 
 void face_viewer(const PreparedScene& prepared, const Hit& hit, Surface& surface) {
-    if (is_back(prepared, hit)) surface.normal_world = -surface.normal_world;
+    if (is_back(prepared, hit)) {
+        surface.normal_world = -surface.normal_world;
+        surface.plain_normal_world = -surface.plain_normal_world;
+    }
     surface.view_world = unit_or(prepared.eye_world - surface.position_world, surface.normal_world);
 }
 
@@ -428,6 +438,9 @@ Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material
                    Trace& trace) {
     Surface surface = attributes_at(prepared, hit);
     surface.normal_world = front_normal(prepared, hit, material, surface.texcoord, trace);
+    Material plain;
+    plain.interpolation = material.interpolation;
+    surface.plain_normal_world = front_normal(prepared, hit, plain, surface.texcoord, trace);
     face_viewer(prepared, hit, surface);
     return surface;
 }

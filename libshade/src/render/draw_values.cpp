@@ -8,6 +8,7 @@
 #include <map>
 
 #include "effects/light_rows.h"
+#include "environment/convolution.h"
 #include "portable_math.h"
 #include "render/program_cache.h"
 
@@ -38,6 +39,13 @@ const std::map<std::string_view, Setter>& setters() {
         {"base_color", set_member<&DrawValues::base_color>},
         {"metallic", set_member<&DrawValues::metallic>},
         {"roughness", set_member<&DrawValues::roughness>},
+        {"dielectric_f0", set_member<&DrawValues::dielectric_f0>},
+        {"dielectric_f90", set_member<&DrawValues::dielectric_f90>},
+        {"sheen_color", set_member<&DrawValues::sheen_color>},
+        {"sheen_alpha", set_member<&DrawValues::sheen_alpha>},
+        {"sheen_albedo", set_member<&DrawValues::sheen_albedo>},
+        {"clearcoat", set_member<&DrawValues::clearcoat>},
+        {"clearcoat_roughness", set_member<&DrawValues::clearcoat_roughness>},
         {"occlusion_strength", set_member<&DrawValues::occlusion_strength>},
         {"opacity", set_member<&DrawValues::opacity>},
         {"alpha_cutoff", set_member<&DrawValues::alpha_cutoff>},
@@ -74,6 +82,18 @@ glm::mat3 scaled_to_one(const glm::dmat3& matrix) {
     return largest > 0.0 ? glm::mat3(matrix / largest) : glm::mat3(0.0F);
 }
 
+/// Without a color, the table stays zero: nothing reads it.
+void set_sheen(DrawValues& values, const MetallicRoughness& model) {
+    if (!is_not_black(model.sheen_color)) return;
+    const double roughness = static_cast<double>(model.sheen_roughness);
+    values.sheen_color = model.sheen_color;
+    values.sheen_alpha = static_cast<float>(sheen_alpha(roughness));
+    const SheenAlbedo table = sheen_albedo_table(roughness);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        values.sheen_albedo[i / 4][static_cast<int>(i % 4)] = static_cast<float>(table[i]);
+    }
+}
+
 }  // namespace
 
 bool set_uniform(const gl::LinkedProgram& program, std::string_view name,
@@ -93,6 +113,11 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
         values.diffuse_color = values.base_color = physical->base_color;
         values.metallic = physical->metallic;
         values.roughness = physical->roughness;
+        values.dielectric_f0 = dielectric_reflectance(*physical);
+        values.dielectric_f90 = physical->specular;
+        values.clearcoat = physical->clearcoat;
+        values.clearcoat_roughness = physical->clearcoat_roughness;
+        set_sheen(values, *physical);
     }
     values.occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F;
     values.opacity = material.alpha_mode == AlphaMode::opaque ? 1.0F : material.opacity;

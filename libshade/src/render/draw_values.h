@@ -34,6 +34,13 @@ struct DrawValues {
     glm::vec3 base_color{0.0F};
     float metallic = 0.0F;
     float roughness = 1.0F;
+    glm::vec3 dielectric_f0{0.04F};
+    float dielectric_f90 = 1.0F;
+    glm::vec3 sheen_color{0.0F};
+    float sheen_alpha = 1.0F;
+    std::array<glm::vec4, 8> sheen_albedo{};  ///< sheen_albedo_table().
+    float clearcoat = 0.0F;
+    float clearcoat_roughness = 0.0F;
     float occlusion_strength = 0.0F;
     float opacity = 1.0F;
     float alpha_cutoff = 0.0F;

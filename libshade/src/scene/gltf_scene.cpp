@@ -24,6 +24,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
+#include "relief/shade/scene_fields.h"
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
 
@@ -95,12 +96,28 @@ glm::vec3 mean_color(const Image& image) {
 
 namespace {
 
-/// The reflectivity of every dielectric at normal incidence, as glTF fixes it.
-constexpr float dielectric_f0 = 0.04F;
 /// The smallest roughness that the exponent of the highlight represents.
 constexpr float min_roughness = 0.045F;
 /// tan^2 of 3 degrees: facets with a smaller tilt mirror a recognizable picture.
 constexpr float mirror_tan_squared = 0.0027465F;
+
+/// Returns the factors of a material, with those that glTF forbids as the nearest allowed ones. An
+/// index of 0 is allowed, others begin at 1.
+MetallicRoughness factors_of(const GltfMaterial& material) {
+    MetallicRoughness model{usable(glm::vec3(material.base_color), 1.0F),
+                            usable(material.metallic, 1.0F), usable(material.roughness, 1.0F),
+                            std::nullopt};
+    const float index =
+        usable(material.refractive_index, field_of(&MetallicRoughness::refractive_index).range.max);
+    model.refractive_index = index > 0.0F ? std::max(index, 1.0F) : 0.0F;
+    model.specular = usable(material.specular, 1.0F);
+    model.specular_color = usable(material.specular_color, max_reflectance);
+    model.clearcoat = usable(material.clearcoat, 1.0F);
+    model.clearcoat_roughness = usable(material.clearcoat_roughness, 1.0F);
+    model.sheen_color = usable(material.sheen_color, 1.0F);
+    model.sheen_roughness = usable(material.sheen_roughness, 1.0F);
+    return model;
+}
 
 }  // namespace
 
@@ -110,7 +127,9 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
     const float roughness =
         std::max(usable(material.roughness * means.roughness, 1.0F), min_roughness);
     const float alpha_squared = roughness * roughness * roughness * roughness;
-    const glm::vec3 f0 = glm::mix(glm::vec3(dielectric_f0), base * means.base_color, metallic);
+    const MetallicRoughness factors = factors_of(material);
+    const glm::vec3 dielectric = dielectric_reflectance(factors);
+    const glm::vec3 f0 = glm::mix(dielectric, base * means.base_color, metallic);
     const float mirror = mirror_tan_squared / (mirror_tan_squared + alpha_squared);
 
     Material phong;
@@ -119,9 +138,10 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
     phong.shininess = 2.0F / alpha_squared - 2.0F;
     phong.specular = f0 * ((phong.shininess + 2.0F) / 8.0F);
     phong.reflectivity = f0 * mirror;
-    phong.grazing_reflectivity = glm::vec3(mirror);
+    phong.grazing_reflectivity =
+        glm::vec3(mirror * (1.0F + (factors.specular - 1.0F) * (1.0F - metallic)));
     phong.diffuse = base * (1.0F - metallic);
-    phong.ambient = phong.diffuse + glm::mix(glm::vec3(dielectric_f0), base, metallic);
+    phong.ambient = phong.diffuse + glm::mix(dielectric, base, metallic);
     phong.emission = usable(material.emission, max_reflectance);
     phong.double_sided = material.double_sided;
     phong.unlit = material.unlit;
@@ -311,10 +331,19 @@ void add_textures(Material& result, const GltfMaterial& material, std::size_t in
 /// Reports what the file asks for and no effect draws.
 void add_undrawn_extensions(Material& result, const GltfMaterial& material, std::size_t index,
                             const std::vector<std::string>& required, Report& report) {
-    result.undrawn_extensions = material.more_extensions;
-    for (const std::string& name : material.more_extensions) {
+    std::vector<std::string>& names = result.undrawn_extensions;
+    names = material.more_extensions;
+    if (!result.metallic_roughness && !result.unlit) {  // Phong's model has no layers.
+        if (material.clearcoat > 0.0F) names.emplace_back("KHR_materials_clearcoat");
+        if (material.sheen_color != glm::vec3(0.0F)) names.emplace_back("KHR_materials_sheen");
+        std::sort(names.begin(), names.end());
+    }
+    for (const std::string& name : names) {
+        // A texture is required with its extension: "specularTexture of KHR_materials_specular".
         const bool is_required =
-            std::find(required.begin(), required.end(), name) != required.end();
+            std::any_of(required.begin(), required.end(), [&](const std::string& extension) {
+                return name == extension || name.ends_with(" of " + extension);
+            });
         report.add(is_required ? name + ", which the file requires" : name, "material", index,
                    is_required ? "not drawn: the picture is not the intended one"
                                : "left out: drawn without it");
@@ -333,11 +362,7 @@ std::vector<Material> materials_from(const GltfView& view, const SceneOptions& o
         const GltfMaterial& material = view.materials[i];
         Material& result =
             materials.emplace_back(phong_from_metallic_roughness(material, means[i]));
-        if (!phong && !material.unlit) {
-            result.metallic_roughness = MetallicRoughness{
-                usable(glm::vec3(material.base_color), 1.0F), usable(material.metallic, 1.0F),
-                usable(material.roughness, 1.0F), std::nullopt};
-        }
+        if (!phong && !material.unlit) result.metallic_roughness = factors_of(material);
         add_textures(result, material, i, report);
         add_undrawn_extensions(result, material, i, view.required_extensions, report);
     }

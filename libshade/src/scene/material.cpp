@@ -166,6 +166,13 @@ const std::vector<std::string>& material_names() {
     return names;
 }
 
+glm::vec3 dielectric_reflectance(const MetallicRoughness& model) {
+    const double n = static_cast<double>(model.refractive_index);
+    const double root = (n - 1.0) / (n + 1.0);
+    const glm::dvec3 f0 = glm::min(root * root * glm::dvec3(model.specular_color), 1.0);
+    return glm::vec3(f0 * static_cast<double>(model.specular));
+}
+
 float specular_normalization(const Material& material) {
     const bool normalized = material.specular_model == SpecularModel::blinn_phong_normalized;
     return normalized ? (material.shininess + 2.0F) / 8.0F : 1.0F;

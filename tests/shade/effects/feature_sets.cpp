@@ -67,6 +67,9 @@ const std::vector<FeatureField>& feature_fields() {
     static const std::vector<FeatureField> all = {
         field<&F::unlit>("unlit"),
         field<&F::metallic_roughness>("metallic-roughness"),
+        field<&F::dielectric_reflectance>("dielectric reflectance"),
+        field<&F::sheen>("sheen"),
+        field<&F::clearcoat>("clearcoat"),
         field<&F::interpolation, 3>("interpolation"),
         field<&F::diffuse_texture>("diffuse texture"),
         field<&F::specular_texture>("specular texture"),
@@ -208,6 +211,19 @@ Material material_calling_for(const Features& f) {
     m.diffuse = scatters ? glm::vec3(0.6F, 0.5F, 0.4F) : glm::vec3(0.0F);
     m.ambient = glm::vec3(0.3F, 0.2F, 0.4F);
     if (f.metallic_roughness) m.metallic_roughness = {{0.7F, 0.5F, 0.3F}, 0.4F, 0.5F, {}};
+    if (f.dielectric_reflectance) {
+        m.metallic_roughness->refractive_index = 1.9F;
+        m.metallic_roughness->specular = 0.8F;
+        m.metallic_roughness->specular_color = {1.0F, 0.6F, 0.3F};
+    }
+    if (f.sheen) {
+        m.metallic_roughness->sheen_color = {0.9F, 0.5F, 0.2F};
+        m.metallic_roughness->sheen_roughness = 0.6F;
+    }
+    if (f.clearcoat) {
+        m.metallic_roughness->clearcoat = 0.7F;
+        m.metallic_roughness->clearcoat_roughness = 0.2F;
+    }
     if (f.specular != SpecularTerm::none) m.specular = glm::vec3(0.5F, 0.4F, 0.3F);
     m.shininess = 12.0F;
     if (f.specular == SpecularTerm::phong) m.specular_model = SpecularModel::phong;
@@ -247,7 +263,7 @@ void add_lights(Scene& scene, const Features& f) {
 
 void add_surroundings(Scene& scene, const Features& f) {
     if (f.ambient) scene.ambient = glm::vec3(0.2F, 0.3F, 0.1F);
-    if (!f.environment_diffuse && f.reflection == ReflectionTerm::none) return;
+    if (!f.environment_diffuse && f.reflection == ReflectionTerm::none && !f.refraction) return;
     CubeFaces faces;
     for (std::uint32_t i = 0; i < 6; ++i)
         faces.faces[i] = {"face", noise(20 + i, 3, 0, 256, ColorSpace::srgb)};

@@ -76,6 +76,18 @@ const Change physical = with(&Material::metallic_roughness, MetallicRoughness{})
 const Change physical_texture = [](Frame& f) {
     f.material().metallic_roughness->texture = Texture{};
 };
+template <typename T>
+Change with(T MetallicRoughness::*member, std::type_identity_t<T> value) {
+    return [=](Frame& f) {
+        std::optional<MetallicRoughness>& model = f.material().metallic_roughness;
+        if (!model) model.emplace().metallic = 0.0F;
+        (*model).*member = value;
+    };
+}
+const Change no_metal = with(&MetallicRoughness::metallic, 0.0F);
+const Change denser = with(&MetallicRoughness::refractive_index, 1.501F);
+const Change sheen = with(&MetallicRoughness::sheen_color, {0, 0, 0.001F});
+const Change clearcoat = with(&MetallicRoughness::clearcoat, 0.001F);
 const Change gouraud = with(&Material::interpolation, Interpolation::gouraud);
 const Change flat = with(&Material::interpolation, Interpolation::flat);
 const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
@@ -152,6 +164,44 @@ const std::vector<Boundary> color_boundaries = {
      {physical, physical_texture},
      {no_texcoords},
      {}},
+    {"dielectric reflectance", "another index", {no_metal}, {}, {denser}},
+    {"dielectric reflectance",
+     "another weight",
+     {no_metal},
+     {with(&MetallicRoughness::specular, 1.0F)},
+     {with(&MetallicRoughness::specular, 0.999F)}},
+    {"dielectric reflectance",
+     "another color",
+     {no_metal},
+     {with(&MetallicRoughness::specular_color, glm::vec3(1.0F))},
+     {with(&MetallicRoughness::specular_color, {1, 1, 0.999F})}},
+    {"dielectric reflectance",
+     "not all metal",
+     {denser},
+     {with(&MetallicRoughness::metallic, 1.0F)},
+     {with(&MetallicRoughness::metallic, 0.999F)}},
+    {"dielectric reflectance",
+     "a texture of metal",
+     {denser, with(&MetallicRoughness::metallic, 1.0F)},
+     {},
+     {physical_texture}},
+    {"dielectric reflectance",
+     "texture coordinates",
+     {denser, with(&MetallicRoughness::metallic, 1.0F), physical_texture},
+     {no_texcoords},
+     {}},
+    {"dielectric reflectance", "light", {denser, no_suns}, {}, {ambient}},
+    {"sheen", "a channel", {no_metal}, {}, {sheen}},
+    {"sheen", "ambient light", {sheen, no_suns}, {}, {ambient}},
+    {"sheen", "light besides its emission", {sheen, emissive}, {no_suns}, {}},
+    {"sheen", "lit", {sheen}, {unlit}, {}},
+    {"clearcoat", "its weight", {no_metal}, {}, {clearcoat}},
+    {"clearcoat", "light", {clearcoat, no_suns}, {}, {ambient}},
+    {"clearcoat", "emission", {clearcoat, no_suns}, {}, {emissive}},
+    {"clearcoat", "lit", {clearcoat}, {unlit}, {}},
+    {"metallic-roughness", "coated emission", {no_suns, emissive}, {no_metal}, {clearcoat}},
+    {"normal map", "a sheen", {normal_map, no_suns, ambient, no_metal}, {clearcoat}, {sheen}},
+    {"double-sided normals", "a coat", {double_sided, no_suns, ambient, no_metal}, {}, {clearcoat}},
     {"Gouraud", "asked for", {}, {}, {gouraud}},
     {"Gouraud", "lights", {gouraud}, {no_suns}, {}},
     {"Gouraud", "Phong's model", {gouraud}, {physical}, {}},
@@ -568,6 +618,20 @@ TEST(EffectPlan, NamesWhatDecided) {
         {"ambient", {ambient}, "material 'body' scatters ambient light"},
         {"ambient", {ambient, black_surface}, "material 'body' scatters none"},
         {"ambient", {ambient, black_surface, physical}, "material 'body' scatters ambient light"},
+        {"dielectric reflectance", {}, "material 'body' is Phong's model"},
+        {"dielectric reflectance", {no_metal}, "material 'body' reflects the 4% of the index 1.5"},
+        {"dielectric reflectance",
+         {denser},
+         "material 'body' has an index, weight or color of its own"},
+        {"dielectric reflectance",
+         {denser, with(&MetallicRoughness::metallic, 1.0F)},
+         "material 'body' is a metal everywhere"},
+        {"sheen", {}, "material 'body' has none"},
+        {"sheen", {sheen}, "material 'body' has a sheen color"},
+        {"sheen",
+         {sheen, no_suns},
+         "the material is not metallic-roughness, or nothing shines on it"},
+        {"clearcoat", {clearcoat}, "material 'body' has a clear coat"},
         {"environment light", {}, "the scene has no environment"},
         {"environment light", {environment}, "the environment is not to light surfaces"},
         {"environment light", {environment, scattered, black_surface}, "material 'body' is black"},

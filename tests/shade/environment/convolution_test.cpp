@@ -525,5 +525,69 @@ TEST(Blur, FacesOfAnotherKindAreRefused) {
     EXPECT_THROW(RadianceTree(std::vector<Image>(5, faces(16, 3, 32)[0])), InvalidInput);
 }
 
+/// Returns the sheen's albedo by a fine grid over both angles of the light, by KHR_materials_sheen.
+double sheen_by_grid(double n_v, double roughness) {
+    constexpr int steps = 100;
+    const double alpha = roughness * roughness;
+    const glm::dvec3 view(std::sqrt(1.0 - n_v * n_v), 0.0, n_v);
+    double sum = 0.0;
+    for (int j = 0; j < steps; ++j) {
+        const double root = (j + 0.5) / steps;
+        const double n_l = root * root;
+        for (int k = 0; k < steps; ++k) {
+            const double phi = 2.0 * std::numbers::pi * (k + 0.5) / steps;
+            const double across = std::sqrt(1.0 - n_l * n_l);
+            const glm::dvec3 light(across * std::cos(phi), across * std::sin(phi), n_l);
+            const double n_h = glm::normalize(light + view).z;
+            sum += sheen_distribution(n_h, alpha) * sheen_visibility(n_l, n_v, alpha) * 2.0 * root;
+        }
+    }
+    return sum * 2.0 * std::numbers::pi / (steps * steps);
+}
+
+TEST(Sheen, DistributionHasTheIntegralOneOverTheHemisphere) {
+    for (const double alpha : {0.01, 0.25, 1.0}) {
+        constexpr int steps = 2000;
+        double sum = 0.0;
+        for (int i = 0; i < steps; ++i) {
+            const double n_h = (i + 0.5) / steps;
+            sum += sheen_distribution(n_h, alpha) * n_h * 2.0 * std::numbers::pi / steps;
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-4) << alpha;
+    }
+}
+
+/// Values of a grid of 400 x 400 by another program.
+TEST(Sheen, AlbedoIsTheIntegral) {
+    EXPECT_NEAR(sheen_by_grid(0.3, 0.3), 0.21986, 1e-4);
+    for (const double roughness : {0.1, 0.3, 0.6, 1.0}) {
+        const SheenAlbedo table = sheen_albedo_table(roughness);
+        for (const std::size_t i : {4U, 10U, 20U, 31U}) {
+            const double root = static_cast<double>(i) / 31.0;
+            EXPECT_NEAR(table[i], std::min(sheen_by_grid(root * root, roughness), 1.0), 1e-3)
+                << roughness << ", " << i;
+        }
+        for (int i = 1; i < 50; ++i) {
+            const double n_v = i / 50.0;
+            EXPECT_NEAR(sheen_albedo(table, n_v), std::min(sheen_by_grid(n_v, roughness), 1.0),
+                        5e-3)
+                << roughness << ", " << n_v;
+        }
+    }
+}
+
+TEST(Sheen, NeverReflectsMoreThanItReceives) {
+    const SheenAlbedo smooth = sheen_albedo_table(0.0);
+    EXPECT_EQ(smooth, sheen_albedo_table(0.045)) << "the smallest roughness";
+    EXPECT_EQ(smooth[2], 1.0) << "its fibers would reflect 3.4 times the light";
+    for (const double roughness : {0.0, 0.2, 0.5, 1.0}) {
+        for (const double albedo : sheen_albedo_table(roughness)) {
+            EXPECT_GE(albedo, 0.0);
+            EXPECT_LE(albedo, 1.0);
+        }
+    }
+    EXPECT_TRUE(std::isfinite(sheen_visibility(0.0, 0.0, 1.0)));
+}
+
 }  // namespace
 }  // namespace relief

@@ -390,6 +390,145 @@ TEST(ReferenceShading, OfMetallicRoughnessInSurroundings) {
                 0.5 * (3.0 * (0.75 * b + f0) + (1.0 - mirrors) * 0.75 * b * 2.0 + mirrors * 2.0));
 }
 
+/// The index 3 reflects 1/4, which the color makes (1/4, 1/8, 1) with 1 as its limit, and the
+/// weight 1/2 halves all of it.
+TEST(ReferenceShading, OfADielectricHasItsIndexWeightAndColor) {
+    MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
+    model.refractive_index = 3.0F;
+    model.specular = 0.5F;
+    model.specular_color = {1.0F, 0.5F, 8.0F};
+    EXPECT_EQ(dielectric_reflectance(model), glm::vec3(0.125F, 0.0625F, 0.5F));
+    EXPECT_EQ(dielectric_reflectance({}), glm::vec3(0.04F));
+    Material material;
+    material.metallic_roughness = model;
+    Scene scene = test::square_scene(material);
+    const glm::dvec3 b(0.5, 0.25, 1.0);
+    const glm::dvec3 f0 = 0.75 * glm::dvec3(0.125, 0.0625, 0.5) + 0.25 * b;
+    const glm::dvec3 blocking = 0.75 * 0.5 + 0.25 * b;  // By the largest channel.
+    const double f90 = 0.75 * 0.5 + 0.25;
+
+    scene.ambient = glm::vec3(3.0F);
+    scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
+    scene.environment->lights = true;
+    const glm::dvec2 albedo = reference::directional_albedo(1.0, 0.5);
+    expect_near(in_the_middle(scene), 3.0 * (0.75 * b + f0) +
+                                          (1.0 - blocking * albedo.x - f90 * albedo.y) * 1.5 * b +
+                                          (f0 * albedo.x + f90 * albedo.y) * 2.0);
+
+    // The light of OfMetallicRoughnessIsAppendixB.
+    scene.ambient = glm::vec3(0.0F);
+    scene.environment.reset();
+    scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
+    const double a2 = 0.25 * 0.25;
+    const double n_dot_l = std::sqrt(0.5);
+    const double n_dot_h = std::cos(pi / 8);
+    const double d = a2 / (pi * std::pow(n_dot_h * n_dot_h * (a2 - 1.0) + 1.0, 2.0));
+    const double v = 0.5 / (n_dot_l * 1.0 + std::sqrt(0.5 + 0.5 * a2));
+    const double m = std::pow(1.0 - n_dot_h, 5.0);
+    const glm::dvec3 f = f0 + (f90 - f0) * m;
+    const glm::dvec3 blocked = blocking + (f90 - blocking) * m;
+    expect_near(in_the_middle(scene),
+                3.0 * n_dot_l * ((1.0 - blocked) * 0.75 * b + f * (pi * d * v)));
+
+    // The index 0 mirrors everything at every angle.
+    scene.materials[0].metallic_roughness = MetallicRoughness{glm::vec3(1.0F), 0.0F, 0.5F, {}};
+    scene.materials[0].metallic_roughness->refractive_index = 0.0F;
+    expect_near(in_the_middle(scene), glm::dvec3(3.0 * n_dot_l * pi * d * v));
+}
+
+/// The coat has the weight 1/2 times 0.04 from the front, and takes it from the base, emission
+/// included. The light is that of OfMetallicRoughnessIsAppendixB.
+TEST(ReferenceShading, OfAClearcoatIsAMirrorOverTheBase) {
+    MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
+    Material material;
+    material.emission = {1.0F, 2.0F, 3.0F};
+    material.metallic_roughness = model;
+    Scene scene = test::square_scene(material);
+    scene.ambient = glm::vec3(3.0F);
+    scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
+    scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
+    const glm::dvec3 base = in_the_middle(scene);
+    scene.materials[0].metallic_roughness->clearcoat = 0.5F;
+    scene.materials[0].metallic_roughness->clearcoat_roughness = 0.25F;
+    const double weight = 0.5 * 0.04;
+    const double a2 = std::pow(0.25, 4.0);
+    const double n_dot_l = std::sqrt(0.5);
+    const double n_dot_h = std::cos(pi / 8);
+    const double d = a2 / (pi * std::pow(n_dot_h * n_dot_h * (a2 - 1.0) + 1.0, 2.0));
+    const double v = 0.5 / (n_dot_l * 1.0 + std::sqrt(0.5 + 0.5 * a2));
+    const glm::dvec2 albedo = reference::directional_albedo(1.0, 0.25);
+    const double coat = 3.0 * n_dot_l * pi * d * v + 3.0 + 2.0 * (albedo.x + albedo.y);
+    expect_near(in_the_middle(scene), base * (1.0 - weight) + weight * coat);
+
+    // In the corner, n.v is 3 / sqrt(11).
+    const glm::dvec3 coated = in_the_corner(scene);
+    scene.materials[0].metallic_roughness = model;
+    scene.directional_lights.clear();
+    scene.environment.reset();
+    scene.ambient = glm::vec3(0.0F);
+    EXPECT_NE(coated, in_the_corner(scene));
+    scene.materials[0].metallic_roughness->clearcoat = 1.0F;
+    const double grazing = 0.04 + 0.96 * std::pow(1.0 - 3.0 / std::sqrt(11.0), 5.0);
+    expect_near(in_the_corner(scene), glm::dvec3(1.0, 2.0, 3.0) * (1.0 - grazing));
+}
+
+TEST(ReferenceShading, OfAClearcoatIsNotBentByTheNormalMap) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{glm::vec3(0.0F), 0.0F, 1.0F, {}};
+    material.metallic_roughness->clearcoat = 1.0F;
+    material.metallic_roughness->clearcoat_roughness = 0.2F;
+    material.metallic_roughness->specular = 0.0F;  // The base is black.
+    Scene scene = test::square_scene(material);
+    scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
+    const glm::dvec3 plain = in_the_middle(scene);
+    EXPECT_NEAR(plain.r, 0.04 * 0.25 / std::pow(0.2, 4.0), 1e-4);  // pi D = 1 / alpha^2, V = 1/4.
+    scene.images = {{"normal", texel({0.9F, 0.5F, 0.8F, 1})}};
+    scene.materials[0].normal_map = NormalMap{Texture{0}};
+    expect_near(in_the_middle(scene), plain);
+}
+
+/// The light is at 45 degrees and the eye in front, as in OfMetallicRoughnessIsAppendixB: the half
+/// vector is at 22.5 degrees. With roughness 1, alpha is 1 and Lambda has the second set of
+/// parameters.
+TEST(ReferenceShading, OfASheenIsCharliesOverTheDimmedBase) {
+    MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
+    Material material;
+    material.emission = {1.0F, 2.0F, 3.0F};
+    material.metallic_roughness = model;
+    Scene scene = test::square_scene(material);
+    scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
+    const glm::dvec3 emission(1.0, 2.0, 3.0);
+    const glm::dvec3 base = in_the_middle(scene) - emission;
+    scene.materials[0].metallic_roughness->sheen_color = {0.5F, 0.25F, 0.0F};
+    scene.materials[0].metallic_roughness->sheen_roughness = 1.0F;
+    const auto l = [](double x) {
+        return 21.5473 / (1.0 + 3.82987 * std::pow(x, 0.19823)) - 1.97760 * x - 4.32054;
+    };
+    const auto lambda = [&](double x) {
+        return x < 0.5 ? std::exp(l(x)) : std::exp(2.0 * l(0.5) - l(1.0 - x));
+    };
+    const double n_dot_l = std::sqrt(0.5);
+    const double d = 3.0 * std::sin(pi / 8) / (2.0 * pi);
+    const double v = 1.0 / (4.0 * n_dot_l * (1.0 + lambda(1.0) + lambda(n_dot_l)));
+    // E is 0.1638 from the front: the integral by a finer grid.
+    const double albedo = 0.1638;
+    const glm::dvec3 color(0.5, 0.25, 0.0);
+    const glm::dvec3 expected =
+        emission + (1.0 - 0.5 * albedo) * base + color * (3.0 * n_dot_l * pi * d * v);
+    const glm::dvec3 found = in_the_middle(scene);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(found[i], expected[i], 5e-4) << i;
+
+    scene.directional_lights.clear();
+    scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
+    scene.environment->lights = true;
+    scene.ambient = glm::vec3(1.0F);
+    const double sheen = in_the_middle(scene).g;
+    scene.materials[0].metallic_roughness->sheen_color = glm::vec3(0.0F);
+    const double plain = in_the_middle(scene).g - 2.0;
+    EXPECT_NEAR(sheen, 2.0 + (1.0 - 0.5 * albedo) * plain + 0.25 * albedo * (1.0 + 2.0), 1e-3);
+}
+
 TEST(ReferenceShading, OfTheEyesOppositeLampHasNoHalfVector) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);

@@ -286,6 +286,11 @@ Scene opaque_scene(std::uint64_t seed) {
     for (Material& material : scene.materials) {
         material.alpha_mode = AlphaMode::opaque;
         material.unlit = false;
+        if (!material.metallic_roughness) continue;
+        material.metallic_roughness->sheen_color = {0.8F, 0.5F, 0.2F};
+        material.metallic_roughness->sheen_roughness = 0.6F;
+        material.metallic_roughness->clearcoat = 0.7F;
+        material.metallic_roughness->clearcoat_roughness = 0.3F;
     }
     scene.background = glm::vec4(0.0F);
     if (scene.environment) scene.environment->skybox = false;

@@ -59,6 +59,13 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     textured.materials[0].emission = {0.05F, 0.0F, 0.1F};
     all.emplace_back("normal-mapped and glowing", textured);
 
+    Scene physical = base_scene();
+    physical.materials[0].metallic_roughness = {{0.8F, 0.5F, 0.3F}, 0.4F, 0.3F, std::nullopt};
+    physical.environment = test::constant_environment({0.3F, 0.6F, 0.9F}, true);
+    physical.environment->lights = true;
+    physical.ambient = {0.1F, 0.1F, 0.1F};
+    all.emplace_back("metallic-roughness", physical);
+
     Scene bare = base_scene();  // Without texture coordinates, textures cannot show.
     bare.meshes[0].edit().texcoords.clear();
     bare.images = textured.images;
@@ -143,17 +150,31 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
     }
     // Every effect that is not a choice of the scene and can be forced alone. Exposure belongs to
     // sRGB.
-    for (const char* effect : {"diffuse texture",   "vertex colours",
-                               "alpha mask",        "normal map",
-                               "bump map",          "double-sided normals",
-                               "ambient",           "point lights",
-                               "spot lights",       "mixed falloff",
-                               "light ranges",      "highlight colours",
-                               "light buffer",      "environment light",
-                               "Phong highlights",  "Blinn-Phong highlights",
-                               "specular texture",  "emission",
-                               "emission texture",  "mirror reflection",
-                               "glossy reflection", "refraction"}) {
+    for (const char* effect : {"diffuse texture",
+                               "vertex colours",
+                               "alpha mask",
+                               "normal map",
+                               "bump map",
+                               "double-sided normals",
+                               "ambient",
+                               "point lights",
+                               "spot lights",
+                               "mixed falloff",
+                               "light ranges",
+                               "highlight colours",
+                               "light buffer",
+                               "environment light",
+                               "Phong highlights",
+                               "Blinn-Phong highlights",
+                               "specular texture",
+                               "emission",
+                               "emission texture",
+                               "mirror reflection",
+                               "glossy reflection",
+                               "refraction",
+                               "dielectric reflectance",
+                               "sheen",
+                               "clearcoat"}) {
         EXPECT_TRUE(forced.contains(effect)) << effect;
     }
 }

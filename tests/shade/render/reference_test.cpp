@@ -129,6 +129,25 @@ std::vector<AddedThing> light_effects() {
     };
 }
 
+/// glTF's model with an index, weight and color of its own.
+MetallicRoughness colored_dielectric() {
+    MetallicRoughness model{{0.8F, 0.5F, 0.3F}, 0.3F, 0.35F, std::nullopt};
+    model.refractive_index = 2.2F;
+    model.specular = 0.7F;
+    model.specular_color = {0.2F, 0.5F, 1.5F};
+    return model;
+}
+
+/// glTF's model with sheen and coat.
+MetallicRoughness with_layers(const glm::vec3& sheen, float clearcoat) {
+    MetallicRoughness model{{0.5F, 0.3F, 0.2F}, 0.3F, 0.5F, std::nullopt};
+    model.sheen_color = sheen;
+    model.sheen_roughness = 0.6F;
+    model.clearcoat = clearcoat;
+    model.clearcoat_roughness = 0.3F;
+    return model;
+}
+
 std::vector<AddedThing> material_effects() {
     std::vector<AddedThing> effects = {
         {"nothing else", [](Scene&, test::Dice&) {}},
@@ -142,6 +161,25 @@ std::vector<AddedThing> material_effects() {
          [](Scene& s, test::Dice&) {
              s.materials[0].metallic_roughness =
                  MetallicRoughness{{0.8F, 0.5F, 0.3F}, 0.4F, 0.35F, std::nullopt};
+         }},
+        {"dielectric reflectance",
+         [](Scene& s, test::Dice&) { s.materials[0].metallic_roughness = colored_dielectric(); }},
+        {"sheen",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.0F);
+         }},
+        {"clearcoat",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].metallic_roughness = with_layers(glm::vec3(0.0F), 0.8F);
+             s.materials[0].emission = {0.2F, 0.1F, 0.0F};
+         }},
+        {"coated emission",
+         [](Scene& s, test::Dice&) {
+             s.directional_lights.clear();
+             s.point_lights.clear();
+             s.ambient = glm::vec3(0.0F);
+             s.materials[0].metallic_roughness = with_layers(glm::vec3(0.0F), 1.0F);
+             s.materials[0].emission = {0.2F, 0.1F, 0.4F};
          }},
         {"vertex colours",
          [](Scene& s, test::Dice&) {
@@ -246,6 +284,12 @@ std::vector<AddedThing> detail_effects() {
                                        NormalMap{image(s, test::random_normals(d))};
                                    s.materials[0].normal_map->flat = FlatCode::middle;
                                }});
+            effects.push_back(
+                {"sheen and coat on a normal map", [=](Scene& s, test::Dice& d) {
+                     prepare(s);
+                     s.materials[0].normal_map = NormalMap{image(s, test::random_normals(d))};
+                     s.materials[0].metallic_roughness = with_layers({0.2F, 0.5F, 0.9F}, 0.9F);
+                 }});
             effects.push_back(
                 {"bump map", [=](Scene& s, test::Dice& d) {
                      prepare(s);
@@ -385,6 +429,16 @@ TEST_F(AgainstReference, AgreesInBlurredSurroundings) {
             expect_agreement(glossy_sphere(roughness, metallic), blurred_tolerance);
         }
     }
+}
+
+TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {
+    Scene scene = glossy_sphere(0.35F, 0.3F);
+    scene.materials[0].metallic_roughness = colored_dielectric();
+    expect_agreement(scene, blurred_tolerance);
+    scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.0F);
+    expect_agreement(scene, blurred_tolerance);
+    scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.8F);
+    expect_agreement(scene, blurred_tolerance);
 }
 
 constexpr std::uint64_t few_scenes = 10;

@@ -103,6 +103,18 @@ TEST(PhongFromMetallicRoughness, OfARoughDielectricIsDiffuse) {
     EXPECT_LT(phong.grazing_reflectivity.x, 0.003F);
 }
 
+TEST(PhongFromMetallicRoughness, HasTheReflectanceOfTheDielectric) {
+    GltfMaterial dense = surface(0, 1);
+    dense.refractive_index = 3.0F;  // Reflects 1/4.
+    dense.specular = 0.5F;
+    dense.specular_color = {1.0F, 0.5F, 8.0F};
+    const Material phong = phong_from_metallic_roughness(dense, {});
+    expect_color(phong.specular, glm::vec3(0.125F, 0.0625F, 0.5F) / 4.0F);
+    expect_color(phong.ambient, {0.925F, 0.5625F, 0.7F});
+    const Material plain = phong_from_metallic_roughness(surface(0, 1), {});
+    expect_color(phong.grazing_reflectivity, 0.5F * plain.grazing_reflectivity);
+}
+
 TEST(PhongFromMetallicRoughness, OfASmoothMetalIsAColoredMirror) {
     const Material phong = phong_from_metallic_roughness(surface(1, 0), {});
     expect_color(phong.diffuse, glm::vec3(0.0F));
@@ -321,8 +333,10 @@ TYPED_TEST(SceneFields, HaveDefaultsWithinTheirRanges) {
 TEST(SceneField, HasALabelForMessages) {
     std::vector<std::string> labels;
     for_each_field<MetallicRoughness>([&](const auto& field) { labels.push_back(field.label()); });
-    EXPECT_THAT(labels, testing::ElementsAre("base color", "metallic", "roughness",
-                                             "metallic-roughness texture"));
+    EXPECT_THAT(labels, testing::ElementsAre(
+                            "base color", "metallic", "roughness", "metallic-roughness texture",
+                            "refractive index", "specular", "specular color", "clearcoat",
+                            "clearcoat roughness", "sheen color", "sheen roughness"));
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }
 

@@ -139,6 +139,32 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_EQ(report.count("KHR_materials_transmission, which the file requires"), 1U);
     EXPECT_THAT(scene.materials[1].undrawn_extensions,
                 testing::ElementsAre("KHR_materials_iridescence", "KHR_materials_transmission"));
+    const auto [drawn, textures] = load(
+        R"({"extensions": {"KHR_materials_ior": {"ior": 0.5}, "KHR_materials_specular":
+                {"specularFactor": 0.25, "specularColorFactor": [2, 1, -1],
+                 "specularColorTexture": {"index": 0}}}}, {"extensions": {"KHR_materials_ior": {"ior": 0}}})",
+        R"(, "textures": [{}], "extensionsUsed": ["KHR_materials_ior", "KHR_materials_specular"],
+           "extensionsRequired": ["KHR_materials_specular"])");
+    ASSERT_EQ(textures.findings().size(), 1U) << "factors are drawn";
+    EXPECT_EQ(textures.findings()[0].kind,
+              "specularColorTexture of KHR_materials_specular, which the file requires");
+    const MetallicRoughness& model = *drawn.materials[0].metallic_roughness;
+    EXPECT_EQ(model.refractive_index, 1.0F) << "the nearest allowed index";
+    EXPECT_EQ(model.specular, 0.25F);
+    EXPECT_EQ(model.specular_color, glm::vec3(2, 1, 0));
+    EXPECT_EQ(drawn.materials[1].metallic_roughness->refractive_index, 0.0F);
+    const auto [layered, none] = load(
+        R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 2},
+                           "KHR_materials_sheen": {"sheenColorFactor": [0, 0.5, 0]}}})",
+        "");
+    EXPECT_TRUE(none.empty());
+    EXPECT_EQ(layered.materials[0].metallic_roughness->clearcoat, 1.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->sheen_color, glm::vec3(0, 0.5F, 0));
+    Report report_of_phong;
+    const Scene phong = load_scene(folder / "m.gltf", {.model = SceneOptions::MaterialModel::phong},
+                                   report_of_phong);
+    EXPECT_EQ(report_of_phong.count("KHR_materials_clearcoat"), 1U) << "Phong has no layers";
+    EXPECT_EQ(report_of_phong.count("KHR_materials_sheen"), 1U);
 }
 
 TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {

@@ -111,7 +111,9 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     const SceneGraph graph = load(R"("materials": {"m": {
         "interpolation": "flat", "ambient": 0.1, "diffuse": [0.2, 0.3, 0.4], "specular": "#ffffff",
         "emission": 2, "shininess": 7, "specular_model": "blinn_phong_normalized",
-        "metallic_roughness": {"base_color": 0.5, "metallic": 0.25, "roughness": 0.75, "texture": "a.png"},
+        "metallic_roughness": {"base_color": 0.5, "metallic": 0.25, "roughness": 0.75, "texture": "a.png",
+            "refractive_index": 1.75, "specular": 0.125, "specular_color": [1, 2, 3],
+            "clearcoat": 0.5, "clearcoat_roughness": 0.25, "sheen_color": [0, 0.5, 1], "sheen_roughness": 0.75},
         "reflectivity": 0.3, "grazing_reflectivity": 0.9, "fresnel": "conductor", "refractive_index": 1.33,
         "conductor_index": 0.4, "conductor_absorption": 5, "reflection_roughness": 0.6,
         "diffuse_texture": "a.png", "specular_texture": "b.png", "emission_texture": {"image": "a.png",
@@ -134,6 +136,13 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     EXPECT_EQ(m.metallic_roughness->base_color, glm::vec3(0.5F));
     EXPECT_EQ(m.metallic_roughness->metallic, 0.25F);
     EXPECT_EQ(m.metallic_roughness->roughness, 0.75F);
+    EXPECT_EQ(m.metallic_roughness->refractive_index, 1.75F);
+    EXPECT_EQ(m.metallic_roughness->specular, 0.125F);
+    EXPECT_EQ(m.metallic_roughness->specular_color, glm::vec3(1, 2, 3));
+    EXPECT_EQ(m.metallic_roughness->clearcoat, 0.5F);
+    EXPECT_EQ(m.metallic_roughness->clearcoat_roughness, 0.25F);
+    EXPECT_EQ(m.metallic_roughness->sheen_color, glm::vec3(0, 0.5F, 1));
+    EXPECT_EQ(m.metallic_roughness->sheen_roughness, 0.75F);
     EXPECT_EQ(m.metallic_roughness->texture->image, m.diffuse_texture->image);
     EXPECT_EQ(m.reflectivity, glm::vec3(0.3F));
     EXPECT_EQ(m.grazing_reflectivity, glm::vec3(0.9F));

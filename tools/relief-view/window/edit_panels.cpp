@@ -513,6 +513,13 @@ bool edit_metallic_roughness(MetallicRoughness& model) {
     bool changed = edit_color(model, &MetallicRoughness::base_color);
     changed |= slide(model, &MetallicRoughness::metallic);
     changed |= slide(model, &MetallicRoughness::roughness);
+    changed |= slide("Refractive index", model.refractive_index, {1.0F, 3.0F});
+    changed |= slide(model, &MetallicRoughness::specular);
+    changed |= edit_color(model, &MetallicRoughness::specular_color);
+    changed |= slide(model, &MetallicRoughness::clearcoat);
+    changed |= slide(model, &MetallicRoughness::clearcoat_roughness);
+    changed |= edit_color(model, &MetallicRoughness::sheen_color);
+    changed |= slide(model, &MetallicRoughness::sheen_roughness);
     return changed;
 }
 

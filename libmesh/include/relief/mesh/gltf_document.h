@@ -90,9 +90,17 @@ struct GltfMaterial {
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;
     bool double_sided = false;
-    bool unlit = false;  ///< KHR_materials_unlit
-    /// The extensions that change the appearance and are not among the members above, sorted.
-    /// Those whose values change nothing are left out.
+    bool unlit = false;              ///< KHR_materials_unlit
+    float refractive_index = 1.5F;   ///< KHR_materials_ior
+    float specular = 1.0F;           ///< KHR_materials_specular, the factors.
+    glm::vec3 specular_color{1.0F};  ///< KHR_materials_specular
+    float clearcoat = 0.0F;          ///< KHR_materials_clearcoat, the factors.
+    float clearcoat_roughness = 0.0F;
+    glm::vec3 sheen_color{0.0F};  ///< KHR_materials_sheen, the factors.
+    float sheen_roughness = 0.0F;
+    /// The extensions that change the appearance and are not among the members above, and the
+    /// textures of those that are ("specularTexture of KHR_materials_specular"), sorted. Extensions
+    /// whose values change nothing are left out.
     std::vector<std::string> more_extensions{};
 };
 

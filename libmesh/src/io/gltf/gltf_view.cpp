@@ -5,7 +5,8 @@
 // World space, right-handed, +Y up; colors linear; angles in radians; times in seconds. Properties
 // without a place in the scene types stay only in the document. Instance attributes of a wrong type
 // throw InvalidInput. An unusable animation channel is left out and counted. Source: glTF 2.0
-// (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
+// (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_ior,
+// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_unlit,
 // KHR_texture_transform, EXT_mesh_gpu_instancing.
 #include <fmt/format.h>
 
@@ -179,13 +180,6 @@ bool has_only(const Json& extension, const char* key, double value) {
 /// Tells whether an extension of a material has values that change nothing.
 bool is_neutral(const std::string& name, const Json& extension) {
     if (!extension.is_object()) return false;
-    if (name == "KHR_materials_specular") {
-        return has_only(extension, "specularFactor", 1.0) &&
-               has_only(extension, "specularColorFactor", 1.0) &&
-               !extension.contains("specularTexture") &&
-               !extension.contains("specularColorTexture");
-    }
-    if (name == "KHR_materials_ior") return has_only(extension, "ior", 1.5);
     // The factor without which the extension does nothing.
     static constexpr std::array<std::pair<std::string_view, const char*>, 8> factors{{
         {"KHR_materials_anisotropy", "anisotropyStrength"},
@@ -202,16 +196,30 @@ bool is_neutral(const std::string& name, const Json& extension) {
     });
 }
 
-/// Returns the extensions of a material that GltfMaterial does not have, without neutral ones.
+/// Returns true for extensions whose factors are members of GltfMaterial.
+bool has_members(std::string_view name) {
+    static constexpr std::array names = {
+        "KHR_materials_unlit",    "KHR_materials_emissive_strength", "KHR_materials_ior",
+        "KHR_materials_specular", "KHR_materials_clearcoat",         "KHR_materials_sheen"};
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Returns the extensions and textures of extensions that GltfMaterial does not have, without
+/// neutral ones.
 std::vector<std::string> more_extensions_of(const Json& json) {
     std::vector<std::string> names;
     const Json* extensions = find(json, "extensions");
     if (extensions == nullptr || !extensions->is_object()) return names;
     for (const auto& [name, extension] : extensions->items()) {
-        const bool is_member =
-            name == "KHR_materials_unlit" || name == "KHR_materials_emissive_strength";
-        if (!is_member && !is_neutral(name, extension)) names.push_back(name);
+        if (is_neutral(name, extension)) continue;
+        if (!has_members(name)) {
+            names.push_back(name);
+            continue;
+        }
+        for (const auto& [key, value] : extension.items())
+            if (key.ends_with("Texture")) names.push_back(fmt::format("{} of {}", key, name));
     }
+    std::sort(names.begin(), names.end());
     return names;
 }
 
@@ -246,6 +254,20 @@ GltfMaterial material_from(const Json& root, const Json& json) {
     material.alpha_cutoff = float_in(json, "alphaCutoff", 0.5F);
     material.double_sided = bool_in(json, "doubleSided");
     material.unlit = find(json, "extensions", "KHR_materials_unlit") != nullptr;
+    if (const Json* ior = find(json, "extensions", "KHR_materials_ior"))
+        material.refractive_index = float_in(*ior, "ior", 1.5F);
+    if (const Json* specular = find(json, "extensions", "KHR_materials_specular")) {
+        material.specular = float_in(*specular, "specularFactor", 1.0F);
+        material.specular_color = vector_in(*specular, "specularColorFactor", glm::vec3(1.0F));
+    }
+    if (const Json* coat = find(json, "extensions", "KHR_materials_clearcoat")) {
+        material.clearcoat = float_in(*coat, "clearcoatFactor", 0.0F);
+        material.clearcoat_roughness = float_in(*coat, "clearcoatRoughnessFactor", 0.0F);
+    }
+    if (const Json* sheen = find(json, "extensions", "KHR_materials_sheen")) {
+        material.sheen_color = vector_in(*sheen, "sheenColorFactor", glm::vec3(0.0F));
+        material.sheen_roughness = float_in(*sheen, "sheenRoughnessFactor", 0.0F);
+    }
     material.more_extensions = more_extensions_of(json);
     return material;
 }

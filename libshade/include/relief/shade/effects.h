@@ -50,6 +50,10 @@ struct Features {
     // The reflection model and its interpolation.
     bool unlit = false;  ///< The picture shows the diffuse color without lighting.
     bool metallic_roughness = false;
+    /// Dielectrics reflect another share than 4% (KHR_materials_ior, KHR_materials_specular).
+    bool dielectric_reflectance = false;
+    bool sheen = false;      ///< KHR_materials_sheen
+    bool clearcoat = false;  ///< KHR_materials_clearcoat
     Interpolation interpolation = Interpolation::per_pixel;
     // Factors of the colors.
     bool diffuse_texture = false;

@@ -81,7 +81,22 @@ struct MetallicRoughness {
     float metallic = 1.0F;
     float roughness = 1.0F;
     std::optional<Texture> texture;  ///< Green multiplies roughness, blue metallic.
+    // The reflection of the dielectric share (KHR_materials_ior, KHR_materials_specular).
+    float refractive_index = 1.5F;   ///< 0 counts as infinite.
+    float specular = 1.0F;           ///< The weight of the reflection.
+    glm::vec3 specular_color{1.0F};  ///< Tints the reflection at normal incidence.
+    // A clear layer on top (KHR_materials_clearcoat), which no normal map bends.
+    float clearcoat = 0.0F;  ///< Its weight; 0: none.
+    float clearcoat_roughness = 0.0F;
+    // Fibers on top of the surface, under the coat (KHR_materials_sheen).
+    glm::vec3 sheen_color{0.0F};  ///< Zero: none.
+    float sheen_roughness = 0.0F;
 };
+
+/// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
+/// min(((n - 1) / (n + 1))^2 specular_color, 1) specular, with n the refractive index. It is 0.04
+/// by default.
+glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 
 /// A material. All vectors are in world space and of unit length: n (the normal, perturbed by a
 /// normal or bump map), v (to the eye), and for every light i: l (to the light),
@@ -111,22 +126,41 @@ struct MetallicRoughness {
 /// A highlight is the mirror image of its light, so F does not dim it.
 ///
 /// glTF's model, with b = base_color * tint, m metallic, roughness r, alpha = r^2, c = b (1 - m),
-/// f0 = mix(0.04, b, m), Schlick's f = f0 + (1 - f0) (1 - v.h)^5, and D and V GGX's distribution
-/// and height-correlated visibility, in which n.v and n.h below 0 count as 0:
+/// f0 = mix(d, b, m), f90 = mix(specular, 1, m), Schlick's f = f0 + (f90 - f0) (1 - v.h)^5, and D
+/// and V GGX's distribution and height-correlated visibility, in which n.v and n.h below 0 count as
+/// 0:
 ///
-///     radiance = sum_i L max(n.l, 0) ((1 - f) c + f pi D V)
-///              + occlusion (scene.ambient (c + f0) + (1 - f0 A - B) c E(n)
-///                           + (f0 A + B) reflected(2 (n.v) n - v))
+///     radiance = sum_i L max(n.l, 0) ((1 - f') c + f pi D V)
+///              + occlusion (scene.ambient (c + f0) + (1 - f0' A - f90 B) c E(n)
+///                           + (f0 A + f90 B) reflected(2 (n.v) n - v))
 ///              + emission * emission_texture
 ///
-/// A and B are GGX's directional albedo for f0 and for 1 - f0 at n.v and r (environment_brdf), and
-/// the reflected environment is blurred by r; r is at least 0.045.
+/// d is dielectric_reflectance(). f' and f0' are f and f0 with the largest channel of d, so that a
+/// colored reflection does not tint the scattered light. A and B are GGX's directional albedo for
+/// f0 and for f90 - f0 at n.v and r (environment_brdf), and the reflected environment is blurred by
+/// r; r is at least 0.045.
+///
+/// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
+/// color, D' and V' Charlie's distribution and visibility for alpha = sheen_roughness^2
+/// (convolution.h), E their directional albedo at n.v, which counts as at most 1, n' the normal
+/// without a map, w = clearcoat (0.04 + 0.96 (1 - n'.v)^5), and D, V, A and B of the coat those for
+/// clearcoat_roughness and n':
+///
+///     sheened = (1 - max(s) E) (radiance without emission)
+///             + s (sum_i L max(n.l, 0) pi D' V' + E occlusion (scene.ambient + E(n)))
+///     coated  = (1 - w) (sheened + emission * emission_texture)
+///             + w (sum_i L max(n'.l, 0) pi D V
+///                  + occlusion (scene.ambient + (A + B) reflected(2 (n'.v) n' - v)))
+///
+/// Both roughnesses are at least 0.045.
 ///
 /// alpha = opacity * diffuse_texture.a * vertex color.a * opacity_texture.r. An unlit material
 /// shows only diffuse (or base_color) * tint.
 ///
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
-/// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B. The CPU implementation is
+/// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B, with KHR_materials_ior,
+/// KHR_materials_specular, KHR_materials_clearcoat and KHR_materials_sheen, and
+/// [Estevez and Kulla 2017]. The CPU implementation is
 /// reference.h.
 struct Material {
     std::string name;

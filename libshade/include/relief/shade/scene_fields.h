@@ -167,7 +167,17 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
         "base_color", &MetallicRoughness::base_color, {0, 1}, FieldUnit::color, "base color"},
     SceneField{"metallic", &MetallicRoughness::metallic, {0, 1}},
     SceneField{"roughness", &MetallicRoughness::roughness, {0, 1}},
-    SceneField{"texture", &MetallicRoughness::texture, {}, {}, "metallic-roughness texture"}};
+    SceneField{"texture", &MetallicRoughness::texture, {}, {}, "metallic-roughness texture"},
+    SceneField{"refractive_index", &MetallicRoughness::refractive_index, {0, 1e3F}},
+    SceneField{"specular", &MetallicRoughness::specular, {0, 1}},
+    SceneField{"specular_color",
+               &MetallicRoughness::specular_color,
+               {0, max_reflectance},
+               FieldUnit::color},
+    SceneField{"clearcoat", &MetallicRoughness::clearcoat, {0, 1}},
+    SceneField{"clearcoat_roughness", &MetallicRoughness::clearcoat_roughness, {0, 1}},
+    SceneField{"sheen_color", &MetallicRoughness::sheen_color, {0, 1}, FieldUnit::color},
+    SceneField{"sheen_roughness", &MetallicRoughness::sheen_roughness, {0, 1}}};
 
 template <>
 inline constexpr auto fields_of<Material> = std::tuple{

@@ -49,6 +49,11 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
             "normalTexture": {"index": 0, "scale": 0.75}, "occlusionTexture": {"index": 1, "strength": 0.5}, "emissiveTexture": {"index": 3},
             "emissiveFactor": [1, 0.5, 0], "alphaMode": "MASK", "alphaCutoff": 0.25,
             "doubleSided": true, "extensions": {"KHR_materials_unlit": {},
+                "KHR_materials_ior": {"ior": 1.25}, "KHR_materials_specular":
+                    {"specularFactor": 0.5, "specularColorFactor": [1, 0.5, 2], "specularTexture": {"index": 0}},
+                "KHR_materials_clearcoat": {"clearcoatFactor": 0.25, "clearcoatRoughnessFactor": 0.125},
+                "KHR_materials_sheen": {"sheenColorFactor": [0.1, 0.2, 0.3], "sheenRoughnessFactor": 0.5,
+                    "sheenColorTexture": {"index": 0}},
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
                               .view();
     const GltfMaterial& plain = view.materials[0];
@@ -64,6 +69,18 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(full.metallic, 0.5F);
     EXPECT_EQ(full.roughness, 0.25F);
     EXPECT_EQ(full.emission, glm::vec3(4, 2, 0));
+    EXPECT_EQ(plain.refractive_index, 1.5F);
+    EXPECT_EQ(full.refractive_index, 1.25F);
+    EXPECT_EQ(full.specular, 0.5F);
+    EXPECT_EQ(full.specular_color, glm::vec3(1, 0.5F, 2));
+    EXPECT_EQ(full.more_extensions,
+              (std::vector<std::string>{"sheenColorTexture of KHR_materials_sheen",
+                                        "specularTexture of KHR_materials_specular"}));
+    EXPECT_EQ(plain.clearcoat, 0.0F);
+    EXPECT_EQ(full.clearcoat, 0.25F);
+    EXPECT_EQ(full.clearcoat_roughness, 0.125F);
+    EXPECT_EQ(full.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
+    EXPECT_EQ(full.sheen_roughness, 0.5F);
     EXPECT_EQ(full.normal_scale, 0.75F);
     EXPECT_EQ(full.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(full.alpha_cutoff, 0.25F);

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// A clear layer on top of glTF's surfaces, which dims what is below by its own reflection. Normal
+// maps do not bend it. Source: KHR_materials_clearcoat.
+
+#part layer
+// The coat over the radiance of the surface, emission included. Its weight is Schlick's Fresnel
+// factor of the index 1.5 at n.v.
+
+#include <clearcoat_normal>
+#include <clearcoat_lights>
+#include <clearcoat_ambient>
+#include <clearcoat_reflection>
+
+uniform float clearcoat;
+
+vec3 with_clearcoat(Surface surface, vec3 radiance) {
+    float m = 1.0 - clamp(dot(clearcoat_normal(surface), surface.view_world), 0.0, 1.0);
+    float weight = clearcoat * (0.04 + 0.96 * (m * m * m * m * m));
+    vec3 coat = clearcoat_from_lights() + clearcoat_from_ambient() + clearcoat_reflection(surface);
+    return radiance * (1.0 - weight) + coat * weight;
+}
+
+#part normal
+// The normal without the map.
+
+#include "inputs.glsl#normal"
+#include "vector.glsl#normalized_or"
+#include <facing>
+
+vec3 clearcoat_normal(Surface surface) {
+    return facing() * normalized_or(normal_world, vec3(0.0, 0.0, 1.0));
+}
+
+#part roughness
+// The roughness of the coat.
+
+#include "inputs.glsl#min_roughness"
+
+uniform float clearcoat_roughness;
+
+float coat_roughness() { return max(clearcoat_roughness, min_roughness); }
+
+#part lights
+// The highlights of light sources, before the layer's weight.
+
+#include "clearcoat.glsl#roughness"
+#include "metallic_roughness.glsl#ggx"
+#include "vector.glsl#normalized_or"
+#include <clearcoat_normal>
+
+vec3 clearcoat_received = vec3(0.0);
+
+void receive_clearcoat(Surface surface, vec3 light_world, vec3 irradiance) {
+    vec3 normal = clearcoat_normal(surface);
+    float n_dot_l = dot(normal, light_world);
+    vec3 half_world = normalized_or(light_world + surface.view_world, vec3(0.0));
+    if (!(n_dot_l > 0.0) || half_world == vec3(0.0)) return;
+    float alpha = coat_roughness() * coat_roughness();
+    float n_dot_v = max(dot(normal, surface.view_world), 0.0);
+    clearcoat_received += irradiance * n_dot_l * facets(normal, half_world, alpha * alpha) *
+                          visibility(n_dot_l, n_dot_v, alpha * alpha);
+}
+
+vec3 clearcoat_from_lights() { return clearcoat_received; }
+
+#part ambient
+// Mirrored ambient light.
+
+#include "inputs.glsl#ambient"
+#include <occlusion>
+
+vec3 clearcoat_from_ambient() { return ambient_scattered * occlusion(); }
+
+#part reflection
+// The mirrored environment.
+
+#include "clearcoat.glsl#roughness"
+#include "environment.glsl#blurred"
+#include "environment.glsl#brdf_table"
+#include <clearcoat_normal>
+#include <occlusion>
+
+vec3 clearcoat_reflection(Surface surface) {
+    vec3 normal = clearcoat_normal(surface);
+    float n_dot_v = clamp(dot(normal, surface.view_world), 0.0, 1.0);
+    vec2 factors = albedo_factors(n_dot_v, coat_roughness());
+    vec3 mirrored_world = reflect(-surface.view_world, normal);
+    return blurred_radiance(mirrored_world, coat_roughness()) *
+           ((factors.x + factors.y) * occlusion());
+}

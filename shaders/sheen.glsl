@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fibers on top of glTF's surfaces, as of velvet: they reflect light at grazing angles, and the
+// surface gets the rest. Source: KHR_materials_sheen, [Estevez and Kulla 2017].
+
+#part layer
+// The sheen over the radiance of the surface without its emission. A table over sqrt(n.v) has the
+// share of even light that white fibers reflect.
+
+#include <sheen_lights>
+#include <sheen_ambient>
+#include <sheen_environment>
+
+uniform vec3 sheen_color;
+uniform vec4 sheen_albedo[8];
+
+float sheen_entry(int index) { return sheen_albedo[index / 4][index % 4]; }
+
+float sheen_albedo_at(float n_dot_v) {
+    float place = 31.0 * sqrt(n_dot_v);
+    int first = min(int(place), 30);
+    return mix(sheen_entry(first), sheen_entry(first + 1), place - float(first));
+}
+
+vec3 with_sheen(Surface surface, vec3 radiance) {
+    float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
+    float albedo = sheen_albedo_at(n_dot_v);
+    float largest = max(max(sheen_color.r, sheen_color.g), sheen_color.b);
+    vec3 around = sheen_from_ambient() + sheen_from_environment(surface);
+    return radiance * (1.0 - largest * albedo) +
+           sheen_color * (sheen_from_lights() + around * albedo);
+}
+
+#part lights
+// The light of light sources. n.v is at least 1e-4, since V has a pole at 0.
+
+#include "vector.glsl#normalized_or"
+
+uniform float sheen_alpha;
+
+vec3 sheen_received = vec3(0.0);
+
+float sheen_log_lambda(float cosine) {
+    float smooth_share = (1.0 - sheen_alpha) * (1.0 - sheen_alpha);
+    float a = mix(21.5473, 25.3245, smooth_share);
+    float b = mix(3.82987, 3.32435, smooth_share);
+    float c = mix(0.19823, 0.16801, smooth_share);
+    float d = mix(-1.97760, -1.27393, smooth_share);
+    float e = mix(-4.32054, -4.85967, smooth_share);
+    return a / (1.0 + b * pow(cosine, c)) + d * cosine + e;
+}
+
+float sheen_lambda(float cosine) {
+    if (cosine < 0.5) return exp(sheen_log_lambda(cosine));
+    return exp(2.0 * sheen_log_lambda(0.5) - sheen_log_lambda(max(1.0 - cosine, 0.0)));
+}
+
+void receive_sheen(Surface surface, vec3 light_world, vec3 irradiance) {
+    float n_dot_l = dot(surface.normal_world, light_world);
+    vec3 half_world = normalized_or(light_world + surface.view_world, vec3(0.0));
+    if (!(n_dot_l > 0.0) || half_world == vec3(0.0)) return;
+    float n_dot_h = clamp(dot(surface.normal_world, half_world), 0.0, 1.0);
+    float sine_squared = (1.0 - n_dot_h) * (1.0 + n_dot_h);
+    float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 1e-4, 1.0);
+    float fibers = (1.0 + 0.5 / sheen_alpha) * pow(sine_squared, 0.5 / sheen_alpha);
+    float masking = 1.0 + sheen_lambda(n_dot_v) + sheen_lambda(n_dot_l);
+    sheen_received += irradiance * (fibers / (4.0 * n_dot_v * masking));
+}
+
+vec3 sheen_from_lights() { return sheen_received; }
+
+#part ambient
+// Ambient light.
+
+#include "inputs.glsl#ambient"
+#include <occlusion>
+
+vec3 sheen_from_ambient() { return ambient_scattered * occlusion(); }
+
+#part environment
+// The environment's light. Fibers reflect it from about half of all directions, so it counts as
+// scattered.
+
+#include "environment.glsl#irradiance"
+#include <occlusion>
+
+vec3 sheen_from_environment(Surface surface) {
+    return environment_irradiance(surface.normal_world) * occlusion();
+}
