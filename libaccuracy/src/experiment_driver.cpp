@@ -222,6 +222,7 @@ constexpr std::array subject_entries = {
     SubjectEntry{Subject::tangents, "tangents", tangents_plan, true},
     SubjectEntry{Subject::bump, "bump", bump_plan},
     SubjectEntry{Subject::storage, "storage", storage_plan},
+    SubjectEntry{Subject::compression, "compression", compression_plan},
     SubjectEntry{Subject::bake, "bake", bake_plan},
     SubjectEntry{Subject::decimation, "decimation", decimation_plan},
     SubjectEntry{Subject::shading, "shading", shading_plan, true},

@@ -131,6 +131,9 @@ std::vector<PlannedExperiment> bump_plan(const PlanOptions& options);
 /// Unit normals of maps and tangent frames of vertices in few bits, read and written.
 std::vector<PlannedExperiment> storage_plan(const PlanOptions& options);
 
+/// Normal maps in block formats of GPUs and in texels, with a chart over the wavelength.
+std::vector<PlannedExperiment> compression_plan(const PlanOptions& options);
+
 /// Fixed numbers of rays per texel, and additional rays only in texels whose first rays differ, in
 /// 8 and 16 bits and in float.
 std::vector<PlannedExperiment> bake_plan(const PlanOptions& options);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encodes normals as normal maps, as half floats, in 10 bits and as octahedral codes. Integer codes
 // are decoded by the library; the other codes exist only here. Encodes evenly spread tangent frames
-// with every frame encoding, and compares the decoded frames with the frames in double.
+// with every frame encoding, and compares the decoded frames with the frames in double. Compresses
+// normal maps to the blocks of GPUs.
 #include "storage_experiments.h"
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include "octahedral_code.h"
 #include "parallel.h"
 #include "relief/accuracy/ground_truth.h"
+#include "relief/mesh/block_compression.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
@@ -664,6 +666,190 @@ PreparedExperiment frame_writing_experiment(bool is_quick) {
 }
 
 }  // namespace
+
+namespace {
+
+/// One way to compress the normals of a map for a GPU.
+struct Compression {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> choices;
+    double bytes = 0.0;                         ///< Per texel.
+    std::function<void(const Image&)> encode;   ///< The work: normals to bytes.
+    std::function<Image(const Image&)> stored;  ///< Normals that a GPU reads.
+    bool has_z = true;                          ///< Otherwise shaders rebuild z after filtering.
+    bool is_slow = false;                       ///< Left out of charts.
+};
+
+Image decoded_blocks(std::span<const std::byte> blocks, BlockFormat format, const Image& normals) {
+    const Image image = decode_blocks(blocks, format, normals.width, normals.height);
+    const FlatCode flat = is_signed(format) ? FlatCode::middle : FlatCode::half;
+    if (image.channels == 2) return decode_xy_map(image, {0, 1}, Green::up, flat);
+    return decode_normal_map(image, Green::up, flat);
+}
+
+Compression as_blocks(BlockFormat format, BlockQuality quality) {
+    // BC7 is encoded from the exact components, not from codes of 8 bits.
+    const auto encode = [format, quality](const Image& normals) {
+        if (channels_of(format) == 2)
+            return encode_normal_blocks(normals, {.format = format, .quality = quality});
+        return encode_blocks(encode_normal_map(normals, {.bits = 32}), format, quality);
+    };
+    return {.name = fmt::format("{}, {}", enum_name(format), enum_name(quality)),
+            .choices = {{"format", enum_name(format)}, {"quality", enum_name(quality)}},
+            .bytes = static_cast<double>(bytes_per_block(format)) / 16.0,
+            .encode = [encode](const Image& normals) { encode(normals); },
+            .stored =
+                [encode, format](const Image& normals) {
+                    return decoded_blocks(encode(normals), format, normals);
+                },
+            .has_z = channels_of(format) > 2,
+            .is_slow = format == BlockFormat::bc7};
+}
+
+Compression as_texels(const NormalCode& code) {
+    return {.name = code.name,
+            .choices = {{"format", code.name}, {"quality", "none"}},
+            .bytes = code.bytes,
+            .encode = [code](const Image& normals) { code.encode(normals); },
+            .stored = [code](const Image& normals) { return code.stored(normals); },
+            .has_z = code.name.starts_with("xyz")};
+}
+
+std::vector<Compression> compressions() {
+    using enum BlockQuality;
+    std::vector<Compression> methods;
+    for (const BlockFormat format : {BlockFormat::bc5, BlockFormat::bc5_snorm, BlockFormat::bc7}) {
+        for (const BlockQuality quality : {fast, normal, best})
+            methods.push_back(as_blocks(format, quality));
+    }
+    for (const int bits : {8, 16})
+        methods.push_back(as_texels(as_xy_map({.bits = bits, .flat = FlatCode::half})));
+    for (const int bits : {8, 16})
+        methods.push_back(as_texels(as_map({.bits = bits, .flat = FlatCode::half})));
+    methods.push_back(as_texels(as_octahedral(8, true)));
+    return methods;
+}
+
+/// Waves with a slope of 0.35 (RMS), as exact normals and as the texels of a map.
+struct CompressedWaves {
+    std::vector<glm::dvec3> surface;
+    std::vector<glm::dvec3> corners;  ///< The normals half a texel to the right and down.
+    Image normals;
+
+    CompressedWaves(int side, double shortest) {
+        std::vector<HeightWave> waves = tiling_waves(side, side, 8, shortest, 0.35, 3);
+        surface = wave_heights(side, side, waves).normals;
+        normals = image_of_normals(surface, side);
+        for (HeightWave& wave : waves)
+            wave.phase += glm::dot(wave.frequency, glm::dvec2(0.5));
+        corners = wave_heights(side, side, waves).normals;
+    }
+};
+
+/// The normals that bilinear filtering gives at the corners of texels: means of four texels of a
+/// map that tiles.
+Image filtered_at_corners(const Image& normals, bool has_z) {
+    const auto width = static_cast<std::size_t>(normals.width);
+    const auto height = static_cast<std::size_t>(normals.height);
+    Image result = normals;
+    for (std::size_t i = 0; i < width * height; ++i) {
+        const std::size_t right = (i % width + 1) % width;
+        const std::size_t row = i / width * width;
+        const std::size_t next_row = (i / width + 1) % height * width;
+        glm::dvec3 mean(0.0);
+        for (const std::size_t texel : {i, row + right, next_row + i % width, next_row + right})
+            mean += 0.25 * normal_at(normals.as<float>(), texel);
+        if (!has_z) mean.z = std::sqrt(std::max(0.0, 1.0 - mean.x * mean.x - mean.y * mean.y));
+        const glm::dvec3 unit = glm::normalize(mean);
+        for (int axis = 0; axis < 3; ++axis)
+            result.as<float>()[3 * i + static_cast<std::size_t>(axis)] =
+                static_cast<float>(unit[axis]);
+    }
+    return result;
+}
+
+Chart wavelengths_chart(int side) {
+    Chart chart{.id = "wavelengths",
+                .title = "Shorter waves",
+                .x_label = "shortest wave, texels",
+                .y_label = "RMS error, degrees"};
+    const std::vector<Compression> methods = compressions();
+    for (const Compression& method : methods) {
+        if (!method.is_slow) chart.curves.push_back({.method = method.name});
+    }
+    for (const double shortest : {5.0, 10.0, 20.0, 40.0}) {
+        const CompressedWaves waves(side, shortest);
+        std::size_t curve = 0;
+        for (const Compression& method : methods) {
+            if (method.is_slow) continue;
+            const ErrorStats error = map_errors(method.stored(waves.normals), waves.surface);
+            chart.curves[curve++].points.push_back({shortest, curve_error(error)});
+        }
+    }
+    return chart;
+}
+
+/// "In 1 byte per texel 'bc5, best' has the smallest error, 0.17 degrees RMS; 'bc5, fast' has
+/// 0.22."
+std::string compression_finding(const Experiment& report) {
+    const Measurement* best = nullptr;
+    for (const Measurement& one : report.measurements) {
+        if (one.cost.stored_bytes != 1.0) continue;
+        if (best == nullptr || one.error.rms < best->error.rms) best = &one;
+    }
+    const Measurement& fast = report.measurements.front();
+    return fmt::format(
+        "In 1 byte per texel '{}' has the smallest error, {:.2g} degrees RMS; '{}' has {:.2g}.",
+        best->method, best->error.rms, fast.method, fast.error.rms);
+}
+
+PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
+    const int side = is_quick ? 128 : 512;
+    const auto waves = std::make_shared<const CompressedWaves>(side, 20.0);
+    PreparedExperiment prepared;
+    prepared.report = described(waves->surface.size());
+    prepared.report.question =
+        is_filtered ? "What is the error of compressed maps after bilinear filtering?"
+                    : "What do block formats cost in accuracy, and how long does encoding take?";
+    prepared.report.ground_truth = fmt::format(
+        "The normals of the surface in closed form{}. A test verifies them by numerical "
+        "differentiation of the heights.",
+        is_filtered ? " at the corners of texels" : "");
+    prepared.report.input = fmt::format(
+        "{} x {} texels of 8 waves of 20 texels and more, slope 0.35 (RMS)", side, side);
+    prepared.costs.memory = false;
+    std::vector<Compression> methods = compressions();
+    // A GPU filters codes, and means of octahedral codes across a fold are not normals.
+    if (is_filtered) methods.pop_back();
+    for (const Compression& method : methods) {
+        prepared.methods.push_back(
+            {.id = method_id(prepared.methods.size()),
+             .name = method.name,
+             .choices = method.choices,
+             .error =
+                 [waves, method, is_filtered] {
+                     const Image stored = method.stored(waves->normals);
+                     if (!is_filtered) return map_errors(stored, waves->surface);
+                     return map_errors(filtered_at_corners(stored, method.has_z), waves->corners);
+                 },
+             .work = [waves, encode = method.encode] { encode(waves->normals); },
+             .stored_bytes = method.bytes});
+    }
+    prepared.finish = [side, is_filtered](Experiment& report) {
+        if (!is_filtered) report.charts = {wavelengths_chart(std::min(side, 256))};
+        report.finding = compression_finding(report);
+    };
+    return prepared;
+}
+
+}  // namespace
+
+std::vector<PlannedExperiment> compression_plan(const PlanOptions& options) {
+    return {{"compression/waves", Subject::compression, "Compression of normal maps",
+             [is_quick = options.is_quick] { return compression_experiment(is_quick, false); }},
+            {"compression/filtered", Subject::compression, "Compression, filtered between texels",
+             [is_quick = options.is_quick] { return compression_experiment(is_quick, true); }}};
+}
 
 std::vector<PlannedExperiment> storage_plan(const PlanOptions& options) {
     const bool is_quick = options.is_quick;

@@ -32,10 +32,11 @@ struct ShownExperiment {
     const char* id;
     bool is_chart = false;  ///< The page shows the first chart instead of the costs.
 };
-constexpr std::array<ShownExperiment, 8> shown_experiments = {{{"normals/torus-jittered"},
+constexpr std::array<ShownExperiment, 9> shown_experiments = {{{"normals/torus-jittered"},
                                                                {"tangents/torus-jittered"},
                                                                {"bump/mixed-8"},
                                                                {"storage/frames"},
+                                                               {"compression/waves"},
                                                                {"bake/samples"},
                                                                {"decimation/torus-distance"},
                                                                {"shading/interpolation"},

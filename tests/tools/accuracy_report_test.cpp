@@ -88,9 +88,8 @@ TEST(BrokenReport, IsRefusedWithThePlace) {
         {"/experiments", 5, "/experiments: is of type number, not array"},
         {"/experiments/0/id", gone, "/experiments/0/id: is missing"},
         {"/experiments/0/subject", "colour",
-         "subject 'colour' is not one of normals, tangents, bump, storage, bake, decimation, "
-         "shading, "
-         "stability"},
+         "subject 'colour' is not one of normals, tangents, bump, storage, compression, bake, "
+         "decimation, shading, stability"},
         {"/experiments/0/measurements/1/method", "exact, slow",
          "/experiments/0/measurements/1: repeats method 'exact, slow'"},
         {"/experiments/0/measurements/1/error/rms", "much",

@@ -105,8 +105,8 @@ TEST_P(AccuracyDocumentOf, ASubjectHoldsTheErrorsThatAreMeasured) {
 
 INSTANTIATE_TEST_SUITE_P(All, AccuracyDocumentOf,
                          testing::Values(Subject::normals, Subject::tangents, Subject::bump,
-                                         Subject::storage, Subject::bake, Subject::decimation,
-                                         Subject::stability),
+                                         Subject::storage, Subject::compression, Subject::bake,
+                                         Subject::decimation, Subject::stability),
                          [](const testing::TestParamInfo<Subject>& tested) {
                              return std::string(name_of(tested.param));
                          });

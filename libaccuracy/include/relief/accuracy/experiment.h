@@ -24,7 +24,17 @@
 namespace RELIEF_API relief {
 
 /// The subjects of experiments, with the names of `relief-accuracy run`.
-enum class Subject { normals, tangents, bump, storage, bake, decimation, shading, stability };
+enum class Subject {
+    normals,
+    tangents,
+    bump,
+    storage,
+    compression,
+    bake,
+    decimation,
+    shading,
+    stability
+};
 
 /// Returns statistics with NaN instead of zeros if there is no defined error, for reports.
 ErrorStats nan_if_empty(const ErrorStats& error);
