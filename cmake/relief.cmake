@@ -69,6 +69,8 @@ function(relief_batch target size)
     cmake_path(IS_PREFIX tests ${CMAKE_CURRENT_SOURCE_DIR} in_tests)
     if(RELIEF_UNITY AND (RELIEF_UNITY STREQUAL ALL OR RELIEF_SANITIZE OR in_tests))
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+        # GCC warns of types with members from anonymous namespaces unless they stand in the main file.
+        target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     endif()
 endfunction()
 
