@@ -845,7 +845,7 @@ PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
 }  // namespace
 
 std::vector<PlannedExperiment> compression_plan(const PlanOptions& options) {
-    return {{"compression/waves", Subject::compression, "Compression of normal maps",
+    return {{"compression/waves", Subject::compression, "Normal maps in block formats",
              [is_quick = options.is_quick] { return compression_experiment(is_quick, false); }},
             {"compression/filtered", Subject::compression, "Compression, filtered between texels",
              [is_quick = options.is_quick] { return compression_experiment(is_quick, true); }}};
