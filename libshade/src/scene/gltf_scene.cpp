@@ -127,8 +127,8 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
     const float roughness =
         std::max(usable(material.roughness * means.roughness, 1.0F), min_roughness);
     const float alpha_squared = roughness * roughness * roughness * roughness;
-    const MetallicRoughness factors = factors_of(material);
-    const glm::vec3 dielectric = dielectric_reflectance(factors);
+    const MetallicRoughness read = factors_of(material);
+    const glm::vec3 dielectric = dielectric_reflectance(read);
     const glm::vec3 f0 = glm::mix(dielectric, base * means.base_color, metallic);
     const float mirror = mirror_tan_squared / (mirror_tan_squared + alpha_squared);
 
@@ -139,7 +139,7 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
     phong.specular = f0 * ((phong.shininess + 2.0F) / 8.0F);
     phong.reflectivity = f0 * mirror;
     phong.grazing_reflectivity =
-        glm::vec3(mirror * (1.0F + (factors.specular - 1.0F) * (1.0F - metallic)));
+        glm::vec3(mirror * (1.0F + (read.specular - 1.0F) * (1.0F - metallic)));
     phong.diffuse = base * (1.0F - metallic);
     phong.ambient = phong.diffuse + glm::mix(dielectric, base, metallic);
     phong.emission = usable(material.emission, max_reflectance);
