@@ -229,7 +229,8 @@ float clamped_code(float value) {
 }
 
 /// The line through the mean along the direction of largest variance, as long as the colors.
-ColorLine principal_line(const BlockPoints& points, std::size_t channels) {
+template <std::size_t channels>
+ColorLine principal_line(const BlockPoints& points) {
     ColorPoint mean{};
     for (std::size_t c = 0; c < channels; ++c) {
         for (const ColorPoint& point : points)
@@ -285,38 +286,60 @@ ColorLine principal_line(const BlockPoints& points, std::size_t channels) {
     return line;
 }
 
-/// Chooses the index of each texel, and computes the squared error.
-template <std::size_t levels>
-void choose_indices(const BlockPoints& points, std::size_t channels,
-                    const std::array<std::array<unsigned, 4>, 2>& ends,
+/// Chooses the index of each texel, and computes the squared error. The colors of a line are nearly
+/// evenly spaced: of more than 4, only the one at the projection of a texel and its neighbors can
+/// be nearest.
+template <std::size_t channels, std::size_t levels>
+void choose_indices(const BlockPoints& points, const std::array<std::array<unsigned, 4>, 2>& ends,
                     const std::array<std::uint8_t, levels>& weights, LineCodes& codes) {
     std::array<ColorPoint, levels> palette{};
     for (std::size_t i = 0; i < levels; ++i) {
         for (std::size_t c = 0; c < channels; ++c)
             palette[i][c] = static_cast<float>(color_between(ends[0][c], ends[1][c], weights[i]));
     }
+    ColorPoint direction{};
+    float squares = 0.0F;
+    for (std::size_t c = 0; c < channels; ++c) {
+        direction[c] = palette[levels - 1][c] - palette[0][c];
+        squares += direction[c] * direction[c];
+    }
+    const float scale = squares > 0.0F ? (static_cast<float>(levels) - 1.0F) / squares : 0.0F;
     codes.error = 0.0F;
     for (std::size_t t = 0; t < block_texels; ++t) {
-        std::array<float, levels> errors{};
-        for (std::size_t c = 0; c < channels; ++c) {
-            for (std::size_t i = 0; i < levels; ++i) {
-                const float difference = points[t][c] - palette[i][c];
-                errors[i] += difference * difference;
-            }
+        const ColorPoint& point = points[t];
+        unsigned begin = 0;
+        unsigned end = levels;
+        if constexpr (levels > 4) {
+            float along = 0.0F;
+            for (std::size_t c = 0; c < channels; ++c)
+                along += direction[c] * (point[c] - palette[0][c]);
+            const float place = std::clamp(along * scale, 0.0F, static_cast<float>(levels - 1));
+            const auto nearest = static_cast<unsigned>(place + 0.5F);
+            begin = nearest > 0 ? nearest - 1 : 0;
+            end = std::min<unsigned>(nearest + 2, levels);
         }
-        unsigned best = 0;
-        for (unsigned i = 1; i < levels; ++i) {
-            if (errors[i] < errors[best]) best = i;
+        unsigned best = begin;
+        float least = 1e30F;
+        for (unsigned i = begin; i < end; ++i) {
+            float error = 0.0F;
+            for (std::size_t c = 0; c < channels; ++c) {
+                const float difference = point[c] - palette[i][c];
+                error += difference * difference;
+            }
+            if (error < least) {
+                least = error;
+                best = i;
+            }
         }
         codes.index[t] = best;
         codes.weight[t] = static_cast<float>(weights[best]) / 64.0F;
-        codes.error += errors[best];
+        codes.error += least;
     }
 }
 
 /// The endpoints that are best for the indices, by least squares.
-ColorLine refitted(const BlockPoints& points, std::size_t channels, const LineCodes& codes,
-                   const ColorLine& line) {
+template <std::size_t channels>
+ColorLine refitted(const BlockPoints& points, const LineCodes& codes, const ColorLine& line) {
     float first_squares = 0.0F;
     float products = 0.0F;
     float second_squares = 0.0F;
@@ -360,7 +383,7 @@ int rounds_of(BlockQuality quality) {
 }
 
 LineCodes encode_mode_6(const BlockPoints& points, BlockQuality quality) {
-    ColorLine line = principal_line(points, 4);
+    ColorLine line = principal_line<4>(points);
     LineCodes best;
     const int rounds = rounds_of(quality);
     for (int round = 0; round < rounds; ++round) {
@@ -375,11 +398,11 @@ LineCodes encode_mode_6(const BlockPoints& points, BlockQuality quality) {
                 for (unsigned& code : ends[end])
                     code = code << 1U | codes.parity[end];
             }
-            choose_indices(points, 4, ends, weights_4, codes);
+            choose_indices<4>(points, ends, weights_4, codes);
             if (codes.error < best_of_round.error) best_of_round = codes;
         }
         if (best_of_round.error < best.error) best = best_of_round;
-        line = refitted(points, 4, best_of_round, line);
+        line = refitted<4>(points, best_of_round, line);
     }
     return best;
 }
@@ -394,9 +417,9 @@ std::array<unsigned, 4> rounded_to(const ColorPoint& point, std::size_t channels
 }
 
 /// Fits a line of mode 5: three color channels, or one.
-LineCodes encode_mode_5_line(const BlockPoints& points, std::size_t channels,
-                             BlockQuality quality) {
-    ColorLine line = principal_line(points, channels);
+template <std::size_t channels>
+LineCodes encode_mode_5_line(const BlockPoints& points, BlockQuality quality) {
+    ColorLine line = principal_line<channels>(points);
     LineCodes best;
     const int rounds = rounds_of(quality);
     for (int round = 0; round < rounds; ++round) {
@@ -407,9 +430,9 @@ LineCodes encode_mode_5_line(const BlockPoints& points, std::size_t channels,
             for (std::size_t c = 0; c < channels; ++c)
                 end[c] = channels == 1 ? end[c] : widened(end[c], 7);
         }
-        choose_indices(points, channels, ends, weights_2, codes);
+        choose_indices<channels>(points, ends, weights_2, codes);
         if (codes.error < best.error) best = codes;
-        line = refitted(points, channels, codes, line);
+        line = refitted<channels>(points, codes, line);
     }
     return best;
 }
@@ -502,9 +525,9 @@ void encode_bc7_block(const BlockPoints& points, BlockQuality quality, std::byte
             if (rotation > 0) std::swap(rotated[t][3], rotated[t][rotation - 1]);
             alone[t][0] = rotated[t][3];
         }
-        const LineCodes single = encode_mode_5_line(alone, 1, quality);
+        const LineCodes single = encode_mode_5_line<1>(alone, quality);
         if (single.error >= best_error) continue;
-        const LineCodes color = encode_mode_5_line(rotated, 3, quality);
+        const LineCodes color = encode_mode_5_line<3>(rotated, quality);
         if (color.error + single.error >= best_error) continue;
         best_error = color.error + single.error;
         store_mode_5(color, single, rotation, block);
