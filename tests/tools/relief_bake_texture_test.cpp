@@ -69,6 +69,40 @@ TEST(ConvertToTexture, AllLevelsAreInOneFileAndTheirErrorsAreStated) {
     EXPECT_LT(levels[4]["error"]["mean"].get<double>(), 0.06);
 }
 
+TEST(ConvertToTexture, CheckStatesTheErrorOfEachLevelAgainstTheExactMap) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    for (const char* const file : {"out/m.ktx2 --format bc5-snorm", "out/m.dds --format bc7"}) {
+        run_texture(workplace, "map.png " + std::string(file) + " --mips --report out/r.json");
+        const json converted = json::parse(workplace.read("out/r.json"))["levels"];
+        const std::string name = std::string(file).substr(0, std::string(file).find(' '));
+        const ProgramResult result =
+            workplace.run("relief-bake check " + name + " --exact map.png --json");
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        const json exact = json::parse(result.out)["files"][0]["exact"];
+        EXPECT_EQ(exact["file"], "map.png");
+        ASSERT_EQ(exact["levels"].size(), 5U);
+        for (std::size_t i = 0; i < 5; ++i) {
+            for (const char* const figure : {"mean", "p99", "max"}) {
+                EXPECT_NEAR(exact["levels"][i][figure].get<double>(),
+                            converted[i]["error"][figure].get<double>(), 1e-3)
+                    << name << " level " << i << " " << figure;
+            }
+        }
+    }
+    // A map that is compared with itself has no error; the direction of green counts.
+    const ProgramResult same = workplace.run("relief-bake check map.png --exact map.png");
+    EXPECT_THAT(same.out, HasSubstr("level 0, 20 x 12: error 0.000 degrees"));
+    const json turned =
+        json::parse(workplace.run("relief-bake check map.png --exact map.png --green down --json")
+                        .out)["files"][0]["exact"]["levels"][0];
+    EXPECT_GT(turned["mean"].get<double>(), 5.0);
+    write_image(workplace / "small.png", test::image_of<std::uint8_t>(3, {128, 128, 255}));
+    const ProgramResult other = workplace.run("relief-bake check map.png --exact small.png");
+    EXPECT_EQ(other.exit_code, 1);
+    EXPECT_THAT(other.error, HasSubstr("map.png: has 20 x 12 texels, but small.png has 1 x 1"));
+}
+
 TEST(ConvertToTexture, FormatsDifferInError) {
     const Workplace workplace;
     write_waves(workplace, "map.png");

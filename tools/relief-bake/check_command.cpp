@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "convert.h"
 #include "mesh_accuracy.h"
 #include "mesh_maps.h"
 #include "mesh_models.h"
@@ -485,10 +486,35 @@ Summary summary_of(const SurfaceCheck& check) {
     return summary;
 }
 
+// The check of a map against an exact one.
+
+/// "level 1, 128 x 128: error 0.152 degrees (99 %: 0.41, greatest: 0.9)"
+Summary summary_of(const std::filesystem::path& exact, const std::vector<LevelError>& levels) {
+    std::vector<std::string> lines;
+    Json list = Json::array();
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const LevelError& level = levels[i];
+        lines.push_back(fmt::format(
+            "level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, greatest: {:.3f})", i,
+            level.width, level.height, level.error.mean, level.error.p99, level.error.max));
+        list.push_back({{"width", level.width},
+                        {"height", level.height},
+                        {"mean", level.error.mean},
+                        {"rms", level.error.rms},
+                        {"p99", level.error.p99},
+                        {"max", level.error.max}});
+    }
+    Summary summary;
+    summary.add("exact", lines,
+                {{"exact", {{"file", exact.string()}, {"levels", std::move(list)}}}});
+    return summary;
+}
+
 // The command.
 
 struct CheckOptions {
     std::vector<std::filesystem::path> files;
+    std::optional<std::filesystem::path> exact;
     std::optional<Green> green;
     bool json = false;
     bool strict = false;
@@ -518,6 +544,10 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
             is_sound = is_sound && surface.map.problems.empty();
             summary.add_part("surface", summary_of(surface));
         }
+        if (options.exact && map.error.empty()) {
+            summary.add_part("", summary_of(*options.exact,
+                                            errors_of_levels(file, *options.exact, options.green)));
+        }
         ++(!map.error.empty() ? verdicts.unreadable
            : is_sound         ? verdicts.sound
                               : verdicts.with_problems);
@@ -545,6 +575,9 @@ Command add_map_check_command(CLI::App& tool) {
     add_choice(app, "--green", options->green, enum_choices<Green>(),
                "Expected direction of the green channel; slopes that contradict it are a problem. "
                "Default: from the file's metadata, if it has an entry.");
+    add_path(app, "--exact", options->exact,
+             "State the error of each mip level against this map, which has the same size: the "
+             "16-bit or float map from which a texture was made.");
     add_switch(
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers of "
@@ -553,7 +586,9 @@ Command add_map_check_command(CLI::App& tool) {
         "within}, green {is, correlation, deviation, confidence, scale} or null, zero_code, seams "
         "[x, y], bits_used, alpha_correlation, trouble (problems) and remarks (notes) [kind, "
         "element, count, first, meaning, remedy], unjudged (without the models) [kind, element, "
-        "count, first], milliseconds, megapixels_per_second, surface "
+        "count, first], milliseconds, megapixels_per_second, exact {file, levels [width, height, "
+        "mean, "
+        "rms, p99, max]}, surface "
         "{baked, error and centre {rms, mean, p99, max, texels}, stages {share, rms}, worst, "
         "convention, trouble, remedies, ...}].");
     add_switch(app, "--strict", options->strict,
@@ -562,6 +597,8 @@ Command add_map_check_command(CLI::App& tool) {
     add_general_options(app, options->general);
     set_examples(app,
                  {"relief-bake check data/scenes/bricks-normal.png",
+                  "relief-bake convert data/scenes/bricks-normal.png out/bricks.ktx2 --mips",
+                  "relief-bake check out/bricks.ktx2 --exact data/scenes/bricks-normal.png",
                   "relief-bake check data/scenes/bricks-normal.png --green up --strict",
                   "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
                   "relief-bake mesh out/high.obj data/vase.obj out/vase-baked.png --size 256",

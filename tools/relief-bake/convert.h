@@ -156,6 +156,21 @@ TextureEncoding choose_encoding(const TextureOptions& options, const Image& norm
 EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alpha,
                           const TextureEncoding& encoding, Report& report);
 
+/// The angles between the normals of a mip level and the exact ones, in degrees.
+struct LevelError {
+    int width = 0;
+    int height = 0;
+    ErrorStats error;
+};
+
+/// Compares the levels of a texture, or another map, with an exact map of the same size, whose
+/// levels are filtered as normals.
+/// \param green  of `file`; absent: that of its metadata, or else up
+/// \throws FileError if a file cannot be read, or the sizes differ
+std::vector<LevelError> errors_of_levels(const std::filesystem::path& file,
+                                         const std::filesystem::path& exact,
+                                         std::optional<Green> green);
+
 /// The text entries of a texture with this direction of green.
 std::map<std::string, std::string> texture_metadata(Green green, TextureFormat format);
 

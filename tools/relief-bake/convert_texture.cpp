@@ -77,16 +77,20 @@ std::vector<std::byte> encoded(const Image& normals, const std::optional<Image>&
     return encode_texture_level(codes, encoding.format, encoding.quality, report);
 }
 
+/// Decodes the normals of a level of a texture.
+Image normals_of(const Image& level, TextureFormat format, Green green) {
+    const FlatCode flat = normal_format_of(format).flat;
+    if (level.channels == 2) return decode_xy_map(level, {0, 1}, green, flat);
+    return decode_normal_map(level, green, flat);
+}
+
 Image decoded(const EncodedLevel& level, TextureFormat format, int width, int height) {
     GpuTexture texture;
     texture.format = format;
     texture.width = width;
     texture.height = height;
     texture.levels.push_back(level.bytes);
-    const Image image = decode_texture_level(texture, 0);
-    const FlatCode flat = normal_format_of(format).flat;
-    if (image.channels == 2) return decode_xy_map(image, {0, 1}, Green::up, flat);
-    return decode_normal_map(image, Green::up, flat);
+    return normals_of(decode_texture_level(texture, 0), format, Green::up);
 }
 
 ErrorStats error_of(const Image& exact, const Image& result) {
@@ -165,6 +169,43 @@ EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alph
     level.bytes = encoded(normals, alpha, encoding, report);
     level.error = error_of(normals, decoded(level, encoding.format, normals.width, normals.height));
     return level;
+}
+
+std::vector<LevelError> errors_of_levels(const std::filesystem::path& file,
+                                         const std::filesystem::path& exact,
+                                         std::optional<Green> green) {
+    const InputMap expected = read_normal_map(exact, {});
+    MapInputOptions conventions;
+    conventions.green = green;
+    const InputMap given = read_normal_map(file, conventions);
+    if (given.image.width != expected.image.width || given.image.height != expected.image.height) {
+        throw failure(file,
+                      fmt::format("has {} x {} texels, but {} has {} x {}", given.image.width,
+                                  given.image.height, exact.string(), expected.image.width,
+                                  expected.image.height),
+                      "compare maps of the same size");
+    }
+    const Green direction = given.green.value_or(Green::up);
+    std::vector<Image> levels;
+    if (is_texture(file)) {
+        const GpuTexture texture = read_texture(file);
+        for (std::size_t i = 0; i < texture.levels.size(); ++i) {
+            levels.push_back(
+                normals_of(decode_texture_level(texture, i), texture.format, direction));
+        }
+    } else {
+        levels.push_back(decode_normal_map(given.image, direction, given.flat));
+    }
+    const Image normals =
+        decode_normal_map(expected.image, expected.green.value_or(Green::up), expected.flat);
+    std::vector<Image> means;
+    if (levels.size() > 1) means = normal_mip_levels(normals);
+    std::vector<LevelError> errors;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const Image& of_level = i == 0 ? normals : means[i - 1];
+        errors.push_back({levels[i].width, levels[i].height, error_of(of_level, levels[i])});
+    }
+    return errors;
 }
 
 TextureEncoding choose_encoding(const TextureOptions& options, const Image& normals) {
