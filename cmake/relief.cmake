@@ -25,8 +25,8 @@ if(RELIEF_SANITIZE)
     # compiled with AddressSanitizer only, without optimization and line numbers, and the tools, which are thin,
     # without optimization. Failed checks of UndefinedBehaviorSanitizer are illegal instructions, whose stack
     # AddressSanitizer prints (handle_sigill below); calls with descriptions of the values take a fifth of the time
-    # of compiling more. Types of called functions are compared by a call, because those of loaded modules have
-    # equal types at other addresses. Some checks of UndefinedBehaviorSanitizer are off, because AddressSanitizer reports
+    # of compiling more. Only the types of called functions are compared by the sanitizer's library: functions of
+    # loaded modules have equal types at other addresses, which a trap would take for an error. Some checks of UndefinedBehaviorSanitizer are off, because AddressSanitizer reports
     # the accesses that they predict (null pointers, sizes of objects, overflow of pointers) and there is hardly a
     # class hierarchy (dynamic types): compiling takes a quarter less time. GCC 12 warns of uninitialized parts
     # of std::regex in instrumented code; other builds keep the warning.

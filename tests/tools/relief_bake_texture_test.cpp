@@ -90,6 +90,12 @@ TEST(ConvertToTexture, CheckStatesTheErrorOfEachLevelAgainstTheExactMap) {
             }
         }
     }
+    // Flat texels of the exact map are exactly flat, as for convert.
+    write_image(workplace / "flat.png",
+                test::image_of<std::uint8_t>(3, {128, 128, 255, 128, 128, 255, 200, 128, 230}));
+    run_texture(workplace, "flat.png out/f.ktx2 --format rg16");
+    EXPECT_THAT(workplace.run("relief-bake check out/f.ktx2 --exact flat.png").out,
+                HasSubstr("error 0.001 degrees (99 %: 0.001, greatest: 0.001)"));
     // A map that is compared with itself has no error; the direction of green counts.
     const ProgramResult same = workplace.run("relief-bake check map.png --exact map.png");
     EXPECT_THAT(same.out, HasSubstr("level 0, 20 x 12: error 0.000 degrees"));

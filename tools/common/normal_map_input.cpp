@@ -19,9 +19,7 @@
 #include "relief/mesh/texture_file.h"
 
 namespace relief::tools {
-namespace {
 
-/// Returns the direction of green in the metadata of the file.
 std::optional<Green> recorded_green(const std::map<std::string, std::string>& metadata) {
     const auto entry = metadata.find("relief:green");
     if (entry == metadata.end()) return std::nullopt;
@@ -29,6 +27,8 @@ std::optional<Green> recorded_green(const std::map<std::string, std::string>& me
     if (entry->second == "down") return Green::down;
     return std::nullopt;
 }
+
+namespace {
 
 std::string green_text(const MapInputOptions& options, const InputMap& map) {
     if (!map.green) return "green unknown";

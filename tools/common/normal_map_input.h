@@ -44,6 +44,9 @@ InputMap read_normal_map(const std::filesystem::path& file, const MapInputOption
 InputMap open_normal_map(const std::filesystem::path& file, const MapInputOptions& options,
                          std::size_t max_memory);
 
+/// Returns the direction of green in the metadata of a file.
+std::optional<Green> recorded_green(const std::map<std::string, std::string>& metadata);
+
 /// Returns the text entries that a converted map keeps: author, description, and those of relief.
 std::map<std::string, std::string> kept_metadata(const std::map<std::string, std::string>& all);
 

@@ -488,15 +488,12 @@ Summary summary_of(const SurfaceCheck& check) {
 
 // The check of a map against an exact one.
 
-/// "level 1, 128 x 128: error 0.152 degrees (99 %: 0.41, greatest: 0.9)"
 Summary summary_of(const std::filesystem::path& exact, const std::vector<LevelError>& levels) {
     std::vector<std::string> lines;
     Json list = Json::array();
     for (std::size_t i = 0; i < levels.size(); ++i) {
         const LevelError& level = levels[i];
-        lines.push_back(fmt::format(
-            "level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, greatest: {:.3f})", i,
-            level.width, level.height, level.error.mean, level.error.p99, level.error.max));
+        lines.push_back(level_text(i, level));
         list.push_back({{"width", level.width},
                         {"height", level.height},
                         {"mean", level.error.mean},
@@ -531,6 +528,8 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
     Stages stages(options.general.quiet);
     Verdicts verdicts;
     Json files = Json::array();
+    std::optional<ExactMap> exact;
+    if (options.exact) exact = read_exact_map(*options.exact);
     for (const std::filesystem::path& file : options.files) {
         const CheckedMap map = stages.run("check", "check " + file.string(),
                                           [&] { return check_map(file, options.green); });
@@ -544,9 +543,9 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
             is_sound = is_sound && surface.map.problems.empty();
             summary.add_part("surface", summary_of(surface));
         }
-        if (options.exact && map.error.empty()) {
-            summary.add_part("", summary_of(*options.exact,
-                                            errors_of_levels(file, *options.exact, options.green)));
+        if (exact && map.error.empty()) {
+            summary.add_part(
+                "", summary_of(exact->file, errors_of_levels(file, *exact, options.green)));
         }
         ++(!map.error.empty() ? verdicts.unreadable
            : is_sound         ? verdicts.sound
@@ -587,8 +586,7 @@ Command add_map_check_command(CLI::App& tool) {
         "[x, y], bits_used, alpha_correlation, trouble (problems) and remarks (notes) [kind, "
         "element, count, first, meaning, remedy], unjudged (without the models) [kind, element, "
         "count, first], milliseconds, megapixels_per_second, exact {file, levels [width, height, "
-        "mean, "
-        "rms, p99, max]}, surface "
+        "mean, rms, p99, max]}, surface "
         "{baked, error and centre {rms, mean, p99, max, texels}, stages {share, rms}, worst, "
         "convention, trouble, remedies, ...}].");
     add_switch(app, "--strict", options->strict,

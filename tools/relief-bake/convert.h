@@ -163,12 +163,22 @@ struct LevelError {
     ErrorStats error;
 };
 
+/// "level 1, 128 x 128: error 0.152 degrees (99 %: 0.410, greatest: 0.900)"
+std::string level_text(std::size_t level, const LevelError& error);
+
+/// A map that others are compared with.
+struct ExactMap {
+    std::filesystem::path file;
+    Image normals;  ///< y up; flat texels are exactly flat, as convert reads them.
+};
+/// \throws FileError if the file cannot be read
+ExactMap read_exact_map(const std::filesystem::path& file);
+
 /// Compares the levels of a texture, or another map, with an exact map of the same size, whose
-/// levels are filtered as normals.
+/// levels are filtered as normals. The compared normals are those that shaders decode.
 /// \param green  of `file`; absent: that of its metadata, or else up
-/// \throws FileError if a file cannot be read, or the sizes differ
-std::vector<LevelError> errors_of_levels(const std::filesystem::path& file,
-                                         const std::filesystem::path& exact,
+/// \throws FileError if the file cannot be read, or the sizes differ
+std::vector<LevelError> errors_of_levels(const std::filesystem::path& file, const ExactMap& exact,
                                          std::optional<Green> green);
 
 /// The text entries of a texture with this direction of green.

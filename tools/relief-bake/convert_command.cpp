@@ -42,11 +42,8 @@ std::vector<std::string> level_lines(const MapConversion& conversion) {
     std::vector<std::string> lines;
     for (const WrittenLevel& level : conversion.levels) {
         if (level.error) {
-            std::string line = fmt::format(
-                "{}level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, greatest: "
-                "{:.3f})",
-                lines.empty() ? file_and_size(level.file) + ", " : "", lines.size(), level.width,
-                level.height, level.error->mean, level.error->p99, level.error->max);
+            std::string line = (lines.empty() ? file_and_size(level.file) + ", " : "") +
+                               level_text(lines.size(), {level.width, level.height, *level.error});
             if (level.mean_roughness)
                 line += fmt::format(", roughness {:.4f}", *level.mean_roughness);
             lines.push_back(line);

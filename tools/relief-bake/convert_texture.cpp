@@ -171,38 +171,49 @@ EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alph
     return level;
 }
 
-std::vector<LevelError> errors_of_levels(const std::filesystem::path& file,
-                                         const std::filesystem::path& exact,
+std::string level_text(std::size_t level, const LevelError& error) {
+    return fmt::format("level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, greatest: {:.3f})",
+                       level, error.width, error.height, error.error.mean, error.error.p99,
+                       error.error.max);
+}
+
+ExactMap read_exact_map(const std::filesystem::path& file) {
+    const InputMap map = read_normal_map(file, {});
+    return {file, decode_normal_map(map.image, map.green.value_or(Green::up), map.flat,
+                                    IgnoredReport(), FlatTexels::exact)};
+}
+
+std::vector<LevelError> errors_of_levels(const std::filesystem::path& file, const ExactMap& exact,
                                          std::optional<Green> green) {
-    const InputMap expected = read_normal_map(exact, {});
-    MapInputOptions conventions;
-    conventions.green = green;
-    const InputMap given = read_normal_map(file, conventions);
-    if (given.image.width != expected.image.width || given.image.height != expected.image.height) {
-        throw failure(file,
-                      fmt::format("has {} x {} texels, but {} has {} x {}", given.image.width,
-                                  given.image.height, exact.string(), expected.image.width,
-                                  expected.image.height),
-                      "compare maps of the same size");
-    }
-    const Green direction = given.green.value_or(Green::up);
     std::vector<Image> levels;
     if (is_texture(file)) {
         const GpuTexture texture = read_texture(file);
+        const Green direction =
+            green.value_or(recorded_green(texture.metadata).value_or(Green::up));
         for (std::size_t i = 0; i < texture.levels.size(); ++i) {
             levels.push_back(
                 normals_of(decode_texture_level(texture, i), texture.format, direction));
         }
     } else {
-        levels.push_back(decode_normal_map(given.image, direction, given.flat));
+        MapInputOptions conventions;
+        conventions.green = green;
+        const InputMap given = read_normal_map(file, conventions);
+        levels.push_back(
+            decode_normal_map(given.image, given.green.value_or(Green::up), given.flat));
     }
-    const Image normals =
-        decode_normal_map(expected.image, expected.green.value_or(Green::up), expected.flat);
+    const Image& largest = levels.front();
+    if (largest.width != exact.normals.width || largest.height != exact.normals.height) {
+        throw failure(
+            file,
+            fmt::format("has {} x {} texels, but {} has {} x {}", largest.width, largest.height,
+                        exact.file.string(), exact.normals.width, exact.normals.height),
+            "compare maps of the same size");
+    }
     std::vector<Image> means;
-    if (levels.size() > 1) means = normal_mip_levels(normals);
+    if (levels.size() > 1) means = normal_mip_levels(exact.normals);
     std::vector<LevelError> errors;
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        const Image& of_level = i == 0 ? normals : means[i - 1];
+        const Image& of_level = i == 0 ? exact.normals : means[i - 1];
         errors.push_back({levels[i].width, levels[i].height, error_of(of_level, levels[i])});
     }
     return errors;

