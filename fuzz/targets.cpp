@@ -30,6 +30,7 @@
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/texture_file.h"
 #include "relief/mesh/topology.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/scene_file.h"
@@ -159,6 +160,13 @@ void report(Bytes bytes) {
 
 void image(Bytes bytes) {
     static_cast<void>(read_image(std::as_bytes(bytes), "input", ImageUse::data));
+}
+
+/// KTX2 and DDS files, with all their levels.
+void texture(Bytes bytes) {
+    const GpuTexture read = read_texture(std::as_bytes(bytes), "input");
+    for (std::size_t i = 0; i < read.levels.size(); ++i)
+        static_cast<void>(decode_texture_level(read, i));
 }
 
 void rows(Bytes bytes) {
@@ -429,6 +437,7 @@ constexpr std::array targets = {FuzzTarget{"obj", mesh_file<obj_name>},
                                 FuzzTarget{"report", report},
                                 FuzzTarget{"png", image},
                                 FuzzTarget{"jpeg", image},
+                                FuzzTarget{"texture", texture},
                                 FuzzTarget{"rows", rows},
                                 FuzzTarget{"frames", frames},
                                 FuzzTarget{"diagnosis", diagnosis},
