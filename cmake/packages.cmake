@@ -29,6 +29,7 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
 # The drivers of OpenGL are loaded when a picture is drawn.
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS "libosmesa6, libegl1, libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "fonts-dejavu-core")  # The font of the window.
 set(CPACK_DEBIAN_TOOLS_DESCRIPTION
     "surface detail: normals, tangents, normal maps, baking and rendering
 relief computes vertex normals and MikkTSpace tangents, converts height maps to

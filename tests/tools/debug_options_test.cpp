@@ -104,9 +104,10 @@ TEST(CommandLineOf, WritesWhatWasChosen) {
     choices.view = DebugView::shading_normal;
     choices.wireframe = choices.vertex_frames = true;
     choices.frame_length = 0.05F;
+    choices.grid = true;
     choices.health_markers = HealthChoice::all;
     EXPECT_EQ(command_line_of(choices),
-              " --show shading-normal --wireframe --vertex-frames --frame-length 0.05 "
+              " --show shading-normal --wireframe --vertex-frames --frame-length 0.05 --grid "
               "--health-markers all");
 }
 

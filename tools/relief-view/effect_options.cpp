@@ -467,6 +467,9 @@ void add_debug_options(CLI::App& app, ViewOptions& options) {
         app, "--frame-length", "R", choices.frame_length, {1e-6, 10, ""},
         "Set the length of the lines of --vertex-frames, times the scene's size. Default: 0.01.")
         .group(group);
+    add_switch(app, "--grid", choices.grid,
+               "Draw a grid below the scene and the axes over the picture.")
+        .group(group);
     add_choice(app, "--health-markers", choices.health_markers, health_choices(),
                "Mark the problems that relief-mesh check finds with colored discs, or all its "
                "findings. The summary lists the colors.")
@@ -477,12 +480,14 @@ void check_debug_options(ViewOptions& options) {
     const DebugChoices& choices = options.debug;
     refuse(choices.frame_length && !choices.vertex_frames, "--frame-length",
            "needs --vertex-frames", "add --vertex-frames, or leave it out");
-    const bool overlaid = choices.wireframe || choices.vertex_frames || choices.health_markers;
+    const bool overlaid =
+        choices.wireframe || choices.vertex_frames || choices.grid || choices.health_markers;
     const bool draws =
         options.output || options.reference || options.effects.measures() || options.wants_window();
     refuse(overlaid && !draws,
            choices.wireframe       ? "--wireframe"
            : choices.vertex_frames ? "--vertex-frames"
+           : choices.grid          ? "--grid"
                                    : "--health-markers",
            "there is no --output", "add one");
     if (choices.view == DebugView::picture) return;
@@ -505,11 +510,12 @@ HealthMarkers chosen_markers(const DebugChoices& choices, const Scene& scene) {
                                                        : health_markers(scene);
 }
 
-Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers) {
+Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers, const Grid& grid) {
     Overlays overlays;
     overlays.wireframe = choices.wireframe;
     if (choices.vertex_frames)
         overlays.vertex_frames = choices.frame_length.value_or(default_frame_length);
+    if (choices.grid) overlays.grid = grid;
     overlays.markers = markers.markers;
     return overlays;
 }
@@ -548,6 +554,7 @@ Json legend_json(const HealthMarkers& markers) {
 Json overlays_json(const DebugChoices& choices, const HealthMarkers& markers) {
     return {{"wireframe", choices.wireframe},
             {"vertex_frames", choices.vertex_frames},
+            {"grid", choices.grid},
             {"health_markers", choices.health_markers ? legend_json(markers) : Json()}};
 }
 
@@ -559,6 +566,7 @@ std::string command_line_of(const DebugChoices& choices) {
     if (choices.vertex_frames) text += " --vertex-frames";
     if (choices.vertex_frames && choices.frame_length)
         text += fmt::format(" --frame-length {}", *choices.frame_length);
+    if (choices.grid) text += " --grid";
     if (choices.health_markers)
         text += " --health-markers " + name_of(*choices.health_markers, health_choices());
     return text;

@@ -76,7 +76,7 @@ void check_debug_options(ViewOptions& options);
 HealthMarkers chosen_markers(const DebugChoices& choices, const Scene& scene);
 
 /// \param markers  the result of chosen_markers()
-Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers);
+Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers, const Grid& grid);
 
 /// Changes the plan to the selected debug view.
 /// \throws FileError with the name of the model, if the view has nothing to show
@@ -89,7 +89,7 @@ void add_legend(Summary& summary, const HealthMarkers& markers);
 /// [{"kind", "count", "marked", "color"}]
 Json legend_json(const HealthMarkers& markers);
 
-/// {"wireframe", "vertex_frames", "health_markers": legend_json() or null}
+/// {"wireframe", "vertex_frames", "grid", "health_markers": legend_json() or null}
 Json overlays_json(const DebugChoices& choices, const HealthMarkers& markers);
 
 /// The options that select this view, each after a space; "" for the picture.

@@ -466,13 +466,15 @@ OutputCoding coding_of(const ViewOptions& options) {
     return is_linear_output(options) ? OutputCoding::linear : OutputCoding::srgb;
 }
 
-FrameSettings settings_of(const ViewOptions& options, const HealthMarkers& markers) {
+FrameSettings settings_of(const ViewOptions& options, const HealthMarkers& markers,
+                          const Scene& scene) {
+    const Grid grid = options.debug.grid ? grid_below(world_bounds(scene)) : Grid();
     return {.width = options.size.x,
             .height = options.size.y,
             .samples = options.samples,
             .output = coding_of(options),
             .view = options.debug.view,
-            .overlays = overlays_of(options.debug, markers)};
+            .overlays = overlays_of(options.debug, markers, grid)};
 }
 
 /// Keeps alpha only if it was requested, because viewers show different colors behind it.
@@ -487,7 +489,8 @@ Image draw_other(const ViewOptions& options, const Context& context, const Compo
                  Stages& stages) {
     Report unused;  // Most of these findings belong to both sides.
     const OtherSide other = other_side(options, composed, stages, unused);
-    const FrameSettings settings = settings_of(options, chosen_markers(options.debug, other.scene));
+    const FrameSettings settings =
+        settings_of(options, chosen_markers(options.debug, other.scene), other.scene);
     const FramePlan plan = viewed_plan(options, other.scene, settings,
                                        chosen_plan(options, other.scene, settings), unused);
     return stages.run("draw other side", [&] {
@@ -549,7 +552,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.debug.health_markers)
         markers =
             stages.run("check", [&] { return chosen_markers(options.debug, composed.scene()); });
-    const FrameSettings settings = settings_of(options, markers);
+    const FrameSettings settings = settings_of(options, markers, composed.scene());
     FramePlan plan = viewed_plan(options, composed.scene(), settings,
                                  chosen_plan(options, composed.scene(), settings), report);
     save_files(options, composed, stages);

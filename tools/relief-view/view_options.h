@@ -93,12 +93,13 @@ struct CompareChoices {
 /// The findings of the health check that are marked.
 enum class HealthChoice { problem, all };
 
-/// The options --show, --wireframe, --vertex-frames, --frame-length and --health-markers.
+/// The options --show, --wireframe, --vertex-frames, --frame-length, --grid and --health-markers.
 struct DebugChoices {
     DebugView view = DebugView::picture;
     bool wireframe = false;
     bool vertex_frames = false;
     std::optional<float> frame_length;  ///< Relative to the size of the scene.
+    bool grid = false;
     std::optional<HealthChoice> health_markers;
 };
 

@@ -43,6 +43,44 @@ void check_frame_length(const std::optional<float>& share) {
 
 }  // namespace
 
+Grid grid_below(const Bounds& world) {
+    Grid grid;
+    if (world.empty()) return grid;
+    const glm::dvec3 low(world.min);
+    const glm::dvec3 high(world.max);
+    const double size = std::max(high.x - low.x, high.z - low.z);
+    if (size > 0.0) {
+        const double power = std::pow(10.0, std::floor(std::log10(size)) - 1.0);
+        const double tens = size / power;  // 10 to 100.
+        grid.spacing = power * (tens <= 10.0   ? 1.0
+                                : tens <= 20.0 ? 2.0
+                                : tens <= 50.0 ? 5.0
+                                               : 10.0);
+        grid.cells = static_cast<int>(std::ceil(0.75 * size / grid.spacing)) + 1;
+    }
+    const auto on_line = [&](double value) {
+        return grid.spacing * std::round(value / grid.spacing);
+    };
+    grid.middle = {on_line(0.5 * (low.x + high.x)), low.y, on_line(0.5 * (low.z + high.z))};
+    return grid;
+}
+
+GridLines grid_lines(const Grid& grid) {
+    const double reach = grid.cells * grid.spacing;
+    GridLines lines;
+    for (int i = -grid.cells; i <= grid.cells; ++i) {
+        const double side = i * grid.spacing;
+        add_line({-reach, 0.0, side}, {1, 0, 0}, 2.0 * reach, lines.cells);
+        add_line({side, 0.0, -reach}, {0, 0, 1}, 2.0 * reach, lines.cells);
+    }
+    for (int i = 0; i < 3; ++i) {
+        glm::dvec3 direction(0.0);
+        direction[i] = 1.0;
+        add_line(glm::dvec3(0.0), direction, reach, lines.axes[static_cast<std::size_t>(i)]);
+    }
+    return lines;
+}
+
 void add_vertex_frames(const Mesh& mesh, const glm::mat4& world_from_object,
                        const glm::dvec3& center, double length, VertexFrameLines& lines) {
     DrawValues values;
@@ -87,6 +125,7 @@ OverlayDrawing::OverlayDrawing(const gl::Api& api, ProgramCache& programs, const
             framed_of_.emplace(mesh, scene.meshes[mesh].identity());
         }
     }
+    make_grid();
     make_markers(scene);
     move(scene);
 }
@@ -127,6 +166,14 @@ void OverlayDrawing::make_frames(const Scene& scene) {
                           lines);
     }
     frames_ = {upload(lines.tangents, {}), upload(lines.bitangents, {}), upload(lines.normals, {})};
+}
+
+void OverlayDrawing::make_grid() {
+    if (!overlays_.grid) return;
+    const GridLines lines = grid_lines(*overlays_.grid);
+    cells_ = upload(lines.cells, {});
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+        axes_[i] = upload(lines.axes[i], {});
 }
 
 void OverlayDrawing::make_markers(const Scene& scene) {
@@ -200,16 +247,27 @@ void OverlayDrawing::draw_wires(const glm::dmat4& clip_from_world,
     gl->PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
+void OverlayDrawing::draw_lines(const Points& lines, const glm::vec3& color) const {
+    if (lines.count == 0) return;
+    lines_program_->set("all_color", coded(color));
+    (*api_)->BindVertexArray(lines.vertices.name());
+    (*api_)->DrawArrays(GL_LINES, 0, lines.count);
+}
+
+void OverlayDrawing::draw_grid(const glm::dmat4& clip_from_world) const {
+    lines_program_->set("clip_from_object",
+                        glm::mat4(glm::translate(clip_from_world, overlays_.grid->middle)));
+    draw_lines(cells_, grid_color);
+    draw_lines(axes_[0], tangent_color);  // At equal depth, the last line is in front.
+    draw_lines(axes_[1], bitangent_color);
+    draw_lines(axes_[2], normal_color);
+}
+
 void OverlayDrawing::draw_frames(const glm::dmat4& clip_from_world) const {
-    const gl::Api& gl = *api_;
     lines_program_->set("clip_from_object", glm::mat4(glm::translate(clip_from_world, center_)));
     const std::array<glm::vec3, 3> colors = {tangent_color, bitangent_color, normal_color};
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
-        if (frames_[i].count == 0) continue;
-        lines_program_->set("all_color", coded(colors[i]));
-        gl->BindVertexArray(frames_[i].vertices.name());
-        gl->DrawArrays(GL_LINES, 0, frames_[i].count);
-    }
+    for (std::size_t i = 0; i < frames_.size(); ++i)
+        draw_lines(frames_[i], colors[i]);
 }
 
 void OverlayDrawing::draw_markers(const glm::dmat4& clip_from_world) const {
@@ -237,7 +295,9 @@ void OverlayDrawing::draw(const glm::dmat4& clip_from_world,
     gl->DepthFunc(GL_LEQUAL);
     gl->CullFace(GL_BACK);
     lines_program_->use();
-    if (overlays_.wireframe || overlays_.vertex_frames) draw_depth(clip_from_world, surfaces);
+    if (overlays_.wireframe || overlays_.vertex_frames || overlays_.grid)
+        draw_depth(clip_from_world, surfaces);
+    if (overlays_.grid) draw_grid(clip_from_world);
     if (overlays_.wireframe) draw_wires(clip_from_world, surfaces);
     if (overlays_.vertex_frames) draw_frames(clip_from_world);
     if (overlays_.markers) draw_markers(clip_from_world);

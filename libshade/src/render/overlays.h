@@ -35,6 +35,14 @@ struct VertexFrameLines {
 void add_vertex_frames(const Mesh& mesh, const glm::mat4& world_from_object,
                        const glm::dvec3& center, double length, VertexFrameLines& lines);
 
+/// The lines of a grid and of its axes, relative to its middle; each pair of points is a line.
+struct GridLines {
+    std::vector<glm::vec3> cells;
+    std::array<std::vector<glm::vec3>, 3> axes;
+};
+
+GridLines grid_lines(const Grid& grid);
+
 /// A surface of the picture, which may show a wireframe and hide overlays.
 struct OverlaySurface {
     const GpuMesh* mesh = nullptr;
@@ -70,6 +78,7 @@ class OverlayDrawing {
     [[nodiscard]] Points upload(const std::vector<glm::vec3>& positions,
                                 const std::vector<glm::vec4>& colors) const;
     void make_frames(const Scene& scene);
+    void make_grid();
     void make_markers(const Scene& scene);
     [[nodiscard]] glm::vec3 coded(const glm::vec3& srgb) const;
     /// Draws a surface with the line program in the current polygon mode.
@@ -78,7 +87,9 @@ class OverlayDrawing {
                     std::span<const OverlaySurface> surfaces) const;
     void draw_wires(const glm::dmat4& clip_from_world,
                     std::span<const OverlaySurface> surfaces) const;
+    void draw_lines(const Points& lines, const glm::vec3& color) const;
     void draw_frames(const glm::dmat4& clip_from_world) const;
+    void draw_grid(const glm::dmat4& clip_from_world) const;
     void draw_markers(const glm::dmat4& clip_from_world) const;
 
     const gl::Api* api_;
@@ -91,8 +102,10 @@ class OverlayDrawing {
     std::map<std::size_t, Shared<Mesh>::Identity> framed_of_;  ///< Of these meshes.
     glm::dvec3 center_{0.0};                                   ///< The origin of the frame lines.
     std::array<Points, 3> frames_;                             ///< Tangents, bitangents, normals.
-    std::map<std::size_t, Points> markers_;                    ///< By instance.
-    std::vector<glm::mat4> world_from_object_;                 ///< By instance.
+    Points cells_;                                             ///< The grid without its axes.
+    std::array<Points, 3> axes_;
+    std::map<std::size_t, Points> markers_;     ///< By instance.
+    std::vector<glm::mat4> world_from_object_;  ///< By instance.
 };
 
 }  // namespace relief

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 
 #include "relief/mesh/report.h"
 #include "shade/render/draw_support.h"
@@ -92,6 +94,62 @@ TEST_F(Overlay, LinesAreHiddenByOpaqueSurfacesAlone) {
     // Four vertices, each with a line of 0.05 times the diagonal: 0.14 units of 16 pixels.
     EXPECT_NEAR(count(render(scene, settings).image, tangent_color), 4 * 2.3, 4.0);
     EXPECT_NEAR(count(render(scene, settings).image, bitangent_color), 4 * 2.3, 4.0);
+}
+
+TEST_F(Overlay, TheGridIsBelowTheSceneAndBehindItsSurfaces) {
+    Scene scene = small_square();
+    scene.instances[0].world_from_object =
+        glm::rotate(glm::mat4(1.0F), -glm::radians(90.0F), glm::vec3(1, 0, 0));
+    FrameSettings settings = picture();
+    settings.overlays.grid = grid_below(world_bounds(scene));
+    const auto count = [&](const Image& image, const glm::vec3& color) {
+        int found = 0;
+        for (int i = 0; i < overlay_size * overlay_size; ++i)
+            found += pixel(image, i % overlay_size, i / overlay_size) == code(color) ? 1 : 0;
+        return found;
+    };
+    // Seen along z, the grid is one line. Its nearest line hides the x axis.
+    const Image from_the_side = render(scene, settings).image;
+    EXPECT_GT(count(from_the_side, bitangent_color), 10);
+    EXPECT_GT(count(from_the_side, grid_color), 10);
+    const Image without = render(scene, picture()).image;
+    int above = 0;
+    for (int y = overlay_size / 2 + 2; y < overlay_size; ++y) {
+        for (int x = 0; x < overlay_size; ++x)
+            above += pixel(from_the_side, x, y) == pixel(without, x, y) ? 0 : 1;
+    }
+    EXPECT_EQ(above, 0) << "nothing is below the grid";
+}
+
+TEST(GridBelow, HasARoundSpacing) {
+    const auto spacing_of = [](float size) {
+        return grid_below({{0, 0, -0.5F * size}, {size, 0, 0}}).spacing;
+    };
+    EXPECT_DOUBLE_EQ(spacing_of(1.0F), 0.1);
+    EXPECT_DOUBLE_EQ(spacing_of(1.5F), 0.2);
+    EXPECT_DOUBLE_EQ(spacing_of(4.0F), 0.5);
+    EXPECT_DOUBLE_EQ(spacing_of(7.0F), 1.0);
+    EXPECT_DOUBLE_EQ(spacing_of(3e6F), 5e5);
+    EXPECT_DOUBLE_EQ(spacing_of(2e-20F), 2e-21);
+    EXPECT_DOUBLE_EQ(spacing_of(0.0F), 1.0);
+    EXPECT_EQ(grid_below(Bounds()), Grid());
+    const float most = std::numeric_limits<float>::max();
+    EXPECT_LE(grid_below({glm::vec3(-most), glm::vec3(most)}).cells, 9);
+}
+
+TEST(GridBelow, IsAtTheLowestPointWithLinesAtMultiplesOfTheSpacing) {
+    const Grid grid = grid_below({{9.3F, 2.0F, -1.0F}, {13.3F, 7.0F, 2.0F}});  // 4 wide.
+    EXPECT_EQ(grid, (Grid{{11.5, 2.0, 0.5}, 0.5, 7}));
+    const GridLines lines = grid_lines(grid);
+    ASSERT_EQ(lines.cells.size(), 2U * 2U * 15U);
+    for (const glm::vec3& point : lines.cells) {
+        EXPECT_EQ(point.y, 0.0F);
+        EXPECT_FLOAT_EQ(point.x, 0.5F * std::round(2.0F * point.x));
+        EXPECT_FLOAT_EQ(point.z, 0.5F * std::round(2.0F * point.z));
+    }
+    EXPECT_EQ(lines.axes[0][1], glm::vec3(3.5F, 0.0F, 0.0F));
+    EXPECT_EQ(lines.axes[1][1], glm::vec3(0.0F, 3.5F, 0.0F));
+    EXPECT_EQ(lines.axes[2][1], glm::vec3(0.0F, 0.0F, 3.5F));
 }
 
 TEST_F(Overlay, FramesPointAlongTheirDirections) {

@@ -146,8 +146,8 @@ TEST_F(Comparing, NumbersAreComputedWhenTheViewIsStable) {
 
 constexpr const char* bricks = "data/vase.obj --height-map data/bricks-height.png ";
 // The center of a view that ends at 1280.
-constexpr int view_width = 903;
-constexpr int middle_of_line = 828;
+constexpr int view_width = 902;
+constexpr int middle_of_line = 829;
 
 /// Waits until both sides are drawn.
 json both_sides(ViewerWindow& window) {
@@ -251,7 +251,6 @@ void choose_method(ViewerWindow& window, const Display& display) {
     const json at_first = window.wait_for_rest();
     EXPECT_TRUE(at_first["accuracy"]["topics"].empty()) << "nothing is measured unasked";
     window.click_on("Scene");  // Closed, to make room.
-    window.click_on("Effects");
     window.click_on("Accuracy");
     window.click_on("Measure methods");
     const json measured = window.wait_for("figures", [](const json& now) {

@@ -86,7 +86,6 @@ void drop_scene(ViewerWindow& window, const Display& display, const Workplace& w
 
 /// Hidden instances are not drawn.
 void hide_and_show(ViewerWindow& window, const Display& display) {
-    window.click_on("Effects");  // Closed, to make room.
     const json state = window.wait_for_rest();
     EXPECT_EQ(state["shown"], json({3, 3}));
     window.click_on("tree");
@@ -105,6 +104,19 @@ void hide_and_show(ViewerWindow& window, const Display& display) {
     EXPECT_EQ(click(3)["effects"], state["effects"]);
 }
 
+/// The dialog lists the folder of the model, and Page down opens the next model of it.
+void open_by_dialog_and_key(ViewerWindow& window) {
+    const auto shows = [](const std::string& name) {
+        return [name](const json& now) { return now["model"].get<std::string>().ends_with(name); };
+    };
+    window.key("ctrl+o");
+    window.wait_for("the dialog", [](const json& now) { return now["places"].contains("path"); });
+    window.click_on("shading-lights.json");
+    window.wait_for("the selected scene", shows("shading-lights.json"));
+    window.key("Next");
+    window.wait_for("the next scene", shows("shading-reflection.json"));
+}
+
 TEST(Drops, ScenesModelsMapsAndFacesAreShown) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;
@@ -113,6 +125,7 @@ TEST(Drops, ScenesModelsMapsAndFacesAreShown) {
     drop_scene(window, *display, workplace, "shading-lights.json");
     drop_scene(window, *display, workplace, "shading-bump.json");
     hide_and_show(window, *display);
+    open_by_dialog_and_key(window);
     ASSERT_TRUE(test::drop_files(display->name(), {workplace / "data/vase.obj"}, 700, 400));
     window.wait_for("the model", [](const json& now) {
         return now["model"].get<std::string>().ends_with("vase.obj");

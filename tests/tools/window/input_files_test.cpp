@@ -291,5 +291,37 @@ TEST(DroppedFiles, SixImagesAreACube) {
               (Files{"1.png", "2.png", "3.png", "4.png", "5.png", "6.png"}));
 }
 
+TEST(Folders, ListTheirFoldersAndWhatTheWindowShows) {
+    const test::TemporaryDirectory folder;
+    const std::filesystem::path root = std::filesystem::path(folder / "root");
+    std::filesystem::create_directories(root / "inner");
+    for (const char* name : {"b.glb", "a.obj", "map.PNG", "notes.txt", ".hidden.obj", "c.json"})
+        std::ofstream(root / name) << "x";
+    const FolderListing listing = list_folder(root / "inner" / ".." / "");
+    EXPECT_EQ(listing.folder, root);
+    EXPECT_EQ(listing.folders, (Files{root.parent_path(), root / "inner"}));
+    EXPECT_EQ(listing.files,
+              (Files{root / "a.obj", root / "b.glb", root / "c.json", root / "map.PNG"}));
+    EXPECT_EQ(listing.error, "");
+    EXPECT_NE(list_folder(root / "missing").error, "");
+    const FolderListing top = list_folder("/");
+    EXPECT_EQ(top.folder, "/");
+    EXPECT_EQ(std::count(top.folders.begin(), top.folders.end(), "/"), 0)
+        << "the root has no parent";
+}
+
+TEST(Folders, ModelsHaveNeighbors) {
+    const test::TemporaryDirectory folder;
+    for (const char* name : {"a.obj", "b.png", "c.glb", "d.json"})
+        std::ofstream(folder / name) << "x";
+    EXPECT_EQ(neighbor_of(folder / "a.obj", true), folder / "c.glb");
+    EXPECT_EQ(neighbor_of(folder / "d.json", true), folder / "a.obj");
+    EXPECT_EQ(neighbor_of(folder / "a.obj", false), folder / "d.json");
+    EXPECT_FALSE(neighbor_of(folder / "gone.obj", true));
+    std::filesystem::remove(folder / "c.glb");
+    std::filesystem::remove(folder / "d.json");
+    EXPECT_FALSE(neighbor_of(folder / "a.obj", true));
+}
+
 }  // namespace
 }  // namespace relief::tools

@@ -208,7 +208,6 @@ class Panel : public testing::Test {
         if (display_ == nullptr) return false;
         window_ = std::make_unique<ViewerWindow>(*display_, workplace_, words);
         window_->wait_for_rest();
-        set_open("Effects", false);
         set_open("Scene", false);
         return true;
     }

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tools/workplace.h"
 #include "window/background_jobs.h"
 
@@ -189,6 +191,18 @@ TEST_F(State, TheFieldOfViewStaysWithinItsLimits) {
     for (int i = 0; i < 200; ++i)
         state().act(Action::narrow_fov);
     EXPECT_NEAR(glm::degrees(state().camera().vertical_fov), 2.0F, 1e-3F);
+}
+
+TEST_F(State, KeysChangeTheExposureByHalfAStop) {
+    show("square.obj");
+    state().act(Action::brighter);
+    EXPECT_FLOAT_EQ(state().scene().exposure, std::sqrt(2.0F));
+    for (int i = 0; i < 100; ++i)
+        state().act(Action::brighter);
+    EXPECT_EQ(state().scene().exposure, 256.0F);
+    for (int i = 0; i < 17; ++i)
+        state().act(Action::darker);
+    EXPECT_NEAR(state().scene().exposure, std::exp2(8.0F - 8.5F), 1e-6);
 }
 
 TEST_F(State, TurntableRotatesByTimeAndStops) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -94,7 +95,10 @@ TEST_F(Layout, IsReadBack) {
                               .is_maximized = true,
                               .has_panels = false,
                               .open_panels = {{"Lights", true}, {"Scene", false}},
-                              .ui_scale = 1.25F};
+                              .ui_scale = 1.25F,
+                              .has_light_theme = true,
+                              .has_seen_hint = true,
+                              .recent_files = {"/b.glb", "/a.obj"}};
     SavedLayout first(file());
     EXPECT_EQ(first.note(), "");
     EXPECT_EQ(first.layout(), WindowLayout());
@@ -102,6 +106,19 @@ TEST_F(Layout, IsReadBack) {
     const SavedLayout again(file());
     EXPECT_EQ(again.note(), "");
     EXPECT_EQ(again.layout(), layout);
+}
+
+TEST(RecentFiles, AreTheLastTenWithoutRepetition) {
+    WindowLayout layout;
+    for (int i = 0; i < 12; ++i)
+        remember_file(layout, "/models/" + std::to_string(i) + ".obj");
+    remember_file(layout, "/models/../models/5.obj");
+    ASSERT_EQ(layout.recent_files.size(), 10U);
+    EXPECT_EQ(layout.recent_files[0], "/models/5.obj");
+    EXPECT_EQ(layout.recent_files[1], "/models/11.obj");
+    EXPECT_EQ(layout.recent_files[9], "/models/2.obj");
+    EXPECT_EQ(std::count(layout.recent_files.begin(), layout.recent_files.end(), "/models/5.obj"),
+              1);
 }
 
 TEST_F(Layout, IsWrittenOnlyIfItChanged) {

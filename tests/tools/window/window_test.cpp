@@ -205,6 +205,7 @@ class PanelsOfWindow : public Window {
     }
 
     void shaders_are_shown() {
+        window().click_on("Effects");
         window().click_on("Shaders");
         window().click_on("Program 1");
         const auto has_source = [](const json& now) {
@@ -294,6 +295,7 @@ TEST_F(Window, SlowPicturesAreReducedDuringMotionAndMeasuringCanBeStopped) {
         "data/vase.obj --environment data/sky --reflectivity 0.3 --height-map "
         "data/bricks-height.png",
         "LP_NUM_THREADS=0 MESA_SHADER_CACHE_DISABLE=true");
+    window().click_on("Effects");
     const json before = window().wait_for_rest();
     window().click_on("Measure times");
     window().click_on("Stop");

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads scenes, searches for mesh problems and draws pictures on other threads.
-// Tests: tests/tools/window/background_jobs_test.cpp, draw_thread_test.cpp.
+// Reads scenes, searches for mesh problems, draws pictures and measures effects on other threads.
+// Tests: tests/tools/window/background_jobs_test.cpp, draw_thread_test.cpp, effects_panel_test.cpp.
 #include "window/background_jobs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -358,6 +361,139 @@ void DrawThread::run() {
     }
     changed_.notify_all();
     context_.release();
+}
+
+// The times of effects.
+
+namespace {
+
+/// The drawing thread checks for requests after this time, and the window updates the progress.
+constexpr std::chrono::milliseconds step_time(100);
+
+bool have_same_effects(const FramePlan& a, const FramePlan& b) {
+    const auto same_features = [](const DrawPlan& one, const DrawPlan& other) {
+        return one.features == other.features;
+    };
+    return effects_in(a) == effects_in(b) &&
+           std::equal(a.draws.begin(), a.draws.end(), b.draws.begin(), b.draws.end(),
+                      same_features);
+}
+
+}  // namespace
+
+/// The part of a measurement that the drawing thread owns.
+class EffectTimes::MeasurementTask {
+  public:
+    MeasurementTask(DrawRequest request, std::shared_ptr<Measurement> measurement)
+        : request_(std::move(request)), measurement_(std::move(measurement)) {}
+
+    /// Runs steps for at most step_time. \return whether there is more to do
+    bool work(const Context& context, RenderCache& cache) {
+        if (!measurement_->is_wanted) return false;
+        bool has_more = false;
+        std::string error;
+        try {
+            const auto end = std::chrono::steady_clock::now() + step_time;
+            if (!pricing_) prepare(context, cache);
+            do {
+                has_more = pricing_->step();
+            } while (has_more && measurement_->is_wanted && std::chrono::steady_clock::now() < end);
+        } catch (const std::exception& failure) {
+            has_more = false;
+            error = failure.what();
+        }
+        const std::lock_guard lock(measurement_->mutex);
+        State& state = measurement_->state;
+        if (pricing_) state.costs = pricing_->costs();
+        state.error = error;
+        state.is_running = has_more;
+        return has_more;
+    }
+
+  private:
+    void prepare(const Context& context, RenderCache& cache) {
+        FramePlan plan =
+            force_effects(*request_.scene, request_.settings,
+                          plan_effects(*request_.scene, request_.settings), request_.effects);
+        const MeasuredFrame frame{.context = context,
+                                  .scene = *request_.scene,
+                                  .settings = request_.settings,
+                                  .camera = request_.camera,
+                                  .cache = &cache};
+        pricing_ = std::make_unique<EffectCostMeasurement>(frame, plan);
+        const std::lock_guard lock(measurement_->mutex);
+        measurement_->plan = std::move(plan);
+        measurement_->state.count = pricing_->count();
+    }
+
+    DrawRequest request_;
+    std::shared_ptr<Measurement> measurement_;
+    std::unique_ptr<EffectCostMeasurement> pricing_;
+};
+
+EffectTimes::State EffectTimes::state() const {
+    if (!current_) return {};
+    const std::lock_guard lock(current_->mutex);
+    return current_->state;
+}
+
+DrawTask EffectTimes::start(const DrawRequest& request) {
+    cancel();
+    current_ = std::make_shared<Measurement>();
+    State& state = current_->state;
+    state.is_running = true;
+    state.width = request.settings.width;
+    state.height = request.settings.height;
+    state.samples = request.settings.samples;
+    DrawRequest picture = request;
+    picture.settings.overlays = {};
+    const auto measuring = std::make_shared<MeasurementTask>(std::move(picture), current_);
+    return [measuring](const Context& context, RenderCache& cache) {
+        return measuring->work(context, cache);
+    };
+}
+
+void EffectTimes::cancel() {
+    if (current_) current_->is_wanted = false;
+    current_.reset();
+}
+
+void EffectTimes::discard_unless_valid_for(const FramePlan& plan, const DrawRequest& request) {
+    if (!current_) return;
+    bool holds = false;
+    {
+        const std::lock_guard lock(current_->mutex);
+        const State& state = current_->state;
+        const bool is_known = state.count > 0;
+        holds = state.width == request.settings.width && state.height == request.settings.height &&
+                state.samples == request.settings.samples &&
+                (!is_known || have_same_effects(current_->plan, plan));
+    }
+    if (!holds) cancel();
+}
+
+std::string EffectTimes::text(const std::string& effect) const {
+    const State now = state();
+    const auto found = std::find_if(now.costs.effects.begin(), now.costs.effects.end(),
+                                    [&](const EffectCost& cost) { return cost.effect == effect; });
+    if (found == now.costs.effects.end()) return "";
+    return exceeds_noise(*found, now.costs) ? fmt::format("{:.2f} ms", found->milliseconds)
+                                            : "noise";
+}
+
+nlohmann::ordered_json json_of(const EffectTimes::State& state) {
+    if (state.width == 0) return nullptr;
+    nlohmann::ordered_json effects = nlohmann::ordered_json::object();
+    for (const EffectCost& cost : state.costs.effects)
+        effects[cost.effect] = cost.milliseconds;
+    return {{"going_on", state.is_running},
+            {"done", state.costs.effects.size()},
+            {"count", state.count},
+            {"frame", state.costs.frame.median},
+            {"size", {state.width, state.height}},
+            {"samples", state.samples},
+            {"effects", effects},
+            {"error", state.error}};
 }
 
 }  // namespace relief::tools

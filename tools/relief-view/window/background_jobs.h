@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Work of the window on other threads: reading scenes, searching for mesh problems, and drawing.
-/// Tests: tests/tools/window/background_jobs_test.cpp, draw_thread_test.cpp.
+/// Work of the window on other threads: reading scenes, searching for mesh problems, drawing, and
+/// measuring the times of effects.
+/// Tests: tests/tools/window/background_jobs_test.cpp, draw_thread_test.cpp,
+/// effects_panel_test.cpp.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -13,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <thread>
@@ -21,6 +25,7 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
+#include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/renderer.h"
@@ -336,5 +341,53 @@ class DrawThread {
     PictureExchange* handover_ = nullptr;
     std::thread thread_;
 };
+
+// The times of effects.
+
+/// Measures the time of each effect on the drawing thread. Results are valid for one plan and size.
+class EffectTimes {
+  public:
+    struct State {
+        bool is_running = false;
+        std::size_t count = 0;  ///< Number of effects; 0 if it is not yet known.
+        EffectCosts costs;      ///< Costs of the effects that have been measured.
+        std::string error;
+        int width = 0;  ///< Width of the measured frames in pixels; 0 without a measurement.
+        int height = 0;
+        int samples = 0;
+    };
+    [[nodiscard]] State state() const;
+
+    /// Starts a measurement. \return the work for the drawing thread
+    DrawTask start(const DrawRequest& request);
+
+    /// Cancels and discards the measurement.
+    void cancel();
+
+    /// Discards the measurement if it does not match the picture.
+    ///
+    /// \param plan  the plan of the current picture
+    /// \param request  the request at full resolution
+    void discard_unless_valid_for(const FramePlan& plan, const DrawRequest& request);
+
+    /// "1.25 ms"; "noise" for a time below the noise, and empty if the effect was not measured.
+    [[nodiscard]] std::string text(const std::string& effect) const;
+
+  private:
+    /// A measurement, shared by both threads.
+    struct Measurement {
+        std::atomic<bool> is_wanted = true;
+        std::mutex mutex;
+        State state;
+        FramePlan plan;  ///< Empty until the measurement has started.
+    };
+    class MeasurementTask;
+
+    std::shared_ptr<Measurement> current_;
+};
+
+/// {"going_on", "done", "count", "frame": milliseconds, "size", "samples", "effects": {name:
+/// milliseconds}, "error"}, or null without a measurement.
+nlohmann::ordered_json json_of(const EffectTimes::State& state);
 
 }  // namespace relief::tools

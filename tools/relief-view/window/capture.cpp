@@ -210,18 +210,16 @@ bool button(const char* label) {
 void draw_capture_panel(const PanelInput& input, PanelRequests& requests) {
     if (!input.state.has_scene() || input.capture == nullptr) return;
     CaptureSettings& settings = *input.capture;
-    ImGui::Checkbox("Custom size", &settings.custom_size);
-    probe_item("Custom size");
+    check("Custom size", settings.custom_size);
     if (settings.custom_size) {
-        ImGui::InputInt("Width, pixels", &settings.width, 0);
-        ImGui::InputInt("Height, pixels", &settings.height, 0);
+        ImGui::InputInt(begin_row("Width, pixels").c_str(), &settings.width, 0);
+        ImGui::InputInt(begin_row("Height, pixels").c_str(), &settings.height, 0);
         settings.width = std::clamp(settings.width, 1, largest_picture_side);
         settings.height = std::clamp(settings.height, 1, largest_picture_side);
     }
-    ImGui::Checkbox("Transparent background", &settings.transparent);
-    probe_item("Transparent background");
+    check("Transparent background", settings.transparent);
     if (button("Save picture")) requests.save_picture = true;
-    ImGui::InputInt("Pictures per turn", &settings.pictures, 1, 12);
+    ImGui::InputInt(begin_row("Pictures per turn").c_str(), &settings.pictures, 1, 12);
     settings.pictures = std::clamp(settings.pictures, 2, 9999);
     if (button("Save turntable")) requests.save_turn = true;
     if (button("Save scene (JSON)")) requests.save_scene = true;

@@ -296,7 +296,7 @@ template <typename Named, typename Name>
 const Named* choose_one(const char* label, const std::string& now, const std::vector<Named>& all,
                         const Name& name) {
     const Named* chosen = nullptr;
-    if (ImGui::BeginCombo(label, now.c_str())) {
+    if (ImGui::BeginCombo(begin_row(label).c_str(), now.c_str())) {
         for (const Named& one : all) {
             if (ImGui::Selectable(name(one).c_str(), name(one) == now)) chosen = &one;
             probe_item(name(one));
@@ -326,8 +326,8 @@ void choose_variant(Comparison& comparison) {
 void choose_file(Comparison& comparison) {
     static std::array<char, 4096> name{};
     const bool entered =
-        ImGui::InputTextWithHint("Other file", "path of a model or scene", name.data(), name.size(),
-                                 ImGuiInputTextFlags_EnterReturnsTrue);
+        ImGui::InputTextWithHint(begin_row("Other file").c_str(), "path of a model or scene",
+                                 name.data(), name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     probe_item("Other file");
     if (entered && name.front() != '\0') comparison.choose(std::filesystem::path(name.data()));
 }
@@ -345,8 +345,7 @@ void draw_compare_panel(const PanelInput& input) {
     if (!input.state.has_scene() || input.comparison == nullptr) return;
     Comparison& comparison = *input.comparison;
     bool is_on = comparison.is_on();
-    if (ImGui::Checkbox("Compare with##two", &is_on)) comparison.toggle();
-    probe_item("Compare two");
+    if (check("Compare two", is_on)) comparison.toggle();
     choose_variant(comparison);
     choose_file(comparison);
     if (!comparison.is_on()) return;
@@ -355,7 +354,7 @@ void draw_compare_panel(const PanelInput& input) {
     if (ImGui::Button("Swap sides")) comparison.swap();
     probe_item("Swap sides");
     int shown = static_cast<int>(comparison.shown());
-    if (ImGui::Combo("Show##sides", &shown,
+    if (ImGui::Combo(begin_row("Show##sides").c_str(), &shown,
                      "Both sides\0Perceived difference\0Largest difference\0"))
         comparison.show(static_cast<ComparisonView>(shown));
     if (ImGui::Button("Measure the difference")) comparison.request_numbers();

@@ -241,7 +241,7 @@ namespace {
 bool edit_light_color(glm::vec3& irradiance) {
     float strength = std::max({irradiance.x, irradiance.y, irradiance.z});
     glm::vec3 color = strength > 0.0F ? irradiance / strength : glm::vec3(1.0F);
-    bool changed = ImGui::ColorEdit3("Color", &color.x, ImGuiColorEditFlags_Float);
+    bool changed = pick_color("Color", color);
     changed |= drag_up("Intensity", strength);
     if (changed) irradiance = std::max(strength, 0.0F) * glm::max(color, glm::vec3(0.0F));
     return changed;
@@ -250,8 +250,7 @@ bool edit_light_color(glm::vec3& irradiance) {
 /// Edits the color of highlights, if it is not that of the light.
 bool edit_highlights(std::optional<glm::vec3>& highlight, const glm::vec3& light) {
     bool has_own = highlight.has_value();
-    bool changed = ImGui::Checkbox("Own highlight color", &has_own);
-    probe_item("Own highlight color");
+    bool changed = check("Own highlight color", has_own);
     if (changed) highlight = has_own ? std::optional(light) : std::nullopt;
     if (!highlight) return changed;
     ImGui::PushID("highlights");
@@ -271,11 +270,11 @@ bool edit_direction(glm::vec3& direction) {
 }
 
 bool edit_point(PointLight& light) {
-    bool changed = ImGui::DragFloat3("Position", &light.position_world.x, 0.01F);
+    bool changed = ImGui::DragFloat3(begin_row("Position").c_str(), &light.position_world.x, 0.01F);
     changed |= edit_light_color(light.intensity);
     changed |= edit_highlights(light.highlight_intensity, light.intensity);
     bool falls_off = light.falloff == Falloff::inverse_square;
-    if (ImGui::Checkbox("Falloff", &falls_off)) {
+    if (check("Falloff", falls_off)) {
         light.falloff = falls_off ? Falloff::inverse_square : Falloff::none;
         changed = true;
     }
@@ -366,9 +365,7 @@ void draw_light_panel(const PanelInput& input) {
     if (!state.has_scene()) return;
     std::vector<LightRow> rows = state.light_rows();
     glm::vec3 ambient = state.scene().ambient;
-    bool changed = ImGui::ColorEdit3("Ambient", &ambient.x,
-                                     ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
-    if (changed) {
+    if (pick_color("Ambient", ambient, false)) {
         state.edit([&](Scene& scene) { scene.ambient = glm::max(ambient, glm::vec3(0.0F)); });
     }
     const bool has_changed = edit_rows(rows, state.sphere());
@@ -504,9 +501,8 @@ namespace {
 
 /// Edits a color under the title of its field.
 template <typename Owner>
-bool edit_color(Owner& owner, glm::vec3 Owner::*member,
-                ImGuiColorEditFlags flags = ImGuiColorEditFlags_None) {
-    return ImGui::ColorEdit3(field_of(member).title().c_str(), &(owner.*member).x, flags);
+bool edit_color(Owner& owner, glm::vec3 Owner::*member, bool has_limit = true) {
+    return pick_color(field_of(member).title().c_str(), owner.*member, has_limit);
 }
 
 bool edit_metallic_roughness(MetallicRoughness& model) {
@@ -549,14 +545,13 @@ bool edit_model(Material& material) {
     if (material.metallic_roughness) {
         changed |= edit_metallic_roughness(*material.metallic_roughness);
     } else if (material.unlit) {
-        changed |= ImGui::ColorEdit3("Color", &material.diffuse.x);
+        changed |= pick_color("Color", material.diffuse);
     } else {
         changed |= edit_phong(material);
         changed |= edit_reflection(material);
     }
     if (!material.unlit) {
-        changed |= edit_color(material, &Material::emission,
-                              ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+        changed |= edit_color(material, &Material::emission, false);
     }
     return changed;
 }
@@ -573,7 +568,7 @@ bool edit_relief(Material& material) {
     }
     if (material.normal_map || material.bump_map) {
         changed |= choose("Tangents", material.tangent_frame);
-        changed |= ImGui::Checkbox("Specular antialiasing", &material.specular_antialiasing);
+        changed |= check("Specular antialiasing", material.specular_antialiasing);
     }
     return changed;
 }
@@ -597,7 +592,7 @@ bool edit_surface(Material& material) {
     if (material.alpha_mode != AlphaMode::opaque) changed |= slide(material, &Material::opacity);
     if (material.alpha_mode == AlphaMode::mask)
         changed |= slide("Alpha cutoff", material.alpha_cutoff);
-    changed |= ImGui::Checkbox("Double-sided", &material.double_sided);
+    changed |= check("Double-sided", material.double_sided);
     return changed;
 }
 

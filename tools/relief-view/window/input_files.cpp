@@ -205,6 +205,13 @@ bool is_folder(const std::filesystem::path& file) {
     return std::filesystem::is_directory(file, error);
 }
 
+bool is_image(const std::filesystem::path& file) {
+    static constexpr std::array<std::string_view, 12> images = {".png",  ".jpg",  ".jpeg", ".hdr",
+                                                                ".exr",  ".tif",  ".tga",  ".bmp",
+                                                                ".tiff", ".ktx2", ".dds",  ".webp"};
+    return std::find(images.begin(), images.end(), extension_of(file)) != images.end();
+}
+
 bool are_images(const std::vector<std::filesystem::path>& files) {
     return std::none_of(files.begin(), files.end(), [](const auto& file) {
         return dropped_as(file) == DroppedAs::model || is_folder(file);
@@ -249,6 +256,42 @@ DroppedAs dropped_as(const std::filesystem::path& file) {
     if (says(stem, Words{"height", "bump", "disp"}, "_h")) return DroppedAs::height_map;
     if (says(stem, Words{"env", "pano", "sky"}, "")) return DroppedAs::environment;
     return DroppedAs::diffuse_map;
+}
+
+FolderListing list_folder(const std::filesystem::path& folder) {
+    FolderListing listing;
+    std::error_code error;
+    listing.folder = std::filesystem::absolute(folder.empty() ? "." : folder, error);
+    listing.folder = listing.folder.lexically_normal();
+    if (!listing.folder.has_filename()) listing.folder = listing.folder.parent_path();
+    std::filesystem::directory_iterator entry(listing.folder, error);
+    for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+        const std::filesystem::path& path = entry->path();
+        if (path.filename().string().starts_with('.')) continue;
+        if (is_folder(path)) {
+            listing.folders.push_back(path);
+        } else if (dropped_as(path) == DroppedAs::model || is_image(path)) {
+            listing.files.push_back(path);
+        }
+    }
+    if (error) listing.error = listing.folder.string() + ": " + error.message();
+    std::sort(listing.folders.begin(), listing.folders.end());
+    std::sort(listing.files.begin(), listing.files.end());
+    const std::filesystem::path parent = listing.folder.parent_path();
+    if (parent != listing.folder) listing.folders.insert(listing.folders.begin(), parent);
+    return listing;
+}
+
+std::optional<std::filesystem::path> neighbor_of(const std::filesystem::path& model, bool is_next) {
+    std::vector<std::filesystem::path> models = list_folder(model.parent_path()).files;
+    std::erase_if(models, [](const auto& file) { return dropped_as(file) != DroppedAs::model; });
+    const auto now = std::find_if(models.begin(), models.end(), [&](const auto& file) {
+        return file.filename() == model.filename();
+    });
+    const auto count = static_cast<std::ptrdiff_t>(models.size());
+    if (now == models.end() || count < 2) return std::nullopt;
+    const std::ptrdiff_t step = is_next ? 1 : count - 1;
+    return models[static_cast<std::size_t>((now - models.begin() + step) % count)];
 }
 
 ViewOptions with_dropped(ViewOptions options, const std::vector<std::filesystem::path>& files) {

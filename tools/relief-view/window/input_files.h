@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Input files of the window: watching them for changes, and options for dropped files.
+/// Input files of the window: watching them for changes, options for dropped files, and folders.
 /// Tests: tests/tools/window/input_files_test.cpp.
 #pragma once
 
@@ -13,6 +13,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -116,5 +118,19 @@ DroppedAs dropped_as(const std::filesystem::path& file);
 /// images are the faces of a cube, identified by the ends of their names ("posx", "px", "right",
 /// ...) or else in alphabetical order.
 ViewOptions with_dropped(ViewOptions options, const std::vector<std::filesystem::path>& files);
+
+/// The folders of a folder, with its parent first, and the files that the window can show; both in
+/// alphabetical order. Hidden files are left out.
+struct FolderListing {
+    std::filesystem::path folder;  ///< Absolute.
+    std::vector<std::filesystem::path> folders;
+    std::vector<std::filesystem::path> files;
+    std::string error;  ///< Why the folder cannot be read; empty if it can.
+};
+FolderListing list_folder(const std::filesystem::path& folder);
+
+/// The next model or scene in the folder of this one, or the previous one; the first one follows
+/// the last one. Empty if there is no other.
+std::optional<std::filesystem::path> neighbor_of(const std::filesystem::path& model, bool is_next);
 
 }  // namespace relief::tools

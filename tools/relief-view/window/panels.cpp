@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The controls, the effects panel, and the small panels: scene, environment, debug view and
-// picture. Tests: tests/tools/window/user_interface_test.cpp, effects_panel_test.cpp.
+// The controls, the effects panel, the small panels (scene, environment, debug view and picture),
+// the toolbar and its file dialog. Tests: tests/tools/window/user_interface_test.cpp,
+// effects_panel_test.cpp.
 #include "window/panels.h"
 
 #include <fmt/format.h>
@@ -63,8 +64,41 @@ nlohmann::ordered_json ui_probe_json() {
     return ui_probe().positions;
 }
 
+namespace {
+
+// In line heights. The labels have space for the longest one, "Metallic-roughness map".
+constexpr float column_width = 27.0F;
+constexpr float label_width = 12.5F;
+
+}  // namespace
+
+std::string begin_row(const char* label) {
+    const std::string text(label, ImGui::FindRenderedTextEnd(label));
+    if (text.empty()) return label;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::SameLine(label_width * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    return std::string("##") + label;
+}
+
+bool check(const char* label, bool& value) {
+    const bool changed = ImGui::Checkbox(begin_row(label).c_str(), &value);
+    probe_item(label);
+    return changed;
+}
+
+bool pick_color(const char* label, glm::vec3& color, bool has_limit) {
+    const ImGuiColorEditFlags flags =
+        ImGuiColorEditFlags_Float |
+        (has_limit ? ImGuiColorEditFlags_None : ImGuiColorEditFlags_HDR);
+    const bool changed = ImGui::ColorEdit3(begin_row(label).c_str(), &color.x, flags);
+    probe_item(label);
+    return changed;
+}
+
 bool choose_index(const char* label, std::size_t& index, std::span<const std::string> names) {
-    const bool is_open = ImGui::BeginCombo(label, names[index].c_str());
+    const bool is_open = ImGui::BeginCombo(begin_row(label).c_str(), names[index].c_str());
     probe_item(label);
     if (!is_open) return false;
     const std::size_t before = index;
@@ -80,16 +114,25 @@ bool slide(const char* label, float& value, const Slider& slider) {
     const ImGuiSliderFlags flags =
         ImGuiSliderFlags_AlwaysClamp |
         (slider.is_logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
-    const bool changed =
-        ImGui::SliderFloat(label, &value, slider.min, slider.max, slider.format, flags);
+    const std::string id = begin_row(label);
+    bool changed =
+        ImGui::SliderFloat(id.c_str(), &value, slider.min, slider.max, slider.format, flags);
     probe_item(label);
+    if (slider.default_value && value != *slider.default_value && ImGui::IsItemHovered()) {
+        ImGui::SetTooltip("Right click: %s",
+                          fmt::format("reset to {:g}", *slider.default_value).c_str());
+        if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+            value = *slider.default_value;
+            changed = true;
+        }
+    }
     return changed;
 }
 
 bool drag_up(const char* label, float& value, float step) {
     constexpr float max = 1e6F;
-    const bool changed =
-        ImGui::DragFloat(label, &value, step, 0.0F, max, "%.3g", ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragFloat(begin_row(label).c_str(), &value, step, 0.0F, max, "%.3g",
+                                          ImGuiSliderFlags_AlwaysClamp);
     probe_item(label);
     return changed;
 }
@@ -111,7 +154,10 @@ std::filesystem::path path_of(std::string text) {
 
 FileChoice file_field(const char* label, const std::optional<std::string>& shown) {
     FileChoice choice;
+    begin_row(label);
     ImGui::PushID(label);
+    const float button = ImGui::GetFrameHeight();
+    if (shown) ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemInnerSpacing.x);
     std::string text = shown.value_or("");
     // Dear ImGui keeps the text while it is edited.
     if (ImGui::InputTextWithHint(
@@ -126,13 +172,12 @@ FileChoice file_field(const char* label, const std::optional<std::string>& shown
     }
     probe_item(label);
     if (shown && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", shown->c_str());
-    ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
     if (shown) {
-        if (ImGui::SmallButton("x")) choice.is_cleared = true;
-        probe_item(std::string("clear ") + label);
         ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+        if (ImGui::Button("x", {button, 0.0F})) choice.is_cleared = true;
+        probe_item(std::string("clear ") + label);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("Remove");
     }
-    ImGui::TextUnformatted(label);
     ImGui::PopID();
     return choice;
 }
@@ -180,137 +225,6 @@ std::string fitting_line(const std::vector<std::string>& parts, float width,
 }
 
 // The effects panel.
-
-namespace {
-
-/// The drawing thread checks for requests after this time, and the window updates the progress.
-constexpr std::chrono::milliseconds step_time(100);
-
-bool have_same_effects(const FramePlan& a, const FramePlan& b) {
-    const auto same_features = [](const DrawPlan& one, const DrawPlan& other) {
-        return one.features == other.features;
-    };
-    return effects_in(a) == effects_in(b) &&
-           std::equal(a.draws.begin(), a.draws.end(), b.draws.begin(), b.draws.end(),
-                      same_features);
-}
-
-}  // namespace
-
-/// The part of a measurement that the drawing thread owns.
-class EffectTimes::MeasurementTask {
-  public:
-    MeasurementTask(DrawRequest request, std::shared_ptr<Measurement> measurement)
-        : request_(std::move(request)), measurement_(std::move(measurement)) {}
-
-    /// Runs steps for at most step_time. \return whether there is more to do
-    bool work(const Context& context, RenderCache& cache) {
-        if (!measurement_->is_wanted) return false;
-        bool has_more = false;
-        std::string error;
-        try {
-            const auto end = std::chrono::steady_clock::now() + step_time;
-            if (!pricing_) prepare(context, cache);
-            do {
-                has_more = pricing_->step();
-            } while (has_more && measurement_->is_wanted && std::chrono::steady_clock::now() < end);
-        } catch (const std::exception& failure) {
-            has_more = false;
-            error = failure.what();
-        }
-        const std::lock_guard lock(measurement_->mutex);
-        State& state = measurement_->state;
-        if (pricing_) state.costs = pricing_->costs();
-        state.error = error;
-        state.is_running = has_more;
-        return has_more;
-    }
-
-  private:
-    void prepare(const Context& context, RenderCache& cache) {
-        FramePlan plan =
-            force_effects(*request_.scene, request_.settings,
-                          plan_effects(*request_.scene, request_.settings), request_.effects);
-        const MeasuredFrame frame{.context = context,
-                                  .scene = *request_.scene,
-                                  .settings = request_.settings,
-                                  .camera = request_.camera,
-                                  .cache = &cache};
-        pricing_ = std::make_unique<EffectCostMeasurement>(frame, plan);
-        const std::lock_guard lock(measurement_->mutex);
-        measurement_->plan = std::move(plan);
-        measurement_->state.count = pricing_->count();
-    }
-
-    DrawRequest request_;
-    std::shared_ptr<Measurement> measurement_;
-    std::unique_ptr<EffectCostMeasurement> pricing_;
-};
-
-EffectTimes::State EffectTimes::state() const {
-    if (!current_) return {};
-    const std::lock_guard lock(current_->mutex);
-    return current_->state;
-}
-
-DrawTask EffectTimes::start(const DrawRequest& request) {
-    cancel();
-    current_ = std::make_shared<Measurement>();
-    State& state = current_->state;
-    state.is_running = true;
-    state.width = request.settings.width;
-    state.height = request.settings.height;
-    state.samples = request.settings.samples;
-    DrawRequest picture = request;
-    picture.settings.overlays = {};
-    const auto measuring = std::make_shared<MeasurementTask>(std::move(picture), current_);
-    return [measuring](const Context& context, RenderCache& cache) {
-        return measuring->work(context, cache);
-    };
-}
-
-void EffectTimes::cancel() {
-    if (current_) current_->is_wanted = false;
-    current_.reset();
-}
-
-void EffectTimes::discard_unless_valid_for(const FramePlan& plan, const DrawRequest& request) {
-    if (!current_) return;
-    bool holds = false;
-    {
-        const std::lock_guard lock(current_->mutex);
-        const State& state = current_->state;
-        const bool is_known = state.count > 0;
-        holds = state.width == request.settings.width && state.height == request.settings.height &&
-                state.samples == request.settings.samples &&
-                (!is_known || have_same_effects(current_->plan, plan));
-    }
-    if (!holds) cancel();
-}
-
-std::string EffectTimes::text(const std::string& effect) const {
-    const State now = state();
-    const auto found = std::find_if(now.costs.effects.begin(), now.costs.effects.end(),
-                                    [&](const EffectCost& cost) { return cost.effect == effect; });
-    if (found == now.costs.effects.end()) return "";
-    return exceeds_noise(*found, now.costs) ? fmt::format("{:.2f} ms", found->milliseconds)
-                                            : "noise";
-}
-
-nlohmann::ordered_json json_of(const EffectTimes::State& state) {
-    if (state.width == 0) return nullptr;
-    nlohmann::ordered_json effects = nlohmann::ordered_json::object();
-    for (const EffectCost& cost : state.costs.effects)
-        effects[cost.effect] = cost.milliseconds;
-    return {{"going_on", state.is_running},
-            {"done", state.costs.effects.size()},
-            {"count", state.count},
-            {"frame", state.costs.frame.median},
-            {"size", {state.width, state.height}},
-            {"samples", state.samples},
-            {"effects", effects},
-            {"error", state.error}};
-}
 
 std::string numbered_lines(const std::string& source) {
     const bool has_open_end = !source.empty() && source.back() != '\n';
@@ -564,11 +478,19 @@ void draw_findings(const PanelInput& input) {
 
 }  // namespace
 
-void draw_scene_panel(const PanelInput& input) {
+void draw_scene_panel(const PanelInput& input, PanelRequests& requests) {
     ViewerState& state = input.state;
     if (!input.layout_note.empty()) ImGui::TextWrapped("%s", input.layout_note.c_str());
     if (!state.has_scene()) {
-        ImGui::TextWrapped("Drop a model here: .glb .gltf .obj .ply .stl .off, or a scene: .json");
+        ImGui::TextWrapped(
+            "Open or drop a model: .glb .gltf .obj .ply .stl .off, or a scene: .json");
+        if (!input.layout.recent_files.empty()) ImGui::TextDisabled("Recent files");
+        for (const std::string& file : input.layout.recent_files) {
+            const std::string name = std::filesystem::path(file).filename().string();
+            if (ImGui::Selectable((name + "##" + file).c_str())) requests.open = file;
+            probe_item("recent " + name);
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", file.c_str());
+        }
         return;
     }
     ImGui::TextWrapped("%s", state.options().model.filename().c_str());
@@ -605,10 +527,8 @@ const char* layout_of(const Environment& environment) {
 bool edit(Environment& environment) {
     ImGui::TextDisabled("%s", layout_of(environment));
     bool changed = drag_up("Intensity", environment.intensity);
-    changed |= ImGui::Checkbox("Show as background", &environment.skybox);
-    probe_item("Show as background");
-    changed |= ImGui::Checkbox("Environment light", &environment.lights);
-    probe_item("Environment light");
+    changed |= check("Show as background", environment.skybox);
+    changed |= check("Environment light", environment.lights);
     return changed;
 }
 
@@ -634,7 +554,8 @@ namespace {
 
 bool choose_view(DebugView& view) {
     bool changed = false;
-    if (!ImGui::BeginCombo("Show", debug_view_info(view).name.data())) return false;
+    if (!ImGui::BeginCombo(begin_row("Show").c_str(), debug_view_info(view).name.data()))
+        return false;
     for (const DebugViewInfo& info : debug_views()) {
         if (ImGui::Selectable(info.name.data(), info.view == view)) {
             view = info.view;
@@ -662,16 +583,20 @@ void draw_view_panel(const PanelInput& input) {
     DebugChoices choices = input.state.debug();
     bool changed = choose_view(choices.view);
     ImGui::TextWrapped("%s", debug_view_info(choices.view).what.data());
-    changed |= ImGui::Checkbox("Wireframe", &choices.wireframe);
-    changed |= ImGui::Checkbox("Vertex frames", &choices.vertex_frames);
+    changed |= check("Wireframe", choices.wireframe);
+    changed |= check("Vertex frames", choices.vertex_frames);
     float length = choices.frame_length.value_or(default_frame_length);
     if (choices.vertex_frames &&
-        ImGui::SliderFloat("Length", &length, 1e-3F, 0.2F, "%.3f", ImGuiSliderFlags_Logarithmic)) {
+        slide("Length", length, {1e-3F, 0.2F, "%.3f", true, default_frame_length})) {
         choices.frame_length = length;
         changed = true;
     }
+    changed |= check("Grid and axes", choices.grid);
+    if (choices.grid && input.state.has_scene())
+        ImGui::TextDisabled("A cell is %g wide.", input.state.grid().spacing);
     int marks = !choices.health_markers ? 0 : *choices.health_markers == HealthChoice::all ? 2 : 1;
-    if (ImGui::Combo("Health", &marks, "No markers\0Problems\0Problems and notes\0")) {
+    if (ImGui::Combo(begin_row("Health").c_str(), &marks,
+                     "No markers\0Problems\0Problems and notes\0")) {
         choices.health_markers.reset();
         if (marks > 0)
             choices.health_markers = marks == 2 ? HealthChoice::all : HealthChoice::problem;
@@ -679,9 +604,7 @@ void draw_view_panel(const PanelInput& input) {
     }
     if (choices.health_markers) draw_legend(input.state.markers());
     bool has_light_markers = input.state.has_light_markers();
-    if (ImGui::Checkbox("Light markers", &has_light_markers))
-        input.state.act(Action::light_markers);
-    probe_item("Light markers");
+    if (check("Light markers", has_light_markers)) input.state.act(Action::light_markers);
     if (changed) input.state.set_debug(choices);
 }
 
@@ -690,23 +613,21 @@ void draw_picture_panel(const PanelInput& input) {
     const Scene& scene = input.state.scene();
     float stops = std::log2(scene.exposure);
     ToneMapping tone = scene.tone_mapping;
-    glm::vec4 background = scene.background;
-    bool changed = slide("Exposure", stops, {-8.0F, 8.0F, "%.1f stops"});
+    glm::vec3 background(scene.background);
+    bool changed =
+        slide("Exposure", stops,
+              {std::log2(min_exposure), std::log2(max_exposure), "%.1f stops", false, 0.0F});
     changed |= choose("Tone curve", tone);
-    changed |= ImGui::ColorEdit3("Background", &background.x, ImGuiColorEditFlags_Float);
+    changed |= pick_color("Background", background);
     if (!changed) return;
     input.state.edit([&](Scene& edited) {
         edited.exposure = std::exp2(stops);
         edited.tone_mapping = tone;
-        edited.background = background;
+        edited.background = glm::vec4(background, edited.background.w);
     });
 }
 
 namespace {
-
-// In line heights. The labels have space for the longest one, "Metallic-roughness map".
-constexpr float column_width = 29.0F;
-constexpr float label_width = 14.5F;
 
 /// The parts of the status line, the most important one first.
 std::vector<std::string> status_parts(const PanelInput& input) {
@@ -733,6 +654,7 @@ void draw_line(const std::vector<std::string>& parts, const ImVec4& color) {
 }
 
 struct Panel {
+    const char* group;  ///< The caption above the first panel of each group.
     const char* name;
     bool is_open_at_first;
     void (*draw)(const PanelInput&, PanelRequests&);
@@ -745,16 +667,16 @@ void plain(const PanelInput& input, PanelRequests&) {
 }
 
 constexpr std::array all_panels{
-    Panel{"Scene", true, plain<draw_scene_panel>},
-    Panel{"Lights", false, plain<draw_light_panel>},
-    Panel{"Materials", false, plain<draw_material_panel>},
-    Panel{"Environment", false, plain<draw_environment_panel>},
-    Panel{"Picture", false, plain<draw_picture_panel>},
-    Panel{"View", false, plain<draw_view_panel>},
-    Panel{"Compare", false, plain<draw_compare_panel>},
-    Panel{"Save", false, draw_capture_panel},
-    Panel{"Effects", true, draw_effects_panel},
-    Panel{"Accuracy", false, draw_accuracy_panel},
+    Panel{"Contents", "Scene", true, draw_scene_panel},
+    Panel{"Contents", "Lights", false, plain<draw_light_panel>},
+    Panel{"Contents", "Materials", false, plain<draw_material_panel>},
+    Panel{"Contents", "Environment", false, plain<draw_environment_panel>},
+    Panel{"Image", "Picture", false, plain<draw_picture_panel>},
+    Panel{"Image", "View", false, plain<draw_view_panel>},
+    Panel{"Image", "Compare", false, plain<draw_compare_panel>},
+    Panel{"Image", "Save", false, draw_capture_panel},
+    Panel{"Analysis", "Effects", false, draw_effects_panel},
+    Panel{"Analysis", "Accuracy", false, draw_accuracy_panel},
 };
 
 /// Draws a panel's header, which opens and closes the panel. The layout stores the state.
@@ -770,6 +692,57 @@ bool begins(const Panel& panel, WindowLayout& layout) {
     return is_open;
 }
 
+/// Menu entries with the descriptions and keys of shortcuts.
+void draw_menu(const char* name, std::initializer_list<Action> entries, PanelRequests& requests) {
+    if (ImGui::Button(name)) ImGui::OpenPopup(name);
+    probe_item(name);
+    if (!ImGui::BeginPopup(name)) return;
+    for (const Action action : entries) {
+        const auto& all = shortcuts();
+        const auto found = std::find_if(all.begin(), all.end(), [&](const Shortcut& shortcut) {
+            return shortcut.action == action;
+        });
+        const std::string text(found->description);
+        if (ImGui::MenuItem(text.c_str(), std::string(found->key).c_str()))
+            requests.actions.push_back(action);
+        probe_item(text);
+    }
+    ImGui::EndPopup();
+}
+
+/// Draws the buttons above the panels. \return their height in window units
+float draw_toolbar(const ViewerState& state, float width, PanelRequests& requests) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float height = ImGui::GetFrameHeight() + 2.0F * style.WindowPadding.y;
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({width, height});
+    ImGui::Begin("Toolbar", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+    const auto button = [&](const char* name, Action action, const char* tooltip) {
+        if (ImGui::Button(name)) requests.actions.push_back(action);
+        probe_item(name);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
+        ImGui::SameLine();
+    };
+    button("Open...", Action::open, "Open a model or a scene (Ctrl+O)");
+    draw_menu("Save as", {Action::save_picture, Action::save_scene, Action::save_model}, requests);
+    ImGui::SameLine();
+    draw_menu("Views",
+              {Action::fit, Action::front, Action::back, Action::right, Action::left, Action::top,
+               Action::bottom, Action::next_file, Action::previous_file, Action::theme,
+               Action::larger_ui, Action::smaller_ui},
+              requests);
+    ImGui::SameLine();
+    if (state.has_scene() && state.playback().has_motion()) {
+        button(state.playback().is_playing() ? "Pause##toolbar" : "Play##toolbar", Action::play,
+               "Play or pause the animation (P)");
+    } else {
+        button("Turn", Action::turntable, "Start or stop the turntable (Space)");
+    }
+    button("Help", Action::help, "Show all shortcuts (F1)");
+    ImGui::End();
+    return height;
+}
+
 }  // namespace
 
 std::vector<std::string> panel_names() {
@@ -783,15 +756,18 @@ float draw_panels(const PanelInput& input, PanelRequests& requests) {
     const ImGuiIO& io = ImGui::GetIO();
     const float width = column_width * ImGui::GetFontSize();
     const float status_height = ImGui::GetFrameHeightWithSpacing();
-    ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize({width, io.DisplaySize.y - status_height});
+    const float top = draw_toolbar(input.state, width, requests);
+    ImGui::SetNextWindowPos({0, top});
+    ImGui::SetNextWindowSize({width, io.DisplaySize.y - status_height - top});
     ImGui::Begin("Panels", nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
-    ImGui::PushItemWidth(-label_width * ImGui::GetFontSize());
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_AlwaysVerticalScrollbar);
+    std::string_view group;
     for (const Panel& panel : all_panels) {
+        if (group != panel.group) ImGui::TextDisabled("%s", panel.group);
+        group = panel.group;
         if (begins(panel, input.layout)) panel.draw(input, requests);
     }
-    ImGui::PopItemWidth();
     ImGui::End();
     return width;
 }
@@ -808,7 +784,7 @@ void choose_speed(ViewerState& state) {
         names.push_back(fmt::format("{:g} x", speed));
     }
     ImGui::SetNextItemWidth(5.0F * ImGui::GetFontSize());
-    if (choose_index("Speed", index, names))
+    if (choose_index("##Speed", index, names))
         state.change_playback([&](Playback& playback) { playback.set_speed(speeds[index]); });
 }
 
@@ -820,7 +796,7 @@ void choose_clip(ViewerState& state) {
     std::size_t index = now.clip() ? *now.clip() + 1 : 0;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(8.0F * ImGui::GetFontSize());
-    if (!choose_index("Clip", index, names)) return;
+    if (!choose_index("##Clip", index, names)) return;
     state.change_playback([&](Playback& playback) {
         playback.set_clip(index == 0 ? std::nullopt : std::optional(index - 1));
     });
@@ -881,7 +857,9 @@ void draw_status(const PanelInput& input, PanelRequests& requests) {
     } else if (!input.progress.stage.empty()) {
         draw_progress("Preparing", input.progress);
     } else if (!error.empty()) {
-        draw_line({error}, {1.0F, 0.5F, 0.4F, 1.0F});
+        const bool is_light = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg).x > 0.5F;
+        draw_line({error},
+                  is_light ? ImVec4(0.7F, 0.1F, 0.0F, 1.0F) : ImVec4(1.0F, 0.5F, 0.4F, 1.0F));
     } else {
         draw_line(status_parts(input), ImGui::GetStyleColorVec4(ImGuiCol_Text));
     }
@@ -910,6 +888,70 @@ void draw_help(bool& is_open) {
         ImGui::EndTable();
     }
     ImGui::End();
+}
+
+// The file dialog.
+
+void FileDialog::open(const std::filesystem::path& folder) {
+    is_open_ = true;
+    listing_ = list_folder(folder);
+}
+
+std::optional<std::filesystem::path> FileDialog::draw(
+    const std::vector<std::string>& recent_files) {
+    if (!is_open_) return std::nullopt;
+    constexpr const char* title = "Open a model, a scene or a map";
+    if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5F * screen.x, 0.5F * screen.y}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSize({0.7F * screen.x, 0.8F * screen.y});
+    std::optional<std::filesystem::path> selected;
+    std::optional<std::filesystem::path> folder;
+    if (!ImGui::BeginPopupModal(title, nullptr,
+                                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove))
+        return std::nullopt;
+    std::string path = listing_.folder.string();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    if (ImGui::InputText("##path", &path, ImGuiInputTextFlags_EnterReturnsTrue)) {
+        std::error_code none;
+        const std::filesystem::path typed = path_of(path);
+        (std::filesystem::is_directory(typed, none) ? folder : selected) = typed;
+    }
+    probe_item("path");
+    if (!listing_.error.empty()) ImGui::TextWrapped("%s", listing_.error.c_str());
+    ImGui::BeginChild("files", {0.0F, -1.5F * ImGui::GetFrameHeightWithSpacing()}, true);
+    for (const std::filesystem::path& inner : listing_.folders) {
+        const std::string name = inner.filename().string() + "/";
+        if (ImGui::Selectable(inner == listing_.folder.parent_path() ? "../" : name.c_str()))
+            folder = inner;
+        probe_item(name);
+    }
+    for (const std::filesystem::path& file : listing_.files) {
+        const std::string name = file.filename().string();
+        if (ImGui::Selectable(name.c_str())) selected = file;
+        probe_item(name);
+    }
+    ImGui::EndChild();
+    if (!recent_files.empty()) {
+        if (ImGui::BeginCombo("##recent", "Recent files", ImGuiComboFlags_NoArrowButton)) {
+            for (const std::string& file : recent_files) {
+                if (ImGui::Selectable(file.c_str())) selected = file;
+            }
+            ImGui::EndCombo();
+        }
+        ImGui::SameLine();
+    }
+    const bool is_cancelled =
+        ImGui::Button("Cancel##dialog") ||
+        (!ImGui::IsAnyItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)));
+    probe_item("Cancel the dialog");
+    if (folder) listing_ = list_folder(*folder);
+    if (selected || is_cancelled) {
+        is_open_ = false;
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+    return selected;
 }
 
 }  // namespace relief::tools

@@ -4,11 +4,9 @@
 /// Tests: tests/tools/window/user_interface_test.cpp, effects_panel_test.cpp.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -16,12 +14,12 @@
 #include <vector>
 
 #include "relief/mesh/execution.h"
-#include "relief/shade/effect_costs.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/scene_fields.h"
 #include "view_options.h"
 #include "window/background_jobs.h"
 #include "window/capture.h"
+#include "window/input_files.h"
 #include "window/viewer_state.h"
 #include "window/window_system.h"
 
@@ -42,6 +40,18 @@ void probe_item(const std::string& name);
 
 /// For example {"Lights": [120, 240]}.
 nlohmann::ordered_json ui_probe_json();
+
+/// Starts a row of two columns: draws the label, and makes the next item as wide as the second
+/// column.
+/// \return the ImGui identifier of the item
+std::string begin_row(const char* label);
+
+/// A checkbox. \return whether the value changed
+bool check(const char* label, bool& value);
+
+/// A color field. \return whether the value changed
+/// \param has_limit  whether 1 is the largest component
+bool pick_color(const char* label, glm::vec3& color, bool has_limit = true);
 
 /// A combo box. While it is open, the probe reports its entries as "Kind: Spot".
 /// \return whether the selection changed
@@ -66,6 +76,8 @@ struct Slider {
     float max = 1.0F;
     const char* format = "%.3f";  ///< As printf's, with the unit.
     bool is_logarithmic = false;
+    /// A click with the right button sets this value; a tooltip says so while the value differs.
+    std::optional<float> default_value = std::nullopt;
 };
 
 /// \return whether the value changed
@@ -75,7 +87,9 @@ bool slide(const char* label, float& value, const Slider& slider = {});
 template <typename Owner>
 bool slide(Owner& owner, float Owner::*member) {
     const SceneField field = field_of(member);
-    return slide(field.title().c_str(), owner.*member, {field.range.min, field.range.max});
+    return slide(
+        field.title().c_str(), owner.*member,
+        {.min = field.range.min, .max = field.range.max, .default_value = field.default_value()});
 }
 
 /// A drag field for values from 0 without an upper limit; `step` is the change per pixel.
@@ -101,52 +115,6 @@ std::string fitting_line(const std::vector<std::string>& parts, float width,
                          const std::function<float(const std::string&)>& width_of);
 
 // The effects panel: the reasons for each effect, measured times, and the shader source.
-
-/// Measures the time of each effect on the drawing thread. Results are valid for one plan and size.
-class EffectTimes {
-  public:
-    struct State {
-        bool is_running = false;
-        std::size_t count = 0;  ///< Number of effects; 0 if it is not yet known.
-        EffectCosts costs;      ///< Costs of the effects that have been measured.
-        std::string error;
-        int width = 0;  ///< Width of the measured frames in pixels; 0 without a measurement.
-        int height = 0;
-        int samples = 0;
-    };
-    [[nodiscard]] State state() const;
-
-    /// Starts a measurement. \return the work for the drawing thread
-    DrawTask start(const DrawRequest& request);
-
-    /// Cancels and discards the measurement.
-    void cancel();
-
-    /// Discards the measurement if it does not match the picture.
-    ///
-    /// \param plan  the plan of the current picture
-    /// \param request  the request at full resolution
-    void discard_unless_valid_for(const FramePlan& plan, const DrawRequest& request);
-
-    /// "1.25 ms"; "noise" for a time below the noise, and empty if the effect was not measured.
-    [[nodiscard]] std::string text(const std::string& effect) const;
-
-  private:
-    /// A measurement, shared by both threads.
-    struct Measurement {
-        std::atomic<bool> is_wanted = true;
-        std::mutex mutex;
-        State state;
-        FramePlan plan;  ///< Empty until the measurement has started.
-    };
-    class MeasurementTask;
-
-    std::shared_ptr<Measurement> current_;
-};
-
-/// {"going_on", "done", "count", "frame": milliseconds, "size", "samples", "effects": {name:
-/// milliseconds}, "error"}, or null without a measurement.
-nlohmann::ordered_json json_of(const EffectTimes::State& state);
 
 /// Adds line numbers: " 1  #version 330 core".
 std::string numbered_lines(const std::string& source);
@@ -197,6 +165,8 @@ struct PanelInput {
 
 /// The panels' requests to the window.
 struct PanelRequests {
+    std::vector<Action> actions;                ///< Of buttons and menus.
+    std::optional<std::filesystem::path> open;  ///< A file that was selected.
     bool cancel_loading = false;
     bool save_picture = false;
     bool save_turn = false;
@@ -209,7 +179,7 @@ struct PanelRequests {
     std::optional<Variant> use_method;
 };
 
-void draw_scene_panel(const PanelInput& input);
+void draw_scene_panel(const PanelInput& input, PanelRequests& requests);
 void draw_light_panel(const PanelInput& input);
 void draw_material_panel(const PanelInput& input);
 void draw_environment_panel(const PanelInput& input);
@@ -223,7 +193,7 @@ void draw_view_panel(const PanelInput& input);
 /// The panel headers from top to bottom.
 std::vector<std::string> panel_names();
 
-/// Draws all panels in one column. \return its width in window units
+/// Draws the toolbar and all panels in one column. \return its width in window units
 float draw_panels(const PanelInput& input, PanelRequests& requests);
 
 /// Draws the controls of the animation below the picture, if there is one: play, time, speed, clip.
@@ -236,5 +206,20 @@ void draw_status(const PanelInput& input, PanelRequests& requests);
 
 /// Draws the list of shortcuts in the center of the window.
 void draw_help(bool& is_open);
+
+/// A dialog that selects a file of a folder, or a recent one.
+class FileDialog {
+  public:
+    /// \param folder  the folder that is listed first
+    void open(const std::filesystem::path& folder);
+    [[nodiscard]] bool is_open() const { return is_open_; }
+
+    /// \return the selected file; then the dialog is closed
+    std::optional<std::filesystem::path> draw(const std::vector<std::string>& recent_files);
+
+  private:
+    bool is_open_ = false;
+    FolderListing listing_;
+};
 
 }  // namespace relief::tools

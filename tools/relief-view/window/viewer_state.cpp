@@ -36,6 +36,8 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::bottom, "Ctrl+7", "View from below"},
         {Action::narrow_fov, "[", "Decrease the field of view"},
         {Action::widen_fov, "]", "Increase the field of view"},
+        {Action::brighter, "Ctrl+Up", "Increase the exposure by half a stop"},
+        {Action::darker, "Ctrl+Down", "Decrease the exposure by half a stop"},
         {Action::turntable, "Space", "Start or stop the turntable"},
         {Action::play, "P", "Play or pause the animation"},
         {Action::step_back, ",", "Step back in the animation"},
@@ -52,6 +54,7 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::picture_view, "0", "Show the picture without overlays"},
         {Action::wireframe, "W", "Show or hide the wireframe"},
         {Action::vertex_frames, "N", "Show or hide tangents, bitangents and normals"},
+        {Action::grid, "G", "Show or hide the grid and the axes"},
         {Action::health_markers, "M", "Show or hide markers for mesh problems"},
         {Action::light_markers, "L", "Show or hide markers at point lights and spotlights"},
         {Action::compare, "K", "Start or stop the comparison"},
@@ -62,12 +65,18 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::save_picture, "S", "Save a picture next to the model"},
         {Action::save_scene, "Ctrl+S", "Save the scene next to the model, as JSON"},
         {Action::save_model, "Ctrl+E", "Save the model with normals and tangents, as GLB"},
+        {Action::open, "Ctrl+O", "Open a model, a scene or a map"},
+        {Action::next_file, "PageDown", "Open the next model of the folder"},
+        {Action::previous_file, "PageUp", "Open the previous model of the folder"},
         {Action::panels, "Tab", "Show or hide the panels"},
+        {Action::theme, "T", "Change between the dark and the light theme"},
         {Action::larger_ui, "Ctrl++", "Enlarge the user interface"},
         {Action::larger_ui, "Ctrl+=", "Enlarge the user interface"},
         {Action::smaller_ui, "Ctrl+-", "Reduce the user interface"},
         {Action::reset_ui_scale, "Ctrl+0", "Reset the scale of the user interface"},
+        {Action::help, "F1", "Show the shortcuts"},
         {Action::help, "H", "Show the shortcuts"},
+        {Action::help, "?", "Show the shortcuts"},
         {Action::quit, "Ctrl+Q", "Close the window"},
     };
     return all;
@@ -402,6 +411,7 @@ void ViewerState::take(Loaded loaded) {
     ++scenes_;
     const Bounds bounds = world_bounds(*scene_);
     sphere_ = bounding_sphere(bounds);
+    grid_ = grid_below(bounds);
     const Bounds& reach = playback_.reach();
     reach_ =
         reach.empty()
@@ -613,6 +623,7 @@ void ViewerState::act_on_debug(Action action) {
     if (action == Action::previous_view) turn(count - 1);
     if (action == Action::picture_view) choices = {};
     if (action == Action::wireframe) choices.wireframe = !choices.wireframe;
+    if (action == Action::grid) choices.grid = !choices.grid;
     if (action == Action::vertex_frames) choices.vertex_frames = !choices.vertex_frames;
     if (action == Action::health_markers) {
         const bool were_on = choices.health_markers.has_value();
@@ -651,6 +662,12 @@ void ViewerState::act(Action action) {
         case Action::widen_fov:
             camera_.vertical_fov = changed_fov(camera_.vertical_fov, fov_step);
             return;
+        case Action::brighter:
+        case Action::darker:
+            return edit([&](Scene& scene) {
+                const float factor = std::exp2(action == Action::brighter ? 0.5F : -0.5F);
+                scene.exposure = std::clamp(scene.exposure * factor, min_exposure, max_exposure);
+            });
         case Action::turntable:
             is_turning_ = !is_turning_;
             return;
@@ -678,6 +695,7 @@ void ViewerState::act(Action action) {
         case Action::previous_view:
         case Action::picture_view:
         case Action::wireframe:
+        case Action::grid:
         case Action::vertex_frames:
         case Action::health_markers:
             return act_on_debug(action);
@@ -717,7 +735,7 @@ std::optional<DrawRequest> ViewerState::request() const {
     request.settings.height = view_.y;
     request.settings.samples = options_.samples;
     request.settings.view = options_.debug.view;
-    request.settings.overlays = overlays_of(options_.debug, markers_);
+    request.settings.overlays = overlays_of(options_.debug, markers_, grid_);
     request.camera = camera_of(camera_, reach_);
     return request;
 }

@@ -24,7 +24,7 @@
 
 namespace relief::tools {
 
-// Keyboard shortcuts and mouse gestures: one table, which the window, its help (H) and
+// Keyboard shortcuts and mouse gestures: one table, which the window, its help (F1) and
 // --list-bindings use.
 
 enum class Action {
@@ -37,6 +37,8 @@ enum class Action {
     bottom,
     narrow_fov,
     widen_fov,
+    brighter,
+    darker,
     turntable,
     play,
     step_back,
@@ -52,6 +54,7 @@ enum class Action {
     picture_view,
     wireframe,
     vertex_frames,
+    grid,
     health_markers,
     light_markers,
     compare,
@@ -62,7 +65,11 @@ enum class Action {
     save_picture,
     save_scene,
     save_model,
+    open,
+    next_file,
+    previous_file,
     panels,
+    theme,
     larger_ui,
     smaller_ui,
     reset_ui_scale,
@@ -111,6 +118,10 @@ struct RebasedEdits {
 RebasedEdits rebase_edits(const Scene& read, const Scene& edited, Scene& fresh);
 
 // The state.
+
+/// The limits of the exposure that keys and the slider set: 8 stops.
+inline constexpr float min_exposure = 1.0F / 256.0F;
+inline constexpr float max_exposure = 256.0F;
 
 /// A node of the scene, or the world.
 struct TreeNode {
@@ -229,6 +240,8 @@ class ViewerState {
     OrbitCamera& camera() { return camera_; }
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
     [[nodiscard]] const BoundingSphere& sphere() const { return sphere_; }
+    /// The grid below the scene as it was read.
+    [[nodiscard]] const Grid& grid() const { return grid_; }
 
     /// Returns whether the turntable or a light rotates, or the animation plays.
     [[nodiscard]] bool is_turning() const {
@@ -292,6 +305,7 @@ class ViewerState {
     EffectRequest effects_;
     OrbitCamera camera_;
     BoundingSphere sphere_;
+    Grid grid_;
     glm::ivec2 view_{0};
     bool is_turning_ = false;
     std::vector<std::string> notes_;

@@ -17,6 +17,7 @@
 #include <glm/vec2.hpp>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,9 @@ class UserInterface {
 
     /// Sets the scale for the next frame.
     void set_scale(const UiScale& scale) { wanted_scale_ = scale; }
+    /// Sets the theme for the next frame.
+    void set_theme(bool is_light) { wants_light_theme_ = is_light; }
+    void open_dialog(const std::filesystem::path& folder) { dialog_.open(folder); }
     [[nodiscard]] const UiScale& scale() const { return scale_; }
 
     // GLFW callbacks. Several events may arrive between two frames.
@@ -110,6 +114,9 @@ class UserInterface {
     bool is_help_open_ = false;
     UiScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< Not set yet.
     UiScale wanted_scale_;
+    bool has_light_theme_ = false;
+    bool wants_light_theme_ = false;
+    FileDialog dialog_;
     std::optional<float> line_;  ///< The x of the line between two pictures, in interface units.
     float left_ = 0.0F;          ///< Left edge of the picture, in interface units.
     float bottom_ = 0.0F;        ///< Height of the area below the picture.
@@ -180,6 +187,63 @@ void draw_difference(const PictureExchange::Shown& picture, const ViewPlace& pla
                place.min + label_margin + label_padding, 0.0F);
 }
 
+/// Shows the most important gestures, until the mouse moves the picture for the first time.
+void draw_hint(const ViewPlace& place) {
+    const std::string text = "Drag: orbit    Shift+drag: pan    Wheel: zoom    F1: all shortcuts";
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    const float x = 0.5F * (place.min.x + place.max.x - width);
+    draw_label(text, {x, place.max.y - 3.0F * ImGui::GetFontSize()}, 0.0F);
+}
+
+/// The characters of the font: Latin, Greek, Cyrillic and punctuation.
+constexpr std::array<ImWchar, 9> font_glyphs{0x20,  0x17F,  0x370,  0x3FF, 0x400,
+                                             0x4FF, 0x2010, 0x2044, 0};
+
+/// Sizes and colors of the panels.
+ImGuiStyle style_of(bool is_light) {
+    ImGuiStyle style;
+    style.WindowRounding = 0.0F;
+    style.FrameRounding = 3.0F;
+    style.GrabRounding = 3.0F;
+    style.PopupRounding = 4.0F;
+    style.ScrollbarRounding = 3.0F;
+    style.ScrollbarSize = 12.0F;
+    style.ItemSpacing = {8.0F, 5.0F};
+    style.WindowBorderSize = 0.0F;
+    is_light ? ImGui::StyleColorsLight(&style) : ImGui::StyleColorsDark(&style);
+    const auto gray = [](float value) { return ImVec4(value, value, value * 1.02F, 1.0F); };
+    const ImVec4 accent =
+        is_light ? ImVec4(0.13F, 0.42F, 0.72F, 1.0F) : ImVec4(0.38F, 0.64F, 0.90F, 1.0F);
+    // The dark and the light gray of each part.
+    const std::array<std::tuple<ImGuiCol, float, float>, 19> grays{{
+        {ImGuiCol_Text, 0.88F, 0.12F},
+        {ImGuiCol_TextDisabled, 0.56F, 0.42F},
+        {ImGuiCol_WindowBg, 0.13F, 0.94F},
+        {ImGuiCol_PopupBg, 0.15F, 0.97F},
+        {ImGuiCol_Border, 0.27F, 0.78F},
+        {ImGuiCol_FrameBg, 0.19F, 0.98F},
+        {ImGuiCol_FrameBgHovered, 0.24F, 0.91F},
+        {ImGuiCol_FrameBgActive, 0.28F, 0.87F},
+        {ImGuiCol_TitleBg, 0.15F, 0.88F},
+        {ImGuiCol_TitleBgActive, 0.18F, 0.84F},
+        {ImGuiCol_Button, 0.25F, 0.86F},
+        {ImGuiCol_ButtonHovered, 0.31F, 0.80F},
+        {ImGuiCol_ButtonActive, 0.36F, 0.74F},
+        {ImGuiCol_Header, 0.19F, 0.88F},
+        {ImGuiCol_HeaderHovered, 0.25F, 0.83F},
+        {ImGuiCol_HeaderActive, 0.29F, 0.78F},
+        {ImGuiCol_Tab, 0.19F, 0.88F},
+        {ImGuiCol_TabActive, 0.29F, 0.97F},
+        {ImGuiCol_ScrollbarBg, 0.13F, 0.94F},
+    }};
+    for (const auto& [part, dark, light] : grays)
+        style.Colors[part] = gray(is_light ? light : dark);
+    for (const ImGuiCol part : {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
+                                ImGuiCol_PlotHistogram, ImGuiCol_TabHovered})
+        style.Colors[part] = accent;
+    return style;
+}
+
 constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
 constexpr double double_click_seconds = 0.35;
 constexpr float double_click_reach = 6.0F;  // In window units.
@@ -189,7 +253,11 @@ constexpr float wheel_pan = 40.0F;          // Window units per wheel step.
 
 /// The GLFW code of a key name.
 int key_code(std::string_view name) {
-    static constexpr std::array<std::pair<std::string_view, int>, 8> named{{
+    static constexpr std::array<std::pair<std::string_view, int>, 12> named{{
+        {"F1", GLFW_KEY_F1},
+        {"?", GLFW_KEY_SLASH},
+        {"PageDown", GLFW_KEY_PAGE_DOWN},
+        {"PageUp", GLFW_KEY_PAGE_UP},
         {"Left", GLFW_KEY_LEFT},
         {"Right", GLFW_KEY_RIGHT},
         {"Up", GLFW_KEY_UP},
@@ -288,18 +356,22 @@ UserInterface::~UserInterface() {
 
 /// Glyphs are rasterized again in pixels. Other sizes are in window units.
 void UserInterface::apply_scale() {
-    if (scale_ == wanted_scale_) return;
+    if (scale_ == wanted_scale_ && has_light_theme_ == wants_light_theme_) return;
     scale_ = wanted_scale_;
+    has_light_theme_ = wants_light_theme_;
     ImGuiIO& io = ImGui::GetIO();
-    ImFontConfig font;
-    font.SizePixels = std::round(13.0F * scale_.glyphs);
     io.Fonts->Clear();
-    io.Fonts->AddFontDefault(&font);
+    if (const std::optional<std::filesystem::path> file = interface_font()) {
+        io.Fonts->AddFontFromFileTTF(file->c_str(), std::round(14.0F * scale_.glyphs), nullptr,
+                                     font_glyphs.data());
+    } else {
+        ImFontConfig font;
+        font.SizePixels = std::round(13.0F * scale_.glyphs);
+        io.Fonts->AddFontDefault(&font);
+    }
     io.FontGlobalScale = scale_.layout / scale_.glyphs;
-    ImGui::GetStyle() = ImGuiStyle();
-    ImGui::StyleColorsDark();
+    ImGui::GetStyle() = style_of(has_light_theme_);
     ImGui::GetStyle().ScaleAllSizes(scale_.layout);
-    ImGui::GetStyle().WindowRounding = 0.0F;
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
 }
@@ -315,7 +387,7 @@ std::optional<glm::ivec2> UserInterface::pointer() {
 }
 
 void UserInterface::on_key(int key, int modifiers, bool is_held) {
-    if (is_typing()) return;
+    if (is_typing() || dialog_.is_open()) return;
     for (const Shortcut& shortcut : shortcuts()) {
         if (is_named(shortcut.key, key, modifiers) && (!is_held || is_repeating(shortcut.action)))
             pressed_.push_back(shortcut.action);
@@ -432,6 +504,9 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
     bottom_ += draw_playback(input.state, left_, bottom_);
     draw_status(input, events.panels);
     if (is_help_open_) draw_help(is_help_open_);
+    if (const auto file = dialog_.draw(input.layout.recent_files)) events.dropped.push_back(*file);
+    if (events.panels.open) events.dropped.push_back(*events.panels.open);
+    input.layout.has_seen_hint |= !moves_.empty();
 
     const ImGuiIO& io = ImGui::GetIO();
     const glm::vec2 size(io.DisplaySize.x - left_, io.DisplaySize.y - bottom_);
@@ -439,7 +514,9 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
     input.state.set_view(glm::ivec2(glm::max(pixels, glm::vec2(1.0F))));
     // The background of transparent pictures; nothing else clears the window.
     ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, io.DisplaySize, backdrop);
-    draw_view(input, picture, {{left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}});
+    const ViewPlace place{{left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}};
+    draw_view(input, picture, place);
+    if (picture.texture != 0 && !input.layout.has_seen_hint) draw_hint(place);
     for (const Move& move : std::exchange(moves_, {})) {
         if (move.drag == Drag::line)
             input.comparison->set_split((move.place.x - left_) / std::max(size.x, 1.0F));
@@ -447,6 +524,8 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
             apply(move, input.state);
     }
     events.actions = std::exchange(pressed_, {});
+    events.actions.insert(events.actions.end(), events.panels.actions.begin(),
+                          events.panels.actions.end());
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     system_.swap();
@@ -493,6 +572,7 @@ class WindowLoop {
           ui_scale_(options.ui_scale),
           state_file_(options.dump_state) {
         if (state_file_) enable_ui_probe();
+        layout_.has_seen_hint |= !saved_layout_.has_file();
         if (options.size_given) requested_view_size_ = options.size;
         if (!options.model.empty()) loader_.start(loading_options_);
     }
@@ -521,6 +601,8 @@ class WindowLoop {
     void take_results() {
         if (std::optional<Loaded> loaded = loader_.take()) {
             files_.follow(*loaded);
+            if (loaded->error.empty() && !loaded->options.model.empty())
+                remember_file(layout_, loaded->options.model);
             state_.take(std::move(*loaded));
             pending_frames_ = frames_to_settle;
         }
@@ -584,6 +666,7 @@ class WindowLoop {
         if (drawn.frames > 0 && !is_reduced(drawn.settings))
             resolution_.set_full_time(drawn.times.draw);
         interface_.set_scale(scale());
+        interface_.set_theme(layout_.has_light_theme);
         const PanelInput input{state_,
                                layout_,
                                drawn,
@@ -623,6 +706,10 @@ class WindowLoop {
     void act(Action action) {
         state_.act(action);
         if (action == Action::help) interface_.show_help();
+        if (action == Action::open) open();
+        if (action == Action::next_file) open_neighbor(true);
+        if (action == Action::previous_file) open_neighbor(false);
+        if (action == Action::theme) layout_.has_light_theme = !layout_.has_light_theme;
         if (action == Action::panels) layout_.has_panels = !layout_.has_panels;
         if (action == Action::larger_ui) rescale(next_ui_scale(interface_.scale().glyphs, true));
         if (action == Action::smaller_ui) rescale(next_ui_scale(interface_.scale().glyphs, false));
@@ -637,6 +724,18 @@ class WindowLoop {
         if (action == Action::swap_sides) comparison_.swap();
         if (action == Action::show_difference) comparison_.toggle_difference();
         if (action == Action::paste_camera) paste();
+    }
+
+    /// Shows the file dialog with the folder of the model.
+    void open() {
+        const std::filesystem::path& model = loading_options_.model;
+        std::error_code none;
+        interface_.open_dialog(model.has_parent_path() ? model.parent_path()
+                                                       : std::filesystem::current_path(none));
+    }
+
+    void open_neighbor(bool is_next) {
+        if (const auto file = neighbor_of(loading_options_.model, is_next)) drop({*file});
     }
 
     [[nodiscard]] std::string command_line() const {

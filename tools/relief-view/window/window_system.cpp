@@ -57,6 +57,7 @@ using nlohmann::ordered_json;
 
 constexpr int layout_version = 1;
 constexpr int largest_window_side = 16384;
+constexpr std::size_t max_recent_files = 10;
 constexpr glm::ivec2 smallest{320, 240};
 
 /// The file has a newer version. The file itself is valid.
@@ -84,6 +85,10 @@ WindowLayout layout_of(const json& document) {
     if (document.contains("scale")) {
         layout.ui_scale = std::clamp(document["scale"].get<float>(), min_ui_scale, max_ui_scale);
     }
+    layout.has_light_theme = document.value("theme", "dark") == "light";
+    layout.has_seen_hint = document.value("hint_seen", false);
+    layout.recent_files = document.value("recent_files", std::vector<std::string>{});
+    if (layout.recent_files.size() > max_recent_files) layout.recent_files.resize(max_recent_files);
     return layout;
 }
 
@@ -97,6 +102,9 @@ ordered_json json_of(const WindowLayout& layout) {
         {"window", std::move(window)},
         {"panels", {{"shown", layout.has_panels}, {"open", layout.open_panels}}}};
     if (layout.ui_scale) document["scale"] = *layout.ui_scale;
+    if (layout.has_light_theme) document["theme"] = "light";
+    document["hint_seen"] = layout.has_seen_hint;
+    document["recent_files"] = layout.recent_files;
     return document;
 }
 
@@ -108,6 +116,26 @@ std::optional<std::filesystem::path> absolute_path_variable(const char* variable
 }
 
 }  // namespace
+
+void remember_file(WindowLayout& layout, const std::filesystem::path& file) {
+    std::error_code failed;
+    const std::string path = std::filesystem::absolute(file, failed).lexically_normal().string();
+    if (failed) return;
+    std::erase(layout.recent_files, path);
+    layout.recent_files.insert(layout.recent_files.begin(), path);
+    if (layout.recent_files.size() > max_recent_files) layout.recent_files.resize(max_recent_files);
+}
+
+std::optional<std::filesystem::path> interface_font() {
+    for (const char* const folder :
+         {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/TTF", "/usr/share/fonts/dejavu",
+          "/usr/share/fonts/dejavu-sans-fonts"}) {
+        const std::filesystem::path file = std::filesystem::path(folder) / "DejaVuSans.ttf";
+        std::error_code none;
+        if (std::filesystem::is_regular_file(file, none)) return file;
+    }
+    return std::nullopt;
+}
 
 WindowLayout fitted_to_screen(WindowLayout layout, const ScreenArea& screen) {
     if (screen.size.x <= 0 || screen.size.y <= 0) return layout;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "relief/mesh/report.h"
 #include "relief/shade/renderer.h"
@@ -49,9 +50,19 @@ struct WindowLayout {
     /// By panel name. Other panels use their default.
     std::map<std::string, bool> open_panels = {};
     std::optional<float> ui_scale = std::nullopt;  ///< If absent, the screen decides.
+    bool has_light_theme = false;
+    bool has_seen_hint = false;  ///< The window no longer shows the mouse gestures on the picture.
+    /// Absolute paths of models and scenes, the last one first.
+    std::vector<std::string> recent_files = {};
 
     friend bool operator==(const WindowLayout&, const WindowLayout&) = default;
 };
+
+/// Moves a file to the front of the recent files, which are at most 10.
+void remember_file(WindowLayout& layout, const std::filesystem::path& file);
+
+/// A proportional font of the system, if there is one: DejaVu Sans.
+std::optional<std::filesystem::path> interface_font();
 
 /// The part of a screen that is free for windows.
 struct ScreenArea {
@@ -79,6 +90,8 @@ class SavedLayout {
     explicit SavedLayout(std::filesystem::path file);
 
     [[nodiscard]] const WindowLayout& layout() const { return layout_; }
+    /// Returns whether the layout is read from a file and written to it.
+    [[nodiscard]] bool has_file() const { return file_.has_value(); }
     /// A message for the user; empty if there was no problem.
     [[nodiscard]] const std::string& note() const { return note_; }
 

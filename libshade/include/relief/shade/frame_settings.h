@@ -109,6 +109,20 @@ struct Marker {
     friend bool operator==(const Marker&, const Marker&) = default;
 };
 
+/// A horizontal square grid in world space with the x (red), y (green) and z (blue) axes from its
+/// middle. The lines are at multiples of `spacing`.
+struct Grid {
+    glm::dvec3 middle{0.0};
+    double spacing = 1.0;
+    int cells = 1;  ///< From the middle to each side.
+
+    friend bool operator==(const Grid&, const Grid&) = default;
+};
+
+/// A grid below a box, half as large again as its larger side in the xz plane, along which 4 to 10
+/// cells of 1, 2 or 5 times a power of 10 fit. The spacing is 1 for a box without size.
+Grid grid_below(const Bounds& world);
+
 /// Overlays on the finished picture. Exposure and tone curve do not change their colors. Lines are
 /// a pixel wide, one sample; opaque surfaces hide them, those with an alpha mask or blending do
 /// not.
@@ -119,10 +133,11 @@ struct Overlays {
     /// share of the scene's size (the diagonal of its box). Tangents need texture coordinates or
     /// stored tangents; missing ones are computed.
     std::optional<float> vertex_frames;
+    std::optional<Grid> grid;
     /// The markers to draw, for example those of health_markers().
     std::shared_ptr<const std::vector<Marker>> markers;
 
-    [[nodiscard]] bool any() const { return wireframe || vertex_frames || markers; }
+    [[nodiscard]] bool any() const { return wireframe || vertex_frames || grid || markers; }
     friend bool operator==(const Overlays&, const Overlays&) = default;
 };
 
@@ -133,6 +148,7 @@ inline constexpr int marker_pixels = 9;
 
 // The colors of overlays in sRGB.
 inline constexpr glm::vec3 wireframe_color{1.0F, 0.8F, 0.0F};  ///< (255,204,0)
+inline constexpr glm::vec3 grid_color{0.4F, 0.4F, 0.4F};       ///< (102,102,102)
 inline constexpr glm::vec3 tangent_color{1.0F, 0.2F, 0.2F};    ///< (255,51,51)
 inline constexpr glm::vec3 bitangent_color{0.2F, 1.0F, 0.2F};  ///< (51,255,51)
 inline constexpr glm::vec3 normal_color{0.4F, 0.6F, 1.0F};     ///< (102,153,255)
