@@ -256,12 +256,12 @@ void ShaderPanel::assemble(const FramePlan& plan) {
 void ShaderPanel::draw_stage(const char* name, const std::string& source, std::string& numbered) {
     if (!ImGui::BeginTabItem(name)) return probe_item(name);
     probe_item(name);
+    if (ImGui::Button("Copy without numbers")) ImGui::SetClipboardText(source.c_str());
+    probe_item("Copy without numbers");
     // The field is read-only, so the text does not change.
     ImGui::InputTextMultiline("##source", numbered.data(), numbered.size() + 1,
                               {-1.0F, 24.0F * ImGui::GetTextLineHeight()},
                               ImGuiInputTextFlags_ReadOnly);
-    if (ImGui::Button("Copy without numbers")) ImGui::SetClipboardText(source.c_str());
-    probe_item("Copy without numbers");
     ImGui::EndTabItem();
 }
 
