@@ -26,7 +26,7 @@ using namespace relief;
 constexpr int side = 1024;
 
 Image wave_map() {
-    const std::vector<HeightWave> waves = tiling_waves(side, side, 8, 20, 0.35, 3);
+    const std::vector<HeightWave> waves = tiling_waves(side, side, 8, 9, 0.35, 6);
     const AnalyticHeights field = wave_heights(side, side, waves);
     Image image = make_image(side, side, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
@@ -102,7 +102,7 @@ void compare_encoders(const Image& normals) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     set_thread_limit(1);
     const Image normals = wave_map();
     if (argc == 3 && std::string(argv[1]) == "write") {
@@ -110,8 +110,12 @@ int main(int argc, char** argv) {
         return 0;
     }
     if (argc == 1) compare_encoders(normals);
-    for (int i = 1; i < argc; ++i)
+    for (int i = 1; i < argc; ++i) {
         print_line(argv[i],
                    error_of(normals, normals_of(read_image(argv[i], ImageUse::data), false)), "");
+    }
     return 0;
+} catch (const relief::Error& error) {
+    fmt::print(stderr, "relief-compression-bench: {}\n", error.what());
+    return 1;
 }
