@@ -85,8 +85,11 @@ bool is_lit_anyhow(const Features& f) {
            f.reflection != ReflectionTerm::none;
 }
 
-/// Sheen and coat belong to glTF's model. Sheen needs light; a coat also dims the emission.
+/// Sheen and coat belong to glTF's model, and so does anisotropy, which stretches highlights and
+/// mirror images. Sheen needs light; a coat also dims the emission.
 void drop_layers(Features& f) {
+    const bool highlights = light_count(f) > 0 && f.view != DebugView::diffuse;
+    f.anisotropy &= f.metallic_roughness && (highlights || f.reflection != ReflectionTerm::none);
     if (!f.metallic_roughness || !is_lit_anyhow(f)) f.sheen = false;
     if (!f.metallic_roughness || !(is_lit_anyhow(f) || f.emission)) f.clearcoat = false;
 }
@@ -106,9 +109,9 @@ void drop_normal(Features& f) {
     if ((!plain_seen && light_count(f) == 0) || f.interpolation == Interpolation::flat) {
         f.double_sided = false;
     }
-    if (f.detail == NormalDetail::none || f.detail == NormalDetail::object_normal_map) {
-        f.frame = TangentFrame::stored;
-    }
+    const bool in_frame =
+        f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map || f.anisotropy;
+    if (!in_frame) f.frame = TangentFrame::stored;
     const bool mapped =
         f.detail == NormalDetail::normal_map || f.detail == NormalDetail::object_normal_map;
     const bool sharp =

@@ -101,6 +101,10 @@ bool is_dark_around(Forced s) {
 bool is_phong(Forced s) {
     return !s.planned.metallic_roughness;
 }
+bool is_isotropic(Forced s) {
+    const auto& model = s.material.metallic_roughness;
+    return !model || !(model->anisotropy > 0.0F);
+}
 bool mirrors_nothing(Forced s) {
     return s.planned.reflection == ReflectionTerm::none;
 }
@@ -125,6 +129,21 @@ Decision of_dielectric_reflectance(Subject s) {
     const bool is_metal = model.metallic == 1.0F && !textured;
     return of_material(s, !is_metal, "has an index, weight or color of its own",
                        "is a metal everywhere");
+}
+
+/// Anisotropy needs a tangent frame: stored tangents, or texture coordinates to derive them from.
+Decision of_anisotropy(Subject s) {
+    if (!is_physical(s)) return {false, s.name + " is Phong's model"};
+    if (!(s.material.metallic_roughness->anisotropy > 0.0F))
+        return {false, s.name + " is as rough in all directions"};
+    const bool has_tangents =
+        s.material.tangent_frame == TangentFrame::stored && !s.mesh.tangents.empty();
+    if (!has_tangents && s.mesh.texcoords.empty()) {
+        return {false, fmt::format("{} has one, but mesh '{}' has no texture coordinates, so there "
+                                   "is no tangent frame",
+                                   s.name, s.mesh.name)};
+    }
+    return {true, s.name + " is rougher along a direction of the tangent frame"};
 }
 
 /// A texture shows only on a mesh with texture coordinates.
@@ -314,6 +333,11 @@ std::vector<EffectRow> model_rows() {
                  const bool has = is_physical(s) && s.material.metallic_roughness->clearcoat > 0.0F;
                  return of_material(s, has, "has a clear coat", "has none");
              }},
+        {.effect = one_switch<&F::anisotropy>(
+             "anisotropy", "the material is not metallic-roughness, or mirrors nothing"),
+         .decide = of_anisotropy,
+         .choice = "the mesh has no tangent frame",
+         .neutral = is_isotropic},
         {.effect = one_value<&F::interpolation, Interpolation::gouraud>("Gouraud",
                                                                         "no light is interpolated"),
          .decide =
@@ -363,7 +387,7 @@ std::vector<EffectRow> normal_rows() {
          .decide = [](Subject s) { return of_texture(s, s.material.bump_map.has_value()); },
          .hidden_by = map_hidden_by},
         {.effect = one_value<&F::frame, TangentFrame::derivatives>(
-             "derivative frames", "no map asks for a tangent frame"),
+             "derivative frames", "nothing asks for a tangent frame"),
          .decide =
              [](Subject s) {
                  return of_material(s, s.material.tangent_frame == TangentFrame::derivatives,

@@ -103,7 +103,7 @@ bool is_perturbed(By f) {
     return tangent_space && fragment_needs(f).normal;
 }
 bool has_frame(By f) {
-    return is_perturbed(f) || shows_frame(f);
+    return is_perturbed(f) || f.anisotropy || shows_frame(f);
 }
 bool has_stored_frame(By f) {
     return has_frame(f) && f.frame == TangentFrame::stored;
@@ -191,6 +191,20 @@ Steps dielectric_steps(By f) {
              {{"metallic_roughness.glsl#grazing",
                by_angle,
                {.uniforms = {"dielectric_f0", "dielectric_f90"}}}}}};
+}
+
+/// Returns the steps of glTF's facets. Canonical features have anisotropy only where it shows.
+Steps facet_steps(By f, bool in_this_stage) {
+    const bool lit = in_this_stage && has_lights(f) && f.metallic_roughness;
+    const bool mirrors = f.anisotropy && f.reflection != ReflectionTerm::none;
+    const Takes anisotropy{.uniforms = {"anisotropy", "anisotropy_direction"}};
+    return {{"lobe",
+             "",
+             {{"metallic_roughness.glsl#lobe", lit && !f.anisotropy},
+              {"anisotropy.glsl#lobe", lit && f.anisotropy, anisotropy}}},
+            {"mirror_normal",
+             "vec3 mirror_normal(Surface surface) { return surface.normal_world; }",
+             {{"anisotropy.glsl#mirror_normal", mirrors, anisotropy}}}};
 }
 
 /// Returns the steps of the layers on glTF's surfaces. A view of one term has the layers' share of
@@ -542,6 +556,7 @@ Steps lit_steps(By f) {
                       {"gouraud.glsl#interpolated_both_sides", both_sides}}},
                     surface_step(f, fragment_needs(f))},
                    dielectric_steps(f),
+                   facet_steps(f, lights_here),
                    layer_steps(f),
                    normal_steps(f),
                    light_steps(f, lights_here),

@@ -239,6 +239,9 @@ struct Surface {
     glm::dvec2 texcoord{0.0};
     glm::dvec4 color{1.0};      ///< Interpolated vertex color.
     bool has_texcoord = false;  ///< Without them, no texture is looked up.
+    /// The tangent frame of an anisotropic material, as interpolated; otherwise zero.
+    glm::dvec3 tangent_world{0.0};
+    glm::dvec3 bitangent_world{0.0};
 };
 
 /// Tells whether the hit shows the back of its triangle.

@@ -218,12 +218,11 @@ glm::dvec3 environment_irradiance(const Context& context) {
     return context.prepared.environment->diffuse(context.surface.normal_world);
 }
 
-/// Returns the reflected environment.
-glm::dvec3 reflected(const Context& context, double roughness) {
+/// Returns the environment that a surface with this normal reflects.
+glm::dvec3 reflected(const Context& context, const glm::dvec3& normal, double roughness) {
     if (!context.prepared.environment) return glm::dvec3(0.0);
-    const Surface& at = context.surface;
-    const glm::dvec3 mirrored =
-        2.0 * glm::dot(at.normal_world, at.view_world) * at.normal_world - at.view_world;
+    const glm::dvec3& view = context.surface.view_world;
+    const glm::dvec3 mirrored = 2.0 * glm::dot(normal, view) * normal - view;
     return context.prepared.environment->blurred(mirrored, roughness, context.trace);
 }
 
@@ -270,10 +269,30 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
     radiance += (1.0 - mirrors) * (1.0 - transmission) * scattered;
     if (mirrors != glm::dvec3(0.0)) {
         const double roughness = static_cast<double>(material.reflection_roughness);
-        radiance += mirrors * reflected(context, roughness);
+        radiance += mirrors * reflected(context, at.normal_world, roughness);
     }
     if (transmission > 0.0) radiance += (1.0 - mirrors) * transmission * refracted(context);
     return radiance;
+}
+
+/// The directions of anisotropic facets.
+struct Anisotropy {
+    glm::dvec3 rough_axis{0.0};   ///< t: unit, perpendicular to the normal.
+    glm::dvec3 smooth_axis{0.0};  ///< b = cross(n, t)
+    double strength = 0.0;        ///< 0 without a tangent frame.
+};
+
+Anisotropy anisotropy_at(const Context& context) {
+    const MetallicRoughness& model = *context.material.metallic_roughness;
+    const Surface& at = context.surface;
+    const double rotation = static_cast<double>(model.anisotropy_rotation);
+    const glm::dvec3 along =
+        portable::cos(rotation) * at.tangent_world + portable::sin(rotation) * at.bitangent_world;
+    const glm::dvec3 in_surface = along - glm::dot(at.normal_world, along) * at.normal_world;
+    const double length = glm::length(in_surface);
+    if (!(length > 1e-15)) return {};
+    const glm::dvec3 axis = in_surface / length;
+    return {axis, glm::cross(at.normal_world, axis), static_cast<double>(model.anisotropy)};
 }
 
 /// The quantities of metallic-roughness at a point.
@@ -283,6 +302,7 @@ struct Microfacets {
     glm::dvec3 blocking_f0;  ///< f0'
     double f90;
     double roughness;
+    Anisotropy anisotropy;
 };
 
 Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
@@ -296,9 +316,12 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
     const glm::dvec3 dielectric =
         specular * glm::min(fresnel(index, 1.0) * glm::dvec3(model.specular_color), 1.0);
     const double largest = std::max({dielectric.r, dielectric.g, dielectric.b});
-    return {base * (1.0 - metallic), glm::mix(dielectric, base, metallic),
-            glm::mix(glm::dvec3(largest), base, metallic), glm::mix(specular, 1.0, metallic),
-            std::max(roughness, min_roughness)};
+    return {base * (1.0 - metallic),
+            glm::mix(dielectric, base, metallic),
+            glm::mix(glm::dvec3(largest), base, metallic),
+            glm::mix(specular, 1.0, metallic),
+            std::max(roughness, min_roughness),
+            anisotropy_at(context)};
 }
 
 /// Returns the unit half vector, or zero if light and eye are opposite: then nothing is reflected.
@@ -323,6 +346,34 @@ double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface&
     return std::numbers::pi * distribution * visibility;
 }
 
+/// Returns pi D V of the material's facets, which may be wider along one axis than along the other.
+/// \param n_dot_l  positive
+double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm::dvec3& half,
+                  const Surface& at, double n_dot_l) {
+    const Anisotropy& a = facets.anisotropy;
+    if (a.strength == 0.0) return ggx_lobe(at.normal_world, half, at, n_dot_l, facets.roughness);
+    const double alpha = facets.roughness * facets.roughness;
+    const double along = glm::mix(alpha, 1.0, a.strength * a.strength);
+    const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
+    const double n_dot_h = glm::dot(at.normal_world, half);
+    const double b_dot_h = glm::dot(a.smooth_axis, half) / alpha;
+    // If n.h counts as 0, t.h and b.h alone have the squared length 1.
+    const double t_dot_h =
+        n_dot_h > 0.0
+            ? glm::dot(a.rough_axis, half) / along
+            : std::sqrt(1.0 - glm::dot(a.smooth_axis, half) * glm::dot(a.smooth_axis, half)) /
+                  along;
+    const double n_part = std::max(n_dot_h, 0.0);
+    const double spread = t_dot_h * t_dot_h + b_dot_h * b_dot_h + n_part * n_part;
+    const double distribution = 1.0 / (along * alpha * spread * spread);
+    const auto stretched = [&](const glm::dvec3& direction, double cosine) {
+        return glm::length(glm::dvec3(along * glm::dot(a.rough_axis, direction),
+                                      alpha * glm::dot(a.smooth_axis, direction), cosine));
+    };
+    return distribution * 0.5 /
+           (n_dot_l * stretched(at.view_world, n_dot_v) + n_dot_v * stretched(light, n_dot_l));
+}
+
 /// Returns pi D V f + (1 - f') c, the factor of one light. \param n_dot_l  positive
 glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm::dvec3& light,
                         double n_dot_l) {
@@ -333,7 +384,18 @@ glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm:
     return (1.0 - glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)) *
                facets.scattering +
            glm::mix(facets.f0, glm::dvec3(facets.f90), grazing) *
-               ggx_lobe(at.normal_world, half, at, n_dot_l, facets.roughness);
+               facet_lobe(facets, light, half, at, n_dot_l);
+}
+
+/// Returns the normal that mirrors the environment.
+glm::dvec3 mirror_normal(const Microfacets& facets, const Surface& at) {
+    const Anisotropy& a = facets.anisotropy;
+    const glm::dvec3 leaning =
+        at.view_world - glm::dot(a.smooth_axis, at.view_world) * a.smooth_axis;
+    const double kept = portable::pow(1.0 - a.strength * (1.0 - facets.roughness), 4.0);
+    const glm::dvec3 normal = glm::mix(leaning, at.normal_world, kept);
+    const double length = glm::length(normal);
+    return length > 1e-15 ? normal / length : at.normal_world;
 }
 
 /// Returns the light from all directions: ambient light, and the scattered and reflected
@@ -347,7 +409,7 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
         const glm::dvec3 mirrors = facets.f0 * albedo.x + facets.f90 * albedo.y;
         const glm::dvec3 blocked = facets.blocking_f0 * albedo.x + facets.f90 * albedo.y;
         light += (1.0 - blocked) * facets.scattering * environment_irradiance(context);
-        light += mirrors * reflected(context, facets.roughness);
+        light += mirrors * reflected(context, mirror_normal(facets, at), facets.roughness);
     }
     return light;
 }
@@ -406,7 +468,7 @@ glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     glm::dvec3 around(context.prepared.scene.ambient);
     if (context.prepared.environment) {
         const glm::dvec2 albedo = directional_albedo(n_dot_v, roughness);
-        around += (albedo.x + albedo.y) * reflected(plain, roughness);
+        around += (albedo.x + albedo.y) * reflected(plain, at.normal_world, roughness);
     }
     coat += occlusion(context) * around;
     return glm::mix(base, coat, weight * (0.04 + 0.96 * portable::pow(1.0 - n_dot_v, 5.0)));

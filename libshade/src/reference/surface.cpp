@@ -105,9 +105,13 @@ const Material& material_of_range(const std::vector<Material>& materials,
     return range.material ? materials[*range.material] : default_material();
 }
 
+bool is_anisotropic(const Material& material) {
+    return material.metallic_roughness && material.metallic_roughness->anisotropy > 0.0F;
+}
+
 bool uses_stored_tangents(const Material& material) {
     if (material.tangent_frame != TangentFrame::stored) return false;
-    return material.bump_map ||
+    return material.bump_map || is_anisotropic(material) ||
            (material.normal_map && material.normal_map->space == NormalSpace::tangent);
 }
 
@@ -310,6 +314,7 @@ Basis stored_basis(const Triangle& triangle, const glm::dvec3& normal) {
 Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     const auto& positions = triangle.instance.positions_world;
     const auto& texcoords = triangle.instance.mesh->texcoords;
+    if (texcoords.empty()) return {glm::dvec3(0.0), glm::dvec3(0.0), normal};
     const glm::uvec3& corners = triangle.corners;
     const glm::dvec3 p1 = positions[corners.y] - positions[corners.x];
     const glm::dvec3 p2 = positions[corners.z] - positions[corners.x];
@@ -323,6 +328,11 @@ Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     // v grows downwards: a texture that is upright on the front side has a negative area.
     const bool upright = (area < 0.0) != triangle.instance.mirrors;
     return {tangent, (upright ? 1.0 : -1.0) * glm::cross(unit_normal, tangent), unit_normal};
+}
+
+Basis basis_of(const Material& material, const Triangle& triangle, const glm::dvec3& normal) {
+    return material.tangent_frame == TangentFrame::derivatives ? derived_basis(triangle, normal)
+                                                               : stored_basis(triangle, normal);
 }
 
 /// Returns the vector of a normal map's filtered codes; y up, without the scale of x and y.
@@ -399,9 +409,7 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
     }
     const glm::dvec3 vector = vector_tangent(prepared, material, texcoord, trace);
     if (is_undefined(vector)) return fallback;
-    const Basis basis = material.tangent_frame == TangentFrame::derivatives
-                            ? derived_basis(triangle, normal)
-                            : stored_basis(triangle, normal);
+    const Basis basis = basis_of(material, triangle, normal);
     return unit_or(vector.x * basis.tangent + vector.y * basis.bitangent + vector.z * basis.normal,
                    fallback);
 }
@@ -441,6 +449,13 @@ Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material
     Material plain;
     plain.interpolation = material.interpolation;
     surface.plain_normal_world = front_normal(prepared, hit, plain, surface.texcoord, trace);
+    if (is_anisotropic(material)) {
+        const Triangle triangle = triangle_of(prepared, hit);
+        const Basis basis =
+            basis_of(material, triangle, triangle.interpolated(triangle.instance.normals_world));
+        surface.tangent_world = basis.tangent;
+        surface.bitangent_world = basis.bitangent;
+    }
     face_viewer(prepared, hit, surface);
     return surface;
 }

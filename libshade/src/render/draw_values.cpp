@@ -46,6 +46,8 @@ const std::map<std::string_view, Setter>& setters() {
         {"sheen_albedo", set_member<&DrawValues::sheen_albedo>},
         {"clearcoat", set_member<&DrawValues::clearcoat>},
         {"clearcoat_roughness", set_member<&DrawValues::clearcoat_roughness>},
+        {"anisotropy", set_member<&DrawValues::anisotropy>},
+        {"anisotropy_direction", set_member<&DrawValues::anisotropy_direction>},
         {"occlusion_strength", set_member<&DrawValues::occlusion_strength>},
         {"opacity", set_member<&DrawValues::opacity>},
         {"alpha_cutoff", set_member<&DrawValues::alpha_cutoff>},
@@ -118,6 +120,9 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
         values.clearcoat = physical->clearcoat;
         values.clearcoat_roughness = physical->clearcoat_roughness;
         set_sheen(values, *physical);
+        values.anisotropy = physical->anisotropy;
+        const double rotation = static_cast<double>(physical->anisotropy_rotation);
+        values.anisotropy_direction = glm::vec2(portable::cos(rotation), portable::sin(rotation));
     }
     values.occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F;
     values.opacity = material.alpha_mode == AlphaMode::opaque ? 1.0F : material.opacity;

@@ -41,6 +41,8 @@ struct DrawValues {
     std::array<glm::vec4, 8> sheen_albedo{};  ///< sheen_albedo_table().
     float clearcoat = 0.0F;
     float clearcoat_roughness = 0.0F;
+    float anisotropy = 0.0F;
+    glm::vec2 anisotropy_direction{1.0F, 0.0F};  ///< In the tangent frame; unit.
     float occlusion_strength = 0.0F;
     float opacity = 1.0F;
     float alpha_cutoff = 0.0F;

@@ -137,7 +137,8 @@ void correct_reasons(DrawPlan& draw, const Features& planned) {
             if (reason.effect == effect.name) reason = {effect.name, false, unreadable_reason};
         }
     }
-    if (!draw.needs_tangents || draw.features.detail != NormalDetail::none) return;
+    const bool in_frame = draw.features.detail != NormalDetail::none || draw.features.anisotropy;
+    if (!draw.needs_tangents || in_frame) return;
     draw.needs_tangents = false;
     for (EffectReason& reason : draw.reasons) {
         if (reason.effect == "computed tangents")

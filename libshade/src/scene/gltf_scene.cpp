@@ -116,6 +116,9 @@ MetallicRoughness factors_of(const GltfMaterial& material) {
     model.clearcoat_roughness = usable(material.clearcoat_roughness, 1.0F);
     model.sheen_color = usable(material.sheen_color, 1.0F);
     model.sheen_roughness = usable(material.sheen_roughness, 1.0F);
+    model.anisotropy = usable(material.anisotropy, 1.0F);
+    if (std::isfinite(material.anisotropy_rotation))
+        model.anisotropy_rotation = material.anisotropy_rotation;
     return model;
 }
 
@@ -333,7 +336,9 @@ void add_undrawn_extensions(Material& result, const GltfMaterial& material, std:
                             const std::vector<std::string>& required, Report& report) {
     std::vector<std::string>& names = result.undrawn_extensions;
     names = material.more_extensions;
-    if (!result.metallic_roughness && !result.unlit) {  // Phong's model has no layers.
+    // Phong's model has neither layers nor anisotropy.
+    if (!result.metallic_roughness && !result.unlit) {
+        if (material.anisotropy > 0.0F) names.emplace_back("KHR_materials_anisotropy");
         if (material.clearcoat > 0.0F) names.emplace_back("KHR_materials_clearcoat");
         if (material.sheen_color != glm::vec3(0.0F)) names.emplace_back("KHR_materials_sheen");
         std::sort(names.begin(), names.end());
@@ -439,7 +444,7 @@ void take_vertices(const std::vector<std::uint32_t>& source, std::vector<Value>&
 }
 
 /// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal map
-/// needs, because they are deformed with it.
+/// or its anisotropy needs, because they are deformed with it.
 std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const GltfView& view,
                                           const GltfInstance<GltfPrimitiveId>& item,
                                           const SceneOptions& options, Report& report) {
@@ -466,12 +471,15 @@ std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const Gl
     std::vector<std::uint32_t> source;
     if (result.has_flat_normals) source = separate_triangles(mesh);
     const std::vector<MaterialRange>& ranges = mesh.material_ranges;
-    const bool is_mapped = !ranges.empty() && ranges.front().material &&
-                           view.materials[*ranges.front().material].normal_texture &&
+    const auto uses_frame = [](const GltfMaterial& material) {
+        return material.normal_texture || material.anisotropy > 0.0F;
+    };
+    const bool is_framed = !ranges.empty() && ranges.front().material &&
+                           uses_frame(view.materials[*ranges.front().material]) &&
                            !mesh.texcoords.empty();
     const bool has_tangents = keeps && !mesh.tangents.empty();
     frames.tangents = has_tangents ? TangentMethod::keep
-                      : is_mapped  ? TangentMethod::mikktspace
+                      : is_framed  ? TangentMethod::mikktspace
                                    : TangentMethod::none;
     FramedMesh framed = with_frames(std::move(mesh), frames, report);
     std::vector<std::uint32_t> vertices = std::move(framed.source_vertex);

@@ -67,6 +67,9 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
             (c.metallic_roughness || (!c.metallic_roughness_texture && !c.dielectric_reflectance &&
                                       !c.sheen && !c.clearcoat)) &&
             (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
+            ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
+            (c.detail == NormalDetail::normal_map || c.detail == NormalDetail::bump_map ||
+             c.anisotropy || c.frame == TangentFrame::stored) &&
             (c.specular != SpecularTerm::none || (!c.specular_texture && !c.highlight_colors)) &&
             (scatters || c.alpha != AlphaMode::opaque ||
              (!c.diffuse_texture && !c.vertex_colors)) &&
@@ -245,7 +248,7 @@ TEST(EffectForcing, PutsAnEffectInAndTakesItOutWhateverItsNamesCaseAndSeparators
               "forced on: the scene does not call for it");
     EXPECT_TRUE(with.draws[0].needs_tangents);
     EXPECT_EQ(reason(with.draws[0], "computed tangents").reason,
-              "a forced normal map lies in their frame");
+              "a forced effect lies in their frame");
 
     const FramePlan without = forced(scene, {{"directional_lights", false}});
     EXPECT_EQ(without.draws[0].features, Features{});

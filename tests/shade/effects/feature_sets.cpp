@@ -70,6 +70,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::dielectric_reflectance>("dielectric reflectance"),
         field<&F::sheen>("sheen"),
         field<&F::clearcoat>("clearcoat"),
+        field<&F::anisotropy>("anisotropy"),
         field<&F::interpolation, 3>("interpolation"),
         field<&F::diffuse_texture>("diffuse texture"),
         field<&F::specular_texture>("specular texture"),
@@ -223,6 +224,10 @@ Material material_calling_for(const Features& f) {
     if (f.clearcoat) {
         m.metallic_roughness->clearcoat = 0.7F;
         m.metallic_roughness->clearcoat_roughness = 0.2F;
+    }
+    if (f.anisotropy) {
+        m.metallic_roughness->anisotropy = 0.6F;
+        m.metallic_roughness->anisotropy_rotation = 0.7F;
     }
     if (f.specular != SpecularTerm::none) m.specular = glm::vec3(0.5F, 0.4F, 0.3F);
     m.shininess = 12.0F;

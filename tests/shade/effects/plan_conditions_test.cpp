@@ -88,6 +88,7 @@ const Change no_metal = with(&MetallicRoughness::metallic, 0.0F);
 const Change denser = with(&MetallicRoughness::refractive_index, 1.501F);
 const Change sheen = with(&MetallicRoughness::sheen_color, {0, 0, 0.001F});
 const Change clearcoat = with(&MetallicRoughness::clearcoat, 0.001F);
+const Change brushed = with(&MetallicRoughness::anisotropy, 0.001F);
 const Change gouraud = with(&Material::interpolation, Interpolation::gouraud);
 const Change flat = with(&Material::interpolation, Interpolation::flat);
 const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
@@ -199,6 +200,17 @@ const std::vector<Boundary> color_boundaries = {
     {"clearcoat", "light", {clearcoat, no_suns}, {}, {ambient}},
     {"clearcoat", "emission", {clearcoat, no_suns}, {}, {emissive}},
     {"clearcoat", "lit", {clearcoat}, {unlit}, {}},
+    {"anisotropy", "its strength", {no_metal}, {}, {brushed}},
+    {"anisotropy", "lights", {brushed}, {no_suns}, {}},
+    {"anisotropy", "highlights", {brushed, no_suns, ambient}, {}, {environment}},
+    {"anisotropy", "lit", {brushed}, {unlit}, {}},
+    {"anisotropy", "texture coordinates", {brushed}, {no_texcoords}, {}},
+    {"anisotropy", "a frame", {brushed, no_texcoords}, {}, {stored_tangents}},
+    {"anisotropy",
+     "a frame from derivatives",
+     {brushed, no_texcoords, stored_tangents},
+     {derivative_frames},
+     {}},
     {"metallic-roughness", "coated emission", {no_suns, emissive}, {no_metal}, {clearcoat}},
     {"normal map", "a sheen", {normal_map, no_suns, ambient, no_metal}, {clearcoat}, {sheen}},
     {"double-sided normals", "a coat", {double_sided, no_suns, ambient, no_metal}, {}, {clearcoat}},
@@ -309,9 +321,11 @@ const std::vector<Boundary> normal_boundaries = {
     {"bump map", "lights", {bump_map}, {no_suns}, {}},
     {"derivative frames", "asked for", {normal_map}, {}, {derivative_frames}},
     {"derivative frames", "a map", {derivative_frames}, {}, {bump_map}},
+    {"derivative frames", "anisotropy", {derivative_frames, no_metal}, {}, {brushed}},
     {"derivative frames", "tangent space", {derivative_frames}, {object_map}, {normal_map}},
     {"computed tangents", "a map", {}, {}, {normal_map}},
     {"computed tangents", "a height map", {}, {}, {bump_map}},
+    {"computed tangents", "anisotropy", {no_metal}, {}, {brushed}},
     {"computed tangents", "tangent space", {}, {object_map}, {normal_map}},
     {"computed tangents", "none stored", {normal_map}, {stored_tangents}, {}},
     {"computed tangents", "stored frames", {bump_map}, {derivative_frames}, {}},

@@ -529,6 +529,82 @@ TEST(ReferenceShading, OfASheenIsCharliesOverTheDimmedBase) {
     EXPECT_NEAR(sheen, 2.0 + (1.0 - 0.5 * albedo) * plain + 0.25 * albedo * (1.0 + 2.0), 1e-3);
 }
 
+/// The square's tangents point along x, and the rotation of 90 degrees turns the rough axis to y.
+/// alpha is 1/4, and with the strength sqrt(1/3) alpha_t is 1/4 + 3/4 / 3 = 1/2.
+TEST(ReferenceShading, OfAnisotropyIsWiderAlongItsAxis) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 1.0F, 0.5F, {}};
+    material.metallic_roughness->anisotropy = std::sqrt(1.0F / 3.0F);
+    Scene scene = test::square_scene(material);
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    const glm::dvec3 f0(0.5, 0.25, 1.0);
+    const double n_dot_l = std::sqrt(0.5);
+    const double n_dot_h = std::cos(pi / 8);
+    const double sine = std::sin(pi / 8);
+    const glm::dvec3 f = f0 + (1.0 - f0) * std::pow(1.0 - n_dot_h, 5.0);
+    // The light's half vector leans along the axis of this alpha; the other axis has `across`.
+    const auto expected = [&](double along, double across) {
+        const double spread = std::pow(sine / along, 2.0) + n_dot_h * n_dot_h;
+        const double pi_d = 1.0 / (along * across * spread * spread);
+        const double v =
+            0.5 / (n_dot_l + std::sqrt(along * along * (1.0 - n_dot_l * n_dot_l) + 0.5));
+        return 3.0 * n_dot_l * pi_d * v * f;
+    };
+    const auto under = [&](const glm::vec3& direction) {
+        scene.directional_lights = {{direction, {3, 3, 3}}};
+        return in_the_middle(scene);
+    };
+    expect_near(under({-1, 0, -1}), expected(0.5, 0.25));
+    expect_near(under({0, -1, -1}), expected(0.25, 0.5));
+    scene.materials[0].metallic_roughness->anisotropy_rotation = std::numbers::pi_v<float> / 2;
+    expect_near(under({-1, 0, -1}), expected(0.25, 0.5));
+    expect_near(under({0, -1, -1}), expected(0.5, 0.25));
+    // Turned by 45 degrees, from the tangent to the bitangent.
+    scene.materials[0].metallic_roughness->anisotropy_rotation = std::numbers::pi_v<float> / 4;
+    const auto diagonal = static_cast<float>(std::sqrt(0.5));
+    expect_near(under({-diagonal, -diagonal, -1}), expected(0.5, 0.25));
+    expect_near(under({-diagonal, diagonal, -1}), expected(0.25, 0.5));
+    // Without a frame, the surface is as rough in all directions.
+    scene.meshes[0].edit().tangents.clear();
+    scene.meshes[0].edit().texcoords.clear();
+    expect_near(under({-1, 0, -1}), expected(0.25, 0.25));
+}
+
+/// In the corner, the eye is in the direction (-1, -1, 3) / sqrt(11). With strength 1 and the
+/// roughness 1/2, the mirroring normal is n / 16 + 15 / 16 of the eye's direction in the plane of
+/// rough axis and normal.
+TEST(ReferenceShading, OfAnisotropyMirrorsByALeaningNormal) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, {}};
+    Scene scene = test::square_scene(material);
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    CubeFaces faces;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const float shade = i < 2 ? 1.0F : i < 4 ? 0.5F : 0.0F;
+        faces.faces[i] = {"face", texel(glm::vec4(glm::vec3(shade), 1.0F))};
+    }
+    scene.environment = Environment{faces, 1.0F, false, false};
+    const glm::dvec3 plain = in_the_corner(scene);
+    scene.materials[0].metallic_roughness->anisotropy = 1.0F;
+    const glm::dvec3 brushed = in_the_corner(scene);
+    const glm::dvec3 view = glm::normalize(glm::dvec3(-1, -1, 3));
+    const glm::dvec3 leaning(view.x, 0.0, view.z);
+    const glm::dvec3 normal =
+        glm::normalize(15.0 / 16.0 * leaning + glm::dvec3(0.0, 0.0, 1.0 / 16.0));
+    // The same normal by the mesh; its n.v changes the share that is mirrored.
+    scene.materials[0].metallic_roughness->anisotropy = 0.0F;
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(normal));
+    const glm::dvec3 leant = in_the_corner(scene);
+    const auto white = [&](double cosine) {
+        const glm::dvec2 albedo = reference::directional_albedo(cosine, 0.5);
+        return albedo.x + albedo.y;
+    };
+    const double ratio = white(view.z) / white(glm::dot(normal, view));
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(brushed[i], ratio * leant[i], 1e-4) << i;
+    EXPECT_GT(std::abs(brushed.r - plain.r), 0.01);
+}
+
 TEST(ReferenceShading, OfTheEyesOppositeLampHasNoHalfVector) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);
@@ -708,6 +784,47 @@ TEST(MetallicRoughness, HasAsManyFacetsAsCoverTheSurface) {
         // divided by 24. Also, lights are rounded to float.
         EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, expected, 1e-5) << roughness;
     }
+}
+
+/// The sum over directions of lights, each with the weight of its facet's projected area, is the
+/// area of the facets that lean by up to 45 degrees. The vertical eye sees every facet, and V times
+/// 4 n.l n.v is G.
+TEST(MetallicRoughness, HasAsManyFacetsAsCoverTheSurfaceWithAnisotropy) {
+    Scene scene = test::scene_of(test::facing_square(), {});
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    MetallicRoughness model{glm::vec3(1.0F), 1.0F, 0.6F, {}};
+    model.anisotropy = 0.5F;
+    scene.materials[0].metallic_roughness = model;
+    const double alpha = 0.36;
+    const double along = alpha + (1.0 - alpha) * 0.25;
+    constexpr int leans = 60;
+    constexpr int turns = 64;
+    double exact = 0.0;
+    for (int i = 0; i < leans; ++i) {
+        const double lean = (i + 0.5) * pi / 4 / leans;
+        for (int j = 0; j < turns; ++j) {
+            const double turn = (j + 0.5) * 2.0 * pi / turns;
+            const double area =
+                std::sin(lean) * std::cos(lean) * (pi / 4 / leans) * 2.0 * pi / turns;
+            const double n_dot_l = std::cos(2.0 * lean);
+            const glm::dvec3 light(std::sin(2.0 * lean) * std::cos(turn),
+                                   std::sin(2.0 * lean) * std::sin(turn), n_dot_l);
+            const double masking = std::sqrt(std::pow(along * light.x, 2.0) +
+                                             std::pow(alpha * light.y, 2.0) + n_dot_l * n_dot_l);
+            const double visibility = 0.5 / (n_dot_l + masking);  // V, with n.v = 1.
+            scene.directional_lights.push_back(
+                {glm::vec3(-light),
+                 glm::vec3(static_cast<float>(area / (pi * visibility * n_dot_l)))});
+            const double tangent = std::tan(lean);
+            const double slopes = std::pow(tangent * std::cos(turn) / along, 2.0) +
+                                  std::pow(tangent * std::sin(turn) / alpha, 2.0);
+            // D cos of a distribution of slopes: along and alpha are its widths.
+            exact += area / (pi * along * alpha * std::pow(std::cos(lean), 4.0) *
+                             std::pow(1.0 + slopes, 2.0));
+        }
+    }
+    EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, exact, 1e-5);
+    EXPECT_GT(exact, 0.7);
 }
 
 }  // namespace

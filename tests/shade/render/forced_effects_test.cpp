@@ -174,7 +174,8 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "refraction",
                                "dielectric reflectance",
                                "sheen",
-                               "clearcoat"}) {
+                               "clearcoat",
+                               "anisotropy"}) {
         EXPECT_TRUE(forced.contains(effect)) << effect;
     }
 }

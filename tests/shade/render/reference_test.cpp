@@ -148,6 +148,14 @@ MetallicRoughness with_layers(const glm::vec3& sheen, float clearcoat) {
     return model;
 }
 
+/// glTF's model, brushed at an angle to the tangents.
+MetallicRoughness brushed_metal() {
+    MetallicRoughness model{{0.8F, 0.5F, 0.3F}, 0.7F, 0.35F, std::nullopt};
+    model.anisotropy = 0.8F;
+    model.anisotropy_rotation = 0.6F;
+    return model;
+}
+
 std::vector<AddedThing> material_effects() {
     std::vector<AddedThing> effects = {
         {"nothing else", [](Scene&, test::Dice&) {}},
@@ -172,6 +180,13 @@ std::vector<AddedThing> material_effects() {
          [](Scene& s, test::Dice&) {
              s.materials[0].metallic_roughness = with_layers(glm::vec3(0.0F), 0.8F);
              s.materials[0].emission = {0.2F, 0.1F, 0.0F};
+         }},
+        {"anisotropy",
+         [](Scene& s, test::Dice&) { s.materials[0].metallic_roughness = brushed_metal(); }},
+        {"anisotropy on facets",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].metallic_roughness = brushed_metal();
+             s.materials[0].interpolation = Interpolation::flat;
          }},
         {"coated emission",
          [](Scene& s, test::Dice&) {
@@ -290,6 +305,14 @@ std::vector<AddedThing> detail_effects() {
                      s.materials[0].normal_map = NormalMap{image(s, test::random_normals(d))};
                      s.materials[0].metallic_roughness = with_layers({0.2F, 0.5F, 0.9F}, 0.9F);
                  }});
+            effects.push_back({"anisotropy on a normal map", [=](Scene& s, test::Dice& d) {
+                                   prepare(s);
+                                   s.materials[0].normal_map =
+                                       NormalMap{image(s, test::random_normals(d))};
+                                   s.materials[0].metallic_roughness = brushed_metal();
+                                   s.materials[0].metallic_roughness->clearcoat = 0.5F;
+                                   s.materials[0].double_sided = true;
+                               }});
             effects.push_back(
                 {"bump map", [=](Scene& s, test::Dice& d) {
                      prepare(s);
@@ -438,6 +461,8 @@ TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {
     scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.0F);
     expect_agreement(scene, blurred_tolerance);
     scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.8F);
+    expect_agreement(scene, blurred_tolerance);
+    scene.materials[0].metallic_roughness = brushed_metal();
     expect_agreement(scene, blurred_tolerance);
 }
 

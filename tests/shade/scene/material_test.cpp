@@ -336,7 +336,8 @@ TEST(SceneField, HasALabelForMessages) {
     EXPECT_THAT(labels, testing::ElementsAre(
                             "base color", "metallic", "roughness", "metallic-roughness texture",
                             "refractive index", "specular", "specular color", "clearcoat",
-                            "clearcoat roughness", "sheen color", "sheen roughness"));
+                            "clearcoat roughness", "sheen color", "sheen roughness", "anisotropy",
+                            "anisotropy rotation"));
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }
 

@@ -155,9 +155,12 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_EQ(drawn.materials[1].metallic_roughness->refractive_index, 0.0F);
     const auto [layered, none] = load(
         R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 2},
+                           "KHR_materials_anisotropy": {"anisotropyStrength": 3, "anisotropyRotation": -2},
                            "KHR_materials_sheen": {"sheenColorFactor": [0, 0.5, 0]}}})",
         "");
     EXPECT_TRUE(none.empty());
+    EXPECT_EQ(layered.materials[0].metallic_roughness->anisotropy, 1.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->anisotropy_rotation, -2.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->clearcoat, 1.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->sheen_color, glm::vec3(0, 0.5F, 0));
     Report report_of_phong;
@@ -165,6 +168,7 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
                                    report_of_phong);
     EXPECT_EQ(report_of_phong.count("KHR_materials_clearcoat"), 1U) << "Phong has no layers";
     EXPECT_EQ(report_of_phong.count("KHR_materials_sheen"), 1U);
+    EXPECT_EQ(report_of_phong.count("KHR_materials_anisotropy"), 1U);
 }
 
 TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {

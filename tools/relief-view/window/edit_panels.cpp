@@ -520,6 +520,12 @@ bool edit_metallic_roughness(MetallicRoughness& model) {
     changed |= slide(model, &MetallicRoughness::clearcoat_roughness);
     changed |= edit_color(model, &MetallicRoughness::sheen_color);
     changed |= slide(model, &MetallicRoughness::sheen_roughness);
+    changed |= slide(model, &MetallicRoughness::anisotropy);
+    float rotation = glm::degrees(model.anisotropy_rotation);
+    if (slide("Anisotropy rotation", rotation, {-180.0F, 180.0F, "%.0f deg"})) {
+        model.anisotropy_rotation = glm::radians(rotation);
+        changed = true;
+    }
     return changed;
 }
 
@@ -571,8 +577,10 @@ bool edit_relief(Material& material) {
     if (material.bump_map) {
         changed |= slide("Height", material.bump_map->strength, {0.0F, 128.0F, "%.1f texels"});
     }
-    if (material.normal_map || material.bump_map) {
+    const auto& model = material.metallic_roughness;
+    if (material.normal_map || material.bump_map || (model && model->anisotropy > 0.0F))
         changed |= choose("Tangents", material.tangent_frame);
+    if (material.normal_map || material.bump_map) {
         changed |= ImGui::Checkbox("Specular antialiasing", &material.specular_antialiasing);
     }
     return changed;

@@ -98,6 +98,8 @@ struct GltfMaterial {
     float clearcoat_roughness = 0.0F;
     glm::vec3 sheen_color{0.0F};  ///< KHR_materials_sheen, the factors.
     float sheen_roughness = 0.0F;
+    float anisotropy = 0.0F;           ///< KHR_materials_anisotropy, the strength.
+    float anisotropy_rotation = 0.0F;  ///< Radians from the tangent to the bitangent.
     /// The extensions that change the appearance and are not among the members above, and the
     /// textures of those that are ("specularTexture of KHR_materials_specular"), sorted. Extensions
     /// whose values change nothing are left out.

@@ -212,6 +212,8 @@ constexpr Rule rules[] = {
     {"material+KHR_materials_clearcoat", "clearcoatRoughnessFactor", Kind::number},
     {"material+KHR_materials_clearcoat", "clearcoatRoughnessTexture", Kind::object, "textureInfo"},
     {"material+KHR_materials_clearcoat", "clearcoatNormalTexture", Kind::object, "textureInfo"},
+    {"material+KHR_materials_anisotropy", "anisotropyStrength", Kind::number},
+    {"material+KHR_materials_anisotropy", "anisotropyRotation", Kind::number},
     {"material+KHR_materials_anisotropy", "anisotropyTexture", Kind::object, "textureInfo"},
     {"textureInfo+KHR_texture_transform", "offset", Kind::numbers, {}, false, 2},
     {"textureInfo+KHR_texture_transform", "rotation", Kind::number},

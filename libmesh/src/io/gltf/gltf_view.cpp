@@ -6,8 +6,8 @@
 // without a place in the scene types stay only in the document. Instance attributes of a wrong type
 // throw InvalidInput. An unusable animation channel is left out and counted. Source: glTF 2.0
 // (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_ior,
-// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_unlit,
-// KHR_texture_transform, EXT_mesh_gpu_instancing.
+// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
+// KHR_materials_unlit, KHR_texture_transform, EXT_mesh_gpu_instancing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -199,8 +199,10 @@ bool is_neutral(const std::string& name, const Json& extension) {
 /// Returns true for extensions whose factors are members of GltfMaterial.
 bool has_members(std::string_view name) {
     static constexpr std::array names = {
-        "KHR_materials_unlit",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-        "KHR_materials_specular", "KHR_materials_clearcoat",         "KHR_materials_sheen"};
+        "KHR_materials_unlit",      "KHR_materials_emissive_strength", "KHR_materials_ior",
+        "KHR_materials_specular",   "KHR_materials_clearcoat",         "KHR_materials_sheen",
+        "KHR_materials_anisotropy",
+    };
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -267,6 +269,10 @@ GltfMaterial material_from(const Json& root, const Json& json) {
     if (const Json* sheen = find(json, "extensions", "KHR_materials_sheen")) {
         material.sheen_color = vector_in(*sheen, "sheenColorFactor", glm::vec3(0.0F));
         material.sheen_roughness = float_in(*sheen, "sheenRoughnessFactor", 0.0F);
+    }
+    if (const Json* anisotropy = find(json, "extensions", "KHR_materials_anisotropy")) {
+        material.anisotropy = float_in(*anisotropy, "anisotropyStrength", 0.0F);
+        material.anisotropy_rotation = float_in(*anisotropy, "anisotropyRotation", 0.0F);
     }
     material.more_extensions = more_extensions_of(json);
     return material;

@@ -91,6 +91,10 @@ struct MetallicRoughness {
     // Fibers on top of the surface, under the coat (KHR_materials_sheen).
     glm::vec3 sheen_color{0.0F};  ///< Zero: none.
     float sheen_roughness = 0.0F;
+    // Facets that are rougher along a direction in the tangent frame, as on brushed metal
+    // (KHR_materials_anisotropy).
+    float anisotropy = 0.0F;           ///< 0: the same roughness in all directions.
+    float anisotropy_rotation = 0.0F;  ///< Radians from the tangent to the bitangent.
 };
 
 /// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
@@ -140,6 +144,15 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// f0 and for f90 - f0 at n.v and r (environment_brdf), and the reflected environment is blurred by
 /// r; r is at least 0.045.
 ///
+/// With anisotropy s, facets are wider along t, the direction of anisotropy_rotation in the tangent
+/// frame, made perpendicular to n: alpha_t = alpha + (1 - alpha) s^2. With b = cross(n, t):
+///
+///     pi D = 1 / (alpha_t alpha ((t.h / alpha_t)^2 + (b.h / alpha)^2 + max(n.h, 0)^2)^2)
+///     V    = 0.5 / (n.l |(alpha_t t.v, alpha b.v, n.v)| + n.v |(alpha_t t.l, alpha b.l, n.l)|)
+///
+/// The reflected environment is that of the normal mix(v - (b.v) b, n, (1 - s (1 - r))^4). Without
+/// a tangent frame, s is 0.
+///
 /// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
 /// color, D' and V' Charlie's distribution and visibility for alpha = sheen_roughness^2
 /// (convolution.h), E their directional albedo at n.v, which counts as at most 1, n' the normal
@@ -159,9 +172,8 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 ///
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
 /// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B, with KHR_materials_ior,
-/// KHR_materials_specular, KHR_materials_clearcoat and KHR_materials_sheen, and
-/// [Estevez and Kulla 2017]. The CPU implementation is
-/// reference.h.
+/// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen and
+/// KHR_materials_anisotropy, and [Estevez and Kulla 2017]. The CPU implementation is reference.h.
 struct Material {
     std::string name;
     Interpolation interpolation = Interpolation::per_pixel;
@@ -190,7 +202,7 @@ struct Material {
     std::optional<Texture> opacity_texture;    ///< Red.
     std::optional<NormalMap> normal_map;
     std::optional<BumpMap> bump_map;  ///< Not together with a normal map.
-    TangentFrame tangent_frame = TangentFrame::stored;
+    TangentFrame tangent_frame = TangentFrame::stored;  ///< Of maps and of anisotropy.
     /// Widens highlights by the variance of a minified normal map's normals within a pixel
     /// [Toksvig 2005].
     bool specular_antialiasing = false;

@@ -177,7 +177,10 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
     SceneField{"clearcoat", &MetallicRoughness::clearcoat, {0, 1}},
     SceneField{"clearcoat_roughness", &MetallicRoughness::clearcoat_roughness, {0, 1}},
     SceneField{"sheen_color", &MetallicRoughness::sheen_color, {0, 1}, FieldUnit::color},
-    SceneField{"sheen_roughness", &MetallicRoughness::sheen_roughness, {0, 1}}};
+    SceneField{"sheen_roughness", &MetallicRoughness::sheen_roughness, {0, 1}},
+    SceneField{"anisotropy", &MetallicRoughness::anisotropy, {0, 1}},
+    SceneField{
+        "anisotropy_rotation", &MetallicRoughness::anisotropy_rotation, {}, FieldUnit::radians}};
 
 template <>
 inline constexpr auto fields_of<Material> = std::tuple{

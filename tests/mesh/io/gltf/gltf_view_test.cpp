@@ -54,6 +54,8 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
                 "KHR_materials_clearcoat": {"clearcoatFactor": 0.25, "clearcoatRoughnessFactor": 0.125},
                 "KHR_materials_sheen": {"sheenColorFactor": [0.1, 0.2, 0.3], "sheenRoughnessFactor": 0.5,
                     "sheenColorTexture": {"index": 0}},
+                "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": -0.5,
+                    "anisotropyTexture": {"index": 0}},
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
                               .view();
     const GltfMaterial& plain = view.materials[0];
@@ -74,13 +76,17 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(full.specular, 0.5F);
     EXPECT_EQ(full.specular_color, glm::vec3(1, 0.5F, 2));
     EXPECT_EQ(full.more_extensions,
-              (std::vector<std::string>{"sheenColorTexture of KHR_materials_sheen",
+              (std::vector<std::string>{"anisotropyTexture of KHR_materials_anisotropy",
+                                        "sheenColorTexture of KHR_materials_sheen",
                                         "specularTexture of KHR_materials_specular"}));
     EXPECT_EQ(plain.clearcoat, 0.0F);
     EXPECT_EQ(full.clearcoat, 0.25F);
     EXPECT_EQ(full.clearcoat_roughness, 0.125F);
     EXPECT_EQ(full.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
     EXPECT_EQ(full.sheen_roughness, 0.5F);
+    EXPECT_EQ(plain.anisotropy, 0.0F);
+    EXPECT_EQ(full.anisotropy, 0.75F);
+    EXPECT_EQ(full.anisotropy_rotation, -0.5F);
     EXPECT_EQ(full.normal_scale, 0.75F);
     EXPECT_EQ(full.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(full.alpha_cutoff, 0.25F);
