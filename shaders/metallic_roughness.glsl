@@ -167,6 +167,7 @@ float mirrored_share(Surface surface, vec3 light_world, vec3 half_world, float n
 #include "vector.glsl#normalized_or"
 #include <lobe>
 #include <grazing>
+#include <film>
 #include <sheen_lights>
 #include <clearcoat_lights>
 
@@ -182,12 +183,15 @@ void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_
         lighting.scattered += received;
         return;
     }
-    float m = 1.0 - clamp(dot(surface.view_world, half_world), 0.0, 1.0);
+    float v_dot_h = clamp(dot(surface.view_world, half_world), 0.0, 1.0);
+    float m = 1.0 - v_dot_h;
     float towards_grazing = m * m * m * m * m;
     vec3 f90 = grazing_reflectance(surface);
-    vec3 fresnel = surface.f0 + (f90 - surface.f0) * towards_grazing;
+    vec3 fresnel = with_film(surface, v_dot_h, 1.0,
+                             surface.f0 + (f90 - surface.f0) * towards_grazing);
     vec3 blocking = blocking_f0(surface);
-    vec3 blocked = blocking + (f90 - blocking) * towards_grazing;
+    vec3 blocked = blocked_by_film(surface, v_dot_h, 1.0,
+                                   blocking + (f90 - blocking) * towards_grazing);
     float n_dot_v = max(dot(surface.normal_world, surface.view_world), 0.0);
     float mirrored = mirrored_share(surface, light_world, half_world, n_dot_l, n_dot_v);
     lighting.scattered += received * (vec3(1.0) - blocked);

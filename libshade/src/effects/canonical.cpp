@@ -53,7 +53,7 @@ void settle_model(Features& f) {
         if (f.reflection != ReflectionTerm::none) f.reflection = ReflectionTerm::glossy;
         if (f.interpolation == Interpolation::gouraud) f.interpolation = Interpolation::per_pixel;
     } else {
-        f.metallic_roughness_texture = f.dielectric_reflectance = false;
+        f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
     }
     if (f.reflection == ReflectionTerm::none) f.fresnel = FresnelTerm::constant;
 }
@@ -126,7 +126,7 @@ void drop_colors(Features& f) {
     if (!from_everywhere) f.occlusion_texture = false;
     if (!from_everywhere && !f.diffuse) {
         f.metallic_roughness &= f.clearcoat;
-        f.metallic_roughness_texture = f.dielectric_reflectance = false;
+        f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
         if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
     }
     if (!f.emission) f.emission_texture = false;

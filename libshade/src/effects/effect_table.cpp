@@ -333,6 +333,13 @@ std::vector<EffectRow> model_rows() {
                  const bool has = is_physical(s) && s.material.metallic_roughness->clearcoat > 0.0F;
                  return of_material(s, has, "has a clear coat", "has none");
              }},
+        {.effect = one_switch<&F::iridescence>("iridescence", no_layer),
+         .decide =
+             [](Subject s) {
+                 const bool has =
+                     is_physical(s) && s.material.metallic_roughness->iridescence > 0.0F;
+                 return of_material(s, has, "has a thin film", "has none");
+             }},
         {.effect = one_switch<&F::anisotropy>(
              "anisotropy", "the material is not metallic-roughness, or mirrors nothing"),
          .decide = of_anisotropy,

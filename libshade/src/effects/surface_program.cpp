@@ -193,6 +193,18 @@ Steps dielectric_steps(By f) {
                {.uniforms = {"dielectric_f0", "dielectric_f90"}}}}}};
 }
 
+/// Returns the step of the thin film on glTF's facets.
+Steps film_steps(By f) {
+    return {{"film",
+             "vec3 with_film(Surface surface, float cosine, float share, vec3 mirrored) "
+             "{ return mirrored; } "
+             "vec3 blocked_by_film(Surface surface, float cosine, float share, vec3 blocked) "
+             "{ return blocked; }",
+             {{"iridescence.glsl",
+               f.iridescence,
+               {.uniforms = {"iridescence", "iridescence_index", "iridescence_thickness"}}}}}};
+}
+
 /// Returns the steps of glTF's facets. Canonical features have anisotropy only where it shows.
 Steps facet_steps(By f, bool in_this_stage) {
     const bool lit = in_this_stage && has_lights(f) && f.metallic_roughness;
@@ -556,6 +568,7 @@ Steps lit_steps(By f) {
                       {"gouraud.glsl#interpolated_both_sides", both_sides}}},
                     surface_step(f, fragment_needs(f))},
                    dielectric_steps(f),
+                   film_steps(f),
                    facet_steps(f, lights_here),
                    layer_steps(f),
                    normal_steps(f),

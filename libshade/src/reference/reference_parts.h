@@ -264,6 +264,14 @@ Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int cor
 /// \return within [0,1]; 0 for an index of 1, which is no boundary, and 1 for an index of 0
 double fresnel(std::complex<double> index, double cosine);
 
+/// Returns I of Material's formula: the reflectance of a thin film in air, for red, green and blue.
+///
+/// \param f0         the reflectance of the base in air, at normal incidence
+/// \param cosine     of the angle of incidence, within [0,1]
+/// \param index      of the film, at least 1
+/// \param thickness  in nanometers
+glm::dvec3 film_reflectance(const glm::dvec3& f0, double cosine, double index, double thickness);
+
 /// Returns Material's factor F at n.v, clamped to [0,1] by channel; 0 if the reflectivity is zero.
 glm::dvec3 fresnel_factor(const Material& material, double n_dot_v);
 

@@ -57,6 +57,66 @@ glm::dvec3 fresnel_factor(const Material& material, double n_dot_v) {
     return glm::clamp(factor, 0.0, 1.0);
 }
 
+// Thin films
+
+namespace {
+
+/// Returns the color of light whose parts differ by a path in nanometers, relative to white. The
+/// sensitivities are Gaussians over wave numbers [Belcour and Barla 2017].
+///
+/// \param sign  -1 where one part is reflected with the opposite phase, for X, Y and Z
+glm::dvec3 interference(double path, const glm::dvec3& sign) {
+    struct Gaussian {
+        int component;
+        double height, position, variance;
+    };
+    constexpr Gaussian gaussians[] = {{0, 5.4856e-13, 1.6810e6, 4.3278e9},
+                                      {1, 4.4201e-13, 1.7953e6, 9.3046e9},
+                                      {2, 5.2481e-13, 2.2084e6, 6.6121e9},
+                                      {0, 9.7470e-14, 2.2399e6, 4.5282e9}};
+    constexpr double white = 1.0685e-7;
+    const double phase = 2.0 * std::numbers::pi * path * 1e-9;
+    glm::dvec3 xyz(0.0);
+    for (const auto& [component, height, position, variance] : gaussians) {
+        xyz[component] +=
+            sign[component] * height / white * std::sqrt(2.0 * std::numbers::pi * variance) *
+            portable::cos(position * phase) * portable::exp(-variance * phase * phase);
+    }
+    const glm::dmat3 rgb_from_xyz(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108,
+                                  -0.2040259, -0.4985314, 0.0415560, 1.0572252);
+    return rgb_from_xyz * xyz;
+}
+
+double schlick(double f0, double cosine) {
+    return f0 + (1.0 - f0) * portable::pow(1.0 - cosine, 5.0);
+}
+
+}  // namespace
+
+glm::dvec3 film_reflectance(const glm::dvec3& f0, double cosine, double index, double thickness) {
+    const double cosine_inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+    const double outer = schlick(fresnel(index, 1.0), cosine);
+    const double through = 1.0 - outer;
+    glm::dvec3 sign(0.0);
+    glm::dvec3 from_base(0.0);
+    glm::dvec3 amplitude(0.0);
+    for (int i = 0; i < 3; ++i) {
+        const double root = std::sqrt(std::clamp(f0[i], 0.0, 0.9999));
+        const double base_index = (1.0 + root) / (1.0 - root);
+        const double inner = schlick(fresnel(base_index / index, 1.0), cosine_inside);
+        const double bounce = std::clamp(outer * inner, 1e-5, 0.9999);
+        sign[i] = base_index < index ? 1.0 : -1.0;
+        from_base[i] = through * through * inner / (1.0 - bounce);
+        amplitude[i] = std::sqrt(bounce);
+    }
+    // The path difference of the first order; orders above 2 are left out.
+    const double path = 2.0 * index * thickness * cosine_inside;
+    const glm::dvec3 first = (from_base - through) * amplitude;
+    return glm::max(outer + from_base + 2.0 * first * interference(path, sign) +
+                        2.0 * first * amplitude * interference(2.0 * path, glm::dvec3(1.0)),
+                    0.0);
+}
+
 // Lights
 
 namespace {
@@ -346,6 +406,31 @@ double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface&
     return std::numbers::pi * distribution * visibility;
 }
 
+/// What facets mirror and what scattering lacks, before and behind a film.
+struct Mirrored {
+    glm::dvec3 mirrored;
+    glm::dvec3 blocked;
+};
+
+/// Returns both with the material's film.
+/// \param share  of a surface that mirrors all light
+Mirrored with_film(const Context& context, const Microfacets& facets, double cosine, double share,
+                   const Mirrored& plain) {
+    const MetallicRoughness& model = *context.material.metallic_roughness;
+    const double weight = static_cast<double>(model.iridescence);
+    if (weight == 0.0) return plain;
+    const double index = static_cast<double>(model.iridescence_index);
+    for (int i = 0; i < 3; ++i) {  // The phase jumps where film and base have the same index.
+        const double root = std::sqrt(std::min(facets.f0[i], 0.9999));
+        context.trace.decide((1.0 + root) / (1.0 - root) < index ? 1 : 0);
+    }
+    const glm::dvec3 film = film_reflectance(facets.f0, cosine, index,
+                                             static_cast<double>(model.iridescence_thickness));
+    const double largest = std::min(std::max({film.r, film.g, film.b}), 1.0);
+    return {glm::mix(plain.mirrored, share * film, weight),
+            glm::mix(plain.blocked, glm::dvec3(share * largest), weight)};
+}
+
 /// Returns pi D V of the material's facets, which may be wider along one axis than along the other.
 /// \param n_dot_l  positive
 double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm::dvec3& half,
@@ -375,16 +460,19 @@ double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm:
 }
 
 /// Returns pi D V f + (1 - f') c, the factor of one light. \param n_dot_l  positive
-glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm::dvec3& light,
+glm::dvec3 scattered_by(const Context& context, const Microfacets& facets, const glm::dvec3& light,
                         double n_dot_l) {
+    const Surface& at = context.surface;
     const glm::dvec3 half = half_vector(light, at);
     if (half == glm::dvec3(0.0)) return facets.scattering;
     const double v_dot_h = std::clamp(glm::dot(at.view_world, half), 0.0, 1.0);
     const double grazing = portable::pow(1.0 - v_dot_h, 5.0);
-    return (1.0 - glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)) *
-               facets.scattering +
-           glm::mix(facets.f0, glm::dvec3(facets.f90), grazing) *
-               facet_lobe(facets, light, half, at, n_dot_l);
+    const auto [mirrored, blocked] =
+        with_film(context, facets, v_dot_h, 1.0,
+                  {glm::mix(facets.f0, glm::dvec3(facets.f90), grazing),
+                   glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)});
+    return (1.0 - blocked) * facets.scattering +
+           mirrored * facet_lobe(facets, light, half, at, n_dot_l);
 }
 
 /// Returns the normal that mirrors the environment.
@@ -402,12 +490,16 @@ glm::dvec3 mirror_normal(const Microfacets& facets, const Surface& at) {
 /// environment.
 glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     const Surface& at = context.surface;
-    glm::dvec3 light = glm::dvec3(context.prepared.scene.ambient) * (facets.scattering + facets.f0);
+    const Mirrored facing = with_film(context, facets, 1.0, 1.0, {facets.f0, facets.f0});
+    glm::dvec3 light =
+        glm::dvec3(context.prepared.scene.ambient) * (facets.scattering + facing.mirrored);
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
         const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
-        const glm::dvec3 mirrors = facets.f0 * albedo.x + facets.f90 * albedo.y;
-        const glm::dvec3 blocked = facets.blocking_f0 * albedo.x + facets.f90 * albedo.y;
+        const auto [mirrors, blocked] =
+            with_film(context, facets, n_dot_v, albedo.x + albedo.y,
+                      {facets.f0 * albedo.x + facets.f90 * albedo.y,
+                       facets.blocking_f0 * albedo.x + facets.f90 * albedo.y});
         light += (1.0 - blocked) * facets.scattering * environment_irradiance(context);
         light += mirrors * reflected(context, mirror_normal(facets, at), facets.roughness);
     }
@@ -483,7 +575,7 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3&
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
         radiance +=
-            light.irradiance * n_dot_l * scattered_by(facets, at, light.light_world, n_dot_l);
+            light.irradiance * n_dot_l * scattered_by(context, facets, light.light_world, n_dot_l);
     }
     return with_clearcoat(context, with_sheen(context, radiance) + emitted(context));
 }

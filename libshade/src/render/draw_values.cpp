@@ -48,6 +48,9 @@ const std::map<std::string_view, Setter>& setters() {
         {"clearcoat_roughness", set_member<&DrawValues::clearcoat_roughness>},
         {"anisotropy", set_member<&DrawValues::anisotropy>},
         {"anisotropy_direction", set_member<&DrawValues::anisotropy_direction>},
+        {"iridescence", set_member<&DrawValues::iridescence>},
+        {"iridescence_index", set_member<&DrawValues::iridescence_index>},
+        {"iridescence_thickness", set_member<&DrawValues::iridescence_thickness>},
         {"occlusion_strength", set_member<&DrawValues::occlusion_strength>},
         {"opacity", set_member<&DrawValues::opacity>},
         {"alpha_cutoff", set_member<&DrawValues::alpha_cutoff>},
@@ -120,6 +123,9 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
         values.clearcoat = physical->clearcoat;
         values.clearcoat_roughness = physical->clearcoat_roughness;
         set_sheen(values, *physical);
+        values.iridescence = physical->iridescence;
+        values.iridescence_index = physical->iridescence_index;
+        values.iridescence_thickness = physical->iridescence_thickness;
         values.anisotropy = physical->anisotropy;
         const double rotation = static_cast<double>(physical->anisotropy_rotation);
         values.anisotropy_direction = glm::vec2(portable::cos(rotation), portable::sin(rotation));

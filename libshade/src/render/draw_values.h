@@ -43,6 +43,9 @@ struct DrawValues {
     float clearcoat_roughness = 0.0F;
     float anisotropy = 0.0F;
     glm::vec2 anisotropy_direction{1.0F, 0.0F};  ///< In the tangent frame; unit.
+    float iridescence = 0.0F;
+    float iridescence_index = 1.3F;
+    float iridescence_thickness = 400.0F;
     float occlusion_strength = 0.0F;
     float opacity = 1.0F;
     float alpha_cutoff = 0.0F;

@@ -119,6 +119,15 @@ MetallicRoughness factors_of(const GltfMaterial& material) {
     model.anisotropy = usable(material.anisotropy, 1.0F);
     if (std::isfinite(material.anisotropy_rotation))
         model.anisotropy_rotation = material.anisotropy_rotation;
+    const auto film = [&](float value, float MetallicRoughness::*member) {
+        const FieldRange range = field_of(member).range;
+        return std::max(usable(value, range.max), range.min);
+    };
+    model.iridescence = film(material.iridescence, &MetallicRoughness::iridescence);
+    model.iridescence_index =
+        film(material.iridescence_index, &MetallicRoughness::iridescence_index);
+    model.iridescence_thickness =
+        film(material.iridescence_thickness, &MetallicRoughness::iridescence_thickness);
     return model;
 }
 
@@ -336,9 +345,10 @@ void add_undrawn_extensions(Material& result, const GltfMaterial& material, std:
                             const std::vector<std::string>& required, Report& report) {
     std::vector<std::string>& names = result.undrawn_extensions;
     names = material.more_extensions;
-    // Phong's model has neither layers nor anisotropy.
+    // Phong's model has neither layers nor films nor anisotropy.
     if (!result.metallic_roughness && !result.unlit) {
         if (material.anisotropy > 0.0F) names.emplace_back("KHR_materials_anisotropy");
+        if (material.iridescence > 0.0F) names.emplace_back("KHR_materials_iridescence");
         if (material.clearcoat > 0.0F) names.emplace_back("KHR_materials_clearcoat");
         if (material.sheen_color != glm::vec3(0.0F)) names.emplace_back("KHR_materials_sheen");
         std::sort(names.begin(), names.end());

@@ -65,8 +65,8 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
              (!c.light_ranges && c.falloff == FalloffTerm::inverse_square)) &&
             (c.emission || !c.emission_texture) && (all_around || !c.occlusion_texture) &&
             (c.metallic_roughness || (!c.metallic_roughness_texture && !c.dielectric_reflectance &&
-                                      !c.sheen && !c.clearcoat)) &&
-            (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
+                                      !c.sheen && !c.clearcoat && !c.iridescence)) &&
+            (lit || !c.iridescence) && (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
             ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
             (c.detail == NormalDetail::normal_map || c.detail == NormalDetail::bump_map ||
              c.anisotropy || c.frame == TangentFrame::stored) &&

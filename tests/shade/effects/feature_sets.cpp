@@ -71,6 +71,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::sheen>("sheen"),
         field<&F::clearcoat>("clearcoat"),
         field<&F::anisotropy>("anisotropy"),
+        field<&F::iridescence>("iridescence"),
         field<&F::interpolation, 3>("interpolation"),
         field<&F::diffuse_texture>("diffuse texture"),
         field<&F::specular_texture>("specular texture"),
@@ -224,6 +225,10 @@ Material material_calling_for(const Features& f) {
     if (f.clearcoat) {
         m.metallic_roughness->clearcoat = 0.7F;
         m.metallic_roughness->clearcoat_roughness = 0.2F;
+    }
+    if (f.iridescence) {
+        m.metallic_roughness->iridescence = 0.8F;
+        m.metallic_roughness->iridescence_thickness = 350.0F;
     }
     if (f.anisotropy) {
         m.metallic_roughness->anisotropy = 0.6F;

@@ -89,6 +89,7 @@ const Change denser = with(&MetallicRoughness::refractive_index, 1.501F);
 const Change sheen = with(&MetallicRoughness::sheen_color, {0, 0, 0.001F});
 const Change clearcoat = with(&MetallicRoughness::clearcoat, 0.001F);
 const Change brushed = with(&MetallicRoughness::anisotropy, 0.001F);
+const Change filmy = with(&MetallicRoughness::iridescence, 0.001F);
 const Change gouraud = with(&Material::interpolation, Interpolation::gouraud);
 const Change flat = with(&Material::interpolation, Interpolation::flat);
 const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
@@ -200,6 +201,10 @@ const std::vector<Boundary> color_boundaries = {
     {"clearcoat", "light", {clearcoat, no_suns}, {}, {ambient}},
     {"clearcoat", "emission", {clearcoat, no_suns}, {}, {emissive}},
     {"clearcoat", "lit", {clearcoat}, {unlit}, {}},
+    {"iridescence", "its weight", {no_metal}, {}, {filmy}},
+    {"iridescence", "light", {filmy, no_suns}, {}, {ambient}},
+    {"iridescence", "light besides its emission", {filmy, emissive}, {no_suns}, {}},
+    {"iridescence", "lit", {filmy}, {unlit}, {}},
     {"anisotropy", "its strength", {no_metal}, {}, {brushed}},
     {"anisotropy", "lights", {brushed}, {no_suns}, {}},
     {"anisotropy", "highlights", {brushed, no_suns, ambient}, {}, {environment}},

@@ -67,6 +67,76 @@ TEST(Fresnel, FactorFollowsTheMaterialsModel) {
     EXPECT_NEAR(metal.b, 1.0 / 9.0, 1e-15);
 }
 
+/// The sensitivities of an eye as sums of Gaussians over wavelengths in nanometers: Wyman, Sloan,
+/// Shirley: Simple Analytic Approximations to the CIE XYZ Color Matching Functions. JCGT 2(2),
+/// 2013.
+glm::dvec3 sensitivity(double wavelength) {
+    const auto g = [&](double mean, double below, double above) {
+        const double t = (wavelength - mean) / (wavelength < mean ? below : above);
+        return std::exp(-0.5 * t * t);
+    };
+    return {
+        1.056 * g(599.8, 37.9, 31.0) + 0.362 * g(442.0, 16.0, 26.7) - 0.065 * g(501.1, 20.4, 26.2),
+        0.821 * g(568.8, 46.9, 40.5) + 0.286 * g(530.9, 16.3, 31.1),
+        1.217 * g(437.0, 11.8, 36.0) + 0.681 * g(459.0, 26.0, 13.8)};
+}
+
+/// Returns a film's reflectance at normal incidence by Airy's formula [Born and Wolf 1999], as a
+/// sum over wavelengths, relative to white.
+glm::dvec3 film_by_wavelengths(double base_index, double index, double thickness) {
+    const double outer = (1.0 - index) / (1.0 + index);
+    const double inner = (index - base_index) / (index + base_index);
+    glm::dvec3 sum(0.0);
+    glm::dvec3 white(0.0);
+    for (double wavelength = 360.0; wavelength < 830.0; wavelength += 1.0) {
+        const double phase = 4.0 * std::numbers::pi * index * thickness / wavelength;
+        const double mixed = 2.0 * outer * inner * std::cos(phase);
+        const double reflected =
+            (outer * outer + inner * inner + mixed) / (1.0 + outer * outer * inner * inner + mixed);
+        sum += sensitivity(wavelength) * reflected;
+        white += sensitivity(wavelength);
+    }
+    const glm::dmat3 rgb_from_xyz(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108,
+                                  -0.2040259, -0.4985314, 0.0415560, 1.0572252);
+    return rgb_from_xyz * sum / (rgb_from_xyz * white);
+}
+
+/// The model's sensitivities and its white differ slightly from those of the sum.
+TEST(FilmReflectance, AtNormalIncidenceIsTheSumOverWavelengths) {
+    double darkest = 1.0;
+    double brightest = 0.0;
+    for (const double base_index : {1.5, 3.0}) {
+        for (const double index : {1.3, 1.8}) {
+            for (const double thickness : {0.0, 100.0, 200.0, 300.0, 600.0, 2000.0}) {
+                const double root = (base_index - 1.0) / (base_index + 1.0);
+                const glm::dvec3 found =
+                    film_reflectance(glm::dvec3(root * root), 1.0, index, thickness);
+                const glm::dvec3 expected = film_by_wavelengths(base_index, index, thickness);
+                for (int i = 0; i < 3; ++i) {
+                    EXPECT_NEAR(found[i], expected[i], 0.04)
+                        << base_index << " " << index << " " << thickness << " " << i;
+                    darkest = std::min(darkest, found[i]);
+                    brightest = std::max(brightest, found[i]);
+                }
+            }
+        }
+    }
+    EXPECT_LT(darkest, 0.01);
+    EXPECT_GT(brightest, 0.2);
+}
+
+TEST(FilmReflectance, IsFiniteAtTheEndsOfItsRanges) {
+    EXPECT_EQ(film_reflectance(glm::dvec3(0.04), 0.0, 1.3, 400.0), glm::dvec3(1.0));
+    for (const double f0 : {0.0, 0.9999, 1.0}) {
+        for (const double index : {1.0, 1000.0}) {
+            for (const double cosine : {0.0, 1.0}) {
+                const glm::dvec3 film = film_reflectance(glm::dvec3(f0), cosine, index, 1e6);
+                EXPECT_TRUE(film.r >= 0.0 && film.r <= 1.001) << film.r;
+            }
+        }
+    }
+}
+
 TEST(Fresnel, FactorOutsideItsAnglesIsTheNearerEnds) {
     Material material;
     material.reflectivity = glm::vec3(0.25F);
@@ -568,6 +638,46 @@ TEST(ReferenceShading, OfAnisotropyIsWiderAlongItsAxis) {
     scene.meshes[0].edit().tangents.clear();
     scene.meshes[0].edit().texcoords.clear();
     expect_near(under({-1, 0, -1}), expected(0.25, 0.25));
+}
+
+/// The light is that of OfMetallicRoughnessIsAppendixB, the film's weight 1/2.
+TEST(ReferenceShading, OfIridescenceReplacesFresnelsFactor) {
+    MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
+    model.iridescence = 0.5F;
+    model.iridescence_index = 1.5F;
+    model.iridescence_thickness = 250.0F;
+    Material material;
+    material.metallic_roughness = model;
+    Scene scene = test::square_scene(material);
+    scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
+    const glm::dvec3 b(0.5, 0.25, 1.0);
+    const glm::dvec3 f0 = 0.75 * 0.04 + 0.25 * b;
+    const auto film = [&](double cosine) {
+        return reference::film_reflectance(f0, cosine, 1.5, 250.0);
+    };
+    const auto largest = [](const glm::dvec3& c) { return std::max({c.r, c.g, c.b}); };
+    const double a2 = 0.25 * 0.25;
+    const double n_dot_l = std::sqrt(0.5);
+    const double n_dot_h = std::cos(pi / 8);
+    const double d = a2 / (pi * std::pow(n_dot_h * n_dot_h * (a2 - 1.0) + 1.0, 2.0));
+    const double v = 0.5 / (n_dot_l * 1.0 + std::sqrt(0.5 + 0.5 * a2));
+    const glm::dvec3 schlick = f0 + (1.0 - f0) * std::pow(1.0 - n_dot_h, 5.0);
+    const glm::dvec3 mirrored = 0.5 * (schlick + film(n_dot_h));
+    const glm::dvec3 blocked = 0.5 * (schlick + largest(film(n_dot_h)));
+    expect_near(in_the_middle(scene),
+                3.0 * n_dot_l * ((1.0 - blocked) * 0.75 * b + mirrored * (pi * d * v)));
+
+    scene.directional_lights.clear();
+    scene.ambient = glm::vec3(3.0F);
+    scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
+    scene.environment->lights = true;
+    const glm::dvec2 albedo = reference::directional_albedo(1.0, 0.5);
+    const double all = albedo.x + albedo.y;
+    const glm::dvec3 plain = f0 * albedo.x + albedo.y;
+    expect_near(in_the_middle(scene),
+                3.0 * (0.75 * b + 0.5 * (f0 + film(1.0))) +
+                    (1.0 - 0.5 * (plain + all * largest(film(1.0)))) * 0.75 * b * 2.0 +
+                    0.5 * (plain + all * film(1.0)) * 2.0);
 }
 
 /// In the corner, the eye is in the direction (-1, -1, 3) / sqrt(11). With strength 1 and the

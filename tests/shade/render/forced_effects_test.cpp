@@ -175,7 +175,8 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "dielectric reflectance",
                                "sheen",
                                "clearcoat",
-                               "anisotropy"}) {
+                               "anisotropy",
+                               "iridescence"}) {
         EXPECT_TRUE(forced.contains(effect)) << effect;
     }
 }

@@ -156,6 +156,15 @@ MetallicRoughness brushed_metal() {
     return model;
 }
 
+/// glTF's model under a thin film.
+MetallicRoughness filmed(float metallic) {
+    MetallicRoughness model{{0.8F, 0.5F, 0.3F}, metallic, 0.35F, std::nullopt};
+    model.iridescence = 0.9F;
+    model.iridescence_index = 1.4F;
+    model.iridescence_thickness = 480.0F;
+    return model;
+}
+
 std::vector<AddedThing> material_effects() {
     std::vector<AddedThing> effects = {
         {"nothing else", [](Scene&, test::Dice&) {}},
@@ -183,6 +192,13 @@ std::vector<AddedThing> material_effects() {
          }},
         {"anisotropy",
          [](Scene& s, test::Dice&) { s.materials[0].metallic_roughness = brushed_metal(); }},
+        {"iridescence of a metal",
+         [](Scene& s, test::Dice&) { s.materials[0].metallic_roughness = filmed(1.0F); }},
+        {"iridescence of a dielectric",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].metallic_roughness = filmed(0.0F);
+             s.materials[0].metallic_roughness->iridescence_index = 1.8F;
+         }},
         {"anisotropy on facets",
          [](Scene& s, test::Dice&) {
              s.materials[0].metallic_roughness = brushed_metal();
@@ -463,6 +479,8 @@ TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {
     scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.8F);
     expect_agreement(scene, blurred_tolerance);
     scene.materials[0].metallic_roughness = brushed_metal();
+    expect_agreement(scene, blurred_tolerance);
+    scene.materials[0].metallic_roughness = filmed(0.3F);
     expect_agreement(scene, blurred_tolerance);
 }
 

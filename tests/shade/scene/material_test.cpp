@@ -337,7 +337,8 @@ TEST(SceneField, HasALabelForMessages) {
                             "base color", "metallic", "roughness", "metallic-roughness texture",
                             "refractive index", "specular", "specular color", "clearcoat",
                             "clearcoat roughness", "sheen color", "sheen roughness", "anisotropy",
-                            "anisotropy rotation"));
+                            "anisotropy rotation", "iridescence", "iridescence index",
+                            "iridescence thickness"));
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }
 

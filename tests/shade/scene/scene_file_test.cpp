@@ -130,15 +130,15 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_TRUE(nothing.empty()) << "these values change nothing";
     EXPECT_TRUE(neutral.materials[0].undrawn_extensions.empty());
     const auto [scene, report] = load(
-        R"({"extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1}}},
+        R"({"extensions": {"KHR_materials_dispersion": {"dispersion": 1}}},
            {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5},
-                           "KHR_materials_iridescence": {"iridescenceFactor": 0.1}}})",
-        R"(, "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_iridescence"],
+                           "KHR_materials_dispersion": {"dispersion": 0.1}}})",
+        R"(, "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_dispersion"],
            "extensionsRequired": ["KHR_materials_transmission"])");
-    EXPECT_EQ(report.count("KHR_materials_iridescence"), 2U);
+    EXPECT_EQ(report.count("KHR_materials_dispersion"), 2U);
     EXPECT_EQ(report.count("KHR_materials_transmission, which the file requires"), 1U);
     EXPECT_THAT(scene.materials[1].undrawn_extensions,
-                testing::ElementsAre("KHR_materials_iridescence", "KHR_materials_transmission"));
+                testing::ElementsAre("KHR_materials_dispersion", "KHR_materials_transmission"));
     const auto [drawn, textures] = load(
         R"({"extensions": {"KHR_materials_ior": {"ior": 0.5}, "KHR_materials_specular":
                 {"specularFactor": 0.25, "specularColorFactor": [2, 1, -1],
@@ -156,9 +156,14 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     const auto [layered, none] = load(
         R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 2},
                            "KHR_materials_anisotropy": {"anisotropyStrength": 3, "anisotropyRotation": -2},
+                           "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 0.5,
+                                                         "iridescenceThicknessMaximum": -1},
                            "KHR_materials_sheen": {"sheenColorFactor": [0, 0.5, 0]}}})",
         "");
     EXPECT_TRUE(none.empty());
+    EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence, 0.5F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence_index, 1.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence_thickness, 0.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->anisotropy, 1.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->anisotropy_rotation, -2.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->clearcoat, 1.0F);
@@ -169,6 +174,7 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_EQ(report_of_phong.count("KHR_materials_clearcoat"), 1U) << "Phong has no layers";
     EXPECT_EQ(report_of_phong.count("KHR_materials_sheen"), 1U);
     EXPECT_EQ(report_of_phong.count("KHR_materials_anisotropy"), 1U);
+    EXPECT_EQ(report_of_phong.count("KHR_materials_iridescence"), 1U);
 }
 
 TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {

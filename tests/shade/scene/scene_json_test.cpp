@@ -114,7 +114,8 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
         "metallic_roughness": {"base_color": 0.5, "metallic": 0.25, "roughness": 0.75, "texture": "a.png",
             "refractive_index": 1.75, "specular": 0.125, "specular_color": [1, 2, 3],
             "clearcoat": 0.5, "clearcoat_roughness": 0.25, "sheen_color": [0, 0.5, 1], "sheen_roughness": 0.75,
-            "anisotropy": 0.5, "anisotropy_rotation": -180},
+            "anisotropy": 0.5, "anisotropy_rotation": -180,
+            "iridescence": 0.25, "iridescence_index": 1.75, "iridescence_thickness": 550},
         "reflectivity": 0.3, "grazing_reflectivity": 0.9, "fresnel": "conductor", "refractive_index": 1.33,
         "conductor_index": 0.4, "conductor_absorption": 5, "reflection_roughness": 0.6,
         "diffuse_texture": "a.png", "specular_texture": "b.png", "emission_texture": {"image": "a.png",
@@ -146,6 +147,9 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     EXPECT_EQ(m.metallic_roughness->sheen_roughness, 0.75F);
     EXPECT_EQ(m.metallic_roughness->anisotropy, 0.5F);
     EXPECT_FLOAT_EQ(m.metallic_roughness->anisotropy_rotation, -std::numbers::pi_v<float>);
+    EXPECT_EQ(m.metallic_roughness->iridescence, 0.25F);
+    EXPECT_EQ(m.metallic_roughness->iridescence_index, 1.75F);
+    EXPECT_EQ(m.metallic_roughness->iridescence_thickness, 550.0F);
     EXPECT_EQ(m.metallic_roughness->texture->image, m.diffuse_texture->image);
     EXPECT_EQ(m.reflectivity, glm::vec3(0.3F));
     EXPECT_EQ(m.grazing_reflectivity, glm::vec3(0.9F));

@@ -526,6 +526,9 @@ bool edit_metallic_roughness(MetallicRoughness& model) {
         model.anisotropy_rotation = glm::radians(rotation);
         changed = true;
     }
+    changed |= slide(model, &MetallicRoughness::iridescence);
+    changed |= slide("Film index", model.iridescence_index, {1.0F, 3.0F});
+    changed |= slide("Film thickness", model.iridescence_thickness, {0.0F, 1200.0F, "%.0f nm"});
     return changed;
 }
 

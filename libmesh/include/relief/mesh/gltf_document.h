@@ -100,6 +100,9 @@ struct GltfMaterial {
     float sheen_roughness = 0.0F;
     float anisotropy = 0.0F;           ///< KHR_materials_anisotropy, the strength.
     float anisotropy_rotation = 0.0F;  ///< Radians from the tangent to the bitangent.
+    float iridescence = 0.0F;          ///< KHR_materials_iridescence, the factors.
+    float iridescence_index = 1.3F;
+    float iridescence_thickness = 400.0F;  ///< In nanometers; the maximum.
     /// The extensions that change the appearance and are not among the members above, and the
     /// textures of those that are ("specularTexture of KHR_materials_specular"), sorted. Extensions
     /// whose values change nothing are left out.

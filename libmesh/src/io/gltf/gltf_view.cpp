@@ -7,7 +7,7 @@
 // throw InvalidInput. An unusable animation channel is left out and counted. Source: glTF 2.0
 // (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_ior,
 // KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
-// KHR_materials_unlit, KHR_texture_transform, EXT_mesh_gpu_instancing.
+// KHR_materials_iridescence, KHR_materials_unlit, KHR_texture_transform, EXT_mesh_gpu_instancing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -201,7 +201,7 @@ bool has_members(std::string_view name) {
     static constexpr std::array names = {
         "KHR_materials_unlit",      "KHR_materials_emissive_strength", "KHR_materials_ior",
         "KHR_materials_specular",   "KHR_materials_clearcoat",         "KHR_materials_sheen",
-        "KHR_materials_anisotropy",
+        "KHR_materials_anisotropy", "KHR_materials_iridescence",
     };
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -273,6 +273,11 @@ GltfMaterial material_from(const Json& root, const Json& json) {
     if (const Json* anisotropy = find(json, "extensions", "KHR_materials_anisotropy")) {
         material.anisotropy = float_in(*anisotropy, "anisotropyStrength", 0.0F);
         material.anisotropy_rotation = float_in(*anisotropy, "anisotropyRotation", 0.0F);
+    }
+    if (const Json* film = find(json, "extensions", "KHR_materials_iridescence")) {
+        material.iridescence = float_in(*film, "iridescenceFactor", 0.0F);
+        material.iridescence_index = float_in(*film, "iridescenceIor", 1.3F);
+        material.iridescence_thickness = float_in(*film, "iridescenceThicknessMaximum", 400.0F);
     }
     material.more_extensions = more_extensions_of(json);
     return material;

@@ -55,6 +55,7 @@ struct Features {
     bool sheen = false;       ///< KHR_materials_sheen
     bool clearcoat = false;   ///< KHR_materials_clearcoat
     bool anisotropy = false;  ///< KHR_materials_anisotropy
+    bool iridescence = false;  ///< KHR_materials_iridescence
     Interpolation interpolation = Interpolation::per_pixel;
     // Factors of the colors.
     bool diffuse_texture = false;

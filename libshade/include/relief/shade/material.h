@@ -95,6 +95,10 @@ struct MetallicRoughness {
     // (KHR_materials_anisotropy).
     float anisotropy = 0.0F;           ///< 0: the same roughness in all directions.
     float anisotropy_rotation = 0.0F;  ///< Radians from the tangent to the bitangent.
+    // A thin film, whose two surfaces interfere (KHR_materials_iridescence).
+    float iridescence = 0.0F;              ///< Its weight; 0: none.
+    float iridescence_index = 1.3F;        ///< The film's refractive index.
+    float iridescence_thickness = 400.0F;  ///< In nanometers.
 };
 
 /// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
@@ -153,6 +157,12 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// The reflected environment is that of the normal mix(v - (b.v) b, n, (1 - s (1 - r))^4). Without
 /// a tangent frame, s is 0.
 ///
+/// A thin film replaces f by mix(f, I(v.h), iridescence) and f' by mix(f', max(I(v.h)),
+/// iridescence), where I is the reflectance of the film on a base of f0: the light of both surfaces
+/// interferes. In the environment's light, f0 A + f90 B and f0' A + f90 B become the same mixtures
+/// with I(n.v) (A + B), and f0 in ambient light that with I(1). The film lies in air, also under a
+/// coat.
+///
 /// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
 /// color, D' and V' Charlie's distribution and visibility for alpha = sheen_roughness^2
 /// (convolution.h), E their directional albedo at n.v, which counts as at most 1, n' the normal
@@ -172,8 +182,9 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 ///
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
 /// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B, with KHR_materials_ior,
-/// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen and
-/// KHR_materials_anisotropy, and [Estevez and Kulla 2017]. The CPU implementation is reference.h.
+/// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy
+/// and KHR_materials_iridescence, [Estevez and Kulla 2017] and [Belcour and Barla 2017]. The CPU
+/// implementation is reference.h.
 struct Material {
     std::string name;
     Interpolation interpolation = Interpolation::per_pixel;

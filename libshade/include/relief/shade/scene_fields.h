@@ -180,7 +180,10 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
     SceneField{"sheen_roughness", &MetallicRoughness::sheen_roughness, {0, 1}},
     SceneField{"anisotropy", &MetallicRoughness::anisotropy, {0, 1}},
     SceneField{
-        "anisotropy_rotation", &MetallicRoughness::anisotropy_rotation, {}, FieldUnit::radians}};
+        "anisotropy_rotation", &MetallicRoughness::anisotropy_rotation, {}, FieldUnit::radians},
+    SceneField{"iridescence", &MetallicRoughness::iridescence, {0, 1}},
+    SceneField{"iridescence_index", &MetallicRoughness::iridescence_index, {1, 1e3F}},
+    SceneField{"iridescence_thickness", &MetallicRoughness::iridescence_thickness, {0, 1e6F}}};
 
 template <>
 inline constexpr auto fields_of<Material> = std::tuple{

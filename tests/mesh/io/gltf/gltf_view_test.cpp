@@ -54,6 +54,8 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
                 "KHR_materials_clearcoat": {"clearcoatFactor": 0.25, "clearcoatRoughnessFactor": 0.125},
                 "KHR_materials_sheen": {"sheenColorFactor": [0.1, 0.2, 0.3], "sheenRoughnessFactor": 0.5,
                     "sheenColorTexture": {"index": 0}},
+                "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 1.5,
+                    "iridescenceThicknessMinimum": 50, "iridescenceThicknessMaximum": 250},
                 "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": -0.5,
                     "anisotropyTexture": {"index": 0}},
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
@@ -87,6 +89,10 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(plain.anisotropy, 0.0F);
     EXPECT_EQ(full.anisotropy, 0.75F);
     EXPECT_EQ(full.anisotropy_rotation, -0.5F);
+    EXPECT_EQ(plain.iridescence, 0.0F);
+    EXPECT_EQ(full.iridescence, 0.5F);
+    EXPECT_EQ(full.iridescence_index, 1.5F);
+    EXPECT_EQ(full.iridescence_thickness, 250.0F);
     EXPECT_EQ(full.normal_scale, 0.75F);
     EXPECT_EQ(full.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(full.alpha_cutoff, 0.25F);
