@@ -10,6 +10,7 @@
 
 #include "vector.glsl#normalized_or"
 #include <frame>
+#include <anisotropy_texture>
 
 uniform float anisotropy;
 uniform vec2 anisotropy_direction;  // In the tangent frame.
@@ -22,10 +23,27 @@ struct Anisotropy {
 
 Anisotropy anisotropy_of(Surface surface) {
     mat3 frame = world_from_tangent();
-    vec3 along = anisotropy_direction.x * frame[0] + anisotropy_direction.y * frame[1];
+    vec3 texel = anisotropy_texel();
+    vec2 turned = vec2(anisotropy_direction.x * texel.x - anisotropy_direction.y * texel.y,
+                       anisotropy_direction.y * texel.x + anisotropy_direction.x * texel.y);
+    vec3 along = turned.x * frame[0] + turned.y * frame[1];
     vec3 normal = surface.normal_world;
     vec3 axis = normalized_or(along - normal * dot(normal, along), vec3(0.0));
-    return Anisotropy(axis, cross(normal, axis), axis == vec3(0.0) ? 0.0 : anisotropy);
+    return Anisotropy(axis, cross(normal, axis), axis == vec3(0.0) ? 0.0 : anisotropy * texel.z);
+}
+
+#part texture
+// Direction and strength from a texture. A texel without a direction counts as the tangent.
+
+#include "inputs.glsl#texcoord"
+#include "vector.glsl#normalized_or"
+
+uniform sampler2D anisotropy_texture;
+
+vec3 anisotropy_texel() {
+    vec3 texel = texture(anisotropy_texture, texcoord_surface).rgb;
+    vec3 direction = normalized_or(vec3(2.0 * texel.rg - 1.0, 0.0), vec3(1.0, 0.0, 0.0));
+    return vec3(direction.xy, texel.b);
 }
 
 #part lobe

@@ -4,9 +4,45 @@
 // approximation stands for Fresnel's formulas, without polarization.
 // Source: KHR_materials_iridescence, [Belcour and Barla 2017].
 
+#part thickness
+// The thickness in nanometers.
+
+uniform float iridescence_thickness;
+
+float film_thickness() { return iridescence_thickness; }
+
+#part thickness_texture
+// The thickness in nanometers from a texture: green.
+
+#include "inputs.glsl#texcoord"
+
+uniform float iridescence_thickness;
+uniform float iridescence_thickness_minimum;
+uniform sampler2D film_thickness_texture;
+
+float film_thickness() {
+    float lacking = 1.0 - texture(film_thickness_texture, texcoord_surface).g;
+    return iridescence_thickness -
+           lacking * (iridescence_thickness - iridescence_thickness_minimum);
+}
+
+#part texture
+// The weight from a texture: red.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D iridescence_texture;
+
+float iridescence_texel() { return texture(iridescence_texture, texcoord_surface).r; }
+
+#part film
+// The film's reflectance, and its effect on mirrored and on scattered light.
+
+#include <film_thickness>
+#include <iridescence_texture>
+
 uniform float iridescence;
 uniform float iridescence_index;
-uniform float iridescence_thickness;  // In nanometers.
 
 // The color of light whose parts differ by a path in nanometers, relative to white; `sign` is -1
 // where one of them is reflected with the opposite phase.
@@ -46,7 +82,7 @@ vec3 film_reflectance(vec3 f0, float cosine) {
 
     vec3 bounce = clamp(outer * inner, 1e-5, 0.9999);
     vec3 from_base = through * through * inner / (1.0 - bounce);
-    float path = 2.0 * index * iridescence_thickness * cosine_inside;
+    float path = 2.0 * index * film_thickness() * cosine_inside;
     vec3 amplitude = sqrt(bounce);
     vec3 term = (from_base - through) * amplitude;
     vec3 sum = outer + from_base + 2.0 * term * interference(path, sign);
@@ -56,7 +92,8 @@ vec3 film_reflectance(vec3 f0, float cosine) {
 
 // The mirrored light: `share` is that of a surface that mirrors all light.
 vec3 with_film(Surface surface, float cosine, float share, vec3 mirrored) {
-    return mix(mirrored, film_reflectance(surface.f0, cosine) * share, iridescence);
+    return mix(mirrored, film_reflectance(surface.f0, cosine) * share,
+               iridescence * iridescence_texel());
 }
 
 // The light that scattering lacks. It has the largest channel, so that a colored reflection does not
@@ -64,5 +101,5 @@ vec3 with_film(Surface surface, float cosine, float share, vec3 mirrored) {
 vec3 blocked_by_film(Surface surface, float cosine, float share, vec3 blocked) {
     vec3 film = film_reflectance(surface.f0, cosine);
     float largest = min(max(max(film.r, film.g), film.b), 1.0);
-    return mix(blocked, vec3(largest * share), iridescence);
+    return mix(blocked, vec3(largest * share), iridescence * iridescence_texel());
 }

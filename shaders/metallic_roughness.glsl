@@ -69,9 +69,35 @@ Surface surface_here() {
 // The reflectance of dielectrics at normal incidence, from index, weight and color.
 // Source: KHR_materials_ior, KHR_materials_specular.
 
-uniform vec3 dielectric_f0;
+#include <specular_weight_texture>
+#include <specular_color_texture>
 
-vec3 dielectric_reflectance() { return dielectric_f0; }
+uniform vec3 dielectric_color;  // With the reflectance of the index.
+uniform float dielectric_weight;
+
+float reflection_weight() { return dielectric_weight * specular_weight_texel(); }
+
+vec3 dielectric_reflectance() {
+    return min(dielectric_color * specular_color_texel(), vec3(1.0)) * reflection_weight();
+}
+
+#part weight_texture
+// The weight of the reflection from a texture: alpha.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D specular_weight_texture;
+
+float specular_weight_texel() { return texture(specular_weight_texture, texcoord_surface).a; }
+
+#part color_texture
+// The color of the reflection from a texture.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D specular_color_texture;
+
+vec3 specular_color_texel() { return texture(specular_color_texture, texcoord_surface).rgb; }
 
 #part grazing
 // The reflectance at grazing incidence, which the weight lowers; and the reflectance at normal
@@ -80,15 +106,14 @@ vec3 dielectric_reflectance() { return dielectric_f0; }
 
 #include "metallic_roughness.glsl#dielectric"
 
-uniform float dielectric_f90;
-
 vec3 grazing_reflectance(Surface surface) {
-    return vec3(1.0 + (dielectric_f90 - 1.0) * surface.dielectric_share);
+    return vec3(1.0 + (reflection_weight() - 1.0) * surface.dielectric_share);
 }
 
 vec3 blocking_f0(Surface surface) {
-    float largest = max(max(dielectric_f0.r, dielectric_f0.g), dielectric_f0.b);
-    return surface.f0 + (vec3(largest) - dielectric_f0) * surface.dielectric_share;
+    vec3 dielectric = dielectric_reflectance();
+    float largest = max(max(dielectric.r, dielectric.g), dielectric.b);
+    return surface.f0 + (vec3(largest) - dielectric) * surface.dielectric_share;
 }
 
 #part factors

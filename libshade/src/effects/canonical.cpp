@@ -92,6 +92,12 @@ void drop_layers(Features& f) {
     f.anisotropy &= f.metallic_roughness && (highlights || f.reflection != ReflectionTerm::none);
     if (!f.metallic_roughness || !is_lit_anyhow(f)) f.sheen = false;
     if (!f.metallic_roughness || !(is_lit_anyhow(f) || f.emission)) f.clearcoat = false;
+    f.sheen_color_texture &= f.sheen;
+    f.anisotropy_texture &= f.anisotropy;
+    f.clearcoat_texture &= f.clearcoat;
+    f.clearcoat_roughness_texture &=
+        f.clearcoat && (highlights || f.reflection != ReflectionTerm::none);
+    f.clearcoat_normal_map &= f.clearcoat && f.interpolation == Interpolation::per_pixel;
 }
 
 void drop_normal(Features& f) {
@@ -109,9 +115,7 @@ void drop_normal(Features& f) {
     if ((!plain_seen && light_count(f) == 0) || f.interpolation == Interpolation::flat) {
         f.double_sided = false;
     }
-    const bool in_frame =
-        f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map || f.anisotropy;
-    if (!in_frame) f.frame = TangentFrame::stored;
+    if (!lies_in_frame(f)) f.frame = TangentFrame::stored;
     const bool mapped =
         f.detail == NormalDetail::normal_map || f.detail == NormalDetail::object_normal_map;
     const bool sharp =
@@ -130,6 +134,10 @@ void drop_colors(Features& f) {
         if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
     }
     if (!f.emission) f.emission_texture = false;
+    f.specular_weight_texture &= f.dielectric_reflectance;
+    f.specular_color_texture &= f.dielectric_reflectance;
+    f.iridescence_texture &= f.iridescence;
+    f.film_thickness_texture &= f.iridescence;
 }
 
 std::string counted(std::uint32_t count, std::string_view kind) {

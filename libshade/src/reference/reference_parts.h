@@ -233,7 +233,7 @@ struct PreparedScene {
 struct Surface {
     glm::dvec3 position_world{0.0};
     glm::dvec3 normal_world{0.0, 0.0, 1.0};        ///< Unit, on the visible side.
-    glm::dvec3 plain_normal_world{0.0, 0.0, 1.0};  ///< The same without a map.
+    glm::dvec3 coat_normal_world{0.0, 0.0, 1.0};   ///< The same with the clear coat's map alone.
     glm::dvec3 view_world{0.0, 0.0,
                           1.0};  ///< Unit, to the eye; the normal if the eye is at the surface.
     glm::dvec2 texcoord{0.0};

@@ -346,13 +346,23 @@ Anisotropy anisotropy_at(const Context& context) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
     const Surface& at = context.surface;
     const double rotation = static_cast<double>(model.anisotropy_rotation);
-    const glm::dvec3 along =
-        portable::cos(rotation) * at.tangent_world + portable::sin(rotation) * at.bitangent_world;
+    glm::dvec2 direction(1.0, 0.0);  // Before the rotation.
+    double strength = static_cast<double>(model.anisotropy);
+    if (model.anisotropy_texture && at.has_texcoord) {
+        const glm::dvec4 texel = context.look_up(model.anisotropy_texture, ImageUse::data);
+        const glm::dvec2 stored = 2.0 * glm::dvec2(texel) - 1.0;
+        if (glm::length(stored) > 1e-15) direction = glm::normalize(stored);
+        strength *= texel.b;
+    }
+    const double cosine = portable::cos(rotation);
+    const double sine = portable::sin(rotation);
+    const glm::dvec3 along = (cosine * direction.x - sine * direction.y) * at.tangent_world +
+                             (sine * direction.x + cosine * direction.y) * at.bitangent_world;
     const glm::dvec3 in_surface = along - glm::dot(at.normal_world, along) * at.normal_world;
     const double length = glm::length(in_surface);
     if (!(length > 1e-15)) return {};
     const glm::dvec3 axis = in_surface / length;
-    return {axis, glm::cross(at.normal_world, axis), static_cast<double>(model.anisotropy)};
+    return {axis, glm::cross(at.normal_world, axis), strength};
 }
 
 /// The quantities of metallic-roughness at a point.
@@ -363,6 +373,8 @@ struct Microfacets {
     double f90;
     double roughness;
     Anisotropy anisotropy;
+    double film;            ///< The weight of the thin film.
+    double film_thickness;  ///< In nanometers.
 };
 
 Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
@@ -371,17 +383,28 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
     const double metallic = static_cast<double>(model.metallic) * texel.b;
     const double roughness = static_cast<double>(model.roughness) * texel.g;
     const glm::dvec3 base = glm::dvec3(model.base_color) * tint;
-    const double specular = static_cast<double>(model.specular);
+    const double specular = static_cast<double>(model.specular) *
+                            context.look_up(model.specular_texture, ImageUse::data).a;
+    const glm::dvec3 color =
+        glm::dvec3(model.specular_color) *
+        glm::dvec3(context.look_up(model.specular_color_texture, ImageUse::color));
     const double index = static_cast<double>(model.refractive_index);
-    const glm::dvec3 dielectric =
-        specular * glm::min(fresnel(index, 1.0) * glm::dvec3(model.specular_color), 1.0);
+    const glm::dvec3 dielectric = specular * glm::min(fresnel(index, 1.0) * color, 1.0);
+    const double film = static_cast<double>(model.iridescence) *
+                        context.look_up(model.iridescence_texture, ImageUse::data).r;
+    const double thickness =
+        glm::mix(static_cast<double>(model.iridescence_thickness_minimum),
+                 static_cast<double>(model.iridescence_thickness),
+                 context.look_up(model.iridescence_thickness_texture, ImageUse::data).g);
     const double largest = std::max({dielectric.r, dielectric.g, dielectric.b});
     return {base * (1.0 - metallic),
             glm::mix(dielectric, base, metallic),
             glm::mix(glm::dvec3(largest), base, metallic),
             glm::mix(specular, 1.0, metallic),
             std::max(roughness, min_roughness),
-            anisotropy_at(context)};
+            anisotropy_at(context),
+            film,
+            thickness};
 }
 
 /// Returns the unit half vector, or zero if light and eye are opposite: then nothing is reflected.
@@ -416,19 +439,17 @@ struct Mirrored {
 /// \param share  of a surface that mirrors all light
 Mirrored with_film(const Context& context, const Microfacets& facets, double cosine, double share,
                    const Mirrored& plain) {
-    const MetallicRoughness& model = *context.material.metallic_roughness;
-    const double weight = static_cast<double>(model.iridescence);
-    if (weight == 0.0) return plain;
-    const double index = static_cast<double>(model.iridescence_index);
+    if (facets.film == 0.0) return plain;
+    const double index =
+        static_cast<double>(context.material.metallic_roughness->iridescence_index);
     for (int i = 0; i < 3; ++i) {  // The phase jumps where film and base have the same index.
         const double root = std::sqrt(std::min(facets.f0[i], 0.9999));
         context.trace.decide((1.0 + root) / (1.0 - root) < index ? 1 : 0);
     }
-    const glm::dvec3 film = film_reflectance(facets.f0, cosine, index,
-                                             static_cast<double>(model.iridescence_thickness));
+    const glm::dvec3 film = film_reflectance(facets.f0, cosine, index, facets.film_thickness);
     const double largest = std::min(std::max({film.r, film.g, film.b}), 1.0);
-    return {glm::mix(plain.mirrored, share * film, weight),
-            glm::mix(plain.blocked, glm::dvec3(share * largest), weight)};
+    return {glm::mix(plain.mirrored, share * film, facets.film),
+            glm::mix(plain.blocked, glm::dvec3(share * largest), facets.film)};
 }
 
 /// Returns pi D V of the material's facets, which may be wider along one axis than along the other.
@@ -524,8 +545,10 @@ glm::dvec3 received(const Context& context, const glm::dvec3& normal, Lobe lobe)
 /// Returns the term `sheened` of the formula.
 glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
-    const glm::dvec3 color(model.sheen_color);
-    if (color == glm::dvec3(0.0)) return base;
+    if (model.sheen_color == glm::vec3(0.0F)) return base;
+    const glm::dvec3 color =
+        glm::dvec3(model.sheen_color) *
+        glm::dvec3(context.look_up(model.sheen_color_texture, ImageUse::color));
     const Surface& at = context.surface;
     const glm::dvec3& n = at.normal_world;
     const double alpha = sheen_alpha(static_cast<double>(model.sheen_roughness));
@@ -546,12 +569,15 @@ glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
 /// Returns the term `coated` of the formula.
 glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
-    const double weight = static_cast<double>(model.clearcoat);
-    if (weight == 0.0) return base;
+    if (model.clearcoat == 0.0F) return base;
+    const double weight = static_cast<double>(model.clearcoat) *
+                          context.look_up(model.clearcoat_texture, ImageUse::data).r;
     const double roughness =
-        std::max(static_cast<double>(model.clearcoat_roughness), min_roughness);
+        std::max(static_cast<double>(model.clearcoat_roughness) *
+                     context.look_up(model.clearcoat_roughness_texture, ImageUse::data).g,
+                 min_roughness);
     Surface at = context.surface;
-    at.normal_world = at.plain_normal_world;
+    at.normal_world = at.coat_normal_world;
     const Context plain{context.prepared, context.material, at, context.trace};
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
     glm::dvec3 coat = received(plain, at.normal_world, [&](double n_dot_l, const glm::dvec3& half) {

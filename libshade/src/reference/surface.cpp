@@ -109,9 +109,15 @@ bool is_anisotropic(const Material& material) {
     return material.metallic_roughness && material.metallic_roughness->anisotropy > 0.0F;
 }
 
+/// Returns the normal map of the material's clear coat.
+std::optional<NormalMap> coat_map(const Material& material) {
+    return material.metallic_roughness ? material.metallic_roughness->clearcoat_normal_map
+                                       : std::nullopt;
+}
+
 bool uses_stored_tangents(const Material& material) {
     if (material.tangent_frame != TangentFrame::stored) return false;
-    return material.bump_map || is_anisotropic(material) ||
+    return material.bump_map || is_anisotropic(material) || coat_map(material) ||
            (material.normal_map && material.normal_map->space == NormalSpace::tangent);
 }
 
@@ -167,9 +173,10 @@ PreparedInstance prepared(const Instance& instance, const Mesh& mesh,
     return result;
 }
 
-void find_flat_code(PreparedScene& prepared, const Scene& scene, const Material& material) {
-    if (!material.normal_map) return;
-    const std::size_t image = material.normal_map->texture.image;
+void find_flat_code(PreparedScene& prepared, const Scene& scene,
+                    const std::optional<NormalMap>& map) {
+    if (!map) return;
+    const std::size_t image = map->texture.image;
     const Image decoded = decode(scene.images[image], ImageUse::data);
     prepared.normal_map_bits[image] = decoded.bits();
     prepared.detected_flat_codes[image] = detected_flat_code(scene.images[image], decoded);
@@ -188,7 +195,8 @@ void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report
     for (const std::uint32_t number : textured) {
         Material& material = prepared.materials[number];
         leave_out_textures(scene, prepared.texels.unreadable(), number, material, report);
-        find_flat_code(prepared, scene, material);
+        find_flat_code(prepared, scene, material.normal_map);
+        find_flat_code(prepared, scene, coat_map(material));
     }
 }
 
@@ -431,7 +439,7 @@ Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
 void face_viewer(const PreparedScene& prepared, const Hit& hit, Surface& surface) {
     if (is_back(prepared, hit)) {
         surface.normal_world = -surface.normal_world;
-        surface.plain_normal_world = -surface.plain_normal_world;
+        surface.coat_normal_world = -surface.coat_normal_world;
     }
     surface.view_world = unit_or(prepared.eye_world - surface.position_world, surface.normal_world);
 }
@@ -446,9 +454,11 @@ Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material
                    Trace& trace) {
     Surface surface = attributes_at(prepared, hit);
     surface.normal_world = front_normal(prepared, hit, material, surface.texcoord, trace);
-    Material plain;
-    plain.interpolation = material.interpolation;
-    surface.plain_normal_world = front_normal(prepared, hit, plain, surface.texcoord, trace);
+    Material coat;
+    coat.interpolation = material.interpolation;
+    coat.tangent_frame = material.tangent_frame;
+    coat.normal_map = coat_map(material);
+    surface.coat_normal_world = front_normal(prepared, hit, coat, surface.texcoord, trace);
     if (is_anisotropic(material)) {
         const Triangle triangle = triangle_of(prepared, hit);
         const Basis basis =

@@ -28,7 +28,7 @@ std::vector<gl::Location> attribute_locations() {
             at("color_linear", Attribute::color_linear)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 13> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 22> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
     {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
@@ -37,6 +37,15 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 13> texture_units{{
     {"metallic_roughness_texture", TextureUnit::metallic_roughness_texture},
     {"normal_texture", TextureUnit::normal_texture},
     {"bump_texture", TextureUnit::bump_texture},
+    {"specular_weight_texture", TextureUnit::specular_weight_texture},
+    {"specular_color_texture", TextureUnit::specular_color_texture},
+    {"sheen_color_texture", TextureUnit::sheen_color_texture},
+    {"clearcoat_texture", TextureUnit::clearcoat_texture},
+    {"clearcoat_roughness_texture", TextureUnit::clearcoat_roughness_texture},
+    {"clearcoat_normal_texture", TextureUnit::clearcoat_normal_texture},
+    {"anisotropy_texture", TextureUnit::anisotropy_texture},
+    {"iridescence_texture", TextureUnit::iridescence_texture},
+    {"film_thickness_texture", TextureUnit::film_thickness_texture},
     {"environment", TextureUnit::environment},
     {"blurred_environment", TextureUnit::blurred_environment},
     {"environment_brdf", TextureUnit::environment_brdf},

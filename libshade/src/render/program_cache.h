@@ -36,6 +36,15 @@ enum class TextureUnit : GLint {
     metallic_roughness_texture,
     normal_texture,
     bump_texture,
+    specular_weight_texture,
+    specular_color_texture,
+    sheen_color_texture,
+    clearcoat_texture,
+    clearcoat_roughness_texture,
+    clearcoat_normal_texture,
+    anisotropy_texture,
+    iridescence_texture,
+    film_thickness_texture,
     environment,
     blurred_environment,
     environment_brdf,
@@ -47,7 +56,7 @@ enum class TextureUnit : GLint {
 std::string_view sampler_name(TextureUnit unit);
 
 /// The number of units of materials.
-inline constexpr std::size_t material_unit_count = 8;
+inline constexpr std::size_t material_unit_count = 17;
 
 /// The binding point of the uniform block Lights.
 inline constexpr GLuint lights_binding = 0;

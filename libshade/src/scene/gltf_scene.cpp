@@ -128,6 +128,8 @@ MetallicRoughness factors_of(const GltfMaterial& material) {
         film(material.iridescence_index, &MetallicRoughness::iridescence_index);
     model.iridescence_thickness =
         film(material.iridescence_thickness, &MetallicRoughness::iridescence_thickness);
+    model.iridescence_thickness_minimum = film(material.iridescence_thickness_minimum,
+                                               &MetallicRoughness::iridescence_thickness_minimum);
     return model;
 }
 
@@ -165,7 +167,7 @@ namespace {
 
 /// The texture coordinates at which a material looks up its images. A mesh of the scene carries one
 /// set, so they are those of the material's first texture, in the order base color, normal,
-/// metallic-roughness, occlusion, emission.
+/// metallic-roughness, occlusion, emission, and then those of extensions.
 struct TexcoordSource {
     int set = 0;
     GltfTextureTransform transform;
@@ -175,7 +177,11 @@ TexcoordSource texcoord_source(const GltfMaterial& material) {
     for (const std::optional<GltfTexture>* texture :
          {&material.base_color_texture, &material.normal_texture,
           &material.metallic_roughness_texture, &material.occlusion_texture,
-          &material.emission_texture}) {
+          &material.emission_texture, &material.clearcoat_normal_texture,
+          &material.anisotropy_texture, &material.specular_texture,
+          &material.specular_color_texture, &material.clearcoat_texture,
+          &material.clearcoat_roughness_texture, &material.sheen_color_texture,
+          &material.iridescence_texture, &material.iridescence_thickness_texture}) {
         if (*texture) return {(*texture)->texcoord_set, (*texture)->transform};
     }
     return {};
@@ -318,6 +324,24 @@ std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageS
     return means;
 }
 
+/// Sets the textures of glTF's extensions.
+template <typename ToTexture>
+void add_textures(MetallicRoughness& model, const GltfMaterial& material,
+                  const ToTexture& texture) {
+    model.specular_texture = texture(material.specular_texture);
+    model.specular_color_texture = texture(material.specular_color_texture);
+    model.clearcoat_texture = texture(material.clearcoat_texture);
+    model.clearcoat_roughness_texture = texture(material.clearcoat_roughness_texture);
+    if (const auto normal = texture(material.clearcoat_normal_texture)) {
+        model.clearcoat_normal_map =
+            NormalMap{*normal, material.clearcoat_normal_scale, Green::up, std::nullopt};
+    }
+    model.sheen_color_texture = texture(material.sheen_color_texture);
+    model.anisotropy_texture = texture(material.anisotropy_texture);
+    model.iridescence_texture = texture(material.iridescence_texture);
+    model.iridescence_thickness_texture = texture(material.iridescence_thickness_texture);
+}
+
 /// Sets textures and alpha, which are the same in both material models.
 void add_textures(Material& result, const GltfMaterial& material, std::size_t index,
                   Report& report) {
@@ -328,6 +352,7 @@ void add_textures(Material& result, const GltfMaterial& material, std::size_t in
     result.diffuse_texture = texture(material.base_color_texture);
     if (result.metallic_roughness) {
         result.metallic_roughness->texture = texture(material.metallic_roughness_texture);
+        add_textures(*result.metallic_roughness, material, texture);
     }
     result.emission_texture = texture(material.emission_texture);
     result.occlusion_texture = texture(material.occlusion_texture);
@@ -453,8 +478,8 @@ void take_vertices(const std::vector<std::uint32_t>& source, std::vector<Value>&
     values = std::move(taken);
 }
 
-/// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal map
-/// or its anisotropy needs, because they are deformed with it.
+/// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal
+/// maps or its anisotropy need, because they are deformed with it.
 std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const GltfView& view,
                                           const GltfInstance<GltfPrimitiveId>& item,
                                           const SceneOptions& options, Report& report) {
@@ -482,7 +507,8 @@ std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const Gl
     if (result.has_flat_normals) source = separate_triangles(mesh);
     const std::vector<MaterialRange>& ranges = mesh.material_ranges;
     const auto uses_frame = [](const GltfMaterial& material) {
-        return material.normal_texture || material.anisotropy > 0.0F;
+        return material.normal_texture || material.clearcoat_normal_texture ||
+               material.anisotropy > 0.0F;
     };
     const bool is_framed = !ranges.empty() && ranges.front().material &&
                            uses_frame(view.materials[*ranges.front().material]) &&

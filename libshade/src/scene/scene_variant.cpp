@@ -122,7 +122,7 @@ class Preparation {
                 const std::optional<NormalMap>& map = material.normal_map;
                 const auto& model = material.metallic_roughness;
                 return material.bump_map || (map && map->space == NormalSpace::tangent) ||
-                       (model && model->anisotropy > 0.0F);
+                       (model && (model->anisotropy > 0.0F || model->clearcoat_normal_map));
             });
         if (!has_frames) {
             throw UnchangedScene(Lack::maps,

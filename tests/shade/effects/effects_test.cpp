@@ -68,8 +68,14 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
                                       !c.sheen && !c.clearcoat && !c.iridescence)) &&
             (lit || !c.iridescence) && (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
             ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
-            (c.detail == NormalDetail::normal_map || c.detail == NormalDetail::bump_map ||
-             c.anisotropy || c.frame == TangentFrame::stored) &&
+            (c.dielectric_reflectance ||
+             (!c.specular_weight_texture && !c.specular_color_texture)) &&
+            (c.sheen || !c.sheen_color_texture) && (c.anisotropy || !c.anisotropy_texture) &&
+            (c.clearcoat || (!c.clearcoat_texture && !c.clearcoat_normal_map)) &&
+            ((c.clearcoat && (has_lights(c) || reflects)) || !c.clearcoat_roughness_texture) &&
+            (c.interpolation == Interpolation::per_pixel || !c.clearcoat_normal_map) &&
+            (c.iridescence || (!c.iridescence_texture && !c.film_thickness_texture)) &&
+            (lies_in_frame(c) || c.frame == TangentFrame::stored) &&
             (c.specular != SpecularTerm::none || (!c.specular_texture && !c.highlight_colors)) &&
             (scatters || c.alpha != AlphaMode::opaque ||
              (!c.diffuse_texture && !c.vertex_colors)) &&

@@ -640,6 +640,74 @@ TEST(ReferenceShading, OfAnisotropyIsWiderAlongItsAxis) {
     expect_near(under({-1, 0, -1}), expected(0.25, 0.25));
 }
 
+/// Every texture multiplies its factor: with another factor and no texture, the light is the same.
+TEST(ReferenceShading, OfTexturesOfExtensionsIsThatOfTheirFactors) {
+    MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
+    model.specular = 0.8F;
+    model.specular_color = {1.0F, 0.5F, 0.8F};
+    model.sheen_color = {0.5F, 0.25F, 0.75F};
+    model.sheen_roughness = 0.5F;
+    model.clearcoat = 0.8F;
+    model.clearcoat_roughness = 0.5F;
+    model.anisotropy = 0.5F;
+    model.iridescence = 0.5F;
+    Scene scene = test::square_scene({});
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    scene.images = {{"color", texel({0.5F, 0.25F, 0.75F, 0.5F}, 4)},
+                    {"direction", texel({0.8F, 0.9F, 0.5F, 1})}};
+    scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
+    using M = MetallicRoughness;
+    const auto light_of = [&](const auto& change) {
+        MetallicRoughness changed = model;
+        change(changed);
+        scene.materials[0].metallic_roughness = changed;
+        return in_the_corner(scene);
+    };
+    const auto expect_same = [&](std::optional<Texture> M::*texture, std::size_t image,
+                                 const auto& change) {
+        const glm::dvec3 textured =
+            light_of([&](M& changed) { changed.*texture = Texture{image}; });
+        expect_near(textured, light_of(change));
+        EXPECT_NE(textured, light_of([](M&) {}));
+    };
+    expect_same(&M::specular_texture, 0, [](M& m) { m.specular = 0.4F; });
+    expect_same(&M::specular_color_texture, 0, [](M& m) {
+        m.specular_color = {0.5F, 0.125F, 0.6F};
+    });
+    expect_same(&M::sheen_color_texture, 0, [](M& m) {
+        m.sheen_color = {0.25F, 0.0625F, 0.5625F};
+    });
+    expect_same(&M::clearcoat_texture, 0, [](M& m) { m.clearcoat = 0.4F; });
+    expect_same(&M::clearcoat_roughness_texture, 0, [](M& m) { m.clearcoat_roughness = 0.125F; });
+    expect_same(&M::iridescence_texture, 0, [](M& m) { m.iridescence = 0.25F; });
+    expect_same(&M::iridescence_thickness_texture, 0,
+                [](M& m) { m.iridescence_thickness = 100.0F + 0.25F * 300.0F; });
+    // The direction is (0.6, 0.8), and the strength a half.
+    expect_same(&M::anisotropy_texture, 1, [](M& m) {
+        m.anisotropy = 0.25F;
+        m.anisotropy_rotation = std::atan2(0.8F, 0.6F);
+    });
+}
+
+TEST(ReferenceShading, OfAClearcoatIsBentByItsOwnNormalMap) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{glm::vec3(0.0F), 0.0F, 1.0F, {}};
+    material.metallic_roughness->clearcoat = 1.0F;
+    material.metallic_roughness->clearcoat_roughness = 0.2F;
+    material.metallic_roughness->specular = 0.0F;  // The base is black.
+    Scene scene = test::square_scene(material);
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    scene.images = {{"normal", texel({0.8F, 0.5F, 0.9F, 1})}};
+    scene.directional_lights = {{{-1, 0, -1}, {1, 1, 1}}};
+    scene.materials[0].metallic_roughness->clearcoat_normal_map =
+        NormalMap{Texture{0}, 1.0F, Green::up, FlatCode::half};
+    const glm::dvec3 mapped = in_the_middle(scene);
+    // The map's vector is (0.6, 0, 0.8).
+    scene.materials[0].metallic_roughness->clearcoat_normal_map.reset();
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0.6F, 0.0F, 0.8F));
+    expect_near(mapped, in_the_middle(scene));
+}
+
 /// The light is that of OfMetallicRoughnessIsAppendixB, the film's weight 1/2.
 TEST(ReferenceShading, OfIridescenceReplacesFresnelsFactor) {
     MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};

@@ -581,7 +581,8 @@ bool edit_relief(Material& material) {
         changed |= slide("Height", material.bump_map->strength, {0.0F, 128.0F, "%.1f texels"});
     }
     const auto& model = material.metallic_roughness;
-    if (material.normal_map || material.bump_map || (model && model->anisotropy > 0.0F))
+    const bool model_has_frame = model && (model->anisotropy > 0.0F || model->clearcoat_normal_map);
+    if (material.normal_map || material.bump_map || model_has_frame)
         changed |= choose("Tangents", material.tangent_frame);
     if (material.normal_map || material.bump_map) {
         changed |= ImGui::Checkbox("Specular antialiasing", &material.specular_antialiasing);

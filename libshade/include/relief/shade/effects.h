@@ -52,10 +52,19 @@ struct Features {
     bool metallic_roughness = false;
     /// Dielectrics reflect another share than 4% (KHR_materials_ior, KHR_materials_specular).
     bool dielectric_reflectance = false;
-    bool sheen = false;       ///< KHR_materials_sheen
-    bool clearcoat = false;   ///< KHR_materials_clearcoat
+    bool specular_weight_texture = false;
+    bool specular_color_texture = false;
+    bool sheen = false;  ///< KHR_materials_sheen
+    bool sheen_color_texture = false;
+    bool clearcoat = false;  ///< KHR_materials_clearcoat
+    bool clearcoat_texture = false;
+    bool clearcoat_roughness_texture = false;
+    bool clearcoat_normal_map = false;
     bool anisotropy = false;  ///< KHR_materials_anisotropy
+    bool anisotropy_texture = false;
     bool iridescence = false;  ///< KHR_materials_iridescence
+    bool iridescence_texture = false;
+    bool film_thickness_texture = false;
     Interpolation interpolation = Interpolation::per_pixel;
     // Factors of the colors.
     bool diffuse_texture = false;

@@ -85,20 +85,32 @@ struct MetallicRoughness {
     float refractive_index = 1.5F;   ///< 0 counts as infinite.
     float specular = 1.0F;           ///< The weight of the reflection.
     glm::vec3 specular_color{1.0F};  ///< Tints the reflection at normal incidence.
-    // A clear layer on top (KHR_materials_clearcoat), which no normal map bends.
+    std::optional<Texture> specular_texture{};        ///< Alpha multiplies specular.
+    std::optional<Texture> specular_color_texture{};  ///< sRGB color.
+    // A clear layer on top (KHR_materials_clearcoat), which only a normal map of its own bends.
     float clearcoat = 0.0F;  ///< Its weight; 0: none.
     float clearcoat_roughness = 0.0F;
+    std::optional<Texture> clearcoat_texture{};            ///< Red multiplies clearcoat.
+    std::optional<Texture> clearcoat_roughness_texture{};  ///< Green multiplies its roughness.
+    std::optional<NormalMap> clearcoat_normal_map{};       ///< In tangent space.
     // Fibers on top of the surface, under the coat (KHR_materials_sheen).
     glm::vec3 sheen_color{0.0F};  ///< Zero: none.
     float sheen_roughness = 0.0F;
+    std::optional<Texture> sheen_color_texture{};  ///< sRGB color.
     // Facets that are rougher along a direction in the tangent frame, as on brushed metal
     // (KHR_materials_anisotropy).
     float anisotropy = 0.0F;           ///< 0: the same roughness in all directions.
     float anisotropy_rotation = 0.0F;  ///< Radians from the tangent to the bitangent.
+    /// The direction before the rotation, in red and green, where 0.5 is 0; the tangent if it has
+    /// no length. Blue multiplies anisotropy.
+    std::optional<Texture> anisotropy_texture{};
     // A thin film, whose two surfaces interfere (KHR_materials_iridescence).
-    float iridescence = 0.0F;              ///< Its weight; 0: none.
-    float iridescence_index = 1.3F;        ///< The film's refractive index.
-    float iridescence_thickness = 400.0F;  ///< In nanometers.
+    float iridescence = 0.0F;                                ///< Its weight; 0: none.
+    float iridescence_index = 1.3F;                          ///< The film's refractive index.
+    float iridescence_thickness = 400.0F;                    ///< In nanometers.
+    float iridescence_thickness_minimum = 100.0F;            ///< Where the thickness texture is 0.
+    std::optional<Texture> iridescence_texture{};            ///< Red multiplies iridescence.
+    std::optional<Texture> iridescence_thickness_texture{};  ///< Green: from minimum to thickness.
 };
 
 /// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
@@ -166,8 +178,8 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
 /// color, D' and V' Charlie's distribution and visibility for alpha = sheen_roughness^2
 /// (convolution.h), E their directional albedo at n.v, which counts as at most 1, n' the normal
-/// without a map, w = clearcoat (0.04 + 0.96 (1 - n'.v)^5), and D, V, A and B of the coat those for
-/// clearcoat_roughness and n':
+/// with the coat's map alone, w = clearcoat (0.04 + 0.96 (1 - n'.v)^5), and D, V, A and B of the
+/// coat those for clearcoat_roughness and n':
 ///
 ///     sheened = (1 - max(s) E) (radiance without emission)
 ///             + s (sum_i L max(n.l, 0) pi D' V' + E occlusion (scene.ambient + E(n)))
