@@ -15,12 +15,13 @@ void add_ambient(Surface surface, inout Lighting lighting) {
 // Ambient light both scatters and mirrors.
 
 #include "inputs.glsl#ambient"
+#include <film>
 #include <occlusion>
 
 void add_ambient(Surface surface, inout Lighting lighting) {
     vec3 received = ambient_scattered * occlusion();
     lighting.scattered += received;
-    lighting.highlights += received * surface.f0;
+    lighting.highlights += received * with_film(surface, 1.0, 1.0, surface.f0);
 }
 
 #part occlusion

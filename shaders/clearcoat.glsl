@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A clear layer on top of glTF's surfaces, which dims what is below by its own reflection. Normal
-// maps do not bend it. Source: KHR_materials_clearcoat.
+// A clear layer on top of glTF's surfaces, which dims what is below by its own reflection. Only a
+// normal map of its own bends it. Source: KHR_materials_clearcoat.
 
 #part layer
 // The coat over the radiance of the surface, emission included. Its weight is Schlick's Fresnel
@@ -10,12 +10,13 @@
 #include <clearcoat_lights>
 #include <clearcoat_ambient>
 #include <clearcoat_reflection>
+#include <clearcoat_texture>
 
 uniform float clearcoat;
 
 vec3 with_clearcoat(Surface surface, vec3 radiance) {
     float m = 1.0 - clamp(dot(clearcoat_normal(surface), surface.view_world), 0.0, 1.0);
-    float weight = clearcoat * (0.04 + 0.96 * (m * m * m * m * m));
+    float weight = clearcoat * clearcoat_texel() * (0.04 + 0.96 * (m * m * m * m * m));
     vec3 coat = clearcoat_from_lights() + clearcoat_from_ambient() + clearcoat_reflection(surface);
     return radiance * (1.0 - weight) + coat * weight;
 }
@@ -31,14 +32,58 @@ vec3 clearcoat_normal(Surface surface) {
     return facing() * normalized_or(normal_world, vec3(0.0, 0.0, 1.0));
 }
 
+#part normal_map
+// The normal with the coat's own map, by the rules of normal.glsl#perturbed.
+
+#include "inputs.glsl#texcoord"
+#include "vector.glsl#normalized_or"
+#include <frame>
+#include <facing>
+
+uniform sampler2D clearcoat_normal_texture;
+uniform vec3 clearcoat_normal_scale;
+uniform vec3 clearcoat_normal_bias;
+
+vec3 clearcoat_normal(Surface surface) {
+    vec3 bend = texture(clearcoat_normal_texture, texcoord_surface).xyz * clearcoat_normal_scale +
+                clearcoat_normal_bias;
+    mat3 frame = world_from_tangent();
+    vec3 bent_world = bend.x * frame[0] + bend.y * frame[1] + bend.z * frame[2];
+    bool bends = dot(bend, bend) > 1e-12 && has_direction(bent_world);
+    return facing() * normalized_or(bends ? bent_world : frame[2], vec3(0.0, 0.0, 1.0));
+}
+
+#part texture
+// The weight from a texture: red.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D clearcoat_texture;
+
+float clearcoat_texel() { return texture(clearcoat_texture, texcoord_surface).r; }
+
+#part roughness_texture
+// The roughness from a texture: green.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D clearcoat_roughness_texture;
+
+float clearcoat_roughness_texel() {
+    return texture(clearcoat_roughness_texture, texcoord_surface).g;
+}
+
 #part roughness
 // The roughness of the coat.
 
 #include "inputs.glsl#min_roughness"
+#include <clearcoat_roughness_texture>
 
 uniform float clearcoat_roughness;
 
-float coat_roughness() { return max(clearcoat_roughness, min_roughness); }
+float coat_roughness() {
+    return max(clearcoat_roughness * clearcoat_roughness_texel(), min_roughness);
+}
 
 #part lights
 // The highlights of light sources, before the layer's weight.

@@ -45,15 +45,26 @@ vec2 albedo_factors(float n_dot_v, float roughness) {
 }
 
 #part brdf
-// The share of the environment's light that glTF's facets mirror.
+// The share of the environment's light that glTF's facets mirror, and the share that scattering
+// lacks.
 
 #include "environment.glsl#brdf_table"
 #include <grazing>
+#include <film>
 
-vec3 directional_albedo(Surface surface, vec3 f0) {
+vec3 mirrored_albedo(Surface surface) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
     vec2 factors = albedo_factors(n_dot_v, surface.roughness);
-    return f0 * factors.x + grazing_reflectance(surface) * factors.y;
+    return with_film(surface, n_dot_v, factors.x + factors.y,
+                     surface.f0 * factors.x + grazing_reflectance(surface) * factors.y);
+}
+
+vec3 blocked_albedo(Surface surface) {
+    float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
+    vec2 factors = albedo_factors(n_dot_v, surface.roughness);
+    return blocked_by_film(
+        surface, n_dot_v, factors.x + factors.y,
+        blocking_f0(surface) * factors.x + grazing_reflectance(surface) * factors.y);
 }
 
 #part irradiance
@@ -94,6 +105,5 @@ void add_environment_light(Surface surface, inout Lighting lighting) {
 
 void add_environment_light(Surface surface, inout Lighting lighting) {
     vec3 received = environment_irradiance(surface.normal_world) * occlusion();
-    vec3 blocked = directional_albedo(surface, blocking_f0(surface));
-    lighting.scattered += received * (vec3(1.0) - blocked);
+    lighting.scattered += received * (vec3(1.0) - blocked_albedo(surface));
 }

@@ -69,9 +69,35 @@ Surface surface_here() {
 // The reflectance of dielectrics at normal incidence, from index, weight and color.
 // Source: KHR_materials_ior, KHR_materials_specular.
 
-uniform vec3 dielectric_f0;
+#include <specular_weight_texture>
+#include <specular_color_texture>
 
-vec3 dielectric_reflectance() { return dielectric_f0; }
+uniform vec3 dielectric_color;  // With the reflectance of the index.
+uniform float dielectric_weight;
+
+float reflection_weight() { return dielectric_weight * specular_weight_texel(); }
+
+vec3 dielectric_reflectance() {
+    return min(dielectric_color * specular_color_texel(), vec3(1.0)) * reflection_weight();
+}
+
+#part weight_texture
+// The weight of the reflection from a texture: alpha.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D specular_weight_texture;
+
+float specular_weight_texel() { return texture(specular_weight_texture, texcoord_surface).a; }
+
+#part color_texture
+// The color of the reflection from a texture.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D specular_color_texture;
+
+vec3 specular_color_texel() { return texture(specular_color_texture, texcoord_surface).rgb; }
 
 #part grazing
 // The reflectance at grazing incidence, which the weight lowers; and the reflectance at normal
@@ -80,15 +106,14 @@ vec3 dielectric_reflectance() { return dielectric_f0; }
 
 #include "metallic_roughness.glsl#dielectric"
 
-uniform float dielectric_f90;
-
 vec3 grazing_reflectance(Surface surface) {
-    return vec3(1.0 + (dielectric_f90 - 1.0) * surface.dielectric_share);
+    return vec3(1.0 + (reflection_weight() - 1.0) * surface.dielectric_share);
 }
 
 vec3 blocking_f0(Surface surface) {
-    float largest = max(max(dielectric_f0.r, dielectric_f0.g), dielectric_f0.b);
-    return surface.f0 + (vec3(largest) - dielectric_f0) * surface.dielectric_share;
+    vec3 dielectric = dielectric_reflectance();
+    float largest = max(max(dielectric.r, dielectric.g), dielectric.b);
+    return surface.f0 + (vec3(largest) - dielectric) * surface.dielectric_share;
 }
 
 #part factors
@@ -121,21 +146,42 @@ vec3 scattering_tint(Surface surface) { return surface.scattered_color; }
 // GGX facets. 1 - (n.h)^2 is computed from the cross product, since a float next to 1 is too coarse
 // for smooth surfaces. Source: [Walter et al. 2007].
 
-// GGX's D times pi. A normal map may turn the normal away from the half vector; n.h then counts as
-// 0. Its square alone would mirror the lobe to the other side of the surface.
-float facets(vec3 normal_world, vec3 half_world, float alpha_squared) {
+// The root of alpha^2 / (pi D). A normal map may turn the normal away from the half vector; n.h then
+// counts as 0. Its square alone would mirror the lobe to the other side of the surface.
+float facet_spread(vec3 normal_world, vec3 half_world, float alpha_squared) {
     float n_dot_h = dot(normal_world, half_world);
-    if (!(n_dot_h > 0.0)) return alpha_squared;
+    if (!(n_dot_h > 0.0)) return 1.0;
     vec3 across = cross(normal_world, half_world);
-    float spread = dot(across, across) + alpha_squared * n_dot_h * n_dot_h;
+    return dot(across, across) + alpha_squared * n_dot_h * n_dot_h;
+}
+
+// GGX's D times pi.
+float facets(vec3 normal_world, vec3 half_world, float alpha_squared) {
+    float spread = facet_spread(normal_world, half_world, alpha_squared);
     return alpha_squared / (spread * spread);
+}
+
+// The squared length of a unit vector whose components in the surface are scaled by alpha.
+float masking(float n_dot_v, float alpha_squared) {
+    return n_dot_v * n_dot_v * (1.0 - alpha_squared) + alpha_squared;
 }
 
 // Smith's height-correlated masking and shadowing over 4 (n.l) (n.v).
 float visibility(float n_dot_l, float n_dot_v, float alpha_squared) {
-    float masked = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - alpha_squared) + alpha_squared);
-    float shadowed = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - alpha_squared) + alpha_squared);
+    float masked = n_dot_l * sqrt(masking(n_dot_v, alpha_squared));
+    float shadowed = n_dot_v * sqrt(masking(n_dot_l, alpha_squared));
     return 0.5 / (masked + shadowed);
+}
+
+#part lobe
+// The share of a light that facets mirror, before Fresnel's factor: pi D V.
+
+#include "metallic_roughness.glsl#ggx"
+
+float mirrored_share(Surface surface, vec3 light_world, vec3 half_world, float n_dot_l,
+                     float n_dot_v) {
+    return facets(surface.normal_world, half_world, surface.alpha_squared) *
+           visibility(n_dot_l, n_dot_v, surface.alpha_squared);
 }
 
 #part receive
@@ -144,8 +190,9 @@ float visibility(float n_dot_l, float n_dot_v, float alpha_squared) {
 // nothing is mirrored. Layers on top receive the light as well.
 
 #include "vector.glsl#normalized_or"
-#include "metallic_roughness.glsl#ggx"
+#include <lobe>
 #include <grazing>
+#include <film>
 #include <sheen_lights>
 #include <clearcoat_lights>
 
@@ -161,15 +208,17 @@ void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_
         lighting.scattered += received;
         return;
     }
-    float m = 1.0 - clamp(dot(surface.view_world, half_world), 0.0, 1.0);
+    float v_dot_h = clamp(dot(surface.view_world, half_world), 0.0, 1.0);
+    float m = 1.0 - v_dot_h;
     float towards_grazing = m * m * m * m * m;
     vec3 f90 = grazing_reflectance(surface);
-    vec3 fresnel = surface.f0 + (f90 - surface.f0) * towards_grazing;
+    vec3 fresnel = with_film(surface, v_dot_h, 1.0,
+                             surface.f0 + (f90 - surface.f0) * towards_grazing);
     vec3 blocking = blocking_f0(surface);
-    vec3 blocked = blocking + (f90 - blocking) * towards_grazing;
+    vec3 blocked = blocked_by_film(surface, v_dot_h, 1.0,
+                                   blocking + (f90 - blocking) * towards_grazing);
     float n_dot_v = max(dot(surface.normal_world, surface.view_world), 0.0);
-    float mirrored = facets(surface.normal_world, half_world, surface.alpha_squared) *
-                     visibility(n_dot_l, n_dot_v, surface.alpha_squared);
+    float mirrored = mirrored_share(surface, light_world, half_world, n_dot_l, n_dot_v);
     lighting.scattered += received * (vec3(1.0) - blocked);
     lighting.highlights += received * fresnel * mirrored;
 }

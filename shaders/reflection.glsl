@@ -25,12 +25,13 @@ vec3 with_reflection(Surface surface, vec3 scattered) {
 
 #include "environment.glsl#brdf"
 #include "environment.glsl#blurred"
+#include <mirror_normal>
 #include <occlusion>
 
 vec3 with_reflection(Surface surface, vec3 scattered) {
-    vec3 mirrored_world = reflect(-surface.view_world, surface.normal_world);
+    vec3 mirrored_world = reflect(-surface.view_world, mirror_normal(surface));
     vec3 mirrored = blurred_radiance(mirrored_world, surface.roughness) * occlusion();
-    return scattered + mirrored * directional_albedo(surface, surface.f0);
+    return scattered + mirrored * mirrored_albedo(surface);
 }
 
 #part refraction_only

@@ -9,6 +9,7 @@
 #include <sheen_lights>
 #include <sheen_ambient>
 #include <sheen_environment>
+#include <sheen_color_texture>
 
 uniform vec3 sheen_color;
 uniform vec4 sheen_albedo[8];
@@ -24,11 +25,20 @@ float sheen_albedo_at(float n_dot_v) {
 vec3 with_sheen(Surface surface, vec3 radiance) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
     float albedo = sheen_albedo_at(n_dot_v);
-    float largest = max(max(sheen_color.r, sheen_color.g), sheen_color.b);
+    vec3 color = sheen_color * sheen_color_texel();
+    float largest = max(max(color.r, color.g), color.b);
     vec3 around = sheen_from_ambient() + sheen_from_environment(surface);
-    return radiance * (1.0 - largest * albedo) +
-           sheen_color * (sheen_from_lights() + around * albedo);
+    return radiance * (1.0 - largest * albedo) + color * (sheen_from_lights() + around * albedo);
 }
+
+#part color_texture
+// The color from a texture.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D sheen_color_texture;
+
+vec3 sheen_color_texel() { return texture(sheen_color_texture, texcoord_surface).rgb; }
 
 #part lights
 // The light of light sources. n.v is at least 1e-4, since V has a pole at 0.

@@ -222,7 +222,7 @@ void frame(GltfDocument& document, const FrameOptions& read, Report& report) {
         const bool has_normals = !mesh.normals.empty();
         const bool has_tangents = has_normals && !mesh.tangents.empty();
         if (!has_tangents) options.tangents = TangentMethod::none;
-        if (!has_tangents && !mesh.texcoords.empty() && texcoords.texture == "normalTexture")
+        if (!has_tangents && !mesh.texcoords.empty() && !texcoords.texture.empty())
             options.tangents = TangentMethod::mikktspace;
         const bool keeps_normals = has_normals && options.normals == NormalMode::keep;
         if (keeps_normals && !computes_tangents(options.tangents)) continue;

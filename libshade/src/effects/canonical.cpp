@@ -53,7 +53,7 @@ void settle_model(Features& f) {
         if (f.reflection != ReflectionTerm::none) f.reflection = ReflectionTerm::glossy;
         if (f.interpolation == Interpolation::gouraud) f.interpolation = Interpolation::per_pixel;
     } else {
-        f.metallic_roughness_texture = f.dielectric_reflectance = false;
+        f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
     }
     if (f.reflection == ReflectionTerm::none) f.fresnel = FresnelTerm::constant;
 }
@@ -85,10 +85,19 @@ bool is_lit_anyhow(const Features& f) {
            f.reflection != ReflectionTerm::none;
 }
 
-/// Sheen and coat belong to glTF's model. Sheen needs light; a coat also dims the emission.
+/// Sheen and coat belong to glTF's model, and so does anisotropy, which stretches highlights and
+/// mirror images. Sheen needs light; a coat also dims the emission.
 void drop_layers(Features& f) {
+    const bool highlights = light_count(f) > 0 && f.view != DebugView::diffuse;
+    f.anisotropy &= f.metallic_roughness && (highlights || f.reflection != ReflectionTerm::none);
     if (!f.metallic_roughness || !is_lit_anyhow(f)) f.sheen = false;
     if (!f.metallic_roughness || !(is_lit_anyhow(f) || f.emission)) f.clearcoat = false;
+    f.sheen_color_texture &= f.sheen;
+    f.anisotropy_texture &= f.anisotropy;
+    f.clearcoat_texture &= f.clearcoat;
+    f.clearcoat_roughness_texture &=
+        f.clearcoat && (highlights || f.reflection != ReflectionTerm::none);
+    f.clearcoat_normal_map &= f.clearcoat && f.interpolation == Interpolation::per_pixel;
 }
 
 void drop_normal(Features& f) {
@@ -106,9 +115,7 @@ void drop_normal(Features& f) {
     if ((!plain_seen && light_count(f) == 0) || f.interpolation == Interpolation::flat) {
         f.double_sided = false;
     }
-    if (f.detail == NormalDetail::none || f.detail == NormalDetail::object_normal_map) {
-        f.frame = TangentFrame::stored;
-    }
+    if (!lies_in_frame(f)) f.frame = TangentFrame::stored;
     const bool mapped =
         f.detail == NormalDetail::normal_map || f.detail == NormalDetail::object_normal_map;
     const bool sharp =
@@ -123,10 +130,14 @@ void drop_colors(Features& f) {
     if (!from_everywhere) f.occlusion_texture = false;
     if (!from_everywhere && !f.diffuse) {
         f.metallic_roughness &= f.clearcoat;
-        f.metallic_roughness_texture = f.dielectric_reflectance = false;
+        f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
         if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
     }
     if (!f.emission) f.emission_texture = false;
+    f.specular_weight_texture &= f.dielectric_reflectance;
+    f.specular_color_texture &= f.dielectric_reflectance;
+    f.iridescence_texture &= f.iridescence;
+    f.film_thickness_texture &= f.iridescence;
 }
 
 std::string counted(std::uint32_t count, std::string_view kind) {

@@ -189,7 +189,7 @@ void update_tangents(const Scene& scene, DrawPlan& draw) {
     for (EffectReason& reason : draw.reasons) {
         if (reason.effect != "computed tangents" || reason.on == draw.needs_tangents) continue;
         reason.on = draw.needs_tangents;
-        reason.reason = uses ? "a forced normal map lies in their frame" : "nothing uses tangents";
+        reason.reason = uses ? "a forced effect lies in their frame" : "nothing uses tangents";
     }
 }
 

@@ -18,6 +18,7 @@ namespace {
 using Subject = const DrawSubject&;
 using Forced = const ForcingSubject&;
 using F = Features;
+using M = MetallicRoughness;
 
 /// Returns an effect that is one switch.
 template <bool Features::*Member>
@@ -58,6 +59,9 @@ Effect lights(const char* name) {
 // Reasons of canonical() that several rows share.
 const char* const no_light = "no light reaches the surface, or it does nothing with it";
 const char* const no_layer = "the material is not metallic-roughness, or nothing shines on it";
+const char* const no_reflectance = "dielectrics reflect the 4% of the index 1.5";
+const char* const no_coat = "there is no coat";
+const char* const no_film = "there is no film";
 const char* const no_normal = "neither light nor reflection shows the normal";
 const char* const no_color = "nothing is scattered that it could tint";
 const char* const no_highlights = "there are no highlights";
@@ -101,6 +105,13 @@ bool is_dark_around(Forced s) {
 bool is_phong(Forced s) {
     return !s.planned.metallic_roughness;
 }
+bool is_isotropic(Forced s) {
+    const auto& model = s.material.metallic_roughness;
+    return !model || !(model->anisotropy > 0.0F);
+}
+bool has_stored_frame_or_no_coat(Forced s) {
+    return s.planned.frame == TangentFrame::stored || !s.planned.clearcoat;
+}
 bool mirrors_nothing(Forced s) {
     return s.planned.reflection == ReflectionTerm::none;
 }
@@ -117,14 +128,31 @@ bool is_physical(Subject s) {
 Decision of_dielectric_reflectance(Subject s) {
     if (!is_physical(s)) return {false, s.name + " is Phong's model"};
     const MetallicRoughness& model = *s.material.metallic_roughness;
+    const bool shows_textures = !s.mesh.texcoords.empty();
+    const bool varies = (model.specular_texture || model.specular_color_texture) && shows_textures;
     const bool differs =
         dielectric_reflectance(model) != dielectric_reflectance(MetallicRoughness{}) ||
-        model.specular != 1.0F;
+        model.specular != 1.0F || varies;
     if (!differs) return {false, s.name + " reflects the 4% of the index 1.5"};
-    const bool textured = model.texture && !s.mesh.texcoords.empty();
+    const bool textured = model.texture && shows_textures;
     const bool is_metal = model.metallic == 1.0F && !textured;
     return of_material(s, !is_metal, "has an index, weight or color of its own",
                        "is a metal everywhere");
+}
+
+/// Anisotropy needs a tangent frame: stored tangents, or texture coordinates to derive them from.
+Decision of_anisotropy(Subject s) {
+    if (!is_physical(s)) return {false, s.name + " is Phong's model"};
+    if (!(s.material.metallic_roughness->anisotropy > 0.0F))
+        return {false, s.name + " is as rough in all directions"};
+    const bool has_tangents =
+        s.material.tangent_frame == TangentFrame::stored && !s.mesh.tangents.empty();
+    if (!has_tangents && s.mesh.texcoords.empty()) {
+        return {false, fmt::format("{} has one, but mesh '{}' has no texture coordinates, so there "
+                                   "is no tangent frame",
+                                   s.name, s.mesh.name)};
+    }
+    return {true, s.name + " is rougher along a direction of the tangent frame"};
 }
 
 /// A texture shows only on a mesh with texture coordinates.
@@ -135,6 +163,15 @@ Decision of_texture(Subject s, bool has_texture) {
                                    s.mesh.name)};
     }
     return {true, s.name + " has one and the mesh has texture coordinates"};
+}
+
+/// Returns the row of a texture of glTF's model, which shows only with another effect.
+template <auto Feature, auto Member>
+EffectRow model_texture(const char* name, const char* hidden) {
+    return {.effect = one_switch<Feature>(name, hidden), .decide = [](Subject s) {
+                const auto& model = s.material.metallic_roughness;
+                return of_texture(s, model && ((*model).*Member).has_value());
+            }};
 }
 
 Decision of_vertex_colors(Subject s) {
@@ -280,6 +317,21 @@ Decision of_tone(Subject s, ToneMapping tone) {
                                                              : "the scene asks for another curve"};
 }
 
+const char* coat_map_hidden_by(const Features& requested, const Features& /*shown*/) {
+    const bool flat = requested.interpolation == Interpolation::flat;
+    return flat ? "flat shading knows the triangle's plane only" : "";
+}
+
+EffectRow coat_map_row() {
+    EffectRow row = model_texture<&F::clearcoat_normal_map, &M::clearcoat_normal_map>(
+        "clearcoat normal map", no_coat);
+    // Frames from derivatives have a normal of unit length, which the plain coat's is not exactly.
+    row.choice = "the coat's normal would be rounded";
+    row.neutral = has_stored_frame_or_no_coat;
+    row.hidden_by = coat_map_hidden_by;
+    return row;
+}
+
 std::vector<EffectRow> model_rows() {
     return {
         {.effect = one_switch<&F::unlit>("unlit", ""),
@@ -314,6 +366,34 @@ std::vector<EffectRow> model_rows() {
                  const bool has = is_physical(s) && s.material.metallic_roughness->clearcoat > 0.0F;
                  return of_material(s, has, "has a clear coat", "has none");
              }},
+        {.effect = one_switch<&F::iridescence>("iridescence", no_layer),
+         .decide =
+             [](Subject s) {
+                 const bool has =
+                     is_physical(s) && s.material.metallic_roughness->iridescence > 0.0F;
+                 return of_material(s, has, "has a thin film", "has none");
+             }},
+        {.effect = one_switch<&F::anisotropy>(
+             "anisotropy", "the material is not metallic-roughness, or mirrors nothing"),
+         .decide = of_anisotropy,
+         .choice = "the mesh has no tangent frame",
+         .neutral = is_isotropic},
+        model_texture<&F::specular_weight_texture, &M::specular_texture>("specular weight texture",
+                                                                         no_reflectance),
+        model_texture<&F::specular_color_texture, &M::specular_color_texture>(
+            "specular color texture", no_reflectance),
+        model_texture<&F::sheen_color_texture, &M::sheen_color_texture>("sheen color texture",
+                                                                        "there is no sheen"),
+        model_texture<&F::clearcoat_texture, &M::clearcoat_texture>("clearcoat texture", no_coat),
+        model_texture<&F::clearcoat_roughness_texture, &M::clearcoat_roughness_texture>(
+            "clearcoat roughness texture", "there is no coat, or it mirrors nothing"),
+        coat_map_row(),
+        model_texture<&F::anisotropy_texture, &M::anisotropy_texture>("anisotropy texture",
+                                                                      "there is no anisotropy"),
+        model_texture<&F::iridescence_texture, &M::iridescence_texture>("iridescence texture",
+                                                                        no_film),
+        model_texture<&F::film_thickness_texture, &M::iridescence_thickness_texture>(
+            "film thickness texture", no_film),
         {.effect = one_value<&F::interpolation, Interpolation::gouraud>("Gouraud",
                                                                         "no light is interpolated"),
          .decide =
@@ -363,7 +443,7 @@ std::vector<EffectRow> normal_rows() {
          .decide = [](Subject s) { return of_texture(s, s.material.bump_map.has_value()); },
          .hidden_by = map_hidden_by},
         {.effect = one_value<&F::frame, TangentFrame::derivatives>(
-             "derivative frames", "no map asks for a tangent frame"),
+             "derivative frames", "nothing asks for a tangent frame"),
          .decide =
              [](Subject s) {
                  return of_material(s, s.material.tangent_frame == TangentFrame::derivatives,

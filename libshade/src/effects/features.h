@@ -22,6 +22,12 @@ inline std::uint32_t light_count(const Features& f) {
     return f.directional_lights + f.point_lights + f.spot_lights;
 }
 
+/// True if a map or anisotropy lies in the tangent frame.
+inline bool lies_in_frame(const Features& f) {
+    return f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map ||
+           f.anisotropy || f.clearcoat_normal_map;
+}
+
 /// True if the view is a term that reflections only dim: no mirror image is looked up.
 inline bool has_black_mirror(const Features& f) {
     return is_term(f.view) && f.view != DebugView::reflection;

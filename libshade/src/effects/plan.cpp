@@ -51,9 +51,7 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
     DrawDecisions decisions =
         decide(scene, material, material_label(scene, range.material), mesh, output);
     const Features& f = decisions.features;
-    const bool uses_tangents =
-        (f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map) &&
-        f.frame == TangentFrame::stored;
+    const bool uses_tangents = lies_in_frame(f) && f.frame == TangentFrame::stored;
     DrawPlan draw{instance, range, f, std::move(decisions.reasons),
                   uses_tangents && mesh.tangents.empty()};
     const std::string mesh_name = mesh_label(scene, mesh_index);

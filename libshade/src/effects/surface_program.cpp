@@ -103,7 +103,7 @@ bool is_perturbed(By f) {
     return tangent_space && fragment_needs(f).normal;
 }
 bool has_frame(By f) {
-    return is_perturbed(f) || shows_frame(f);
+    return is_perturbed(f) || f.anisotropy || f.clearcoat_normal_map || shows_frame(f);
 }
 bool has_stored_frame(By f) {
     return has_frame(f) && f.frame == TangentFrame::stored;
@@ -125,10 +125,17 @@ bool passes_position(By f) {
 bool passes_normal(By f) {
     return has_frame(f) || vertex_needs(f).normal || (fragment_needs(f).normal && !is_flat(f));
 }
+/// True if a texture of an extension of glTF's model is sampled.
+bool has_model_texture(By f) {
+    return f.specular_weight_texture || f.specular_color_texture || f.sheen_color_texture ||
+           f.clearcoat_texture || f.clearcoat_roughness_texture || f.clearcoat_normal_map ||
+           f.anisotropy_texture || f.iridescence_texture || f.film_thickness_texture;
+}
 bool passes_texcoord(By f) {
     return f.diffuse_texture || f.specular_texture || f.metallic_roughness_texture ||
            f.occlusion_texture || f.opacity_texture || f.emission_texture ||
-           f.detail != NormalDetail::none || has_derived_frame(f) || f.view == DebugView::texcoords;
+           f.detail != NormalDetail::none || has_derived_frame(f) ||
+           f.view == DebugView::texcoords || has_model_texture(f);
 }
 
 constexpr std::string_view neutral_sharpness =
@@ -184,13 +191,68 @@ Steps dielectric_steps(By f) {
     const bool by_angle = own && has_lit_facets(f);
     return {{"dielectric",
              "vec3 dielectric_reflectance() { return vec3(0.04); }",
-             {{"metallic_roughness.glsl#dielectric", own, {.uniforms = {"dielectric_f0"}}}}},
+             {{"metallic_roughness.glsl#dielectric",
+               own,
+               {.uniforms = {"dielectric_color", "dielectric_weight"}}}}},
+            {"specular_weight_texture",
+             "float specular_weight_texel() { return 1.0; }",
+             {{"metallic_roughness.glsl#weight_texture",
+               f.specular_weight_texture,
+               {.samplers = {"specular_weight_texture"}}}}},
+            {"specular_color_texture",
+             "vec3 specular_color_texel() { return vec3(1.0); }",
+             {{"metallic_roughness.glsl#color_texture",
+               f.specular_color_texture,
+               {.samplers = {"specular_color_texture"}}}}},
             {"grazing",
              "vec3 grazing_reflectance(Surface surface) { return vec3(1.0); } "
              "vec3 blocking_f0(Surface surface) { return surface.f0; }",
              {{"metallic_roughness.glsl#grazing",
                by_angle,
-               {.uniforms = {"dielectric_f0", "dielectric_f90"}}}}}};
+               {.uniforms = {"dielectric_color", "dielectric_weight"}}}}}};
+}
+
+/// Returns the step of the thin film on glTF's facets.
+Steps film_steps(By f) {
+    return {{"film",
+             "vec3 with_film(Surface surface, float cosine, float share, vec3 mirrored) "
+             "{ return mirrored; } "
+             "vec3 blocked_by_film(Surface surface, float cosine, float share, vec3 blocked) "
+             "{ return blocked; }",
+             {{"iridescence.glsl#film",
+               f.iridescence,
+               {.uniforms = {"iridescence", "iridescence_index", "iridescence_thickness"}}}}},
+            {"iridescence_texture",
+             "float iridescence_texel() { return 1.0; }",
+             {{"iridescence.glsl#texture",
+               f.iridescence_texture,
+               {.samplers = {"iridescence_texture"}}}}},
+            {"film_thickness",
+             "",
+             {{"iridescence.glsl#thickness", f.iridescence && !f.film_thickness_texture},
+              {"iridescence.glsl#thickness_texture",
+               f.film_thickness_texture,
+               {.uniforms = {"iridescence_thickness_minimum"},
+                .samplers = {"film_thickness_texture"}}}}}};
+}
+
+/// Returns the steps of glTF's facets. Canonical features have anisotropy only where it shows.
+Steps facet_steps(By f, bool in_this_stage) {
+    const bool lit = in_this_stage && has_lights(f) && f.metallic_roughness;
+    const bool mirrors = f.anisotropy && f.reflection != ReflectionTerm::none;
+    const Takes anisotropy{.uniforms = {"anisotropy", "anisotropy_direction"}};
+    return {{"lobe",
+             "",
+             {{"metallic_roughness.glsl#lobe", lit && !f.anisotropy},
+              {"anisotropy.glsl#lobe", lit && f.anisotropy, anisotropy}}},
+            {"mirror_normal",
+             "vec3 mirror_normal(Surface surface) { return surface.normal_world; }",
+             {{"anisotropy.glsl#mirror_normal", mirrors, anisotropy}}},
+            {"anisotropy_texture",
+             "vec3 anisotropy_texel() { return vec3(1.0, 0.0, 1.0); }",
+             {{"anisotropy.glsl#texture",
+               f.anisotropy_texture,
+               {.samplers = {"anisotropy_texture"}}}}}};
 }
 
 /// Returns the steps of the layers on glTF's surfaces. A view of one term has the layers' share of
@@ -202,6 +264,11 @@ Steps layer_steps(By f) {
         {"sheen",
          "vec3 with_sheen(Surface surface, vec3 radiance) { return radiance; }",
          {{"sheen.glsl#layer", f.sheen, {.uniforms = {"sheen_color", "sheen_albedo"}}}}},
+        {"sheen_color_texture",
+         "vec3 sheen_color_texel() { return vec3(1.0); }",
+         {{"sheen.glsl#color_texture",
+           f.sheen_color_texture,
+           {.samplers = {"sheen_color_texture"}}}}},
         {"sheen_lights",
          "void receive_sheen(Surface surface, vec3 light_world, vec3 irradiance) {} "
          "vec3 sheen_from_lights() { return vec3(0.0); }",
@@ -219,7 +286,20 @@ Steps layer_steps(By f) {
          {{"clearcoat.glsl#layer", f.clearcoat, {.uniforms = {"clearcoat", "eye_world"}}}}},
         {"clearcoat_normal",
          "vec3 clearcoat_normal(Surface surface) { return surface.normal_world; }",
-         {{"clearcoat.glsl#normal", f.clearcoat && f.detail != NormalDetail::none}}},
+         {{"clearcoat.glsl#normal",
+           f.clearcoat && !f.clearcoat_normal_map && f.detail != NormalDetail::none},
+          {"clearcoat.glsl#normal_map",
+           f.clearcoat_normal_map,
+           {.uniforms = {"clearcoat_normal_scale", "clearcoat_normal_bias"},
+            .samplers = {"clearcoat_normal_texture"}}}}},
+        {"clearcoat_texture",
+         "float clearcoat_texel() { return 1.0; }",
+         {{"clearcoat.glsl#texture", f.clearcoat_texture, {.samplers = {"clearcoat_texture"}}}}},
+        {"clearcoat_roughness_texture",
+         "float clearcoat_roughness_texel() { return 1.0; }",
+         {{"clearcoat.glsl#roughness_texture",
+           f.clearcoat_roughness_texture,
+           {.samplers = {"clearcoat_roughness_texture"}}}}},
         {"clearcoat_lights",
          "void receive_clearcoat(Surface surface, vec3 light_world, vec3 irradiance) {} "
          "vec3 clearcoat_from_lights() { return vec3(0.0); }",
@@ -542,6 +622,8 @@ Steps lit_steps(By f) {
                       {"gouraud.glsl#interpolated_both_sides", both_sides}}},
                     surface_step(f, fragment_needs(f))},
                    dielectric_steps(f),
+                   film_steps(f),
+                   facet_steps(f, lights_here),
                    layer_steps(f),
                    normal_steps(f),
                    light_steps(f, lights_here),

@@ -29,7 +29,16 @@ void for_each_texture(const Material& material, Each each) {
     each(material.emission_texture, ImageUse::color);
     each(material.occlusion_texture, ImageUse::data);
     each(material.opacity_texture, ImageUse::data);
-    if (material.metallic_roughness) each(material.metallic_roughness->texture, ImageUse::data);
+    if (const auto& model = material.metallic_roughness) {
+        for (const auto* data :
+             {&model->texture, &model->specular_texture, &model->clearcoat_texture,
+              &model->clearcoat_roughness_texture, &model->anisotropy_texture,
+              &model->iridescence_texture, &model->iridescence_thickness_texture})
+            each(*data, ImageUse::data);
+        each(model->specular_color_texture, ImageUse::color);
+        each(model->sheen_color_texture, ImageUse::color);
+        if (model->clearcoat_normal_map) each(model->clearcoat_normal_map->texture, ImageUse::data);
+    }
     if (material.normal_map) each(material.normal_map->texture, ImageUse::data);
     if (material.bump_map) each(material.bump_map->texture, ImageUse::data);
 }

@@ -233,12 +233,15 @@ struct PreparedScene {
 struct Surface {
     glm::dvec3 position_world{0.0};
     glm::dvec3 normal_world{0.0, 0.0, 1.0};        ///< Unit, on the visible side.
-    glm::dvec3 plain_normal_world{0.0, 0.0, 1.0};  ///< The same without a map.
+    glm::dvec3 coat_normal_world{0.0, 0.0, 1.0};   ///< The same with the clear coat's map alone.
     glm::dvec3 view_world{0.0, 0.0,
                           1.0};  ///< Unit, to the eye; the normal if the eye is at the surface.
     glm::dvec2 texcoord{0.0};
     glm::dvec4 color{1.0};      ///< Interpolated vertex color.
     bool has_texcoord = false;  ///< Without them, no texture is looked up.
+    /// The tangent frame of an anisotropic material, as interpolated; otherwise zero.
+    glm::dvec3 tangent_world{0.0};
+    glm::dvec3 bitangent_world{0.0};
 };
 
 /// Tells whether the hit shows the back of its triangle.
@@ -260,6 +263,14 @@ Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int cor
 /// \param cosine  of the angle of incidence, within [0,1]
 /// \return within [0,1]; 0 for an index of 1, which is no boundary, and 1 for an index of 0
 double fresnel(std::complex<double> index, double cosine);
+
+/// Returns I of Material's formula: the reflectance of a thin film in air, for red, green and blue.
+///
+/// \param f0         the reflectance of the base in air, at normal incidence
+/// \param cosine     of the angle of incidence, within [0,1]
+/// \param index      of the film, at least 1
+/// \param thickness  in nanometers
+glm::dvec3 film_reflectance(const glm::dvec3& f0, double cosine, double index, double thickness);
 
 /// Returns Material's factor F at n.v, clamped to [0,1] by channel; 0 if the reflectivity is zero.
 glm::dvec3 fresnel_factor(const Material& material, double n_dot_v);

@@ -57,6 +57,66 @@ glm::dvec3 fresnel_factor(const Material& material, double n_dot_v) {
     return glm::clamp(factor, 0.0, 1.0);
 }
 
+// Thin films
+
+namespace {
+
+/// Returns the color of light whose parts differ by a path in nanometers, relative to white. The
+/// sensitivities are Gaussians over wave numbers [Belcour and Barla 2017].
+///
+/// \param sign  -1 where one part is reflected with the opposite phase, for X, Y and Z
+glm::dvec3 interference(double path, const glm::dvec3& sign) {
+    struct Gaussian {
+        int component;
+        double height, position, variance;
+    };
+    constexpr Gaussian gaussians[] = {{0, 5.4856e-13, 1.6810e6, 4.3278e9},
+                                      {1, 4.4201e-13, 1.7953e6, 9.3046e9},
+                                      {2, 5.2481e-13, 2.2084e6, 6.6121e9},
+                                      {0, 9.7470e-14, 2.2399e6, 4.5282e9}};
+    constexpr double white = 1.0685e-7;
+    const double phase = 2.0 * std::numbers::pi * path * 1e-9;
+    glm::dvec3 xyz(0.0);
+    for (const auto& [component, height, position, variance] : gaussians) {
+        xyz[component] +=
+            sign[component] * height / white * std::sqrt(2.0 * std::numbers::pi * variance) *
+            portable::cos(position * phase) * portable::exp(-variance * phase * phase);
+    }
+    const glm::dmat3 rgb_from_xyz(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108,
+                                  -0.2040259, -0.4985314, 0.0415560, 1.0572252);
+    return rgb_from_xyz * xyz;
+}
+
+double schlick(double f0, double cosine) {
+    return f0 + (1.0 - f0) * portable::pow(1.0 - cosine, 5.0);
+}
+
+}  // namespace
+
+glm::dvec3 film_reflectance(const glm::dvec3& f0, double cosine, double index, double thickness) {
+    const double cosine_inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+    const double outer = schlick(fresnel(index, 1.0), cosine);
+    const double through = 1.0 - outer;
+    glm::dvec3 sign(0.0);
+    glm::dvec3 from_base(0.0);
+    glm::dvec3 amplitude(0.0);
+    for (int i = 0; i < 3; ++i) {
+        const double root = std::sqrt(std::clamp(f0[i], 0.0, 0.9999));
+        const double base_index = (1.0 + root) / (1.0 - root);
+        const double inner = schlick(fresnel(base_index / index, 1.0), cosine_inside);
+        const double bounce = std::clamp(outer * inner, 1e-5, 0.9999);
+        sign[i] = base_index < index ? 1.0 : -1.0;
+        from_base[i] = through * through * inner / (1.0 - bounce);
+        amplitude[i] = std::sqrt(bounce);
+    }
+    // The path difference of the first order; orders above 2 are left out.
+    const double path = 2.0 * index * thickness * cosine_inside;
+    const glm::dvec3 first = (from_base - through) * amplitude;
+    return glm::max(outer + from_base + 2.0 * first * interference(path, sign) +
+                        2.0 * first * amplitude * interference(2.0 * path, glm::dvec3(1.0)),
+                    0.0);
+}
+
 // Lights
 
 namespace {
@@ -218,12 +278,11 @@ glm::dvec3 environment_irradiance(const Context& context) {
     return context.prepared.environment->diffuse(context.surface.normal_world);
 }
 
-/// Returns the reflected environment.
-glm::dvec3 reflected(const Context& context, double roughness) {
+/// Returns the environment that a surface with this normal reflects.
+glm::dvec3 reflected(const Context& context, const glm::dvec3& normal, double roughness) {
     if (!context.prepared.environment) return glm::dvec3(0.0);
-    const Surface& at = context.surface;
-    const glm::dvec3 mirrored =
-        2.0 * glm::dot(at.normal_world, at.view_world) * at.normal_world - at.view_world;
+    const glm::dvec3& view = context.surface.view_world;
+    const glm::dvec3 mirrored = 2.0 * glm::dot(normal, view) * normal - view;
     return context.prepared.environment->blurred(mirrored, roughness, context.trace);
 }
 
@@ -270,10 +329,40 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
     radiance += (1.0 - mirrors) * (1.0 - transmission) * scattered;
     if (mirrors != glm::dvec3(0.0)) {
         const double roughness = static_cast<double>(material.reflection_roughness);
-        radiance += mirrors * reflected(context, roughness);
+        radiance += mirrors * reflected(context, at.normal_world, roughness);
     }
     if (transmission > 0.0) radiance += (1.0 - mirrors) * transmission * refracted(context);
     return radiance;
+}
+
+/// The directions of anisotropic facets.
+struct Anisotropy {
+    glm::dvec3 rough_axis{0.0};   ///< t: unit, perpendicular to the normal.
+    glm::dvec3 smooth_axis{0.0};  ///< b = cross(n, t)
+    double strength = 0.0;        ///< 0 without a tangent frame.
+};
+
+Anisotropy anisotropy_at(const Context& context) {
+    const MetallicRoughness& model = *context.material.metallic_roughness;
+    const Surface& at = context.surface;
+    const double rotation = static_cast<double>(model.anisotropy_rotation);
+    glm::dvec2 direction(1.0, 0.0);  // Before the rotation.
+    double strength = static_cast<double>(model.anisotropy);
+    if (model.anisotropy_texture && at.has_texcoord) {
+        const glm::dvec4 texel = context.look_up(model.anisotropy_texture, ImageUse::data);
+        const glm::dvec2 stored = 2.0 * glm::dvec2(texel) - 1.0;
+        if (glm::length(stored) > 1e-15) direction = glm::normalize(stored);
+        strength *= texel.b;
+    }
+    const double cosine = portable::cos(rotation);
+    const double sine = portable::sin(rotation);
+    const glm::dvec3 along = (cosine * direction.x - sine * direction.y) * at.tangent_world +
+                             (sine * direction.x + cosine * direction.y) * at.bitangent_world;
+    const glm::dvec3 in_surface = along - glm::dot(at.normal_world, along) * at.normal_world;
+    const double length = glm::length(in_surface);
+    if (!(length > 1e-15)) return {};
+    const glm::dvec3 axis = in_surface / length;
+    return {axis, glm::cross(at.normal_world, axis), strength};
 }
 
 /// The quantities of metallic-roughness at a point.
@@ -283,6 +372,9 @@ struct Microfacets {
     glm::dvec3 blocking_f0;  ///< f0'
     double f90;
     double roughness;
+    Anisotropy anisotropy;
+    double film;            ///< The weight of the thin film.
+    double film_thickness;  ///< In nanometers.
 };
 
 Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
@@ -291,14 +383,28 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
     const double metallic = static_cast<double>(model.metallic) * texel.b;
     const double roughness = static_cast<double>(model.roughness) * texel.g;
     const glm::dvec3 base = glm::dvec3(model.base_color) * tint;
-    const double specular = static_cast<double>(model.specular);
+    const double specular = static_cast<double>(model.specular) *
+                            context.look_up(model.specular_texture, ImageUse::data).a;
+    const glm::dvec3 color =
+        glm::dvec3(model.specular_color) *
+        glm::dvec3(context.look_up(model.specular_color_texture, ImageUse::color));
     const double index = static_cast<double>(model.refractive_index);
-    const glm::dvec3 dielectric =
-        specular * glm::min(fresnel(index, 1.0) * glm::dvec3(model.specular_color), 1.0);
+    const glm::dvec3 dielectric = specular * glm::min(fresnel(index, 1.0) * color, 1.0);
+    const double film = static_cast<double>(model.iridescence) *
+                        context.look_up(model.iridescence_texture, ImageUse::data).r;
+    const double thickness =
+        glm::mix(static_cast<double>(model.iridescence_thickness_minimum),
+                 static_cast<double>(model.iridescence_thickness),
+                 context.look_up(model.iridescence_thickness_texture, ImageUse::data).g);
     const double largest = std::max({dielectric.r, dielectric.g, dielectric.b});
-    return {base * (1.0 - metallic), glm::mix(dielectric, base, metallic),
-            glm::mix(glm::dvec3(largest), base, metallic), glm::mix(specular, 1.0, metallic),
-            std::max(roughness, min_roughness)};
+    return {base * (1.0 - metallic),
+            glm::mix(dielectric, base, metallic),
+            glm::mix(glm::dvec3(largest), base, metallic),
+            glm::mix(specular, 1.0, metallic),
+            std::max(roughness, min_roughness),
+            anisotropy_at(context),
+            film,
+            thickness};
 }
 
 /// Returns the unit half vector, or zero if light and eye are opposite: then nothing is reflected.
@@ -323,31 +429,100 @@ double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface&
     return std::numbers::pi * distribution * visibility;
 }
 
+/// What facets mirror and what scattering lacks, before and behind a film.
+struct Mirrored {
+    glm::dvec3 mirrored;
+    glm::dvec3 blocked;
+};
+
+/// Returns both with the material's film.
+/// \param share  of a surface that mirrors all light
+Mirrored with_film(const Context& context, const Microfacets& facets, double cosine, double share,
+                   const Mirrored& plain) {
+    if (facets.film == 0.0) return plain;
+    const double index =
+        static_cast<double>(context.material.metallic_roughness->iridescence_index);
+    for (int i = 0; i < 3; ++i) {  // The phase jumps where film and base have the same index.
+        const double root = std::sqrt(std::min(facets.f0[i], 0.9999));
+        context.trace.decide((1.0 + root) / (1.0 - root) < index ? 1 : 0);
+    }
+    const glm::dvec3 film = film_reflectance(facets.f0, cosine, index, facets.film_thickness);
+    const double largest = std::min(std::max({film.r, film.g, film.b}), 1.0);
+    return {glm::mix(plain.mirrored, share * film, facets.film),
+            glm::mix(plain.blocked, glm::dvec3(share * largest), facets.film)};
+}
+
+/// Returns pi D V of the material's facets, which may be wider along one axis than along the other.
+/// \param n_dot_l  positive
+double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm::dvec3& half,
+                  const Surface& at, double n_dot_l) {
+    const Anisotropy& a = facets.anisotropy;
+    if (a.strength == 0.0) return ggx_lobe(at.normal_world, half, at, n_dot_l, facets.roughness);
+    const double alpha = facets.roughness * facets.roughness;
+    const double along = glm::mix(alpha, 1.0, a.strength * a.strength);
+    const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
+    const double n_dot_h = glm::dot(at.normal_world, half);
+    const double b_dot_h = glm::dot(a.smooth_axis, half) / alpha;
+    // If n.h counts as 0, t.h and b.h alone have the squared length 1.
+    const double t_dot_h =
+        n_dot_h > 0.0
+            ? glm::dot(a.rough_axis, half) / along
+            : std::sqrt(1.0 - glm::dot(a.smooth_axis, half) * glm::dot(a.smooth_axis, half)) /
+                  along;
+    const double n_part = std::max(n_dot_h, 0.0);
+    const double spread = t_dot_h * t_dot_h + b_dot_h * b_dot_h + n_part * n_part;
+    const double distribution = 1.0 / (along * alpha * spread * spread);
+    const auto stretched = [&](const glm::dvec3& direction, double cosine) {
+        return glm::length(glm::dvec3(along * glm::dot(a.rough_axis, direction),
+                                      alpha * glm::dot(a.smooth_axis, direction), cosine));
+    };
+    return distribution * 0.5 /
+           (n_dot_l * stretched(at.view_world, n_dot_v) + n_dot_v * stretched(light, n_dot_l));
+}
+
 /// Returns pi D V f + (1 - f') c, the factor of one light. \param n_dot_l  positive
-glm::dvec3 scattered_by(const Microfacets& facets, const Surface& at, const glm::dvec3& light,
+glm::dvec3 scattered_by(const Context& context, const Microfacets& facets, const glm::dvec3& light,
                         double n_dot_l) {
+    const Surface& at = context.surface;
     const glm::dvec3 half = half_vector(light, at);
     if (half == glm::dvec3(0.0)) return facets.scattering;
     const double v_dot_h = std::clamp(glm::dot(at.view_world, half), 0.0, 1.0);
     const double grazing = portable::pow(1.0 - v_dot_h, 5.0);
-    return (1.0 - glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)) *
-               facets.scattering +
-           glm::mix(facets.f0, glm::dvec3(facets.f90), grazing) *
-               ggx_lobe(at.normal_world, half, at, n_dot_l, facets.roughness);
+    const auto [mirrored, blocked] =
+        with_film(context, facets, v_dot_h, 1.0,
+                  {glm::mix(facets.f0, glm::dvec3(facets.f90), grazing),
+                   glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)});
+    return (1.0 - blocked) * facets.scattering +
+           mirrored * facet_lobe(facets, light, half, at, n_dot_l);
+}
+
+/// Returns the normal that mirrors the environment.
+glm::dvec3 mirror_normal(const Microfacets& facets, const Surface& at) {
+    const Anisotropy& a = facets.anisotropy;
+    const glm::dvec3 leaning =
+        at.view_world - glm::dot(a.smooth_axis, at.view_world) * a.smooth_axis;
+    const double kept = portable::pow(1.0 - a.strength * (1.0 - facets.roughness), 4.0);
+    const glm::dvec3 normal = glm::mix(leaning, at.normal_world, kept);
+    const double length = glm::length(normal);
+    return length > 1e-15 ? normal / length : at.normal_world;
 }
 
 /// Returns the light from all directions: ambient light, and the scattered and reflected
 /// environment.
 glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     const Surface& at = context.surface;
-    glm::dvec3 light = glm::dvec3(context.prepared.scene.ambient) * (facets.scattering + facets.f0);
+    const Mirrored facing = with_film(context, facets, 1.0, 1.0, {facets.f0, facets.f0});
+    glm::dvec3 light =
+        glm::dvec3(context.prepared.scene.ambient) * (facets.scattering + facing.mirrored);
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
         const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
-        const glm::dvec3 mirrors = facets.f0 * albedo.x + facets.f90 * albedo.y;
-        const glm::dvec3 blocked = facets.blocking_f0 * albedo.x + facets.f90 * albedo.y;
+        const auto [mirrors, blocked] =
+            with_film(context, facets, n_dot_v, albedo.x + albedo.y,
+                      {facets.f0 * albedo.x + facets.f90 * albedo.y,
+                       facets.blocking_f0 * albedo.x + facets.f90 * albedo.y});
         light += (1.0 - blocked) * facets.scattering * environment_irradiance(context);
-        light += mirrors * reflected(context, facets.roughness);
+        light += mirrors * reflected(context, mirror_normal(facets, at), facets.roughness);
     }
     return light;
 }
@@ -370,8 +545,10 @@ glm::dvec3 received(const Context& context, const glm::dvec3& normal, Lobe lobe)
 /// Returns the term `sheened` of the formula.
 glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
-    const glm::dvec3 color(model.sheen_color);
-    if (color == glm::dvec3(0.0)) return base;
+    if (model.sheen_color == glm::vec3(0.0F)) return base;
+    const glm::dvec3 color =
+        glm::dvec3(model.sheen_color) *
+        glm::dvec3(context.look_up(model.sheen_color_texture, ImageUse::color));
     const Surface& at = context.surface;
     const glm::dvec3& n = at.normal_world;
     const double alpha = sheen_alpha(static_cast<double>(model.sheen_roughness));
@@ -392,12 +569,15 @@ glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
 /// Returns the term `coated` of the formula.
 glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
-    const double weight = static_cast<double>(model.clearcoat);
-    if (weight == 0.0) return base;
+    if (model.clearcoat == 0.0F) return base;
+    const double weight = static_cast<double>(model.clearcoat) *
+                          context.look_up(model.clearcoat_texture, ImageUse::data).r;
     const double roughness =
-        std::max(static_cast<double>(model.clearcoat_roughness), min_roughness);
+        std::max(static_cast<double>(model.clearcoat_roughness) *
+                     context.look_up(model.clearcoat_roughness_texture, ImageUse::data).g,
+                 min_roughness);
     Surface at = context.surface;
-    at.normal_world = at.plain_normal_world;
+    at.normal_world = at.coat_normal_world;
     const Context plain{context.prepared, context.material, at, context.trace};
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
     glm::dvec3 coat = received(plain, at.normal_world, [&](double n_dot_l, const glm::dvec3& half) {
@@ -406,7 +586,7 @@ glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     glm::dvec3 around(context.prepared.scene.ambient);
     if (context.prepared.environment) {
         const glm::dvec2 albedo = directional_albedo(n_dot_v, roughness);
-        around += (albedo.x + albedo.y) * reflected(plain, roughness);
+        around += (albedo.x + albedo.y) * reflected(plain, at.normal_world, roughness);
     }
     coat += occlusion(context) * around;
     return glm::mix(base, coat, weight * (0.04 + 0.96 * portable::pow(1.0 - n_dot_v, 5.0)));
@@ -421,7 +601,7 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3&
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
         radiance +=
-            light.irradiance * n_dot_l * scattered_by(facets, at, light.light_world, n_dot_l);
+            light.irradiance * n_dot_l * scattered_by(context, facets, light.light_world, n_dot_l);
     }
     return with_clearcoat(context, with_sheen(context, radiance) + emitted(context));
 }

@@ -105,9 +105,19 @@ const Material& material_of_range(const std::vector<Material>& materials,
     return range.material ? materials[*range.material] : default_material();
 }
 
+bool is_anisotropic(const Material& material) {
+    return material.metallic_roughness && material.metallic_roughness->anisotropy > 0.0F;
+}
+
+/// Returns the normal map of the material's clear coat.
+std::optional<NormalMap> coat_map(const Material& material) {
+    return material.metallic_roughness ? material.metallic_roughness->clearcoat_normal_map
+                                       : std::nullopt;
+}
+
 bool uses_stored_tangents(const Material& material) {
     if (material.tangent_frame != TangentFrame::stored) return false;
-    return material.bump_map ||
+    return material.bump_map || is_anisotropic(material) || coat_map(material) ||
            (material.normal_map && material.normal_map->space == NormalSpace::tangent);
 }
 
@@ -163,9 +173,10 @@ PreparedInstance prepared(const Instance& instance, const Mesh& mesh,
     return result;
 }
 
-void find_flat_code(PreparedScene& prepared, const Scene& scene, const Material& material) {
-    if (!material.normal_map) return;
-    const std::size_t image = material.normal_map->texture.image;
+void find_flat_code(PreparedScene& prepared, const Scene& scene,
+                    const std::optional<NormalMap>& map) {
+    if (!map) return;
+    const std::size_t image = map->texture.image;
     const Image decoded = decode(scene.images[image], ImageUse::data);
     prepared.normal_map_bits[image] = decoded.bits();
     prepared.detected_flat_codes[image] = detected_flat_code(scene.images[image], decoded);
@@ -184,7 +195,8 @@ void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report
     for (const std::uint32_t number : textured) {
         Material& material = prepared.materials[number];
         leave_out_textures(scene, prepared.texels.unreadable(), number, material, report);
-        find_flat_code(prepared, scene, material);
+        find_flat_code(prepared, scene, material.normal_map);
+        find_flat_code(prepared, scene, coat_map(material));
     }
 }
 
@@ -310,6 +322,7 @@ Basis stored_basis(const Triangle& triangle, const glm::dvec3& normal) {
 Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     const auto& positions = triangle.instance.positions_world;
     const auto& texcoords = triangle.instance.mesh->texcoords;
+    if (texcoords.empty()) return {glm::dvec3(0.0), glm::dvec3(0.0), normal};
     const glm::uvec3& corners = triangle.corners;
     const glm::dvec3 p1 = positions[corners.y] - positions[corners.x];
     const glm::dvec3 p2 = positions[corners.z] - positions[corners.x];
@@ -323,6 +336,11 @@ Basis derived_basis(const Triangle& triangle, const glm::dvec3& normal) {
     // v grows downwards: a texture that is upright on the front side has a negative area.
     const bool upright = (area < 0.0) != triangle.instance.mirrors;
     return {tangent, (upright ? 1.0 : -1.0) * glm::cross(unit_normal, tangent), unit_normal};
+}
+
+Basis basis_of(const Material& material, const Triangle& triangle, const glm::dvec3& normal) {
+    return material.tangent_frame == TangentFrame::derivatives ? derived_basis(triangle, normal)
+                                                               : stored_basis(triangle, normal);
 }
 
 /// Returns the vector of a normal map's filtered codes; y up, without the scale of x and y.
@@ -399,9 +417,7 @@ glm::dvec3 front_normal(const PreparedScene& prepared, const Hit& hit, const Mat
     }
     const glm::dvec3 vector = vector_tangent(prepared, material, texcoord, trace);
     if (is_undefined(vector)) return fallback;
-    const Basis basis = material.tangent_frame == TangentFrame::derivatives
-                            ? derived_basis(triangle, normal)
-                            : stored_basis(triangle, normal);
+    const Basis basis = basis_of(material, triangle, normal);
     return unit_or(vector.x * basis.tangent + vector.y * basis.bitangent + vector.z * basis.normal,
                    fallback);
 }
@@ -423,7 +439,7 @@ Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
 void face_viewer(const PreparedScene& prepared, const Hit& hit, Surface& surface) {
     if (is_back(prepared, hit)) {
         surface.normal_world = -surface.normal_world;
-        surface.plain_normal_world = -surface.plain_normal_world;
+        surface.coat_normal_world = -surface.coat_normal_world;
     }
     surface.view_world = unit_or(prepared.eye_world - surface.position_world, surface.normal_world);
 }
@@ -438,9 +454,18 @@ Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material
                    Trace& trace) {
     Surface surface = attributes_at(prepared, hit);
     surface.normal_world = front_normal(prepared, hit, material, surface.texcoord, trace);
-    Material plain;
-    plain.interpolation = material.interpolation;
-    surface.plain_normal_world = front_normal(prepared, hit, plain, surface.texcoord, trace);
+    Material coat;
+    coat.interpolation = material.interpolation;
+    coat.tangent_frame = material.tangent_frame;
+    coat.normal_map = coat_map(material);
+    surface.coat_normal_world = front_normal(prepared, hit, coat, surface.texcoord, trace);
+    if (is_anisotropic(material)) {
+        const Triangle triangle = triangle_of(prepared, hit);
+        const Basis basis =
+            basis_of(material, triangle, triangle.interpolated(triangle.instance.normals_world));
+        surface.tangent_world = basis.tangent;
+        surface.bitangent_world = basis.bitangent;
+    }
     face_viewer(prepared, hit, surface);
     return surface;
 }

@@ -39,13 +39,21 @@ const std::map<std::string_view, Setter>& setters() {
         {"base_color", set_member<&DrawValues::base_color>},
         {"metallic", set_member<&DrawValues::metallic>},
         {"roughness", set_member<&DrawValues::roughness>},
-        {"dielectric_f0", set_member<&DrawValues::dielectric_f0>},
-        {"dielectric_f90", set_member<&DrawValues::dielectric_f90>},
+        {"dielectric_color", set_member<&DrawValues::dielectric_color>},
+        {"dielectric_weight", set_member<&DrawValues::dielectric_weight>},
         {"sheen_color", set_member<&DrawValues::sheen_color>},
         {"sheen_alpha", set_member<&DrawValues::sheen_alpha>},
         {"sheen_albedo", set_member<&DrawValues::sheen_albedo>},
         {"clearcoat", set_member<&DrawValues::clearcoat>},
         {"clearcoat_roughness", set_member<&DrawValues::clearcoat_roughness>},
+        {"clearcoat_normal_scale", set_member<&DrawValues::clearcoat_normal_scale>},
+        {"clearcoat_normal_bias", set_member<&DrawValues::clearcoat_normal_bias>},
+        {"anisotropy", set_member<&DrawValues::anisotropy>},
+        {"anisotropy_direction", set_member<&DrawValues::anisotropy_direction>},
+        {"iridescence", set_member<&DrawValues::iridescence>},
+        {"iridescence_index", set_member<&DrawValues::iridescence_index>},
+        {"iridescence_thickness", set_member<&DrawValues::iridescence_thickness>},
+        {"iridescence_thickness_minimum", set_member<&DrawValues::iridescence_thickness_minimum>},
         {"occlusion_strength", set_member<&DrawValues::occlusion_strength>},
         {"opacity", set_member<&DrawValues::opacity>},
         {"alpha_cutoff", set_member<&DrawValues::alpha_cutoff>},
@@ -82,6 +90,13 @@ glm::mat3 scaled_to_one(const glm::dmat3& matrix) {
     return largest > 0.0 ? glm::mat3(matrix / largest) : glm::mat3(0.0F);
 }
 
+/// Returns the reflectance of a dielectric at normal incidence times its color, without a limit.
+glm::vec3 reflectance_of_index(const MetallicRoughness& model) {
+    const double n = static_cast<double>(model.refractive_index);
+    const double root = (n - 1.0) / (n + 1.0);
+    return glm::vec3(root * root * glm::dvec3(model.specular_color));
+}
+
 /// Without a color, the table stays zero: nothing reads it.
 void set_sheen(DrawValues& values, const MetallicRoughness& model) {
     if (!is_not_black(model.sheen_color)) return;
@@ -113,11 +128,18 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
         values.diffuse_color = values.base_color = physical->base_color;
         values.metallic = physical->metallic;
         values.roughness = physical->roughness;
-        values.dielectric_f0 = dielectric_reflectance(*physical);
-        values.dielectric_f90 = physical->specular;
+        values.dielectric_color = reflectance_of_index(*physical);
+        values.dielectric_weight = physical->specular;
         values.clearcoat = physical->clearcoat;
         values.clearcoat_roughness = physical->clearcoat_roughness;
         set_sheen(values, *physical);
+        values.iridescence = physical->iridescence;
+        values.iridescence_index = physical->iridescence_index;
+        values.iridescence_thickness = physical->iridescence_thickness;
+        values.iridescence_thickness_minimum = physical->iridescence_thickness_minimum;
+        values.anisotropy = physical->anisotropy;
+        const double rotation = static_cast<double>(physical->anisotropy_rotation);
+        values.anisotropy_direction = glm::vec2(portable::cos(rotation), portable::sin(rotation));
     }
     values.occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F;
     values.opacity = material.alpha_mode == AlphaMode::opaque ? 1.0F : material.opacity;

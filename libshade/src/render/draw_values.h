@@ -34,13 +34,21 @@ struct DrawValues {
     glm::vec3 base_color{0.0F};
     float metallic = 0.0F;
     float roughness = 1.0F;
-    glm::vec3 dielectric_f0{0.04F};
-    float dielectric_f90 = 1.0F;
+    glm::vec3 dielectric_color{0.04F};  ///< Reflectance at normal incidence, without weight.
+    float dielectric_weight = 1.0F;
     glm::vec3 sheen_color{0.0F};
     float sheen_alpha = 1.0F;
     std::array<glm::vec4, 8> sheen_albedo{};  ///< sheen_albedo_table().
     float clearcoat = 0.0F;
     float clearcoat_roughness = 0.0F;
+    glm::vec3 clearcoat_normal_scale{1.0F};  ///< normal = texel * scale + bias.
+    glm::vec3 clearcoat_normal_bias{0.0F};
+    float anisotropy = 0.0F;
+    glm::vec2 anisotropy_direction{1.0F, 0.0F};  ///< In the tangent frame; unit.
+    float iridescence = 0.0F;
+    float iridescence_index = 1.3F;
+    float iridescence_thickness = 400.0F;
+    float iridescence_thickness_minimum = 100.0F;
     float occlusion_strength = 0.0F;
     float opacity = 1.0F;
     float alpha_cutoff = 0.0F;

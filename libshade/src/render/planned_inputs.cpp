@@ -28,7 +28,7 @@ const std::vector<AttributeRow>& attribute_rows() {
         {"normal_object", [](const Mesh& m) { return !m.normals.empty(); },
          "light or a reflection shows the normal"},
         {"tangent_object", [](const Mesh& m) { return !m.tangents.empty(); },
-         "a map lies in the mesh's tangent frame"},
+         "a map or anisotropy lies in the mesh's tangent frame"},
         {"texcoord", [](const Mesh& m) { return !m.texcoords.empty(); }, "textures are sampled"},
         {"color_linear", [](const Mesh& m) { return !m.colors.empty(); },
          "vertex colors tint the surface"},

@@ -4,6 +4,7 @@
 #include "render/program_cache.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -28,7 +29,7 @@ std::vector<gl::Location> attribute_locations() {
             at("color_linear", Attribute::color_linear)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 13> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 22> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
     {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
@@ -37,6 +38,15 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 13> texture_units{{
     {"metallic_roughness_texture", TextureUnit::metallic_roughness_texture},
     {"normal_texture", TextureUnit::normal_texture},
     {"bump_texture", TextureUnit::bump_texture},
+    {"specular_weight_texture", TextureUnit::specular_weight_texture},
+    {"specular_color_texture", TextureUnit::specular_color_texture},
+    {"sheen_color_texture", TextureUnit::sheen_color_texture},
+    {"clearcoat_texture", TextureUnit::clearcoat_texture},
+    {"clearcoat_roughness_texture", TextureUnit::clearcoat_roughness_texture},
+    {"clearcoat_normal_texture", TextureUnit::clearcoat_normal_texture},
+    {"anisotropy_texture", TextureUnit::anisotropy_texture},
+    {"iridescence_texture", TextureUnit::iridescence_texture},
+    {"film_thickness_texture", TextureUnit::film_thickness_texture},
     {"environment", TextureUnit::environment},
     {"blurred_environment", TextureUnit::blurred_environment},
     {"environment_brdf", TextureUnit::environment_brdf},
@@ -71,17 +81,28 @@ gl::LinkedProgram link(const gl::Api& api, const std::string& name, const Shader
     }
 }
 
+void check_texture_units(const PlannedInterface& planned, int available) {
+    const std::size_t needed = planned.samplers.size();
+    if (needed <= static_cast<std::size_t>(available)) return;
+    throw GpuError(
+        fmt::format("a surface needs {} textures at once, and a shader of this OpenGL driver can "
+                    "sample {}: {}",
+                    needed, available, fmt::join(planned.samplers, ", ")));
+}
+
 std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {
     std::shared_ptr<const DrawProgram> entry;
     if (const auto known = programs_.find(features); known != programs_.end())
         entry = known->second;
     if (!entry) {
         const Stopwatch stopwatch;
+        PlannedInterface planned = planned_interface(features);
+        check_texture_units(planned, api_->limits().texture_units);
         const SurfaceProgram source = surface_program(features);
         entry = std::make_shared<const DrawProgram>(
             DrawProgram{link(*api_, fmt::format("surface ({})", describe(features)), source.vertex,
                              source.fragment),
-                        planned_interface(features)});
+                        std::move(planned)});
         programs_.emplace(features, entry);
         milliseconds_ += 1e3 * stopwatch.seconds();
     }

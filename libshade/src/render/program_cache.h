@@ -36,6 +36,15 @@ enum class TextureUnit : GLint {
     metallic_roughness_texture,
     normal_texture,
     bump_texture,
+    specular_weight_texture,
+    specular_color_texture,
+    sheen_color_texture,
+    clearcoat_texture,
+    clearcoat_roughness_texture,
+    clearcoat_normal_texture,
+    anisotropy_texture,
+    iridescence_texture,
+    film_thickness_texture,
     environment,
     blurred_environment,
     environment_brdf,
@@ -47,7 +56,7 @@ enum class TextureUnit : GLint {
 std::string_view sampler_name(TextureUnit unit);
 
 /// The number of units of materials.
-inline constexpr std::size_t material_unit_count = 8;
+inline constexpr std::size_t material_unit_count = 17;
 
 /// The binding point of the uniform block Lights.
 inline constexpr GLuint lights_binding = 0;
@@ -63,11 +72,17 @@ struct DrawProgram {
 gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
                        const ShaderSource& fragment);
 
+/// Checks that a program does not sample more textures than a fragment shader can. OpenGL 3.3
+/// guarantees 16; surfaces with nearly all textures of glTF's extensions need more.
+/// \throws GpuError with the names of the samplers
+void check_texture_units(const PlannedInterface& planned, int available);
+
 class ProgramCache {
   public:
     explicit ProgramCache(const gl::Api& api) : api_(&api) {}
 
-    /// Returns the program for canonical features, linked on first use. \throws GpuError
+    /// Returns the program for canonical features, linked on first use.
+    /// \throws GpuError if it does not link, or samples more textures than the driver allows
     std::shared_ptr<const DrawProgram> get(const Features& features);
 
     /// Returns a program that draws no surface, from the parts "vertex" and "fragment" of

@@ -270,8 +270,31 @@ Planned planned(const Scene& scene, const DrawPlan& draw) {
             scene.meshes[scene.instances[draw.instance].mesh]};
 }
 
+bool is_normal_map(TextureUnit unit) {
+    return unit == TextureUnit::normal_texture || unit == TextureUnit::clearcoat_normal_texture;
+}
+
 ImagePurpose purpose_of(const UsedTexture& used) {
-    return {used.use, used.unit == TextureUnit::normal_texture};
+    return {used.use, is_normal_map(used.unit)};
+}
+
+/// Returns the texture of an effect that is forced on without one.
+BoundTexture neutral_texture(TextureCache& textures, TextureUnit unit) {
+    if (is_normal_map(unit)) return textures.flat();
+    return unit == TextureUnit::anisotropy_texture ? textures.tangent() : textures.white();
+}
+
+/// Sets the decoding of the surface's normal map, or of its coat's.
+void set_planned_map(DrawValues& values, TextureUnit unit, const Material& material,
+                     const GpuImage& image) {
+    const bool coats = unit == TextureUnit::clearcoat_normal_texture;
+    const NormalMap& map =
+        coats ? *material.metallic_roughness->clearcoat_normal_map : *material.normal_map;
+    DrawValues decoding;
+    set_normal_map(coats ? decoding : values, map, image.bits, map.flat.value_or(image.flat));
+    if (!coats) return;
+    values.clearcoat_normal_scale = decoding.normal_map_scale;
+    values.clearcoat_normal_bias = decoding.normal_map_bias;
 }
 
 void request_planned(SceneTextures& textures, const Scene& scene, const FramePlan& plan) {
@@ -465,17 +488,15 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& 
 void Renderer::Implementation::bind_planned_textures(Draw& draw, const Planned& p) {
     for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
         BoundTexture& bound = draw.textures[static_cast<std::size_t>(used.unit)];
-        const bool is_normal_map = used.unit == TextureUnit::normal_texture;
         if (used.texture == nullptr) {
-            bound = is_normal_map ? cache.textures.flat() : cache.textures.white();
+            bound = neutral_texture(cache.textures, used.unit);
             continue;
         }
         const ImagePurpose purpose = purpose_of(used);
         bound = textures.bound(*used.texture, purpose);
-        if (is_normal_map) {
-            const GpuImage& image = textures.image(used.texture->image, purpose);
-            const NormalMap& map = *p.material.normal_map;
-            set_normal_map(draw.values, map, image.bits, map.flat.value_or(image.flat));
+        if (purpose.normals) {
+            set_planned_map(draw.values, used.unit, p.material,
+                            textures.image(used.texture->image, purpose));
         }
     }
 }

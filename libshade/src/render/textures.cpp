@@ -48,9 +48,30 @@ void remove_optional(Material& m) {
     (m.*Member).reset();
 }
 
+template <auto Member>
+const Texture* texture_of_model(const Material& m) {
+    const auto& model = m.metallic_roughness;
+    return model && (*model).*Member ? &*((*model).*Member) : nullptr;
+}
+template <auto Member>
+void remove_of_model(Material& m) {
+    ((*m.metallic_roughness).*Member).reset();
+}
+const Texture* texture_of_coat(const Material& m) {
+    const auto& model = m.metallic_roughness;
+    return model && model->clearcoat_normal_map ? &model->clearcoat_normal_map->texture : nullptr;
+}
+
+/// Returns the row of a texture of glTF's model.
+template <auto Member>
+TextureRow model_row(TextureUnit unit, ImageUse use, std::string_view effect) {
+    return {unit, use, {effect}, texture_of_model<Member>, remove_of_model<Member>};
+}
+
 /// The rows, in the order of TextureUnit.
 const std::array<TextureRow, material_unit_count>& texture_rows() {
     using M = Material;
+    using P = MetallicRoughness;
     static const std::array<TextureRow, material_unit_count> all{{
         {TextureUnit::diffuse_texture,
          ImageUse::color,
@@ -80,14 +101,8 @@ const std::array<TextureRow, material_unit_count>& texture_rows() {
          {"opacity texture"},
          optional_texture<&M::opacity_texture>,
          remove_optional<&M::opacity_texture>},
-        {TextureUnit::metallic_roughness_texture,
-         ImageUse::data,
-         {"metallic-roughness texture"},
-         [](const M& m) -> const Texture* {
-             const auto& model = m.metallic_roughness;
-             return model && model->texture ? &*model->texture : nullptr;
-         },
-         [](M& m) { m.metallic_roughness->texture.reset(); }},
+        model_row<&P::texture>(TextureUnit::metallic_roughness_texture, ImageUse::data,
+                               "metallic-roughness texture"),
         {TextureUnit::normal_texture,
          ImageUse::data,
          {"normal map", "object-space normal map"},
@@ -98,6 +113,27 @@ const std::array<TextureRow, material_unit_count>& texture_rows() {
          {"bump map"},
          texture_of_map<&M::bump_map>,
          remove_optional<&M::bump_map>},
+        model_row<&P::specular_texture>(TextureUnit::specular_weight_texture, ImageUse::data,
+                                        "specular weight texture"),
+        model_row<&P::specular_color_texture>(TextureUnit::specular_color_texture, ImageUse::color,
+                                              "specular color texture"),
+        model_row<&P::sheen_color_texture>(TextureUnit::sheen_color_texture, ImageUse::color,
+                                           "sheen color texture"),
+        model_row<&P::clearcoat_texture>(TextureUnit::clearcoat_texture, ImageUse::data,
+                                         "clearcoat texture"),
+        model_row<&P::clearcoat_roughness_texture>(TextureUnit::clearcoat_roughness_texture,
+                                                   ImageUse::data, "clearcoat roughness texture"),
+        {TextureUnit::clearcoat_normal_texture,
+         ImageUse::data,
+         {"clearcoat normal map"},
+         texture_of_coat,
+         remove_of_model<&P::clearcoat_normal_map>},
+        model_row<&P::anisotropy_texture>(TextureUnit::anisotropy_texture, ImageUse::data,
+                                          "anisotropy texture"),
+        model_row<&P::iridescence_texture>(TextureUnit::iridescence_texture, ImageUse::data,
+                                           "iridescence texture"),
+        model_row<&P::iridescence_thickness_texture>(TextureUnit::film_thickness_texture,
+                                                     ImageUse::data, "film thickness texture"),
     }};
     return all;
 }
@@ -137,7 +173,7 @@ void correct_reasons(DrawPlan& draw, const Features& planned) {
             if (reason.effect == effect.name) reason = {effect.name, false, unreadable_reason};
         }
     }
-    if (!draw.needs_tangents || draw.features.detail != NormalDetail::none) return;
+    if (!draw.needs_tangents || lies_in_frame(draw.features)) return;
     draw.needs_tangents = false;
     for (EffectReason& reason : draw.reasons) {
         if (reason.effect == "computed tangents")
@@ -272,18 +308,22 @@ void TextureCache::add_fault(ImageIdentity identity, const ImagePurpose& purpose
 }
 
 BoundTexture TextureCache::white() {
-    return constant(white_, 1.0F, 1.0F, "white");
+    return constant(white_, glm::vec3(1.0F), "white");
 }
 
 BoundTexture TextureCache::flat() {
-    return constant(flat_, 0.0F, 1.0F, "flat");
+    return constant(flat_, {0.0F, 0.0F, 1.0F}, "flat");
 }
 
-BoundTexture TextureCache::constant(std::optional<gl::Texture>& texture, float rg, float b,
+BoundTexture TextureCache::tangent() {
+    return constant(tangent_, {1.0F, 0.5F, 1.0F}, "tangent");
+}
+
+BoundTexture TextureCache::constant(std::optional<gl::Texture>& texture, const glm::vec3& color,
                                     const char* name) {
     if (!texture) {
         Image image = make_image(1, 1, 3, 32, ColorSpace::data);
-        image.samples = std::vector<float>{rg, rg, b};
+        image.samples = std::vector<float>{color.r, color.g, color.b};
         texture = gl::make_texture(*api_, image, name);
     }
     return {texture->name(), sampler(Wrap::repeat, Wrap::repeat, TextureFilter::nearest)};

@@ -126,13 +126,15 @@ class TextureCache {
 
     GLuint sampler(Wrap u, Wrap v, TextureFilter filter);
     BoundTexture white();
-    BoundTexture flat();  ///< Every lookup gives (0, 0, 1).
+    BoundTexture flat();     ///< Every lookup gives (0, 0, 1).
+    BoundTexture tangent();  ///< Every lookup gives (1, 0.5, 1): anisotropy along the tangent.
 
     void drop_unused();
     [[nodiscard]] std::size_t size() const { return images_.size(); }
 
   private:
-    BoundTexture constant(std::optional<gl::Texture>& texture, float rg, float b, const char* name);
+    BoundTexture constant(std::optional<gl::Texture>& texture, const glm::vec3& color,
+                          const char* name);
 
     struct Entry {
         ImageIdentity identity;
@@ -152,6 +154,7 @@ class TextureCache {
     std::map<std::tuple<Wrap, Wrap, TextureFilter>, gl::Sampler> samplers_;
     std::optional<gl::Texture> white_;
     std::optional<gl::Texture> flat_;
+    std::optional<gl::Texture> tangent_;
 };
 
 /// The images that one scene uses.

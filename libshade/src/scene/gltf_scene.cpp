@@ -116,6 +116,20 @@ MetallicRoughness factors_of(const GltfMaterial& material) {
     model.clearcoat_roughness = usable(material.clearcoat_roughness, 1.0F);
     model.sheen_color = usable(material.sheen_color, 1.0F);
     model.sheen_roughness = usable(material.sheen_roughness, 1.0F);
+    model.anisotropy = usable(material.anisotropy, 1.0F);
+    if (std::isfinite(material.anisotropy_rotation))
+        model.anisotropy_rotation = material.anisotropy_rotation;
+    const auto film = [&](float value, float MetallicRoughness::*member) {
+        const FieldRange range = field_of(member).range;
+        return std::max(usable(value, range.max), range.min);
+    };
+    model.iridescence = film(material.iridescence, &MetallicRoughness::iridescence);
+    model.iridescence_index =
+        film(material.iridescence_index, &MetallicRoughness::iridescence_index);
+    model.iridescence_thickness =
+        film(material.iridescence_thickness, &MetallicRoughness::iridescence_thickness);
+    model.iridescence_thickness_minimum = film(material.iridescence_thickness_minimum,
+                                               &MetallicRoughness::iridescence_thickness_minimum);
     return model;
 }
 
@@ -153,7 +167,7 @@ namespace {
 
 /// The texture coordinates at which a material looks up its images. A mesh of the scene carries one
 /// set, so they are those of the material's first texture, in the order base color, normal,
-/// metallic-roughness, occlusion, emission.
+/// metallic-roughness, occlusion, emission, and then those of extensions.
 struct TexcoordSource {
     int set = 0;
     GltfTextureTransform transform;
@@ -163,7 +177,11 @@ TexcoordSource texcoord_source(const GltfMaterial& material) {
     for (const std::optional<GltfTexture>* texture :
          {&material.base_color_texture, &material.normal_texture,
           &material.metallic_roughness_texture, &material.occlusion_texture,
-          &material.emission_texture}) {
+          &material.emission_texture, &material.clearcoat_normal_texture,
+          &material.anisotropy_texture, &material.specular_texture,
+          &material.specular_color_texture, &material.clearcoat_texture,
+          &material.clearcoat_roughness_texture, &material.sheen_color_texture,
+          &material.iridescence_texture, &material.iridescence_thickness_texture}) {
         if (*texture) return {(*texture)->texcoord_set, (*texture)->transform};
     }
     return {};
@@ -306,6 +324,24 @@ std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageS
     return means;
 }
 
+/// Sets the textures of glTF's extensions.
+template <typename ToTexture>
+void add_textures(MetallicRoughness& model, const GltfMaterial& material,
+                  const ToTexture& texture) {
+    model.specular_texture = texture(material.specular_texture);
+    model.specular_color_texture = texture(material.specular_color_texture);
+    model.clearcoat_texture = texture(material.clearcoat_texture);
+    model.clearcoat_roughness_texture = texture(material.clearcoat_roughness_texture);
+    if (const auto normal = texture(material.clearcoat_normal_texture)) {
+        model.clearcoat_normal_map =
+            NormalMap{*normal, material.clearcoat_normal_scale, Green::up, std::nullopt};
+    }
+    model.sheen_color_texture = texture(material.sheen_color_texture);
+    model.anisotropy_texture = texture(material.anisotropy_texture);
+    model.iridescence_texture = texture(material.iridescence_texture);
+    model.iridescence_thickness_texture = texture(material.iridescence_thickness_texture);
+}
+
 /// Sets textures and alpha, which are the same in both material models.
 void add_textures(Material& result, const GltfMaterial& material, std::size_t index,
                   Report& report) {
@@ -316,6 +352,7 @@ void add_textures(Material& result, const GltfMaterial& material, std::size_t in
     result.diffuse_texture = texture(material.base_color_texture);
     if (result.metallic_roughness) {
         result.metallic_roughness->texture = texture(material.metallic_roughness_texture);
+        add_textures(*result.metallic_roughness, material, texture);
     }
     result.emission_texture = texture(material.emission_texture);
     result.occlusion_texture = texture(material.occlusion_texture);
@@ -333,7 +370,10 @@ void add_undrawn_extensions(Material& result, const GltfMaterial& material, std:
                             const std::vector<std::string>& required, Report& report) {
     std::vector<std::string>& names = result.undrawn_extensions;
     names = material.more_extensions;
-    if (!result.metallic_roughness && !result.unlit) {  // Phong's model has no layers.
+    // Phong's model has neither layers nor films nor anisotropy.
+    if (!result.metallic_roughness && !result.unlit) {
+        if (material.anisotropy > 0.0F) names.emplace_back("KHR_materials_anisotropy");
+        if (material.iridescence > 0.0F) names.emplace_back("KHR_materials_iridescence");
         if (material.clearcoat > 0.0F) names.emplace_back("KHR_materials_clearcoat");
         if (material.sheen_color != glm::vec3(0.0F)) names.emplace_back("KHR_materials_sheen");
         std::sort(names.begin(), names.end());
@@ -438,8 +478,8 @@ void take_vertices(const std::vector<std::uint32_t>& source, std::vector<Value>&
     values = std::move(taken);
 }
 
-/// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal map
-/// needs, because they are deformed with it.
+/// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal
+/// maps or its anisotropy need, because they are deformed with it.
 std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const GltfView& view,
                                           const GltfInstance<GltfPrimitiveId>& item,
                                           const SceneOptions& options, Report& report) {
@@ -466,12 +506,16 @@ std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const Gl
     std::vector<std::uint32_t> source;
     if (result.has_flat_normals) source = separate_triangles(mesh);
     const std::vector<MaterialRange>& ranges = mesh.material_ranges;
-    const bool is_mapped = !ranges.empty() && ranges.front().material &&
-                           view.materials[*ranges.front().material].normal_texture &&
+    const auto uses_frame = [](const GltfMaterial& material) {
+        return material.normal_texture || material.clearcoat_normal_texture ||
+               material.anisotropy > 0.0F;
+    };
+    const bool is_framed = !ranges.empty() && ranges.front().material &&
+                           uses_frame(view.materials[*ranges.front().material]) &&
                            !mesh.texcoords.empty();
     const bool has_tangents = keeps && !mesh.tangents.empty();
     frames.tangents = has_tangents ? TangentMethod::keep
-                      : is_mapped  ? TangentMethod::mikktspace
+                      : is_framed  ? TangentMethod::mikktspace
                                    : TangentMethod::none;
     FramedMesh framed = with_frames(std::move(mesh), frames, report);
     std::vector<std::uint32_t> vertices = std::move(framed.source_vertex);

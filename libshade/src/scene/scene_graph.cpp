@@ -13,10 +13,12 @@
 #include <numbers>
 #include <set>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "portable_math.h"
 #include "relief/mesh/report.h"
+#include "relief/shade/scene_fields.h"
 #include "scene/scene_parts.h"
 
 namespace relief {
@@ -549,7 +551,14 @@ void shift_images(Material& material, std::size_t by) {
     shift(material.opacity_texture, by);
     if (material.normal_map) material.normal_map->texture.image += by;
     if (material.bump_map) material.bump_map->texture.image += by;
-    if (material.metallic_roughness) shift(material.metallic_roughness->texture, by);
+    if (!material.metallic_roughness) return;
+    MetallicRoughness& model = *material.metallic_roughness;
+    for_each_field<MetallicRoughness>([&](const auto& field) {
+        auto& value = model.*field.member;
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<Texture>>)
+            shift(value, by);
+    });
+    if (model.clearcoat_normal_map) model.clearcoat_normal_map->texture.image += by;
 }
 
 void shift_node(Animation& animation, std::size_t by) {

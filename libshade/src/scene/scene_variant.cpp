@@ -120,11 +120,14 @@ class Preparation {
         const bool has_frames = std::any_of(
             scene_.materials.begin(), scene_.materials.end(), [](const Material& material) {
                 const std::optional<NormalMap>& map = material.normal_map;
-                return material.bump_map || (map && map->space == NormalSpace::tangent);
+                const auto& model = material.metallic_roughness;
+                return material.bump_map || (map && map->space == NormalSpace::tangent) ||
+                       (model && (model->anisotropy > 0.0F || model->clearcoat_normal_map));
             });
         if (!has_frames) {
             throw UnchangedScene(Lack::maps,
-                                 "there is no normal map or bump map that needs tangents");
+                                 "there is no normal map, bump map or anisotropy that needs "
+                                 "tangents");
         }
         const bool is_derived = method == TangentMethod::none;
         result_.tangent_frame = is_derived ? TangentFrame::derivatives : TangentFrame::stored;

@@ -65,8 +65,17 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
              (!c.light_ranges && c.falloff == FalloffTerm::inverse_square)) &&
             (c.emission || !c.emission_texture) && (all_around || !c.occlusion_texture) &&
             (c.metallic_roughness || (!c.metallic_roughness_texture && !c.dielectric_reflectance &&
-                                      !c.sheen && !c.clearcoat)) &&
-            (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
+                                      !c.sheen && !c.clearcoat && !c.iridescence)) &&
+            (lit || !c.iridescence) && (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
+            ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
+            (c.dielectric_reflectance ||
+             (!c.specular_weight_texture && !c.specular_color_texture)) &&
+            (c.sheen || !c.sheen_color_texture) && (c.anisotropy || !c.anisotropy_texture) &&
+            (c.clearcoat || (!c.clearcoat_texture && !c.clearcoat_normal_map)) &&
+            ((c.clearcoat && (has_lights(c) || reflects)) || !c.clearcoat_roughness_texture) &&
+            (c.interpolation == Interpolation::per_pixel || !c.clearcoat_normal_map) &&
+            (c.iridescence || (!c.iridescence_texture && !c.film_thickness_texture)) &&
+            (lies_in_frame(c) || c.frame == TangentFrame::stored) &&
             (c.specular != SpecularTerm::none || (!c.specular_texture && !c.highlight_colors)) &&
             (scatters || c.alpha != AlphaMode::opaque ||
              (!c.diffuse_texture && !c.vertex_colors)) &&
@@ -245,7 +254,7 @@ TEST(EffectForcing, PutsAnEffectInAndTakesItOutWhateverItsNamesCaseAndSeparators
               "forced on: the scene does not call for it");
     EXPECT_TRUE(with.draws[0].needs_tangents);
     EXPECT_EQ(reason(with.draws[0], "computed tangents").reason,
-              "a forced normal map lies in their frame");
+              "a forced effect lies in their frame");
 
     const FramePlan without = forced(scene, {{"directional_lights", false}});
     EXPECT_EQ(without.draws[0].features, Features{});

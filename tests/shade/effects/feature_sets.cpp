@@ -70,6 +70,17 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::dielectric_reflectance>("dielectric reflectance"),
         field<&F::sheen>("sheen"),
         field<&F::clearcoat>("clearcoat"),
+        field<&F::anisotropy>("anisotropy"),
+        field<&F::iridescence>("iridescence"),
+        field<&F::specular_weight_texture>("specular weight texture"),
+        field<&F::specular_color_texture>("specular color texture"),
+        field<&F::sheen_color_texture>("sheen color texture"),
+        field<&F::clearcoat_texture>("clearcoat texture"),
+        field<&F::clearcoat_roughness_texture>("clearcoat roughness texture"),
+        field<&F::clearcoat_normal_map>("clearcoat normal map"),
+        field<&F::anisotropy_texture>("anisotropy texture"),
+        field<&F::iridescence_texture>("iridescence texture"),
+        field<&F::film_thickness_texture>("film thickness texture"),
         field<&F::interpolation, 3>("interpolation"),
         field<&F::diffuse_texture>("diffuse texture"),
         field<&F::specular_texture>("specular texture"),
@@ -194,6 +205,21 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
         if (f.detail == NormalDetail::object_normal_map) m.normal_map->space = NormalSpace::object;
     }
     if (f.detail == NormalDetail::bump_map) m.bump_map = BumpMap{data("bump", 8, 0), 2.0F};
+    if (!f.metallic_roughness) return;
+    MetallicRoughness& model = *m.metallic_roughness;
+    if (f.specular_weight_texture) {
+        model.specular_texture = add_image(scene, "weight", noise(9, 4, 40, 256, ColorSpace::data));
+    }
+    if (f.specular_color_texture) model.specular_color_texture = color("specular color", 10);
+    if (f.sheen_color_texture) model.sheen_color_texture = color("sheen", 11);
+    if (f.clearcoat_texture) model.clearcoat_texture = data("coat", 12, 40);
+    if (f.clearcoat_roughness_texture)
+        model.clearcoat_roughness_texture = data("coat roughness", 13, 40);
+    if (f.clearcoat_normal_map) model.clearcoat_normal_map = NormalMap{data("coat normal", 14, 90)};
+    if (f.anisotropy_texture) model.anisotropy_texture = data("anisotropy", 15, 150);
+    if (f.iridescence_texture) model.iridescence_texture = data("film", 16, 40);
+    if (f.film_thickness_texture)
+        model.iridescence_thickness_texture = data("film thickness", 17, 0);
 }
 
 Material material_calling_for(const Features& f) {
@@ -223,6 +249,14 @@ Material material_calling_for(const Features& f) {
     if (f.clearcoat) {
         m.metallic_roughness->clearcoat = 0.7F;
         m.metallic_roughness->clearcoat_roughness = 0.2F;
+    }
+    if (f.iridescence) {
+        m.metallic_roughness->iridescence = 0.8F;
+        m.metallic_roughness->iridescence_thickness = 350.0F;
+    }
+    if (f.anisotropy) {
+        m.metallic_roughness->anisotropy = 0.6F;
+        m.metallic_roughness->anisotropy_rotation = 0.7F;
     }
     if (f.specular != SpecularTerm::none) m.specular = glm::vec3(0.5F, 0.4F, 0.3F);
     m.shininess = 12.0F;

@@ -88,6 +88,17 @@ const Change no_metal = with(&MetallicRoughness::metallic, 0.0F);
 const Change denser = with(&MetallicRoughness::refractive_index, 1.501F);
 const Change sheen = with(&MetallicRoughness::sheen_color, {0, 0, 0.001F});
 const Change clearcoat = with(&MetallicRoughness::clearcoat, 0.001F);
+const Change brushed = with(&MetallicRoughness::anisotropy, 0.001F);
+const Change filmy = with(&MetallicRoughness::iridescence, 0.001F);
+const Change specular_weight = with(&MetallicRoughness::specular_texture, Texture{});
+const Change specular_color = with(&MetallicRoughness::specular_color_texture, Texture{});
+const Change sheen_texture = with(&MetallicRoughness::sheen_color_texture, Texture{});
+const Change coat_texture = with(&MetallicRoughness::clearcoat_texture, Texture{});
+const Change coat_roughness = with(&MetallicRoughness::clearcoat_roughness_texture, Texture{});
+const Change coat_map = with(&MetallicRoughness::clearcoat_normal_map, NormalMap{});
+const Change brush_texture = with(&MetallicRoughness::anisotropy_texture, Texture{});
+const Change film_texture = with(&MetallicRoughness::iridescence_texture, Texture{});
+const Change thickness_texture = with(&MetallicRoughness::iridescence_thickness_texture, Texture{});
 const Change gouraud = with(&Material::interpolation, Interpolation::gouraud);
 const Change flat = with(&Material::interpolation, Interpolation::flat);
 const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
@@ -199,6 +210,48 @@ const std::vector<Boundary> color_boundaries = {
     {"clearcoat", "light", {clearcoat, no_suns}, {}, {ambient}},
     {"clearcoat", "emission", {clearcoat, no_suns}, {}, {emissive}},
     {"clearcoat", "lit", {clearcoat}, {unlit}, {}},
+    {"iridescence", "its weight", {no_metal}, {}, {filmy}},
+    {"iridescence", "light", {filmy, no_suns}, {}, {ambient}},
+    {"iridescence", "light besides its emission", {filmy, emissive}, {no_suns}, {}},
+    {"iridescence", "lit", {filmy}, {unlit}, {}},
+    {"anisotropy", "its strength", {no_metal}, {}, {brushed}},
+    {"anisotropy", "lights", {brushed}, {no_suns}, {}},
+    {"anisotropy", "highlights", {brushed, no_suns, ambient}, {}, {environment}},
+    {"anisotropy", "lit", {brushed}, {unlit}, {}},
+    {"anisotropy", "texture coordinates", {brushed}, {no_texcoords}, {}},
+    {"anisotropy", "a frame", {brushed, no_texcoords}, {}, {stored_tangents}},
+    {"anisotropy",
+     "a frame from derivatives",
+     {brushed, no_texcoords, stored_tangents},
+     {derivative_frames},
+     {}},
+    {"dielectric reflectance", "a texture of the weight", {no_metal}, {}, {specular_weight}},
+    {"dielectric reflectance", "a texture of the color", {no_metal}, {}, {specular_color}},
+    {"dielectric reflectance", "texture coordinates", {specular_color}, {no_texcoords}, {}},
+    {"specular weight texture", "has one", {denser}, {}, {specular_weight}},
+    {"specular weight texture", "not all metal", {physical, specular_weight}, {}, {no_metal}},
+    {"specular color texture", "has one", {denser}, {}, {specular_color}},
+    {"specular color texture", "texture coordinates", {denser, specular_color}, {no_texcoords}, {}},
+    {"sheen color texture", "has one", {sheen}, {}, {sheen_texture}},
+    {"sheen color texture", "a sheen", {sheen_texture}, {}, {sheen}},
+    {"clearcoat texture", "has one", {clearcoat}, {}, {coat_texture}},
+    {"clearcoat texture", "a coat", {coat_texture}, {}, {clearcoat}},
+    {"clearcoat roughness texture", "has one", {clearcoat}, {}, {coat_roughness}},
+    {"clearcoat roughness texture",
+     "highlights",
+     {clearcoat, coat_roughness, ambient},
+     {no_suns},
+     {}},
+    {"clearcoat normal map", "has one", {clearcoat}, {}, {coat_map}},
+    {"clearcoat normal map", "a coat", {coat_map}, {}, {clearcoat}},
+    {"clearcoat normal map", "not flat", {clearcoat, coat_map}, {flat}, {}},
+    {"clearcoat normal map", "texture coordinates", {clearcoat, coat_map}, {no_texcoords}, {}},
+    {"anisotropy texture", "has one", {brushed}, {}, {brush_texture}},
+    {"anisotropy texture", "anisotropy", {brush_texture}, {}, {brushed}},
+    {"iridescence texture", "has one", {filmy}, {}, {film_texture}},
+    {"iridescence texture", "a film", {film_texture}, {}, {filmy}},
+    {"film thickness texture", "has one", {filmy}, {}, {thickness_texture}},
+    {"film thickness texture", "a film", {thickness_texture}, {}, {filmy}},
     {"metallic-roughness", "coated emission", {no_suns, emissive}, {no_metal}, {clearcoat}},
     {"normal map", "a sheen", {normal_map, no_suns, ambient, no_metal}, {clearcoat}, {sheen}},
     {"double-sided normals", "a coat", {double_sided, no_suns, ambient, no_metal}, {}, {clearcoat}},
@@ -309,9 +362,12 @@ const std::vector<Boundary> normal_boundaries = {
     {"bump map", "lights", {bump_map}, {no_suns}, {}},
     {"derivative frames", "asked for", {normal_map}, {}, {derivative_frames}},
     {"derivative frames", "a map", {derivative_frames}, {}, {bump_map}},
+    {"derivative frames", "anisotropy", {derivative_frames, no_metal}, {}, {brushed}},
     {"derivative frames", "tangent space", {derivative_frames}, {object_map}, {normal_map}},
     {"computed tangents", "a map", {}, {}, {normal_map}},
     {"computed tangents", "a height map", {}, {}, {bump_map}},
+    {"computed tangents", "anisotropy", {no_metal}, {}, {brushed}},
+    {"computed tangents", "a coat's map", {clearcoat}, {}, {coat_map}},
     {"computed tangents", "tangent space", {}, {object_map}, {normal_map}},
     {"computed tangents", "none stored", {normal_map}, {stored_tangents}, {}},
     {"computed tangents", "stored frames", {bump_map}, {derivative_frames}, {}},

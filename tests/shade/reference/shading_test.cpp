@@ -67,6 +67,76 @@ TEST(Fresnel, FactorFollowsTheMaterialsModel) {
     EXPECT_NEAR(metal.b, 1.0 / 9.0, 1e-15);
 }
 
+/// The sensitivities of an eye as sums of Gaussians over wavelengths in nanometers: Wyman, Sloan,
+/// Shirley: Simple Analytic Approximations to the CIE XYZ Color Matching Functions. JCGT 2(2),
+/// 2013.
+glm::dvec3 sensitivity(double wavelength) {
+    const auto g = [&](double mean, double below, double above) {
+        const double t = (wavelength - mean) / (wavelength < mean ? below : above);
+        return std::exp(-0.5 * t * t);
+    };
+    return {
+        1.056 * g(599.8, 37.9, 31.0) + 0.362 * g(442.0, 16.0, 26.7) - 0.065 * g(501.1, 20.4, 26.2),
+        0.821 * g(568.8, 46.9, 40.5) + 0.286 * g(530.9, 16.3, 31.1),
+        1.217 * g(437.0, 11.8, 36.0) + 0.681 * g(459.0, 26.0, 13.8)};
+}
+
+/// Returns a film's reflectance at normal incidence by Airy's formula [Born and Wolf 1999], as a
+/// sum over wavelengths, relative to white.
+glm::dvec3 film_by_wavelengths(double base_index, double index, double thickness) {
+    const double outer = (1.0 - index) / (1.0 + index);
+    const double inner = (index - base_index) / (index + base_index);
+    glm::dvec3 sum(0.0);
+    glm::dvec3 white(0.0);
+    for (double wavelength = 360.0; wavelength < 830.0; wavelength += 1.0) {
+        const double phase = 4.0 * std::numbers::pi * index * thickness / wavelength;
+        const double mixed = 2.0 * outer * inner * std::cos(phase);
+        const double reflected =
+            (outer * outer + inner * inner + mixed) / (1.0 + outer * outer * inner * inner + mixed);
+        sum += sensitivity(wavelength) * reflected;
+        white += sensitivity(wavelength);
+    }
+    const glm::dmat3 rgb_from_xyz(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108,
+                                  -0.2040259, -0.4985314, 0.0415560, 1.0572252);
+    return rgb_from_xyz * sum / (rgb_from_xyz * white);
+}
+
+/// The model's sensitivities and its white differ slightly from those of the sum.
+TEST(FilmReflectance, AtNormalIncidenceIsTheSumOverWavelengths) {
+    double darkest = 1.0;
+    double brightest = 0.0;
+    for (const double base_index : {1.5, 3.0}) {
+        for (const double index : {1.3, 1.8}) {
+            for (const double thickness : {0.0, 100.0, 200.0, 300.0, 600.0, 2000.0}) {
+                const double root = (base_index - 1.0) / (base_index + 1.0);
+                const glm::dvec3 found =
+                    film_reflectance(glm::dvec3(root * root), 1.0, index, thickness);
+                const glm::dvec3 expected = film_by_wavelengths(base_index, index, thickness);
+                for (int i = 0; i < 3; ++i) {
+                    EXPECT_NEAR(found[i], expected[i], 0.04)
+                        << base_index << " " << index << " " << thickness << " " << i;
+                    darkest = std::min(darkest, found[i]);
+                    brightest = std::max(brightest, found[i]);
+                }
+            }
+        }
+    }
+    EXPECT_LT(darkest, 0.01);
+    EXPECT_GT(brightest, 0.2);
+}
+
+TEST(FilmReflectance, IsFiniteAtTheEndsOfItsRanges) {
+    EXPECT_EQ(film_reflectance(glm::dvec3(0.04), 0.0, 1.3, 400.0), glm::dvec3(1.0));
+    for (const double f0 : {0.0, 0.9999, 1.0}) {
+        for (const double index : {1.0, 1000.0}) {
+            for (const double cosine : {0.0, 1.0}) {
+                const glm::dvec3 film = film_reflectance(glm::dvec3(f0), cosine, index, 1e6);
+                EXPECT_TRUE(film.r >= 0.0 && film.r <= 1.001) << film.r;
+            }
+        }
+    }
+}
+
 TEST(Fresnel, FactorOutsideItsAnglesIsTheNearerEnds) {
     Material material;
     material.reflectivity = glm::vec3(0.25F);
@@ -529,6 +599,190 @@ TEST(ReferenceShading, OfASheenIsCharliesOverTheDimmedBase) {
     EXPECT_NEAR(sheen, 2.0 + (1.0 - 0.5 * albedo) * plain + 0.25 * albedo * (1.0 + 2.0), 1e-3);
 }
 
+/// The square's tangents point along x, and the rotation of 90 degrees turns the rough axis to y.
+/// alpha is 1/4, and with the strength sqrt(1/3) alpha_t is 1/4 + 3/4 / 3 = 1/2.
+TEST(ReferenceShading, OfAnisotropyIsWiderAlongItsAxis) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 1.0F, 0.5F, {}};
+    material.metallic_roughness->anisotropy = std::sqrt(1.0F / 3.0F);
+    Scene scene = test::square_scene(material);
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    const glm::dvec3 f0(0.5, 0.25, 1.0);
+    const double n_dot_l = std::sqrt(0.5);
+    const double n_dot_h = std::cos(pi / 8);
+    const double sine = std::sin(pi / 8);
+    const glm::dvec3 f = f0 + (1.0 - f0) * std::pow(1.0 - n_dot_h, 5.0);
+    // The light's half vector leans along the axis of this alpha; the other axis has `across`.
+    const auto expected = [&](double along, double across) {
+        const double spread = std::pow(sine / along, 2.0) + n_dot_h * n_dot_h;
+        const double pi_d = 1.0 / (along * across * spread * spread);
+        const double v =
+            0.5 / (n_dot_l + std::sqrt(along * along * (1.0 - n_dot_l * n_dot_l) + 0.5));
+        return 3.0 * n_dot_l * pi_d * v * f;
+    };
+    const auto under = [&](const glm::vec3& direction) {
+        scene.directional_lights = {{direction, {3, 3, 3}}};
+        return in_the_middle(scene);
+    };
+    expect_near(under({-1, 0, -1}), expected(0.5, 0.25));
+    expect_near(under({0, -1, -1}), expected(0.25, 0.5));
+    scene.materials[0].metallic_roughness->anisotropy_rotation = std::numbers::pi_v<float> / 2;
+    expect_near(under({-1, 0, -1}), expected(0.25, 0.5));
+    expect_near(under({0, -1, -1}), expected(0.5, 0.25));
+    // Turned by 45 degrees, from the tangent to the bitangent.
+    scene.materials[0].metallic_roughness->anisotropy_rotation = std::numbers::pi_v<float> / 4;
+    const auto diagonal = static_cast<float>(std::sqrt(0.5));
+    expect_near(under({-diagonal, -diagonal, -1}), expected(0.5, 0.25));
+    expect_near(under({-diagonal, diagonal, -1}), expected(0.25, 0.5));
+    // Without a frame, the surface is as rough in all directions.
+    scene.meshes[0].edit().tangents.clear();
+    scene.meshes[0].edit().texcoords.clear();
+    expect_near(under({-1, 0, -1}), expected(0.25, 0.25));
+}
+
+/// Every texture multiplies its factor: with another factor and no texture, the light is the same.
+TEST(ReferenceShading, OfTexturesOfExtensionsIsThatOfTheirFactors) {
+    MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
+    model.specular = 0.8F;
+    model.specular_color = {1.0F, 0.5F, 0.8F};
+    model.sheen_color = {0.5F, 0.25F, 0.75F};
+    model.sheen_roughness = 0.5F;
+    model.clearcoat = 0.8F;
+    model.clearcoat_roughness = 0.5F;
+    model.anisotropy = 0.5F;
+    model.iridescence = 0.5F;
+    Scene scene = test::square_scene({});
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    scene.images = {{"color", texel({0.5F, 0.25F, 0.75F, 0.5F}, 4)},
+                    {"direction", texel({0.8F, 0.9F, 0.5F, 1})}};
+    scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
+    using M = MetallicRoughness;
+    const auto light_of = [&](const auto& change) {
+        MetallicRoughness changed = model;
+        change(changed);
+        scene.materials[0].metallic_roughness = changed;
+        return in_the_corner(scene);
+    };
+    const auto expect_same = [&](std::optional<Texture> M::*texture, std::size_t image,
+                                 const auto& change) {
+        const glm::dvec3 textured =
+            light_of([&](M& changed) { changed.*texture = Texture{image}; });
+        expect_near(textured, light_of(change));
+        EXPECT_NE(textured, light_of([](M&) {}));
+    };
+    expect_same(&M::specular_texture, 0, [](M& m) { m.specular = 0.4F; });
+    expect_same(&M::specular_color_texture, 0, [](M& m) {
+        m.specular_color = {0.5F, 0.125F, 0.6F};
+    });
+    expect_same(&M::sheen_color_texture, 0, [](M& m) {
+        m.sheen_color = {0.25F, 0.0625F, 0.5625F};
+    });
+    expect_same(&M::clearcoat_texture, 0, [](M& m) { m.clearcoat = 0.4F; });
+    expect_same(&M::clearcoat_roughness_texture, 0, [](M& m) { m.clearcoat_roughness = 0.125F; });
+    expect_same(&M::iridescence_texture, 0, [](M& m) { m.iridescence = 0.25F; });
+    expect_same(&M::iridescence_thickness_texture, 0,
+                [](M& m) { m.iridescence_thickness = 100.0F + 0.25F * 300.0F; });
+    // The direction is (0.6, 0.8), and the strength a half.
+    expect_same(&M::anisotropy_texture, 1, [](M& m) {
+        m.anisotropy = 0.25F;
+        m.anisotropy_rotation = std::atan2(0.8F, 0.6F);
+    });
+}
+
+TEST(ReferenceShading, OfAClearcoatIsBentByItsOwnNormalMap) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{glm::vec3(0.0F), 0.0F, 1.0F, {}};
+    material.metallic_roughness->clearcoat = 1.0F;
+    material.metallic_roughness->clearcoat_roughness = 0.2F;
+    material.metallic_roughness->specular = 0.0F;  // The base is black.
+    Scene scene = test::square_scene(material);
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    scene.images = {{"normal", texel({0.8F, 0.5F, 0.9F, 1})}};
+    scene.directional_lights = {{{-1, 0, -1}, {1, 1, 1}}};
+    scene.materials[0].metallic_roughness->clearcoat_normal_map =
+        NormalMap{Texture{0}, 1.0F, Green::up, FlatCode::half};
+    const glm::dvec3 mapped = in_the_middle(scene);
+    // The map's vector is (0.6, 0, 0.8).
+    scene.materials[0].metallic_roughness->clearcoat_normal_map.reset();
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(0.6F, 0.0F, 0.8F));
+    expect_near(mapped, in_the_middle(scene));
+}
+
+/// The light is that of OfMetallicRoughnessIsAppendixB, the film's weight 1/2.
+TEST(ReferenceShading, OfIridescenceReplacesFresnelsFactor) {
+    MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
+    model.iridescence = 0.5F;
+    model.iridescence_index = 1.5F;
+    model.iridescence_thickness = 250.0F;
+    Material material;
+    material.metallic_roughness = model;
+    Scene scene = test::square_scene(material);
+    scene.directional_lights = {{{-1, 0, -1}, {3, 3, 3}}};
+    const glm::dvec3 b(0.5, 0.25, 1.0);
+    const glm::dvec3 f0 = 0.75 * 0.04 + 0.25 * b;
+    const auto film = [&](double cosine) {
+        return reference::film_reflectance(f0, cosine, 1.5, 250.0);
+    };
+    const auto largest = [](const glm::dvec3& c) { return std::max({c.r, c.g, c.b}); };
+    const double a2 = 0.25 * 0.25;
+    const double n_dot_l = std::sqrt(0.5);
+    const double n_dot_h = std::cos(pi / 8);
+    const double d = a2 / (pi * std::pow(n_dot_h * n_dot_h * (a2 - 1.0) + 1.0, 2.0));
+    const double v = 0.5 / (n_dot_l * 1.0 + std::sqrt(0.5 + 0.5 * a2));
+    const glm::dvec3 schlick = f0 + (1.0 - f0) * std::pow(1.0 - n_dot_h, 5.0);
+    const glm::dvec3 mirrored = 0.5 * (schlick + film(n_dot_h));
+    const glm::dvec3 blocked = 0.5 * (schlick + largest(film(n_dot_h)));
+    expect_near(in_the_middle(scene),
+                3.0 * n_dot_l * ((1.0 - blocked) * 0.75 * b + mirrored * (pi * d * v)));
+
+    scene.directional_lights.clear();
+    scene.ambient = glm::vec3(3.0F);
+    scene.environment = test::constant_environment({2.0F, 2.0F, 2.0F}, false);
+    scene.environment->lights = true;
+    const glm::dvec2 albedo = reference::directional_albedo(1.0, 0.5);
+    const double all = albedo.x + albedo.y;
+    const glm::dvec3 plain = f0 * albedo.x + albedo.y;
+    expect_near(in_the_middle(scene),
+                3.0 * (0.75 * b + 0.5 * (f0 + film(1.0))) +
+                    (1.0 - 0.5 * (plain + all * largest(film(1.0)))) * 0.75 * b * 2.0 +
+                    0.5 * (plain + all * film(1.0)) * 2.0);
+}
+
+/// In the corner, the eye is in the direction (-1, -1, 3) / sqrt(11). With strength 1 and the
+/// roughness 1/2, the mirroring normal is n / 16 + 15 / 16 of the eye's direction in the plane of
+/// rough axis and normal.
+TEST(ReferenceShading, OfAnisotropyMirrorsByALeaningNormal) {
+    Material material;
+    material.metallic_roughness = MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, {}};
+    Scene scene = test::square_scene(material);
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    CubeFaces faces;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const float shade = i < 2 ? 1.0F : i < 4 ? 0.5F : 0.0F;
+        faces.faces[i] = {"face", texel(glm::vec4(glm::vec3(shade), 1.0F))};
+    }
+    scene.environment = Environment{faces, 1.0F, false, false};
+    const glm::dvec3 plain = in_the_corner(scene);
+    scene.materials[0].metallic_roughness->anisotropy = 1.0F;
+    const glm::dvec3 brushed = in_the_corner(scene);
+    const glm::dvec3 view = glm::normalize(glm::dvec3(-1, -1, 3));
+    const glm::dvec3 leaning(view.x, 0.0, view.z);
+    const glm::dvec3 normal =
+        glm::normalize(15.0 / 16.0 * leaning + glm::dvec3(0.0, 0.0, 1.0 / 16.0));
+    // The same normal by the mesh; its n.v changes the share that is mirrored.
+    scene.materials[0].metallic_roughness->anisotropy = 0.0F;
+    scene.meshes[0].edit().normals.assign(4, glm::vec3(normal));
+    const glm::dvec3 leant = in_the_corner(scene);
+    const auto white = [&](double cosine) {
+        const glm::dvec2 albedo = reference::directional_albedo(cosine, 0.5);
+        return albedo.x + albedo.y;
+    };
+    const double ratio = white(view.z) / white(glm::dot(normal, view));
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(brushed[i], ratio * leant[i], 1e-4) << i;
+    EXPECT_GT(std::abs(brushed.r - plain.r), 0.01);
+}
+
 TEST(ReferenceShading, OfTheEyesOppositeLampHasNoHalfVector) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);
@@ -708,6 +962,47 @@ TEST(MetallicRoughness, HasAsManyFacetsAsCoverTheSurface) {
         // divided by 24. Also, lights are rounded to float.
         EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, expected, 1e-5) << roughness;
     }
+}
+
+/// The sum over directions of lights, each with the weight of its facet's projected area, is the
+/// area of the facets that lean by up to 45 degrees. The vertical eye sees every facet, and V times
+/// 4 n.l n.v is G.
+TEST(MetallicRoughness, HasAsManyFacetsAsCoverTheSurfaceWithAnisotropy) {
+    Scene scene = test::scene_of(test::facing_square(), {});
+    scene.meshes[0].edit().tangents.assign(4, {1, 0, 0, 1});
+    MetallicRoughness model{glm::vec3(1.0F), 1.0F, 0.6F, {}};
+    model.anisotropy = 0.5F;
+    scene.materials[0].metallic_roughness = model;
+    const double alpha = 0.36;
+    const double along = alpha + (1.0 - alpha) * 0.25;
+    constexpr int leans = 60;
+    constexpr int turns = 64;
+    double exact = 0.0;
+    for (int i = 0; i < leans; ++i) {
+        const double lean = (i + 0.5) * pi / 4 / leans;
+        for (int j = 0; j < turns; ++j) {
+            const double turn = (j + 0.5) * 2.0 * pi / turns;
+            const double area =
+                std::sin(lean) * std::cos(lean) * (pi / 4 / leans) * 2.0 * pi / turns;
+            const double n_dot_l = std::cos(2.0 * lean);
+            const glm::dvec3 light(std::sin(2.0 * lean) * std::cos(turn),
+                                   std::sin(2.0 * lean) * std::sin(turn), n_dot_l);
+            const double masking = std::sqrt(std::pow(along * light.x, 2.0) +
+                                             std::pow(alpha * light.y, 2.0) + n_dot_l * n_dot_l);
+            const double visibility = 0.5 / (n_dot_l + masking);  // V, with n.v = 1.
+            scene.directional_lights.push_back(
+                {glm::vec3(-light),
+                 glm::vec3(static_cast<float>(area / (pi * visibility * n_dot_l)))});
+            const double tangent = std::tan(lean);
+            const double slopes = std::pow(tangent * std::cos(turn) / along, 2.0) +
+                                  std::pow(tangent * std::sin(turn) / alpha, 2.0);
+            // D cos of a distribution of slopes: along and alpha are its widths.
+            exact += area / (pi * along * alpha * std::pow(std::cos(lean), 4.0) *
+                             std::pow(1.0 + slopes, 2.0));
+        }
+    }
+    EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, exact, 1e-5);
+    EXPECT_GT(exact, 0.7);
 }
 
 }  // namespace

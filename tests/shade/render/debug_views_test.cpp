@@ -291,6 +291,8 @@ Scene opaque_scene(std::uint64_t seed) {
         material.metallic_roughness->sheen_roughness = 0.6F;
         material.metallic_roughness->clearcoat = 0.7F;
         material.metallic_roughness->clearcoat_roughness = 0.3F;
+        material.metallic_roughness->anisotropy = 0.7F;
+        material.metallic_roughness->iridescence = 0.6F;
     }
     scene.background = glm::vec4(0.0F);
     if (scene.environment) scene.environment->skybox = false;

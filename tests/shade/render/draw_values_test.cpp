@@ -149,7 +149,7 @@ TEST(PlannedInputs, NameStreamsAndImagesWithTheirReasons) {
     EXPECT_TRUE(inputs.attributes[1].stored);
     EXPECT_EQ(inputs.attributes[2].name, "tangent_object");
     EXPECT_FALSE(inputs.attributes[2].stored) << "computed";
-    EXPECT_EQ(inputs.attributes[2].reason, "a map lies in the mesh's tangent frame");
+    EXPECT_EQ(inputs.attributes[2].reason, "a map or anisotropy lies in the mesh's tangent frame");
     ASSERT_EQ(inputs.textures.size(), 1U);
     EXPECT_EQ(inputs.textures[0].sampler, "normal_texture");
     EXPECT_EQ(inputs.textures[0].image, "normal");

@@ -66,6 +66,18 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     physical.ambient = {0.1F, 0.1F, 0.1F};
     all.emplace_back("metallic-roughness", physical);
 
+    Scene layered = physical;
+    MetallicRoughness& model = *layered.materials[0].metallic_roughness;
+    model.refractive_index = 1.8F;
+    model.specular_color = {0.7F, 0.9F, 0.4F};
+    model.sheen_color = {0.3F, 0.6F, 0.1F};
+    model.clearcoat = 0.7F;
+    model.clearcoat_roughness = 0.3F;
+    model.anisotropy = 0.6F;
+    model.anisotropy_rotation = 0.5F;
+    model.iridescence = 0.8F;
+    all.emplace_back("layers of metallic-roughness", layered);
+
     Scene bare = base_scene();  // Without texture coordinates, textures cannot show.
     bare.meshes[0].edit().texcoords.clear();
     bare.images = textured.images;
@@ -174,7 +186,18 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "refraction",
                                "dielectric reflectance",
                                "sheen",
-                               "clearcoat"}) {
+                               "clearcoat",
+                               "anisotropy",
+                               "iridescence",
+                               "specular weight texture",
+                               "specular color texture",
+                               "sheen color texture",
+                               "clearcoat texture",
+                               "clearcoat roughness texture",
+                               "clearcoat normal map",
+                               "anisotropy texture",
+                               "iridescence texture",
+                               "film thickness texture"}) {
         EXPECT_TRUE(forced.contains(effect)) << effect;
     }
 }

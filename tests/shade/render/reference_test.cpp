@@ -148,6 +148,23 @@ MetallicRoughness with_layers(const glm::vec3& sheen, float clearcoat) {
     return model;
 }
 
+/// glTF's model, brushed at an angle to the tangents.
+MetallicRoughness brushed_metal() {
+    MetallicRoughness model{{0.8F, 0.5F, 0.3F}, 0.7F, 0.35F, std::nullopt};
+    model.anisotropy = 0.8F;
+    model.anisotropy_rotation = 0.6F;
+    return model;
+}
+
+/// glTF's model under a thin film.
+MetallicRoughness filmed(float metallic) {
+    MetallicRoughness model{{0.8F, 0.5F, 0.3F}, metallic, 0.35F, std::nullopt};
+    model.iridescence = 0.9F;
+    model.iridescence_index = 1.4F;
+    model.iridescence_thickness = 480.0F;
+    return model;
+}
+
 std::vector<AddedThing> material_effects() {
     std::vector<AddedThing> effects = {
         {"nothing else", [](Scene&, test::Dice&) {}},
@@ -172,6 +189,20 @@ std::vector<AddedThing> material_effects() {
          [](Scene& s, test::Dice&) {
              s.materials[0].metallic_roughness = with_layers(glm::vec3(0.0F), 0.8F);
              s.materials[0].emission = {0.2F, 0.1F, 0.0F};
+         }},
+        {"anisotropy",
+         [](Scene& s, test::Dice&) { s.materials[0].metallic_roughness = brushed_metal(); }},
+        {"iridescence of a metal",
+         [](Scene& s, test::Dice&) { s.materials[0].metallic_roughness = filmed(1.0F); }},
+        {"iridescence of a dielectric",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].metallic_roughness = filmed(0.0F);
+             s.materials[0].metallic_roughness->iridescence_index = 1.8F;
+         }},
+        {"anisotropy on facets",
+         [](Scene& s, test::Dice&) {
+             s.materials[0].metallic_roughness = brushed_metal();
+             s.materials[0].interpolation = Interpolation::flat;
          }},
         {"coated emission",
          [](Scene& s, test::Dice&) {
@@ -213,8 +244,40 @@ std::vector<AddedThing> material_effects() {
     return effects;
 }
 
+/// Returns an effect that is a texture of glTF's model with all of its extensions.
+template <auto Member>
+AddedThing model_texture(const char* name, int channels, ColorSpace space) {
+    return {name, [=](Scene& s, test::Dice& d) {
+                MetallicRoughness model = colored_dielectric();
+                model.sheen_color = {0.3F, 0.6F, 0.1F};
+                model.sheen_roughness = 0.6F;
+                model.clearcoat = 0.8F;
+                model.clearcoat_roughness = 0.6F;
+                model.anisotropy = 0.7F;
+                model.iridescence = 0.9F;
+                model.*Member = image(s, test::random_image(d, channels, space));
+                s.materials[0].metallic_roughness = model;
+            }};
+}
+
 std::vector<AddedThing> texture_effects() {
+    using M = MetallicRoughness;
     return {
+        model_texture<&M::specular_texture>("specular weight texture", 4, ColorSpace::data),
+        model_texture<&M::specular_color_texture>("specular color texture", 3, ColorSpace::linear),
+        model_texture<&M::sheen_color_texture>("sheen color texture", 3, ColorSpace::linear),
+        model_texture<&M::clearcoat_texture>("clearcoat texture", 3, ColorSpace::data),
+        model_texture<&M::clearcoat_roughness_texture>("clearcoat roughness texture", 3,
+                                                       ColorSpace::data),
+        model_texture<&M::iridescence_texture>("iridescence texture", 3, ColorSpace::data),
+        model_texture<&M::iridescence_thickness_texture>("film thickness texture", 3,
+                                                         ColorSpace::data),
+        {"anisotropy texture",
+         [](Scene& s, test::Dice& d) {
+             s.materials[0].metallic_roughness = brushed_metal();
+             s.materials[0].metallic_roughness->anisotropy_texture =
+                 image(s, test::random_normals(d));
+         }},
         {"diffuse texture",
          [](Scene& s, test::Dice& d) {
              s.materials[0].diffuse_texture =
@@ -290,6 +353,22 @@ std::vector<AddedThing> detail_effects() {
                      s.materials[0].normal_map = NormalMap{image(s, test::random_normals(d))};
                      s.materials[0].metallic_roughness = with_layers({0.2F, 0.5F, 0.9F}, 0.9F);
                  }});
+            effects.push_back({"coat's own normal map", [=](Scene& s, test::Dice& d) {
+                                   prepare(s);
+                                   NormalMap map{image(s, test::random_normals(d)), 0.7F};
+                                   s.materials[0].metallic_roughness =
+                                       with_layers(glm::vec3(0.0F), 0.9F);
+                                   s.materials[0].metallic_roughness->clearcoat_normal_map = map;
+                                   s.materials[0].double_sided = true;
+                               }});
+            effects.push_back({"anisotropy on a normal map", [=](Scene& s, test::Dice& d) {
+                                   prepare(s);
+                                   s.materials[0].normal_map =
+                                       NormalMap{image(s, test::random_normals(d))};
+                                   s.materials[0].metallic_roughness = brushed_metal();
+                                   s.materials[0].metallic_roughness->clearcoat = 0.5F;
+                                   s.materials[0].double_sided = true;
+                               }});
             effects.push_back(
                 {"bump map", [=](Scene& s, test::Dice& d) {
                      prepare(s);
@@ -438,6 +517,10 @@ TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {
     scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.0F);
     expect_agreement(scene, blurred_tolerance);
     scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.8F);
+    expect_agreement(scene, blurred_tolerance);
+    scene.materials[0].metallic_roughness = brushed_metal();
+    expect_agreement(scene, blurred_tolerance);
+    scene.materials[0].metallic_roughness = filmed(0.3F);
     expect_agreement(scene, blurred_tolerance);
 }
 

@@ -51,6 +51,20 @@ TEST_P(RendererPrograms, OfACoveringSetTakeExactlyWhatIsPlanned) {
     }
 }
 
+TEST(TextureUnits, LimitTheTexturesOfASurface) {
+    PlannedInterface planned;
+    planned.samplers = {"bump_texture", "diffuse_texture", "normal_texture"};
+    EXPECT_NO_THROW(check_texture_units(planned, 3));
+    try {
+        check_texture_units(planned, 2);
+        FAIL() << "accepted";
+    } catch (const GpuError& error) {
+        EXPECT_STREQ(error.what(),
+                     "a surface needs 3 textures at once, and a shader of this OpenGL driver can "
+                     "sample 2: bump_texture, diffuse_texture, normal_texture");
+    }
+}
+
 TEST_P(RendererPrograms, AreSharedByEqualFeatures) {
     ProgramCache cache(api());
     Features f;

@@ -130,24 +130,25 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_TRUE(nothing.empty()) << "these values change nothing";
     EXPECT_TRUE(neutral.materials[0].undrawn_extensions.empty());
     const auto [scene, report] = load(
-        R"({"extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1}}},
+        R"({"extensions": {"KHR_materials_dispersion": {"dispersion": 1}}},
            {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5},
-                           "KHR_materials_iridescence": {"iridescenceFactor": 0.1}}})",
-        R"(, "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_iridescence"],
+                           "KHR_materials_dispersion": {"dispersion": 0.1}}})",
+        R"(, "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_dispersion"],
            "extensionsRequired": ["KHR_materials_transmission"])");
-    EXPECT_EQ(report.count("KHR_materials_iridescence"), 2U);
+    EXPECT_EQ(report.count("KHR_materials_dispersion"), 2U);
     EXPECT_EQ(report.count("KHR_materials_transmission, which the file requires"), 1U);
     EXPECT_THAT(scene.materials[1].undrawn_extensions,
-                testing::ElementsAre("KHR_materials_iridescence", "KHR_materials_transmission"));
+                testing::ElementsAre("KHR_materials_dispersion", "KHR_materials_transmission"));
     const auto [drawn, textures] = load(
         R"({"extensions": {"KHR_materials_ior": {"ior": 0.5}, "KHR_materials_specular":
-                {"specularFactor": 0.25, "specularColorFactor": [2, 1, -1],
-                 "specularColorTexture": {"index": 0}}}}, {"extensions": {"KHR_materials_ior": {"ior": 0}}})",
-        R"(, "textures": [{}], "extensionsUsed": ["KHR_materials_ior", "KHR_materials_specular"],
-           "extensionsRequired": ["KHR_materials_specular"])");
+                {"specularFactor": 0.25, "specularColorFactor": [2, 1, -1]},
+                 "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1],
+                     "sheenRoughnessTexture": {"index": 0}}}}, {"extensions": {"KHR_materials_ior": {"ior": 0}}})",
+        R"(, "textures": [{}], "extensionsUsed": ["KHR_materials_ior", "KHR_materials_specular", "KHR_materials_sheen"],
+           "extensionsRequired": ["KHR_materials_sheen"])");
     ASSERT_EQ(textures.findings().size(), 1U) << "factors are drawn";
     EXPECT_EQ(textures.findings()[0].kind,
-              "specularColorTexture of KHR_materials_specular, which the file requires");
+              "sheenRoughnessTexture of KHR_materials_sheen, which the file requires");
     const MetallicRoughness& model = *drawn.materials[0].metallic_roughness;
     EXPECT_EQ(model.refractive_index, 1.0F) << "the nearest allowed index";
     EXPECT_EQ(model.specular, 0.25F);
@@ -155,9 +156,17 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_EQ(drawn.materials[1].metallic_roughness->refractive_index, 0.0F);
     const auto [layered, none] = load(
         R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 2},
+                           "KHR_materials_anisotropy": {"anisotropyStrength": 3, "anisotropyRotation": -2},
+                           "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 0.5,
+                                                         "iridescenceThicknessMaximum": -1},
                            "KHR_materials_sheen": {"sheenColorFactor": [0, 0.5, 0]}}})",
         "");
     EXPECT_TRUE(none.empty());
+    EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence, 0.5F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence_index, 1.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence_thickness, 0.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->anisotropy, 1.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->anisotropy_rotation, -2.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->clearcoat, 1.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->sheen_color, glm::vec3(0, 0.5F, 0));
     Report report_of_phong;
@@ -165,6 +174,45 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
                                    report_of_phong);
     EXPECT_EQ(report_of_phong.count("KHR_materials_clearcoat"), 1U) << "Phong has no layers";
     EXPECT_EQ(report_of_phong.count("KHR_materials_sheen"), 1U);
+    EXPECT_EQ(report_of_phong.count("KHR_materials_anisotropy"), 1U);
+    EXPECT_EQ(report_of_phong.count("KHR_materials_iridescence"), 1U);
+}
+
+TEST(LoadScene, HasTheTexturesOfMaterialExtensions) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "m.gltf", R"({"asset": {"version": "2.0"}, "images": [
+        {"uri": "0.png"}, {"uri": "1.png"}, {"uri": "2.png"}, {"uri": "3.png"}, {"uri": "4.png"},
+        {"uri": "5.png"}, {"uri": "6.png"}, {"uri": "7.png"}, {"uri": "8.png"}],
+      "textures": [{"source": 0}, {"source": 1}, {"source": 2}, {"source": 3}, {"source": 4},
+        {"source": 5}, {"source": 6}, {"source": 7}, {"source": 8}],
+      "materials": [{"extensions": {
+        "KHR_materials_specular": {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 1}},
+        "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 2},
+            "clearcoatRoughnessTexture": {"index": 3}, "clearcoatNormalTexture": {"index": 4, "scale": 0.5}},
+        "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1], "sheenColorTexture": {"index": 5}},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 1, "anisotropyTexture": {"index": 6}},
+        "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessMinimum": 200,
+            "iridescenceTexture": {"index": 7}, "iridescenceThicknessTexture": {"index": 8}}}}]})");
+    Report report;
+    const Scene scene = load_scene(folder / "m.gltf", report);
+    EXPECT_TRUE(scene.materials[0].undrawn_extensions.empty());
+    const MetallicRoughness& model = *scene.materials[0].metallic_roughness;
+    const std::optional<Texture> textures[] = {model.specular_texture,
+                                               model.specular_color_texture,
+                                               model.clearcoat_texture,
+                                               model.clearcoat_roughness_texture,
+                                               model.clearcoat_normal_map->texture,
+                                               model.sheen_color_texture,
+                                               model.anisotropy_texture,
+                                               model.iridescence_texture,
+                                               model.iridescence_thickness_texture};
+    for (std::size_t i = 0; i < std::size(textures); ++i) {
+        ASSERT_TRUE(textures[i]) << i;
+        EXPECT_EQ(textures[i]->image, i);
+    }
+    EXPECT_EQ(model.clearcoat_normal_map->scale, 0.5F);
+    EXPECT_EQ(model.iridescence_thickness_minimum, 200.0F);
+    EXPECT_EQ(model.iridescence_thickness, 400.0F);
 }
 
 TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {

@@ -113,7 +113,13 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
         "emission": 2, "shininess": 7, "specular_model": "blinn_phong_normalized",
         "metallic_roughness": {"base_color": 0.5, "metallic": 0.25, "roughness": 0.75, "texture": "a.png",
             "refractive_index": 1.75, "specular": 0.125, "specular_color": [1, 2, 3],
-            "clearcoat": 0.5, "clearcoat_roughness": 0.25, "sheen_color": [0, 0.5, 1], "sheen_roughness": 0.75},
+            "clearcoat": 0.5, "clearcoat_roughness": 0.25, "sheen_color": [0, 0.5, 1], "sheen_roughness": 0.75,
+            "anisotropy": 0.5, "anisotropy_rotation": -180,
+            "specular_texture": "a.png", "specular_color_texture": "b.png", "clearcoat_texture": "a.png",
+            "clearcoat_roughness_texture": "b.png", "clearcoat_normal_map": {"texture": "a.png", "scale": 0.5},
+            "sheen_color_texture": "b.png", "anisotropy_texture": "a.png", "iridescence_texture": "b.png",
+            "iridescence_thickness_texture": "a.png", "iridescence_thickness_minimum": 50,
+            "iridescence": 0.25, "iridescence_index": 1.75, "iridescence_thickness": 550},
         "reflectivity": 0.3, "grazing_reflectivity": 0.9, "fresnel": "conductor", "refractive_index": 1.33,
         "conductor_index": 0.4, "conductor_absorption": 5, "reflection_roughness": 0.6,
         "diffuse_texture": "a.png", "specular_texture": "b.png", "emission_texture": {"image": "a.png",
@@ -143,6 +149,23 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     EXPECT_EQ(m.metallic_roughness->clearcoat_roughness, 0.25F);
     EXPECT_EQ(m.metallic_roughness->sheen_color, glm::vec3(0, 0.5F, 1));
     EXPECT_EQ(m.metallic_roughness->sheen_roughness, 0.75F);
+    EXPECT_EQ(m.metallic_roughness->anisotropy, 0.5F);
+    EXPECT_FLOAT_EQ(m.metallic_roughness->anisotropy_rotation, -std::numbers::pi_v<float>);
+    EXPECT_EQ(m.metallic_roughness->iridescence, 0.25F);
+    EXPECT_EQ(m.metallic_roughness->iridescence_index, 1.75F);
+    EXPECT_EQ(m.metallic_roughness->iridescence_thickness, 550.0F);
+    EXPECT_EQ(m.metallic_roughness->iridescence_thickness_minimum, 50.0F);
+    EXPECT_EQ(m.metallic_roughness->clearcoat_normal_map->scale, 0.5F);
+    for (const auto& texture :
+         {m.metallic_roughness->specular_texture, m.metallic_roughness->clearcoat_texture,
+          m.metallic_roughness->anisotropy_texture,
+          m.metallic_roughness->iridescence_thickness_texture})
+        EXPECT_EQ(texture->image, m.metallic_roughness->texture->image);
+    for (const auto& texture :
+         {m.metallic_roughness->specular_color_texture,
+          m.metallic_roughness->clearcoat_roughness_texture,
+          m.metallic_roughness->sheen_color_texture, m.metallic_roughness->iridescence_texture})
+        EXPECT_EQ(texture->image, m.specular_texture->image);
     EXPECT_EQ(m.metallic_roughness->texture->image, m.diffuse_texture->image);
     EXPECT_EQ(m.reflectivity, glm::vec3(0.3F));
     EXPECT_EQ(m.grazing_reflectivity, glm::vec3(0.9F));

@@ -516,6 +516,15 @@ bool edit_metallic_roughness(MetallicRoughness& model) {
     changed |= slide(model, &MetallicRoughness::clearcoat_roughness);
     changed |= edit_color(model, &MetallicRoughness::sheen_color);
     changed |= slide(model, &MetallicRoughness::sheen_roughness);
+    changed |= slide(model, &MetallicRoughness::anisotropy);
+    float rotation = glm::degrees(model.anisotropy_rotation);
+    if (slide("Anisotropy rotation", rotation, {-180.0F, 180.0F, "%.0f deg"})) {
+        model.anisotropy_rotation = glm::radians(rotation);
+        changed = true;
+    }
+    changed |= slide(model, &MetallicRoughness::iridescence);
+    changed |= slide("Film index", model.iridescence_index, {1.0F, 3.0F});
+    changed |= slide("Film thickness", model.iridescence_thickness, {0.0F, 1200.0F, "%.0f nm"});
     return changed;
 }
 
@@ -566,10 +575,12 @@ bool edit_relief(Material& material) {
     if (material.bump_map) {
         changed |= slide("Height", material.bump_map->strength, {0.0F, 128.0F, "%.1f texels"});
     }
-    if (material.normal_map || material.bump_map) {
+    const auto& model = material.metallic_roughness;
+    const bool model_has_frame = model && (model->anisotropy > 0.0F || model->clearcoat_normal_map);
+    if (material.normal_map || material.bump_map || model_has_frame)
         changed |= choose("Tangents", material.tangent_frame);
+    if (material.normal_map || material.bump_map)
         changed |= check("Specular antialiasing", material.specular_antialiasing);
-    }
     return changed;
 }
 

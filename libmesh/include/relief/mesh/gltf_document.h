@@ -91,16 +91,37 @@ struct GltfMaterial {
     float alpha_cutoff = 0.5F;
     bool double_sided = false;
     bool unlit = false;              ///< KHR_materials_unlit
-    float refractive_index = 1.5F;   ///< KHR_materials_ior
-    float specular = 1.0F;           ///< KHR_materials_specular, the factors.
-    glm::vec3 specular_color{1.0F};  ///< KHR_materials_specular
-    float clearcoat = 0.0F;          ///< KHR_materials_clearcoat, the factors.
+    // KHR_materials_ior and KHR_materials_specular.
+    float refractive_index = 1.5F;
+    float specular = 1.0F;
+    glm::vec3 specular_color{1.0F};
+    std::optional<GltfTexture> specular_texture;        ///< Alpha.
+    std::optional<GltfTexture> specular_color_texture;  ///< sRGB color.
+    // KHR_materials_clearcoat.
+    float clearcoat = 0.0F;
     float clearcoat_roughness = 0.0F;
-    glm::vec3 sheen_color{0.0F};  ///< KHR_materials_sheen, the factors.
+    float clearcoat_normal_scale = 1.0F;
+    std::optional<GltfTexture> clearcoat_texture;            ///< Red.
+    std::optional<GltfTexture> clearcoat_roughness_texture;  ///< Green.
+    std::optional<GltfTexture> clearcoat_normal_texture;
+    // KHR_materials_sheen.
+    glm::vec3 sheen_color{0.0F};
     float sheen_roughness = 0.0F;
+    std::optional<GltfTexture> sheen_color_texture;  ///< sRGB color.
+    // KHR_materials_anisotropy.
+    float anisotropy = 0.0F;                        ///< The strength.
+    float anisotropy_rotation = 0.0F;               ///< Radians from the tangent to the bitangent.
+    std::optional<GltfTexture> anisotropy_texture;  ///< Direction in red and green, strength: blue.
+    // KHR_materials_iridescence; thicknesses in nanometers.
+    float iridescence = 0.0F;
+    float iridescence_index = 1.3F;
+    float iridescence_thickness_minimum = 100.0F;
+    float iridescence_thickness = 400.0F;                      ///< The maximum.
+    std::optional<GltfTexture> iridescence_texture;            ///< Red.
+    std::optional<GltfTexture> iridescence_thickness_texture;  ///< Green: from minimum to maximum.
     /// The extensions that change the appearance and are not among the members above, and the
-    /// textures of those that are ("specularTexture of KHR_materials_specular"), sorted. Extensions
-    /// whose values change nothing are left out.
+    /// textures of those that are ("sheenRoughnessTexture of KHR_materials_sheen"), sorted.
+    /// Extensions whose values change nothing are left out.
     std::vector<std::string> more_extensions{};
 };
 

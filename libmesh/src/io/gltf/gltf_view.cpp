@@ -6,8 +6,8 @@
 // without a place in the scene types stay only in the document. Instance attributes of a wrong type
 // throw InvalidInput. An unusable animation channel is left out and counted. Source: glTF 2.0
 // (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_ior,
-// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_unlit,
-// KHR_texture_transform, EXT_mesh_gpu_instancing.
+// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
+// KHR_materials_iridescence, KHR_materials_unlit, KHR_texture_transform, EXT_mesh_gpu_instancing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -199,9 +199,21 @@ bool is_neutral(const std::string& name, const Json& extension) {
 /// Returns true for extensions whose factors are members of GltfMaterial.
 bool has_members(std::string_view name) {
     static constexpr std::array names = {
-        "KHR_materials_unlit",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-        "KHR_materials_specular", "KHR_materials_clearcoat",         "KHR_materials_sheen"};
+        "KHR_materials_unlit",      "KHR_materials_emissive_strength", "KHR_materials_ior",
+        "KHR_materials_specular",   "KHR_materials_clearcoat",         "KHR_materials_sheen",
+        "KHR_materials_anisotropy", "KHR_materials_iridescence",
+    };
     return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Returns true for textures of such extensions that are members of GltfMaterial, too.
+bool is_member(std::string_view texture) {
+    static constexpr std::array names = {
+        "specularTexture",           "specularColorTexture",   "clearcoatTexture",
+        "clearcoatRoughnessTexture", "clearcoatNormalTexture", "sheenColorTexture",
+        "anisotropyTexture",         "iridescenceTexture",     "iridescenceThicknessTexture",
+    };
+    return std::find(names.begin(), names.end(), texture) != names.end();
 }
 
 /// Returns the extensions and textures of extensions that GltfMaterial does not have, without
@@ -217,10 +229,52 @@ std::vector<std::string> more_extensions_of(const Json& json) {
             continue;
         }
         for (const auto& [key, value] : extension.items())
-            if (key.ends_with("Texture")) names.push_back(fmt::format("{} of {}", key, name));
+            if (key.ends_with("Texture") && !is_member(key))
+                names.push_back(fmt::format("{} of {}", key, name));
     }
     std::sort(names.begin(), names.end());
     return names;
+}
+
+/// Sets the members that extensions describe by factors and textures.
+void add_extensions(const Json& root, const Json& json, GltfMaterial& material) {
+    if (const Json* ior = find(json, "extensions", "KHR_materials_ior"))
+        material.refractive_index = float_in(*ior, "ior", 1.5F);
+    if (const Json* specular = find(json, "extensions", "KHR_materials_specular")) {
+        material.specular = float_in(*specular, "specularFactor", 1.0F);
+        material.specular_color = vector_in(*specular, "specularColorFactor", glm::vec3(1.0F));
+        material.specular_texture = texture_in(root, *specular, "specularTexture");
+        material.specular_color_texture = texture_in(root, *specular, "specularColorTexture");
+    }
+    if (const Json* coat = find(json, "extensions", "KHR_materials_clearcoat")) {
+        material.clearcoat = float_in(*coat, "clearcoatFactor", 0.0F);
+        material.clearcoat_roughness = float_in(*coat, "clearcoatRoughnessFactor", 0.0F);
+        material.clearcoat_texture = texture_in(root, *coat, "clearcoatTexture");
+        material.clearcoat_roughness_texture = texture_in(root, *coat, "clearcoatRoughnessTexture");
+        material.clearcoat_normal_texture = texture_in(root, *coat, "clearcoatNormalTexture");
+        if (const Json* normal = find(*coat, "clearcoatNormalTexture"))
+            material.clearcoat_normal_scale = float_in(*normal, "scale", 1.0F);
+    }
+    if (const Json* sheen = find(json, "extensions", "KHR_materials_sheen")) {
+        material.sheen_color = vector_in(*sheen, "sheenColorFactor", glm::vec3(0.0F));
+        material.sheen_roughness = float_in(*sheen, "sheenRoughnessFactor", 0.0F);
+        material.sheen_color_texture = texture_in(root, *sheen, "sheenColorTexture");
+    }
+    if (const Json* anisotropy = find(json, "extensions", "KHR_materials_anisotropy")) {
+        material.anisotropy = float_in(*anisotropy, "anisotropyStrength", 0.0F);
+        material.anisotropy_rotation = float_in(*anisotropy, "anisotropyRotation", 0.0F);
+        material.anisotropy_texture = texture_in(root, *anisotropy, "anisotropyTexture");
+    }
+    if (const Json* film = find(json, "extensions", "KHR_materials_iridescence")) {
+        material.iridescence = float_in(*film, "iridescenceFactor", 0.0F);
+        material.iridescence_index = float_in(*film, "iridescenceIor", 1.3F);
+        material.iridescence_thickness_minimum =
+            float_in(*film, "iridescenceThicknessMinimum", 100.0F);
+        material.iridescence_thickness = float_in(*film, "iridescenceThicknessMaximum", 400.0F);
+        material.iridescence_texture = texture_in(root, *film, "iridescenceTexture");
+        material.iridescence_thickness_texture =
+            texture_in(root, *film, "iridescenceThicknessTexture");
+    }
 }
 
 GltfMaterial material_from(const Json& root, const Json& json) {
@@ -254,20 +308,7 @@ GltfMaterial material_from(const Json& root, const Json& json) {
     material.alpha_cutoff = float_in(json, "alphaCutoff", 0.5F);
     material.double_sided = bool_in(json, "doubleSided");
     material.unlit = find(json, "extensions", "KHR_materials_unlit") != nullptr;
-    if (const Json* ior = find(json, "extensions", "KHR_materials_ior"))
-        material.refractive_index = float_in(*ior, "ior", 1.5F);
-    if (const Json* specular = find(json, "extensions", "KHR_materials_specular")) {
-        material.specular = float_in(*specular, "specularFactor", 1.0F);
-        material.specular_color = vector_in(*specular, "specularColorFactor", glm::vec3(1.0F));
-    }
-    if (const Json* coat = find(json, "extensions", "KHR_materials_clearcoat")) {
-        material.clearcoat = float_in(*coat, "clearcoatFactor", 0.0F);
-        material.clearcoat_roughness = float_in(*coat, "clearcoatRoughnessFactor", 0.0F);
-    }
-    if (const Json* sheen = find(json, "extensions", "KHR_materials_sheen")) {
-        material.sheen_color = vector_in(*sheen, "sheenColorFactor", glm::vec3(0.0F));
-        material.sheen_roughness = float_in(*sheen, "sheenRoughnessFactor", 0.0F);
-    }
+    add_extensions(root, json, material);
     material.more_extensions = more_extensions_of(json);
     return material;
 }

@@ -52,8 +52,19 @@ struct Features {
     bool metallic_roughness = false;
     /// Dielectrics reflect another share than 4% (KHR_materials_ior, KHR_materials_specular).
     bool dielectric_reflectance = false;
-    bool sheen = false;      ///< KHR_materials_sheen
+    bool specular_weight_texture = false;
+    bool specular_color_texture = false;
+    bool sheen = false;  ///< KHR_materials_sheen
+    bool sheen_color_texture = false;
     bool clearcoat = false;  ///< KHR_materials_clearcoat
+    bool clearcoat_texture = false;
+    bool clearcoat_roughness_texture = false;
+    bool clearcoat_normal_map = false;
+    bool anisotropy = false;  ///< KHR_materials_anisotropy
+    bool anisotropy_texture = false;
+    bool iridescence = false;  ///< KHR_materials_iridescence
+    bool iridescence_texture = false;
+    bool film_thickness_texture = false;
     Interpolation interpolation = Interpolation::per_pixel;
     // Factors of the colors.
     bool diffuse_texture = false;
@@ -66,7 +77,7 @@ struct Features {
     bool opacity_texture = false;
     // The normal.
     NormalDetail detail = NormalDetail::none;
-    TangentFrame frame = TangentFrame::stored;  ///< For tangent-space maps.
+    TangentFrame frame = TangentFrame::stored;  ///< For tangent-space maps and anisotropy.
     bool specular_antialiasing = false;
     bool double_sided = false;  ///< Back faces have the opposite normal.
     // Light.
@@ -112,7 +123,7 @@ struct DrawPlan {
     MaterialRange range;
     Features features;
     std::vector<EffectReason> reasons;
-    bool needs_tangents = false;  ///< The map needs them and the mesh has none.
+    bool needs_tangents = false;  ///< The draw needs them and the mesh has none.
 };
 
 /// The whole frame.

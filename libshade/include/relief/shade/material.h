@@ -85,12 +85,32 @@ struct MetallicRoughness {
     float refractive_index = 1.5F;   ///< 0 counts as infinite.
     float specular = 1.0F;           ///< The weight of the reflection.
     glm::vec3 specular_color{1.0F};  ///< Tints the reflection at normal incidence.
-    // A clear layer on top (KHR_materials_clearcoat), which no normal map bends.
+    std::optional<Texture> specular_texture{};        ///< Alpha multiplies specular.
+    std::optional<Texture> specular_color_texture{};  ///< sRGB color.
+    // A clear layer on top (KHR_materials_clearcoat), which only a normal map of its own bends.
     float clearcoat = 0.0F;  ///< Its weight; 0: none.
     float clearcoat_roughness = 0.0F;
+    std::optional<Texture> clearcoat_texture{};            ///< Red multiplies clearcoat.
+    std::optional<Texture> clearcoat_roughness_texture{};  ///< Green multiplies its roughness.
+    std::optional<NormalMap> clearcoat_normal_map{};       ///< In tangent space.
     // Fibers on top of the surface, under the coat (KHR_materials_sheen).
     glm::vec3 sheen_color{0.0F};  ///< Zero: none.
     float sheen_roughness = 0.0F;
+    std::optional<Texture> sheen_color_texture{};  ///< sRGB color.
+    // Facets that are rougher along a direction in the tangent frame, as on brushed metal
+    // (KHR_materials_anisotropy).
+    float anisotropy = 0.0F;           ///< 0: the same roughness in all directions.
+    float anisotropy_rotation = 0.0F;  ///< Radians from the tangent to the bitangent.
+    /// The direction before the rotation, in red and green, where 0.5 is 0; the tangent if it has
+    /// no length. Blue multiplies anisotropy.
+    std::optional<Texture> anisotropy_texture{};
+    // A thin film, whose two surfaces interfere (KHR_materials_iridescence).
+    float iridescence = 0.0F;                                ///< Its weight; 0: none.
+    float iridescence_index = 1.3F;                          ///< The film's refractive index.
+    float iridescence_thickness = 400.0F;                    ///< In nanometers.
+    float iridescence_thickness_minimum = 100.0F;            ///< Where the thickness texture is 0.
+    std::optional<Texture> iridescence_texture{};            ///< Red multiplies iridescence.
+    std::optional<Texture> iridescence_thickness_texture{};  ///< Green: from minimum to thickness.
 };
 
 /// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
@@ -140,11 +160,26 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// f0 and for f90 - f0 at n.v and r (environment_brdf), and the reflected environment is blurred by
 /// r; r is at least 0.045.
 ///
+/// With anisotropy s, facets are wider along t, the direction of anisotropy_rotation in the tangent
+/// frame, made perpendicular to n: alpha_t = alpha + (1 - alpha) s^2. With b = cross(n, t):
+///
+///     pi D = 1 / (alpha_t alpha ((t.h / alpha_t)^2 + (b.h / alpha)^2 + max(n.h, 0)^2)^2)
+///     V    = 0.5 / (n.l |(alpha_t t.v, alpha b.v, n.v)| + n.v |(alpha_t t.l, alpha b.l, n.l)|)
+///
+/// The reflected environment is that of the normal mix(v - (b.v) b, n, (1 - s (1 - r))^4). Without
+/// a tangent frame, s is 0.
+///
+/// A thin film replaces f by mix(f, I(v.h), iridescence) and f' by mix(f', max(I(v.h)),
+/// iridescence), where I is the reflectance of the film on a base of f0: the light of both surfaces
+/// interferes. In the environment's light, f0 A + f90 B and f0' A + f90 B become the same mixtures
+/// with I(n.v) (A + B), and f0 in ambient light that with I(1). The film lies in air, also under a
+/// coat.
+///
 /// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
 /// color, D' and V' Charlie's distribution and visibility for alpha = sheen_roughness^2
 /// (convolution.h), E their directional albedo at n.v, which counts as at most 1, n' the normal
-/// without a map, w = clearcoat (0.04 + 0.96 (1 - n'.v)^5), and D, V, A and B of the coat those for
-/// clearcoat_roughness and n':
+/// with the coat's map alone, w = clearcoat (0.04 + 0.96 (1 - n'.v)^5), and D, V, A and B of the
+/// coat those for clearcoat_roughness and n':
 ///
 ///     sheened = (1 - max(s) E) (radiance without emission)
 ///             + s (sum_i L max(n.l, 0) pi D' V' + E occlusion (scene.ambient + E(n)))
@@ -159,9 +194,9 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 ///
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
 /// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B, with KHR_materials_ior,
-/// KHR_materials_specular, KHR_materials_clearcoat and KHR_materials_sheen, and
-/// [Estevez and Kulla 2017]. The CPU implementation is
-/// reference.h.
+/// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy
+/// and KHR_materials_iridescence, [Estevez and Kulla 2017] and [Belcour and Barla 2017]. The CPU
+/// implementation is reference.h.
 struct Material {
     std::string name;
     Interpolation interpolation = Interpolation::per_pixel;
@@ -190,7 +225,7 @@ struct Material {
     std::optional<Texture> opacity_texture;    ///< Red.
     std::optional<NormalMap> normal_map;
     std::optional<BumpMap> bump_map;  ///< Not together with a normal map.
-    TangentFrame tangent_frame = TangentFrame::stored;
+    TangentFrame tangent_frame = TangentFrame::stored;  ///< Of maps and of anisotropy.
     /// Widens highlights by the variance of a minified normal map's normals within a pixel
     /// [Toksvig 2005].
     bool specular_antialiasing = false;

@@ -174,10 +174,28 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
                &MetallicRoughness::specular_color,
                {0, max_reflectance},
                FieldUnit::color},
+    SceneField{"specular_texture", &MetallicRoughness::specular_texture},
+    SceneField{"specular_color_texture", &MetallicRoughness::specular_color_texture},
     SceneField{"clearcoat", &MetallicRoughness::clearcoat, {0, 1}},
     SceneField{"clearcoat_roughness", &MetallicRoughness::clearcoat_roughness, {0, 1}},
+    SceneField{"clearcoat_texture", &MetallicRoughness::clearcoat_texture},
+    SceneField{"clearcoat_roughness_texture", &MetallicRoughness::clearcoat_roughness_texture},
+    SceneField{"clearcoat_normal_map", &MetallicRoughness::clearcoat_normal_map},
     SceneField{"sheen_color", &MetallicRoughness::sheen_color, {0, 1}, FieldUnit::color},
-    SceneField{"sheen_roughness", &MetallicRoughness::sheen_roughness, {0, 1}}};
+    SceneField{"sheen_roughness", &MetallicRoughness::sheen_roughness, {0, 1}},
+    SceneField{"sheen_color_texture", &MetallicRoughness::sheen_color_texture},
+    SceneField{"anisotropy", &MetallicRoughness::anisotropy, {0, 1}},
+    SceneField{
+        "anisotropy_rotation", &MetallicRoughness::anisotropy_rotation, {}, FieldUnit::radians},
+    SceneField{"anisotropy_texture", &MetallicRoughness::anisotropy_texture},
+    SceneField{"iridescence", &MetallicRoughness::iridescence, {0, 1}},
+    SceneField{"iridescence_index", &MetallicRoughness::iridescence_index, {1, 1e3F}},
+    SceneField{"iridescence_thickness", &MetallicRoughness::iridescence_thickness, {0, 1e6F}},
+    SceneField{"iridescence_thickness_minimum",
+               &MetallicRoughness::iridescence_thickness_minimum,
+               {0, 1e6F}},
+    SceneField{"iridescence_texture", &MetallicRoughness::iridescence_texture},
+    SceneField{"iridescence_thickness_texture", &MetallicRoughness::iridescence_thickness_texture}};
 
 template <>
 inline constexpr auto fields_of<Material> = std::tuple{

@@ -50,10 +50,18 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
             "emissiveFactor": [1, 0.5, 0], "alphaMode": "MASK", "alphaCutoff": 0.25,
             "doubleSided": true, "extensions": {"KHR_materials_unlit": {},
                 "KHR_materials_ior": {"ior": 1.25}, "KHR_materials_specular":
-                    {"specularFactor": 0.5, "specularColorFactor": [1, 0.5, 2], "specularTexture": {"index": 0}},
-                "KHR_materials_clearcoat": {"clearcoatFactor": 0.25, "clearcoatRoughnessFactor": 0.125},
+                    {"specularFactor": 0.5, "specularColorFactor": [1, 0.5, 2], "specularTexture": {"index": 0},
+                     "specularColorTexture": {"index": 1}},
+                "KHR_materials_clearcoat": {"clearcoatFactor": 0.25, "clearcoatRoughnessFactor": 0.125,
+                    "clearcoatTexture": {"index": 1}, "clearcoatRoughnessTexture": {"index": 2},
+                    "clearcoatNormalTexture": {"index": 3, "scale": 0.5}},
                 "KHR_materials_sheen": {"sheenColorFactor": [0.1, 0.2, 0.3], "sheenRoughnessFactor": 0.5,
-                    "sheenColorTexture": {"index": 0}},
+                    "sheenColorTexture": {"index": 0}, "sheenRoughnessTexture": {"index": 1}},
+                "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 1.5,
+                    "iridescenceThicknessMinimum": 50, "iridescenceThicknessMaximum": 250,
+                    "iridescenceTexture": {"index": 2}, "iridescenceThicknessTexture": {"index": 3}},
+                "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": -0.5,
+                    "anisotropyTexture": {"index": 0}},
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
                               .view();
     const GltfMaterial& plain = view.materials[0];
@@ -74,13 +82,31 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(full.specular, 0.5F);
     EXPECT_EQ(full.specular_color, glm::vec3(1, 0.5F, 2));
     EXPECT_EQ(full.more_extensions,
-              (std::vector<std::string>{"sheenColorTexture of KHR_materials_sheen",
-                                        "specularTexture of KHR_materials_specular"}));
+              (std::vector<std::string>{"sheenRoughnessTexture of KHR_materials_sheen"}));
+    EXPECT_EQ(full.specular_texture->image, full.normal_texture->image);
+    EXPECT_EQ(full.specular_color_texture->image, full.occlusion_texture->image);
+    EXPECT_EQ(full.clearcoat_texture->image, full.occlusion_texture->image);
+    EXPECT_EQ(full.clearcoat_roughness_texture->image, full.metallic_roughness_texture->image);
+    EXPECT_EQ(full.clearcoat_normal_texture->image, full.emission_texture->image);
+    EXPECT_EQ(full.clearcoat_normal_scale, 0.5F);
+    EXPECT_EQ(full.sheen_color_texture->image, full.normal_texture->image);
+    EXPECT_EQ(full.anisotropy_texture->image, full.normal_texture->image);
+    EXPECT_EQ(full.iridescence_texture->image, full.metallic_roughness_texture->image);
+    EXPECT_EQ(full.iridescence_thickness_texture->image, full.emission_texture->image);
+    EXPECT_FALSE(plain.specular_texture || plain.clearcoat_normal_texture);
     EXPECT_EQ(plain.clearcoat, 0.0F);
     EXPECT_EQ(full.clearcoat, 0.25F);
     EXPECT_EQ(full.clearcoat_roughness, 0.125F);
     EXPECT_EQ(full.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
     EXPECT_EQ(full.sheen_roughness, 0.5F);
+    EXPECT_EQ(plain.anisotropy, 0.0F);
+    EXPECT_EQ(full.anisotropy, 0.75F);
+    EXPECT_EQ(full.anisotropy_rotation, -0.5F);
+    EXPECT_EQ(plain.iridescence, 0.0F);
+    EXPECT_EQ(full.iridescence, 0.5F);
+    EXPECT_EQ(full.iridescence_index, 1.5F);
+    EXPECT_EQ(full.iridescence_thickness, 250.0F);
+    EXPECT_EQ(full.iridescence_thickness_minimum, 50.0F);
     EXPECT_EQ(full.normal_scale, 0.75F);
     EXPECT_EQ(full.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(full.alpha_cutoff, 0.25F);
