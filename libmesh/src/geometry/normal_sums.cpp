@@ -14,6 +14,7 @@
 // their addition rounds.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -203,10 +204,11 @@ void gather_doubtful(const BlockNormals& normals, std::size_t begin, std::size_t
 /// another contribution are rounded again at the end.
 class EarlyNormals {
   public:
-    /// \param is_only_part  Of several parts, none rounds early: two threads could write one
-    /// normal.
-    EarlyNormals(PartialSums& sums, StridedSpan<glm::vec3> normals, bool is_only_part)
-        : sums_(sums), normals_(normals), is_only_part_(is_only_part) {}
+    /// \param claimed  one value for each block of vertices, shared by all parts: the first part
+    /// that rounds a block sets it, so that no two threads write one normal.
+    EarlyNormals(PartialSums& sums, StridedSpan<glm::vec3> normals,
+                 std::span<std::atomic<bool>> claimed)
+        : sums_(sums), normals_(normals), claimed_(claimed) {}
 
     /// \param range  the vertices of a block of triangles, which were added to the sums
     void add(std::span<const glm::uvec3> triangles, const VertexRange& range) {
@@ -217,7 +219,7 @@ class EarlyNormals {
             }
         }
         lowest_ = std::min(lowest_, range.lowest);
-        if (!is_only_part_ || ++blocks_ % 16 != 0) return;
+        if (++blocks_ % 16 != 0) return;
         round_up_to(std::min(lowest_, lowest_before_));
         lowest_before_ = std::exchange(lowest_, std::numeric_limits<std::uint32_t>::max());
     }
@@ -228,6 +230,7 @@ class EarlyNormals {
         const auto round = best_round_vertices();
         const std::size_t first = (sums_.vertices().lowest + at_once - 1) / at_once * at_once;
         for (end_ = std::max(end_, first); end_ + at_once <= end; end_ += at_once) {
+            if (claimed_[end_ / at_once].exchange(true, std::memory_order_relaxed)) continue;
             BlockNormals rounded;
             round({&sums_, 1}, end_, at_once, normals_, rounded);
             gather_doubtful(rounded, end_, at_once, doubtful_);
@@ -237,7 +240,7 @@ class EarlyNormals {
 
     PartialSums& sums_;
     StridedSpan<glm::vec3> normals_;
-    bool is_only_part_;
+    std::span<std::atomic<bool>> claimed_;
     std::size_t end_ = 0;
     std::size_t blocks_ = 0;
     std::uint32_t lowest_ = std::numeric_limits<std::uint32_t>::max();
@@ -592,6 +595,7 @@ NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpa
     std::vector<Job> jobs;
     for (std::size_t i = 0; i < parts; ++i)
         result.parts.emplace_back(positions.size());
+    std::vector<std::atomic<bool>> claimed((positions.size() + at_once - 1) / at_once);
     const float scale = arithmetic == Arithmetic::float32 ? scale_for(positions) : 1.0F;
     for (std::size_t i = 0; i < parts; ++i) {
         const std::size_t first = blocks * i / parts;
@@ -601,7 +605,7 @@ NormalSums sum_contributions(StridedSpan<const glm::vec3> positions, TriangleSpa
         jobs.push_back({positions, triangles.subspan(begin, end - begin),
                         static_cast<std::uint32_t>(begin), scale, &result.parts[i],
                         result.ranges.data() + first, &odd[i],
-                        EarlyNormals(result.parts[i], normals, parts == 1)});
+                        EarlyNormals(result.parts[i], normals, claimed)});
     }
     parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

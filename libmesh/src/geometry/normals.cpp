@@ -337,38 +337,37 @@ Groups sharing_vertices(StridedSpan<const glm::vec3> positions,
                                            : weld_positions(positions));
 }
 
-/// Computes the normals of all vertices; the fallback for vertices with problems.
+/// Computes the normals of all vertices from the sums at them; the fallback for vertices with
+/// problems.
 ///
-/// \param shared  returns the groups of vertices that share a normal; runs in parallel with the
-/// summation
-/// \throws InvalidInput if a triangle names a vertex that does not exist
-AveragingResult averaged_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
-                                 NormalWeight weight, Arithmetic arithmetic,
-                                 const std::function<Groups()>& shared,
-                                 StridedSpan<glm::vec3> normals) {
+/// \param shared  the groups of vertices that share a normal
+AveragingResult normals_of_sums(NormalSums sums, StridedSpan<const glm::vec3> positions,
+                                TriangleSpan triangles, NormalWeight weight, Arithmetic arithmetic,
+                                const Groups& shared, StridedSpan<glm::vec3> normals) {
     AveragingResult result;
-    Groups groups;
-    NormalSums sums;
-    parallel_tasks(
-        {[&] { sums = sum_contributions(positions, triangles, weight, arithmetic, normals); },
-         [&] { groups = shared(); }},
-        triangles.size() < few_triangles);
     result.odd_triangles = std::move(sums.odd);
     const auto vertices = round_normals(sums, normals);
-    const auto doubtful = round_shared_normals(sums, groups.first, groups.members, normals);
-    std::vector<Place> places = doubtful_places(positions.size(), vertices, groups, doubtful);
+    const auto doubtful = round_shared_normals(sums, shared.first, shared.members, normals);
+    std::vector<Place> places = doubtful_places(positions.size(), vertices, shared, doubtful);
     find_exact_normals(positions, triangles, sums.ranges, weight, arithmetic, places);
     take_over(places, normals, result);
     return result;
+}
+
+/// \throws InvalidInput if a triangle names a vertex that does not exist
+AveragingResult averaged_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                                 NormalWeight weight, Arithmetic arithmetic, const Groups& shared,
+                                 StridedSpan<glm::vec3> normals) {
+    return normals_of_sums(sum_contributions(positions, triangles, weight, arithmetic, normals),
+                           positions, triangles, weight, arithmetic, shared, normals);
 }
 
 /// Averages with the weighting that suits each vertex.
 AveragingResult averaged_normals_by_choice(StridedSpan<const glm::vec3> positions,
                                            TriangleSpan triangles, Arithmetic arithmetic,
                                            const Groups& shared, StridedSpan<glm::vec3> normals) {
-    const auto sharing = [&] { return shared; };
     AveragingResult result =
-        averaged_normals(positions, triangles, NormalWeight::max, arithmetic, sharing, normals);
+        averaged_normals(positions, triangles, NormalWeight::max, arithmetic, shared, normals);
     std::vector<std::uint8_t> by_area = folded_vertices(positions, triangles, normals, shared);
     for (const auto& [vertex, kind] : result.problems)
         by_area[vertex] = kind == PlaceKind::cancelling ? 1 : 0;
@@ -377,7 +376,7 @@ AveragingResult averaged_normals_by_choice(StridedSpan<const glm::vec3> position
 
     std::vector<glm::vec3> area_normals(positions.size());
     AveragingResult area = averaged_normals(positions, triangles, NormalWeight::area, arithmetic,
-                                            sharing, area_normals);
+                                            shared, area_normals);
     for (std::size_t v = 0; v < by_area.size(); ++v) {
         if (by_area[v] != 0) normals[v] = area_normals[v];
     }
@@ -447,9 +446,20 @@ void vertex_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangl
         throw InvalidInput(fmt::format("there is memory for {} normals, but there are {} positions",
                                        normals.size(), positions.size()));
     }
-    const AveragingResult averaged = averaged_normals(
-        positions, triangles, options.weight, options.arithmetic,
-        [&] { return sharing_vertices(positions, options.weld_tolerance); }, normals);
+    const auto& [weight, arithmetic, weld_tolerance] = options;
+    NormalSums sums;
+    Groups shared;
+    const auto sum = [&] {
+        sums = sum_contributions(positions, triangles, weight, arithmetic, normals);
+    };
+    const auto weld = [&] { shared = sharing_vertices(positions, weld_tolerance); };
+    // Without welding, the sums get all threads.
+    if (weld_tolerance)
+        parallel_tasks({sum, weld}, triangles.size() < few_triangles);
+    else
+        sum();
+    const AveragingResult averaged =
+        normals_of_sums(std::move(sums), positions, triangles, weight, arithmetic, shared, normals);
     report_all(averaged, positions, triangles, report);
 }
 
@@ -574,9 +584,8 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
                 positions, triangles);
     std::vector<glm::vec3> normals(fans.positions.size());
     const AveragingResult averaged =
-        weight ? averaged_normals(
-                     fans.positions, fans.triangles, *weight, options.arithmetic,
-                     [&] { return fans.fans; }, normals)
+        weight ? averaged_normals(fans.positions, fans.triangles, *weight, options.arithmetic,
+                                  fans.fans, normals)
                : averaged_normals_by_choice(fans.positions, fans.triangles, options.arithmetic,
                                             fans.fans, normals);
 
