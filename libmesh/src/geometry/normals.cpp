@@ -446,20 +446,19 @@ void vertex_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangl
         throw InvalidInput(fmt::format("there is memory for {} normals, but there are {} positions",
                                        normals.size(), positions.size()));
     }
-    const auto& [weight, arithmetic, weld_tolerance] = options;
     NormalSums sums;
     Groups shared;
     const auto sum = [&] {
-        sums = sum_contributions(positions, triangles, weight, arithmetic, normals);
+        sums = sum_contributions(positions, triangles, options.weight, options.arithmetic, normals);
     };
-    const auto weld = [&] { shared = sharing_vertices(positions, weld_tolerance); };
+    const auto weld = [&] { shared = sharing_vertices(positions, options.weld_tolerance); };
     // Without welding, the sums get all threads.
-    if (weld_tolerance)
+    if (options.weld_tolerance)
         parallel_tasks({sum, weld}, triangles.size() < few_triangles);
     else
         sum();
-    const AveragingResult averaged =
-        normals_of_sums(std::move(sums), positions, triangles, weight, arithmetic, shared, normals);
+    const AveragingResult averaged = normals_of_sums(
+        std::move(sums), positions, triangles, options.weight, options.arithmetic, shared, normals);
     report_all(averaged, positions, triangles, report);
 }
 
