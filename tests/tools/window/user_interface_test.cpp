@@ -284,7 +284,14 @@ void Panel::change_lights() {
         display().act("mousedown 1 sleep 0.5 mouseup 1");
         return eventually(moves, 5.0);
     })) << "it moves by itself";
-    EXPECT_GT(window().state()["lights"][0]["speed"], 10.0);
+    const json turning = window().state();
+    EXPECT_GT(turning["lights"][0]["speed"], 10.0);
+    const json slider = turning["places"]["Rotation"];
+    window().drag(slider[0].get<int>() + 10, slider[1].get<int>(), -25, 0);
+    EXPECT_TRUE(eventually(
+        [&] { return window().state()["lights"][0]["speed"] < turning["lights"][0]["speed"]; }));
+    EXPECT_EQ(window().state()["edits"]["undo"], turning["edits"]["undo"].get<int>() + 1)
+        << "a drag is one step";
     click("Remove", [](const json& now) {
         return now["lights"].size() == 1 && now["drawn"]["whole"] == true;
     });
@@ -306,6 +313,10 @@ void Panel::change_environment() {
     click("Show as background", has_none);
     click("Show as background", has_skybox);
     click("clear Image or folder", has_none);
+    window().key("ctrl+z");
+    window().wait_for("the sky again", has_skybox);
+    window().key("ctrl+shift+z");
+    window().wait_for("no sky again", has_none);
     close_panel("Environment");
 }
 

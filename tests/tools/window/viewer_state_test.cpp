@@ -78,6 +78,7 @@ class State : public testing::Test {
     }
     void show(const std::string& model) { state_.take(read(model)); }
     ViewerState& state() { return state_; }
+    [[nodiscard]] const Workplace& workplace() const { return workplace_; }
 
   private:
     Workplace workplace_;
@@ -332,6 +333,76 @@ TEST_F(State, FailedEditChangesNothingAndReportsTheError) {
     EXPECT_EQ(state().request()->scene, scene);
     state().try_edit([](Scene& edited) { edited.exposure = 2.0F; });
     EXPECT_EQ(state().error(), "");
+}
+
+TEST_F(State, UndoesAndRedoesEditsStepByStep) {
+    show("square.obj");
+    const auto expose = [&](float exposure) {
+        state().edit([&](Scene& scene) { scene.exposure = exposure; });
+    };
+    state().act(Action::undo);
+    EXPECT_EQ(state().scene().exposure, 1.0F) << "there is nothing to undo";
+    expose(2.0F);
+    expose(3.0F);  // The same step, as in a drag.
+    state().end_edit_step();
+    state().act(Action::brighter);
+    const float brightest = state().scene().exposure;
+    EXPECT_GT(brightest, 3.0F);
+
+    state().act(Action::undo);
+    EXPECT_EQ(state().scene().exposure, 3.0F);
+    EXPECT_EQ(state().request()->scene->exposure, 3.0F) << "it is drawn";
+    state().act(Action::undo);
+    EXPECT_EQ(state().scene().exposure, 1.0F);
+    state().act(Action::redo);
+    EXPECT_EQ(state().scene().exposure, 3.0F);
+    state().act(Action::redo);
+    EXPECT_EQ(state().scene().exposure, brightest);
+    state().act(Action::redo);
+    EXPECT_EQ(state().scene().exposure, brightest) << "there is nothing to redo";
+
+    state().act(Action::undo);
+    expose(5.0F);
+    state().act(Action::redo);
+    EXPECT_EQ(state().scene().exposure, 5.0F) << "an edit ends the list of steps to redo";
+    state().act(Action::undo);
+    EXPECT_EQ(state().scene().exposure, 3.0F);
+    show("square.obj");
+    EXPECT_EQ(state().scene().exposure, 3.0F) << "the edit is kept for the file that is read again";
+    state().act(Action::undo);
+    EXPECT_EQ(state().scene().exposure, 3.0F) << "steps end with the scene that was read before";
+}
+
+TEST_F(State, UndoesLightsAndEnvironmentsWithWhatBelongsToThem) {
+    show("square.obj");
+    std::vector<LightRow> rows = state().light_rows();
+    ASSERT_FALSE(rows.empty());
+    const std::size_t lights = rows.size();
+    rows[0].speed = 1.0F;
+    rows.push_back(rows[0]);
+    rows.back().id = 0;
+    state().set_light_rows(rows);
+    state().end_edit_step();
+    state().set_environment(workplace() / "data/sky");
+    ASSERT_EQ(state().error(), "");
+    state().end_edit_step();
+    state().set_environment("nothing.hdr");
+    EXPECT_NE(state().error(), "");
+    EXPECT_EQ(state().options().environment.front().filename(), "sky")
+        << "that of the last success";
+
+    state().act(Action::undo);
+    EXPECT_EQ(state().error(), "");
+    EXPECT_FALSE(state().scene().environment) << "a failed edit is no step";
+    EXPECT_TRUE(state().options().environment.empty());
+    EXPECT_EQ(state().light_rows().size(), lights + 1);
+    EXPECT_TRUE(state().is_turning());
+    state().act(Action::undo);
+    EXPECT_EQ(state().light_rows().size(), lights);
+    EXPECT_FALSE(state().is_turning());
+    state().act(Action::redo);
+    EXPECT_EQ(state().light_rows().size(), lights + 1);
+    EXPECT_TRUE(state().is_turning());
 }
 
 TEST_F(State, EditsOfTheDefaultMaterialSurviveReadingAgain) {

@@ -726,6 +726,9 @@ float draw_toolbar(const ViewerState& state, float width, PanelRequests& request
     button("Open...", Action::open, "Open a model or a scene (Ctrl+O)");
     draw_menu("Save as", {Action::save_picture, Action::save_scene, Action::save_model}, requests);
     ImGui::SameLine();
+    draw_menu("Edit", {Action::undo, Action::redo, Action::copy_camera, Action::paste_camera},
+              requests);
+    ImGui::SameLine();
     draw_menu("Views",
               {Action::fit, Action::front, Action::back, Action::right, Action::left, Action::top,
                Action::bottom, Action::next_file, Action::previous_file, Action::theme,

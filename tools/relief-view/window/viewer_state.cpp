@@ -60,6 +60,9 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::compare, "K", "Start or stop the comparison"},
         {Action::swap_sides, "X", "Swap the two sides"},
         {Action::show_difference, "D", "Show the difference or both sides"},
+        {Action::undo, "Ctrl+Z", "Undo the last edit"},
+        {Action::redo, "Ctrl+Y", "Redo the edit that was undone"},
+        {Action::redo, "Ctrl+Shift+Z", "Redo the edit that was undone"},
         {Action::copy_camera, "Ctrl+C", "Copy the camera as command-line options"},
         {Action::paste_camera, "Ctrl+V", "Paste a camera"},
         {Action::save_picture, "S", "Save a picture next to the model"},
@@ -348,6 +351,7 @@ constexpr float turntable_speed = 0.5F;      // Radians per second.
 constexpr double step_seconds = 1.0 / 25.0;  // Of the animation.
 constexpr float marker_share = 0.03F;        // Of the radius of the scene.
 constexpr float fov_step = 1.1F;
+constexpr std::size_t max_undo = 200;
 
 float changed_fov(float fov, float factor) {
     return std::clamp(fov * factor, glm::radians(min_fov_degrees), glm::radians(max_fov_degrees));
@@ -407,6 +411,10 @@ void ViewerState::take(Loaded loaded) {
     replace(std::move(scene));
     light_rows_.update(*scene_, carriers);
     read_ = std::move(read);
+    // Earlier states are those of the scene as it was read before.
+    undo_.clear();
+    redo_.clear();
+    end_edit_step();
     edit_error_.clear();
     ++scenes_;
     const Bounds bounds = world_bounds(*scene_);
@@ -430,6 +438,51 @@ void ViewerState::take(Loaded loaded) {
     } else {
         show_all_but_hidden();  // The size of markers is that of the new scene.
     }
+}
+
+ViewerState::EditState ViewerState::edit_state() const {
+    EditState state{scene_,
+                    light_rows_,
+                    {},
+                    options_.environment,
+                    options_.environment_layout,
+                    options_.left_handed_environment};
+    for (const LightRow& row : light_rows_.rows(*scene_)) {
+        if (!row.carried.node) continue;
+        if (const auto speed = playback_.orbit_speed(*row.carried.node))
+            state.orbit_speeds.emplace_back(*row.carried.node, *speed);
+    }
+    return state;
+}
+
+void ViewerState::begin_edit_step() {
+    if (!scene_ || std::exchange(is_step_open_, true)) return;
+    if (undo_.size() == max_undo) undo_.erase(undo_.begin());
+    undo_.push_back(edit_state());
+    redo_.clear();
+}
+
+void ViewerState::restore(EditState state) {
+    light_rows_ = std::move(state.light_rows);
+    for (const auto& [node, speed] : state.orbit_speeds) {
+        if (playback_.orbit_speed(node) != speed) playback_.set_orbit_speed(node, speed);
+    }
+    options_.environment = std::move(state.environment);
+    options_.environment_layout = state.environment_layout;
+    options_.left_handed_environment = state.left_handed_environment;
+    edit_error_.clear();
+    replace(std::move(state.scene));
+    if (playback_.has_motion()) move_to(playback_.time());
+}
+
+/// Shows the last state of a list, and adds the current one to the other.
+void ViewerState::exchange_edits(std::vector<EditState>& from, std::vector<EditState>& to) {
+    end_edit_step();
+    if (!scene_ || from.empty()) return;
+    to.push_back(edit_state());
+    EditState state = std::move(from.back());
+    from.pop_back();
+    restore(std::move(state));
 }
 
 /// Replaces the scene, and updates the scene without hidden instances.
@@ -499,6 +552,9 @@ void ViewerState::name_default_material() {
     relief::name_default_material(*read);
     read_ = std::move(read);
     edit(relief::name_default_material);
+    // Earlier states have no such material.
+    undo_.clear();
+    end_edit_step();
 }
 
 void ViewerState::set_environment(const std::filesystem::path& file) {
@@ -516,10 +572,11 @@ void ViewerState::set_environment(const std::filesystem::path& file) {
             environment.lights = scene.environment->lights;
         }
         scene.environment = std::move(environment);
-        options_.environment = options.environment;
-        options_.environment_layout.reset();
-        options_.left_handed_environment = false;
     });
+    if (!edit_error_.empty()) return;
+    options_.environment = options.environment;
+    options_.environment_layout.reset();
+    options_.left_handed_environment = false;
 }
 
 std::vector<LightRow> ViewerState::light_rows() const {
@@ -533,6 +590,7 @@ std::vector<LightRow> ViewerState::light_rows() const {
 }
 
 void ViewerState::set_light_rows(std::vector<LightRow> rows) {
+    begin_edit_step();
     const std::vector<LightRow> before = light_rows();
     for (LightRow& row : rows) {
         const auto old = std::find_if(before.begin(), before.end(),
@@ -551,6 +609,7 @@ void ViewerState::set_light_rows(std::vector<LightRow> rows) {
 
 void ViewerState::orbit_lights(const glm::vec2& pixels) {
     if (!scene_ || view_.y == 0) return;
+    begin_edit_step();
     const float unit = 2.0F * quarter / static_cast<float>(view_.y);
     const glm::vec3 right(std::cos(camera_.azimuth), 0.0F, -std::sin(camera_.azimuth));
     glm::mat4 rotation = glm::rotate(glm::mat4(1.0F), unit * pixels.y, right);
@@ -668,6 +727,10 @@ void ViewerState::act(Action action) {
                 const float factor = std::exp2(action == Action::brighter ? 0.5F : -0.5F);
                 scene.exposure = std::clamp(scene.exposure * factor, min_exposure, max_exposure);
             });
+        case Action::undo:
+            return exchange_edits(undo_, redo_);
+        case Action::redo:
+            return exchange_edits(redo_, undo_);
         case Action::turntable:
             is_turning_ = !is_turning_;
             return;
@@ -763,7 +826,11 @@ nlohmann::ordered_json ViewerState::json(const RenderedPicture& drawn) const {
                                     {"turntable", is_turning_},
                                     {"animation", playback_.json()},
                                     {"scenes", scenes_},
-                                    {"edits", {{"kept", rebased_.kept}, {"lost", rebased_.lost}}},
+                                    {"edits",
+                                     {{"kept", rebased_.kept},
+                                      {"lost", rebased_.lost},
+                                      {"undo", undo_.size()},
+                                      {"redo", redo_.size()}}},
                                     {"revision", revision_},
                                     {"drawn",
                                      {{"revision", drawn.revision},

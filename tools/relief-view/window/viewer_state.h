@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "relief/shade/effects.h"
@@ -60,6 +61,8 @@ enum class Action {
     compare,
     swap_sides,
     show_difference,
+    undo,
+    redo,
     copy_camera,
     paste_camera,
     save_picture,
@@ -168,14 +171,19 @@ class ViewerState {
     /// Draws the scene again, because its images have changed.
     void refresh() { ++revision_; }
 
-    /// Changes the scene. Copies of a scene share its meshes.
+    /// Changes the scene. Copies of a scene share its meshes. All changes up to the next
+    /// end_edit_step() are undone together.
     template <typename Edit>
     void edit(const Edit& change) {
         if (!scene_) return;
         auto edited = std::make_shared<Scene>(*scene_);
         change(*edited);
+        begin_edit_step();
         replace(std::move(edited));
     }
+
+    /// Ends a group of edits, for example those of one drag of a slider.
+    void end_edit_step() { is_step_open_ = false; }
 
     /// Changes the scene, unless an exception is thrown. Then error() returns its message until an
     /// edit succeeds.
@@ -271,6 +279,20 @@ class ViewerState {
     [[nodiscard]] nlohmann::ordered_json json(const RenderedPicture& drawn) const;
 
   private:
+    /// What an edit changes.
+    struct EditState {
+        std::shared_ptr<const Scene> scene;
+        LightRows light_rows;
+        std::vector<std::pair<std::size_t, float>> orbit_speeds;  ///< Of nodes of the animation.
+        std::vector<std::filesystem::path> environment;
+        std::optional<EnvironmentLayout> environment_layout;
+        bool left_handed_environment;
+    };
+
+    void begin_edit_step();
+    [[nodiscard]] EditState edit_state() const;
+    void restore(EditState state);
+    void exchange_edits(std::vector<EditState>& from, std::vector<EditState>& to);
     void replace(std::shared_ptr<const Scene> scene);
     void show_all_but_hidden();
     template <typename Change>
@@ -285,7 +307,10 @@ class ViewerState {
     std::shared_ptr<const Scene> scene_;
     std::shared_ptr<const Scene> read_;  ///< The scene without edits.
     RebasedEdits rebased_;               ///< Edits of the last scene that was read.
-    std::uint64_t scenes_ = 0;           ///< The number of scenes that were read.
+    std::vector<EditState> undo_;        ///< The states before each step, the oldest first.
+    std::vector<EditState> redo_;        ///< The states after the steps that were undone.
+    bool is_step_open_ = false;
+    std::uint64_t scenes_ = 0;  ///< The number of scenes that were read.
     /// The scene without hidden instances, with light markers.
     std::shared_ptr<const Scene> shown_;
     bool has_light_markers_ = false;

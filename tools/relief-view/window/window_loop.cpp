@@ -273,12 +273,22 @@ int key_code(std::string_view name) {
     return name.empty() ? GLFW_KEY_UNKNOWN : static_cast<int>(name.back());
 }
 
-/// Returns whether a shortcut names this key with these modifiers.
+/// Removes a prefix of a name, if it has it. \return whether it had it
+bool takes_prefix(std::string_view& name, std::string_view prefix) {
+    if (!name.starts_with(prefix)) return false;
+    name.remove_prefix(prefix.size());
+    return true;
+}
+
+/// Returns whether a shortcut names this key with these modifiers. Shift counts for letters with
+/// Ctrl; other keys may need it on some keyboards.
 bool is_named(std::string_view name, int key, int modifiers) {
-    constexpr std::string_view control = "Ctrl+";
-    const bool needs_control = name.substr(0, control.size()) == control;
-    if (needs_control) name.remove_prefix(control.size());
+    const bool needs_control = takes_prefix(name, "Ctrl+");
+    const bool needs_shift = takes_prefix(name, "Shift+");
     const bool has_control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    const bool has_shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+    const bool shift_counts = has_control && key >= GLFW_KEY_A && key <= GLFW_KEY_Z;
+    if (shift_counts && has_shift != needs_shift) return false;
     return has_control == needs_control && key == key_code(name);
 }
 
@@ -325,6 +335,8 @@ bool is_repeating(Action action) {
         case Action::orbit_down:
         case Action::step_back:
         case Action::step_forward:
+        case Action::undo:
+        case Action::redo:
             return true;
         default:
             return false;
@@ -523,6 +535,8 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
         else
             apply(move, input.state);
     }
+    // The edits of one drag are one step.
+    if (!ImGui::IsAnyItemActive() && !ImGui::IsAnyMouseDown()) input.state.end_edit_step();
     events.actions = std::exchange(pressed_, {});
     events.actions.insert(events.actions.end(), events.panels.actions.begin(),
                           events.panels.actions.end());
