@@ -6,15 +6,27 @@
 
 uniform float environment_intensity;
 
+#part rotation
+// Rotates a direction about the y axis, against the rotation of the environment.
+
+uniform vec2 environment_turn;  // The cosine and the sine.
+
+vec3 direction_in_map(vec3 direction_world) {
+    vec2 xz = direction_world.xz;
+    return vec3(environment_turn.x * xz.x - environment_turn.y * xz.y, direction_world.y,
+                environment_turn.y * xz.x + environment_turn.x * xz.y);
+}
+
 #part radiance
 // The radiance from a direction.
 
 #include "environment.glsl#intensity"
+#include <environment_rotation>
 
 uniform samplerCube environment;
 
 vec3 environment_radiance(vec3 direction_world) {
-    return texture(environment, direction_world).rgb * environment_intensity;
+    return texture(environment, direction_in_map(direction_world)).rgb * environment_intensity;
 }
 
 #part blurred
@@ -22,12 +34,15 @@ vec3 environment_radiance(vec3 direction_world) {
 // prefiltered for one roughness, evenly spaced. Source: [Karis, SIGGRAPH 2013].
 
 #include "environment.glsl#intensity"
+#include <environment_rotation>
 
 uniform samplerCube blurred_environment;
 uniform float blurred_levels;  // The last level's number, which stands for roughness 1.
 
 vec3 blurred_radiance(vec3 direction_world, float roughness) {
-    return textureLod(blurred_environment, direction_world, roughness * blurred_levels).rgb *
+    return textureLod(blurred_environment, direction_in_map(direction_world),
+                      roughness * blurred_levels)
+               .rgb *
            environment_intensity;
 }
 

@@ -227,6 +227,9 @@ TEST(ViewCommand, TheEnvironmentStandsBehindTheModelHoweverItIsNamed) {
         << "a panorama";
     EXPECT_EQ(corner("square.obj --camera 90,0 --environment sky"), (Pixel{0, 255, 0, 255}))
         << "seen from +x, what lies behind is -x";
+    EXPECT_EQ(corner("--camera 0,0 --environment sky --environment-rotation 90 square.obj"),
+              (Pixel{255, 0, 0, 255}))
+        << "posx turned from +x to -z";
 }
 
 TEST(ViewCommand, AMirrorShowsWhatIsBehindTheCamera) {
@@ -237,6 +240,11 @@ TEST(ViewCommand, AMirrorShowsWhatIsBehindTheCamera) {
         << "posz";
     EXPECT_EQ(middle_of(workplace, "--environment sky --reflectivity 1 --light none --no-skybox"),
               (Pixel{0, 255, 255, 255}));
+    EXPECT_EQ(middle_of(workplace,
+                        "--environment sky --reflectivity 1 --light none "
+                        "--environment-rotation 90"),
+              (Pixel{0, 255, 0, 255}))
+        << "negx turned from -x to +z";
 }
 
 TEST(ViewCommand, HighlightsFollowShininess) {
@@ -485,6 +493,8 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
           "--no-skybox: there is no --environment"},
          {"square.obj --output out/old.png --reflectivity 0.5", 2,
           "--reflectivity: there is no --environment"},
+         {"square.obj --output out/old.png --environment-rotation 90", 2,
+          "--environment-rotation: there is no --environment"},
          {"square.obj --output out/old.png --left-handed", 2,
           "--left-handed: there is no --environment"},
          {"square.obj --output out/old.png --environment-layout cross", 2,

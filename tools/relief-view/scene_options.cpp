@@ -523,6 +523,10 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
                field_limits(&Environment::intensity),
                "Multiply the environment's light. Default: 1.")
         .group(environment_group);
+    add_number(app, "--environment-rotation", "DEG", options.environment_rotation,
+               {-360, 360, "degrees"},
+               "Rotate the environment about the y axis, counterclockwise from above. Default: 0.")
+        .group(environment_group);
     add_choice(
         app, "--environment-light", options.environment_light,
         Choices<bool>{{"on", true}, {"off", false}},
@@ -616,6 +620,7 @@ void check_environment(const ViewOptions& options) {
     };
     describe_environment(options.environment_light.has_value(), "--environment-light");
     describe_environment(options.environment_intensity.has_value(), "--environment-intensity");
+    describe_environment(options.environment_rotation.has_value(), "--environment-rotation");
     const auto describe_images = [&](bool given, const char* option) {
         refuse(given && files == 0, option, "there is no --environment", give);
     };
@@ -649,6 +654,7 @@ Environment environment_of(const ViewOptions& options) {
     if (auto* faces = std::get_if<CubeFaces>(&environment.source))
         faces->left_handed = options.left_handed_environment;
     environment.intensity = options.environment_intensity.value_or(1.0F);
+    environment.rotation = glm::radians(options.environment_rotation.value_or(0.0F));
     environment.skybox = !options.no_skybox;
     return environment;
 }
@@ -689,9 +695,9 @@ bool is_physical(const Material& material) {
 void override_scene_environment(Scene& scene, const ViewOptions& options) {
     if (!scene.environment) {
         const bool has_options = options.no_skybox || options.environment_light ||
-                                 options.environment_intensity || options.reflectivity ||
-                                 options.reflection_roughness || options.fresnel ||
-                                 options.no_fresnel || options.transmission;
+                                 options.environment_intensity || options.environment_rotation ||
+                                 options.reflectivity || options.reflection_roughness ||
+                                 options.fresnel || options.no_fresnel || options.transmission;
         if (!has_options) return;
         throw UsageError("the scene has no environment for these options",
                          "add --environment, or leave the options out");
@@ -700,6 +706,8 @@ void override_scene_environment(Scene& scene, const ViewOptions& options) {
     scene.environment->lights = options.environment_light.value_or(scene.environment->lights);
     scene.environment->intensity =
         options.environment_intensity.value_or(scene.environment->intensity);
+    if (options.environment_rotation)
+        scene.environment->rotation = glm::radians(*options.environment_rotation);
 }
 
 void set_environment(Scene& scene, const ViewOptions& options) {

@@ -188,6 +188,7 @@ struct ViewOptions {
     std::optional<EnvironmentLayout> environment_layout;
     std::optional<bool> environment_light;  ///< If absent, metallic-roughness materials decide.
     std::optional<float> environment_intensity;
+    std::optional<float> environment_rotation;  ///< Degrees.
     bool left_handed_environment = false;
     bool no_skybox = false;
     std::optional<float> reflectivity;

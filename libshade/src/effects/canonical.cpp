@@ -100,6 +100,15 @@ void drop_layers(Features& f) {
     f.clearcoat_normal_map &= f.clearcoat && f.interpolation == Interpolation::per_pixel;
 }
 
+/// A rotation shows where the environment is looked up by direction. The light that it scatters is
+/// rotated before.
+void drop_rotation(Features& f) {
+    const bool mirrored =
+        f.reflection != ReflectionTerm::none && (f.metallic_roughness || !has_black_mirror(f));
+    const bool refracted = f.refraction && !has_black_transmission(f);
+    f.environment_rotation &= mirrored || refracted;
+}
+
 void drop_normal(Features& f) {
     const bool per_pixel_lights = light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
     const bool seen = per_pixel_lights || f.reflection != ReflectionTerm::none || f.refraction ||
@@ -230,6 +239,7 @@ Features canonical(Features f) {
     settle_model(f);
     drop_lights(f);
     drop_layers(f);
+    drop_rotation(f);
     drop_normal(f);
     drop_colors(f);
     drop_alpha(f);

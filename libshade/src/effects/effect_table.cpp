@@ -311,6 +311,12 @@ Decision of_refraction(Subject s) {
     return {true, s.name + " lets through what it does not mirror"};
 }
 
+Decision of_rotation(Subject s) {
+    if (!s.scene.environment) return {false, "the scene has no environment"};
+    const bool is_rotated = s.scene.environment->rotation != 0.0F;
+    return {is_rotated, is_rotated ? "the environment is rotated" : "the environment is not"};
+}
+
 Decision of_tone(Subject s, ToneMapping tone) {
     if (s.scene.tone_mapping == tone) return {true, "the scene asks for it"};
     return {false, s.scene.tone_mapping == ToneMapping::none ? "radiance above 1 is shown as 1"
@@ -569,6 +575,9 @@ std::vector<EffectRow> picture_rows() {
          .choice = "how much it mirrors is the material's choice",
          .neutral = mirrors_nothing,
          .phong_only = true},
+        {.effect = one_switch<&F::environment_rotation>(
+             "environment rotation", "the surface neither mirrors the environment nor refracts it"),
+         .decide = of_rotation},
         {.effect = one_switch<&F::refraction>("refraction", "glTF's model lets nothing through"),
          .decide = of_refraction,
          .phong_only = true},

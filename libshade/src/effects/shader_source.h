@@ -89,4 +89,7 @@ ChosenSteps chosen_steps(const Features& features);
 /// has them: for passes that draw no surface.
 ShaderSteps output_steps(OutputCoding coding, const Scene& scene);
 
+/// Returns the same steps, and the rotation of the environment if the scene has one.
+ShaderSteps skybox_steps(OutputCoding coding, const Scene& scene);
+
 }  // namespace relief

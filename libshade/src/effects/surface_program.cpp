@@ -490,6 +490,15 @@ Steps alpha_steps(By f) {
     };
 }
 
+/// Returns the step that rotates a direction into the environment map.
+Step rotation_step(By f) {
+    return {"environment_rotation",
+            "vec3 direction_in_map(vec3 direction_world) { return direction_world; }",
+            {{"environment.glsl#rotation",
+              f.environment_rotation,
+              {.uniforms = {"environment_turn"}}}}};
+}
+
 /// Returns the steps of the mirrored and refracted environment.
 Steps reflection_steps(By f) {
     const bool none = f.reflection == ReflectionTerm::none;
@@ -498,6 +507,7 @@ Steps reflection_steps(By f) {
     const bool dims = f.refraction && has_black_transmission(f);
     const auto fresnel = [&](FresnelTerm term) { return phong && f.fresnel == term; };
     return {
+        rotation_step(f),
         {"reflection",
          "vec3 with_reflection(Surface surface, vec3 scattered) { return scattered; }",
          {{"reflection.glsl#refraction_only", none && f.refraction},
@@ -712,6 +722,14 @@ ShaderSteps output_steps(OutputCoding coding, const Scene& scene) {
     features.exposure = scene.exposure != 1.0F;
     features.tone_mapping = scene.tone_mapping;
     return chosen_of(coding_steps(canonical(features)));
+}
+
+ShaderSteps skybox_steps(OutputCoding coding, const Scene& scene) {
+    ShaderSteps steps = output_steps(coding, scene);
+    Features features;
+    features.environment_rotation = scene.environment && scene.environment->rotation != 0.0F;
+    steps.merge(chosen_of({rotation_step(features)}));
+    return steps;
 }
 
 SurfaceProgram surface_program(const Features& features) {

@@ -598,4 +598,27 @@ glm::dvec3 irradiance_over_pi(const IrradianceSh& coefficients, const glm::dvec3
     return sum;
 }
 
+// With c and s for the cosine and the sine, a normal (x, y, z) has the irradiance that
+// (c x - s z, y, s x + c z) had before. The polynomials of that are sums of the polynomials of the
+// same degree, because x^2 + y^2 + z^2 = 1.
+IrradianceSh rotated(const IrradianceSh& coefficients, double radians) {
+    const double c = portable::cos(radians), s = portable::sin(radians);
+    std::array<glm::dvec3, 9> a{};
+    std::copy(coefficients.begin(), coefficients.end(), a.begin());
+    const std::array<glm::dvec3, 9> result = {
+        a[0],
+        a[1],
+        c * a[2] - s * a[3],
+        s * a[2] + c * a[3],
+        c * a[4] + s * a[5],
+        c * a[5] - s * a[4],
+        (c * c - 0.5 * s * s) * a[6] - 0.5 * c * s * a[7] + 0.5 * s * s * a[8],
+        6.0 * c * s * a[6] + (c * c - s * s) * a[7] - 2.0 * c * s * a[8],
+        1.5 * s * s * a[6] + 0.5 * c * s * a[7] + 0.5 * (c * c + 1.0) * a[8],
+    };
+    IrradianceSh turned{};
+    std::copy(result.begin(), result.end(), turned.begin());
+    return turned;
+}
+
 }  // namespace relief

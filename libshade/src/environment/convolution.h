@@ -154,4 +154,7 @@ IrradianceSh irradiance_sh(std::span<const Image> faces);
 /// Returns the polynomial at a unit normal. It is not clamped to 0.
 glm::dvec3 irradiance_over_pi(const IrradianceSh& coefficients, const glm::dvec3& normal);
 
+/// Returns the coefficients of the environment rotated about the y axis, from +z to +x.
+IrradianceSh rotated(const IrradianceSh& coefficients, double radians);
+
 }  // namespace relief

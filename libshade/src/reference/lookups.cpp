@@ -168,7 +168,8 @@ std::vector<Image> images_of(const Environment& environment) {
 }  // namespace
 
 EnvironmentLookup::EnvironmentLookup(const Environment& environment, Report& report)
-    : intensity_(static_cast<double>(environment.intensity)) {
+    : intensity_(static_cast<double>(environment.intensity)),
+      rotation_(static_cast<double>(environment.rotation)) {
     for (const Image& image : images_of(environment))
         images_.emplace_back(storable_radiance(image, report));
     if (std::holds_alternative<Equirectangular>(environment.source)) {
@@ -216,8 +217,19 @@ glm::dvec3 EnvironmentLookup::face_radiance(const glm::dvec3& direction) const {
                     glm::mix(texel(0, 1), texel(1, 1), share.x), share.y);
 }
 
+glm::dvec3 EnvironmentLookup::in_map(const glm::dvec3& direction_world) const {
+    const glm::dvec3& d = direction_world;
+    const double cosine = std::cos(rotation_);
+    const double sine = std::sin(rotation_);
+    return {cosine * d.x - sine * d.z, d.y, sine * d.x + cosine * d.z};
+}
+
 glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const {
-    const glm::dvec3 d = glm::normalize(direction_world);
+    return map_radiance(in_map(direction_world));
+}
+
+glm::dvec3 EnvironmentLookup::map_radiance(const glm::dvec3& direction_map) const {
+    const glm::dvec3 d = glm::normalize(direction_map);
     glm::dvec3 result(0.0);
     if (layout_ == Layout::faces) {
         result = face_radiance(d);
@@ -280,15 +292,15 @@ glm::dvec3 EnvironmentLookup::texel_mean(std::size_t face, int x, int y, int siz
     glm::dvec3 sum(0.0);
     for (const double down : {0.25, 0.75}) {
         for (const double right : {0.25, 0.75}) {
-            sum += radiance(face_direction(face, 2.0 * (x + right) / size - 1.0,
-                                           2.0 * (y + down) / size - 1.0));
+            sum += map_radiance(face_direction(face, 2.0 * (x + right) / size - 1.0,
+                                               2.0 * (y + down) / size - 1.0));
         }
     }
     return sum / 4.0;
 }
 
 glm::dvec3 EnvironmentLookup::diffuse(const glm::dvec3& normal_world) const {
-    return glm::max(irradiance_over_pi(irradiance_, normal_world), 0.0);
+    return glm::max(irradiance_over_pi(irradiance_, in_map(normal_world)), 0.0);
 }
 
 glm::dvec2 directional_albedo(double n_dot_v, double roughness) {

@@ -141,6 +141,9 @@ class EnvironmentLookup {
   private:
     enum class Layout { faces, equirectangular, angular };
 
+    /// Rotates a direction into the map.
+    [[nodiscard]] glm::dvec3 in_map(const glm::dvec3& direction_world) const;
+    [[nodiscard]] glm::dvec3 map_radiance(const glm::dvec3& direction_map) const;
     [[nodiscard]] glm::dvec3 face_texel(std::size_t face, int x, int y) const;
     [[nodiscard]] glm::dvec3 face_radiance(const glm::dvec3& direction) const;
     [[nodiscard]] std::vector<Image> faces() const;
@@ -148,6 +151,7 @@ class EnvironmentLookup {
 
     Layout layout_ = Layout::faces;
     double intensity_ = 1.0;
+    double rotation_ = 0.0;
     std::vector<Texels> images_;  ///< Six faces, or one image.
     IrradianceSh irradiance_{};   ///< Multiplied by the intensity.
 };
@@ -232,8 +236,8 @@ struct PreparedScene {
 /// or bump map.
 struct Surface {
     glm::dvec3 position_world{0.0};
-    glm::dvec3 normal_world{0.0, 0.0, 1.0};        ///< Unit, on the visible side.
-    glm::dvec3 coat_normal_world{0.0, 0.0, 1.0};   ///< The same with the clear coat's map alone.
+    glm::dvec3 normal_world{0.0, 0.0, 1.0};       ///< Unit, on the visible side.
+    glm::dvec3 coat_normal_world{0.0, 0.0, 1.0};  ///< The same with the clear coat's map alone.
     glm::dvec3 view_world{0.0, 0.0,
                           1.0};  ///< Unit, to the eye; the normal if the eye is at the surface.
     glm::dvec2 texcoord{0.0};

@@ -66,6 +66,7 @@ const std::map<std::string_view, Setter>& setters() {
         {"reflection_roughness", set_member<&DrawValues::reflection_roughness>},
         {"transmission", set_member<&DrawValues::transmission>},
         {"environment_intensity", set_member<&DrawValues::environment_intensity>},
+        {"environment_turn", set_member<&DrawValues::environment_turn>},
         {"blurred_levels", set_member<&DrawValues::blurred_levels>},
         {"irradiance_sh", set_member<&DrawValues::irradiance_sh>},
         {"normal_map_scale", set_member<&DrawValues::normal_map_scale>},
@@ -117,6 +118,11 @@ bool set_uniform(const gl::LinkedProgram& program, std::string_view name,
     return setter != setters().end() && setter->second(program, name, values);
 }
 
+glm::vec2 environment_turn(const Environment& environment) {
+    const auto rotation = static_cast<double>(environment.rotation);
+    return {portable::cos(rotation), portable::sin(rotation)};
+}
+
 void set_material(DrawValues& values, const Material& material, const Scene& scene) {
     values.ambient_scattered = material.ambient * scene.ambient;
     values.diffuse_color = material.diffuse;
@@ -148,6 +154,7 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.exposure = scene.exposure;
     if (!scene.environment) return;
     values.environment_intensity = scene.environment->intensity;
+    values.environment_turn = environment_turn(*scene.environment);
     values.transmission = material.transmission;
     values.refraction_ratio = 1.0F / material.refractive_index;
     if (material.reflectivity == glm::vec3(0.0F)) return;

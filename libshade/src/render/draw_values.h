@@ -62,6 +62,7 @@ struct DrawValues {
     float reflection_roughness = 0.0F;
     float transmission = 0.0F;
     float environment_intensity = 0.0F;
+    glm::vec2 environment_turn{1.0F, 0.0F};  ///< The cosine and the sine of its rotation.
     float blurred_levels = 0.0F;
     std::array<glm::vec4, 9> irradiance_sh{};  ///< Times the intensity of the environment.
 
@@ -79,6 +80,9 @@ bool set_uniform(const gl::LinkedProgram& program, std::string_view name, const 
 
 /// Sets the values of a material and of the scene's light, except for those of environment maps.
 void set_material(DrawValues& values, const Material& material, const Scene& scene);
+
+/// Returns the cosine and the sine of the rotation of an environment.
+glm::vec2 environment_turn(const Environment& environment);
 
 /// Sets the values of an instance's matrix, except for clip_from_object.
 ///

@@ -16,6 +16,7 @@
 #include "portable_math.h"
 #include "progress_stage.h"
 #include "relief/shade/scene_file.h"
+#include "render/draw_values.h"
 
 namespace relief {
 
@@ -179,7 +180,11 @@ EnvironmentMaps::EnvironmentMaps(const gl::Api& api, EnvironmentCache& cache, co
     if (needs.blurred && !maps_->blurred) maps_->blurred = make_prefiltered(api, maps_->sharp);
     if (needs.irradiance) {
         if (!maps_->irradiance) maps_->irradiance = irradiance_of(api, maps_->sharp);
-        irradiance_sh_ = padded(*maps_->irradiance, is_shown ? scene.environment->intensity : 0.0F);
+        irradiance_sh_ = is_shown
+                             ? padded(rotated(*maps_->irradiance,
+                                              static_cast<double>(scene.environment->rotation)),
+                                      scene.environment->intensity)
+                             : padded(*maps_->irradiance, 0.0F);
     }
 }
 
@@ -206,9 +211,10 @@ float EnvironmentMaps::blurred_levels() const {
 }
 
 Skybox::Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output)
-    : program_(programs.get("skybox", output_steps(output, scene))),
+    : program_(programs.get("skybox", skybox_steps(output, scene))),
       empty_vertices_(api),
       intensity_(scene.environment ? scene.environment->intensity : 0.0F),
+      turn_(scene.environment ? environment_turn(*scene.environment) : glm::vec2(1.0F, 0.0F)),
       exposure_(scene.exposure) {}
 
 void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const {
@@ -220,6 +226,7 @@ void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const 
     program_->use();
     program_->set("world_from_screen", world_from_screen);
     program_->set("environment_intensity", intensity_);
+    program_->set("environment_turn", turn_);
     program_->set("exposure", exposure_);
     api->BindVertexArray(empty_vertices_.name());
     api->DrawArrays(GL_TRIANGLES, 0, 3);

@@ -106,6 +106,7 @@ class Skybox {
     std::shared_ptr<const gl::LinkedProgram> program_;
     gl::VertexArray empty_vertices_;  ///< Core OpenGL draws only with a vertex array.
     float intensity_;
+    glm::vec2 turn_;
     float exposure_;
 };
 

@@ -109,6 +109,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::reflection, 3>("reflection"),
         field<&F::fresnel, 4>("fresnel"),
         field<&F::refraction>("refraction"),
+        field<&F::environment_rotation>("environment rotation"),
         field<&F::output, 4>("output"),
         field<&F::tone_mapping, 3>("tone mapping"),
         field<&F::exposure>("exposure"),
@@ -302,6 +303,7 @@ void add_surroundings(Scene& scene, const Features& f) {
     for (std::uint32_t i = 0; i < 6; ++i)
         faces.faces[i] = {"face", noise(20 + i, 3, 0, 256, ColorSpace::srgb)};
     scene.environment = Environment{faces, 1.5F, !f.double_sided, f.environment_diffuse};
+    if (f.environment_rotation) scene.environment->rotation = 0.4F;
 }
 
 /// Returns the closest features that a scene can need.

@@ -144,6 +144,7 @@ const Change spot_light = [](Frame& f) { f.scene.spot_lights.push_back({{{0, 0, 
 /// An environment that is neither visible itself nor scattered.
 const Change environment =
     with(&Scene::environment, Environment{Equirectangular{}, 1.0F, false, false});
+const Change rotated = [](Frame& f) { f.scene.environment->rotation = 0.001F; };
 const Change skybox = [](Frame& f) { f.scene.environment->skybox = true; };
 const Change scattered = [](Frame& f) { f.scene.environment->lights = true; };
 
@@ -554,6 +555,8 @@ const std::vector<Boundary> highlight_boundaries = {
     {"dielectric Fresnel", "reflectivity", {environment, dielectric}, {}, {mirror}},
     {"conductor Fresnel", "asked for", {mirror, environment}, {}, {conductor}},
     {"conductor Fresnel", "an environment", {mirror, conductor}, {}, {environment}},
+    {"environment rotation", "a rotation", {environment, mirror}, {}, {rotated}},
+    {"environment rotation", "a mirror", {environment, rotated}, {}, {mirror}},
     {"refraction", "transmission", {environment}, {}, {transmitting}},
     {"refraction", "an environment", {transmitting}, {}, {environment}},
     {"refraction", "not metallic-roughness", {environment, transmitting}, {physical}, {}},
@@ -691,6 +694,12 @@ TEST(EffectPlan, NamesWhatDecided) {
         {"environment light", {}, "the scene has no environment"},
         {"environment light", {environment}, "the environment is not to light surfaces"},
         {"environment light", {environment, scattered, black_surface}, "material 'body' is black"},
+        {"environment rotation", {}, "the scene has no environment"},
+        {"environment rotation", {environment, mirror}, "the environment is not"},
+        {"environment rotation", {environment, mirror, rotated}, "the environment is rotated"},
+        {"environment rotation",
+         {environment, rotated},
+         "the surface neither mirrors the environment nor refracts it"},
         {"refraction", {}, "material 'body' lets nothing through"},
         {"refraction", {transmitting}, "the scene has no environment"},
         {"mirror reflection", {}, "material 'body' reflects nothing"},

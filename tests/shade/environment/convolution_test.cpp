@@ -329,6 +329,25 @@ TEST(IrradianceSh, OfARealPlaceIsWithinTwoPercentOfTheIntegral) {
     EXPECT_LT(sum / 60.0 / brightest, 0.01);
 }
 
+TEST(IrradianceSh, OfARotatedEnvironmentAreThoseOfTheTurnedNormal) {
+    const IrradianceSh sh = irradiance_sh(faces_of(32, [](glm::dvec3 d) {
+        return glm::dvec3(std::max(d.x, 0.0), d.z * d.z + 0.5 * d.y,
+                          std::max(d.x * d.z + d.y, 0.0));
+    }));
+    for (const double radians : {0.0, 0.3, pi / 2, -2.0, 3.0}) {
+        const IrradianceSh turned = rotated(sh, radians);
+        const double c = std::cos(radians), s = std::sin(radians);
+        double worst = 0.0;
+        for (const glm::dvec3& n : spread_directions(60)) {
+            // What was towards +z is now towards +x for a quarter turn.
+            const glm::dvec3 now(c * n.x + s * n.z, n.y, c * n.z - s * n.x);
+            worst = std::max(
+                worst, glm::length(irradiance_over_pi(turned, now) - irradiance_over_pi(sh, n)));
+        }
+        EXPECT_LT(worst, 1e-6) << radians;
+    }
+}
+
 TEST(IrradianceSh, ATexelThatIsNotFiniteIsRefusedByPlace) {
     std::vector<Image> faces = faces_of(4, [](glm::dvec3) { return glm::dvec3(1); });
     faces[3].as<float>()[3 * 7 + 1] = std::numeric_limits<float>::infinity();

@@ -182,6 +182,22 @@ TEST(EnvironmentLookups, OfLeftHandedFacesTurnXRound) {
     }
 }
 
+TEST(EnvironmentLookups, OfARotatedEnvironmentTurnFromZToX) {
+    Environment environment = faces_of(64, slope);
+    environment.rotation = 0.5F * std::numbers::pi_v<float>;
+    environment.lights = true;
+    Report report;
+    const EnvironmentLookup lookup(environment, report);
+    environment.rotation = 0.0F;
+    const EnvironmentLookup before(environment, report);
+    for (const glm::dvec3& way : ways) {
+        const glm::dvec3 turned(way.z, way.y, -way.x);
+        expect_near(lookup.radiance(turned), before.radiance(way), 1e-6);
+        expect_near(lookup.diffuse(glm::normalize(turned)), before.diffuse(glm::normalize(way)),
+                    1e-6);
+    }
+}
+
 TEST(EnvironmentLookups, FindDirectionsInCrosses) {
     const Environment six = faces_of(16, slope);
     const auto& faces = std::get<CubeFaces>(six.source).faces;

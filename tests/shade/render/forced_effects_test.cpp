@@ -184,6 +184,7 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "mirror reflection",
                                "glossy reflection",
                                "refraction",
+                               "environment rotation",
                                "dielectric reflectance",
                                "sheen",
                                "clearcoat",

@@ -241,6 +241,8 @@ Environment random_environment(Dice& dice, int face_size) {
     environment.lights = dice.chance(0.5);
     environment.intensity = dice.between(0.3F, 1.2F);
     environment.skybox = dice.chance(0.5);
+    // Without a throw of its own, so that the other values of a seed stay.
+    if (environment.lights) environment.rotation = 6.0F * (environment.intensity - 0.75F);
     return environment;
 }
 

@@ -405,6 +405,13 @@ std::vector<AddedThing> environment_effects() {
                            s.environment = test::random_environment(d);
                            s.materials[0].transmission = 0.7F;
                        }});
+    effects.push_back({"rotation", [](Scene& s, test::Dice& d) {
+                           s.environment = test::random_environment(d);
+                           s.environment->rotation = 2.0F;
+                           s.environment->skybox = s.environment->lights = true;
+                           s.materials[0].reflectivity = glm::vec3(0.3F);
+                           s.materials[0].transmission = 0.3F;
+                       }});
     // Gouraud shading uses vertex normals, with and without lights.
     effects.push_back({"Gouraud mirror", [](Scene& s, test::Dice& d) {
                            s.environment = test::random_environment(d);

@@ -262,11 +262,12 @@ TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
 TEST_F(SceneFile, EnvironmentsComeInFiveLayouts) {
     const SceneGraph faces = load(R"("environment": {"faces": ["posx.png", "negx.png", "posy.png",
         "negy.png", "posz.png", "negz.png"], "left_handed": true, "intensity": 2, "skybox": false,
-        "lights": true})");
+        "lights": true, "rotation": 90})");
     const Environment& environment = faces.scene.environment.value();
     EXPECT_TRUE(std::get<CubeFaces>(environment.source).left_handed);
     EXPECT_EQ(environment.intensity, 2.0F);
     EXPECT_TRUE(environment.lights && !environment.skybox);
+    EXPECT_FLOAT_EQ(environment.rotation, 0.5F * std::numbers::pi_v<float>);
     const auto source = [&](const std::string& text) {
         return load("\"environment\": " + text).scene.environment->source;
     };

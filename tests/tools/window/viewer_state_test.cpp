@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tools/workplace.h"
 #include "window/background_jobs.h"
@@ -323,6 +324,18 @@ TEST_F(State, LightsRotateUntilTheirSpeedIsZero) {
     state().set_light_rows(rows);
     EXPECT_FALSE(state().is_turning());
     EXPECT_FALSE(state().advance(0.5));
+}
+
+TEST_F(State, TurnsTheEnvironmentByHalfATurnPerHeightOfTheView) {
+    show("square.obj");
+    state().turn_environment(100.0F);  // There is none.
+    state().set_environment(workplace() / "data/sky");
+    state().turn_environment(75.0F);
+    EXPECT_NEAR(state().scene().environment->rotation, std::numbers::pi_v<float> / 4, 1e-5F);
+    state().turn_environment(300.0F);
+    EXPECT_NEAR(state().scene().environment->rotation, -3 * std::numbers::pi_v<float> / 4, 1e-5F);
+    state().set_environment(workplace() / "data/sky/posx.jpg");
+    EXPECT_NEAR(state().scene().environment->rotation, -3 * std::numbers::pi_v<float> / 4, 1e-5F);
 }
 
 TEST_F(State, FailedEditChangesNothingAndReportsTheError) {

@@ -527,6 +527,11 @@ const char* layout_of(const Environment& environment) {
 bool edit(Environment& environment) {
     ImGui::TextDisabled("%s", layout_of(environment));
     bool changed = drag_up("Intensity", environment.intensity);
+    float rotation = glm::degrees(environment.rotation);
+    if (slide("Rotation", rotation, {-180.0F, 180.0F, "%.0f deg"})) {
+        environment.rotation = glm::radians(rotation);
+        changed = true;
+    }
     changed |= check("Show as background", environment.skybox);
     changed |= check("Environment light", environment.lights);
     return changed;

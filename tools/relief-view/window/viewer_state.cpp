@@ -92,6 +92,7 @@ const std::vector<Gesture>& gestures() {
         {"Shift+wheel, Shift+two fingers", "Pan up, down or sideways"},
         {"Wheel, two fingers, right drag", "Zoom towards the pointer"},
         {"Ctrl+drag", "Rotate the lights"},
+        {"Ctrl+Shift+drag", "Rotate the environment"},
         {"Drag the line", "Move the line between two compared pictures"},
         {"Double click", "Set the orbit center to this point"},
         {"Drop a file", "Show a model, or apply a map"},
@@ -568,6 +569,7 @@ void ViewerState::set_environment(const std::filesystem::path& file) {
             });
         if (scene.environment) {
             environment.intensity = scene.environment->intensity;
+            environment.rotation = scene.environment->rotation;
             environment.skybox = scene.environment->skybox;
             environment.lights = scene.environment->lights;
         }
@@ -620,6 +622,15 @@ void ViewerState::orbit_lights(const glm::vec2& pixels) {
         for (AnyLight& light : lights)
             tools::turn(light, glm::mat3(rotation), sphere_.center);
         tools::set_lights(scene, lights);
+    });
+}
+
+void ViewerState::turn_environment(float pixels) {
+    if (!scene_ || !scene_->environment || view_.y == 0) return;
+    edit([&](Scene& scene) {
+        const float unit = 2.0F * quarter / static_cast<float>(view_.y);
+        scene.environment->rotation =
+            std::remainder(scene.environment->rotation + unit * pixels, 4.0F * quarter);
     });
 }
 

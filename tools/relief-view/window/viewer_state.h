@@ -220,6 +220,9 @@ class ViewerState {
     /// Rotates the lights about the world's y axis and the camera's right axis.
     void orbit_lights(const glm::vec2& pixels);
 
+    /// Rotates the environment about the world's y axis.
+    void turn_environment(float pixels);
+
     /// Makes the surface under the pointer the target of the camera, if there is one.
     /// \param pointer  relative to the center of the view, in halves of its height, y up
     void aim(const glm::vec2& pointer);

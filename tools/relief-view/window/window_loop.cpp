@@ -83,7 +83,7 @@ class UserInterface {
     void on_input() { has_input_ = true; }
 
   private:
-    enum class Drag { none, orbit, pan, zoom, lights, aim, line };
+    enum class Drag { none, orbit, pan, zoom, lights, environment, aim, line };
 
     /// A mouse gesture on the picture, in pixels.
     struct Move {
@@ -439,11 +439,16 @@ void UserInterface::on_button(int button, bool is_down, int modifiers) {
         moves_.push_back({Drag::aim, {}, 0.0F, pointer_});
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
         drag_ = Drag::zoom;
-    } else if (button == GLFW_MOUSE_BUTTON_MIDDLE || (modifiers & GLFW_MOD_SHIFT) != 0) {
-        drag_ = Drag::pan;
-    } else {
-        drag_ = (modifiers & GLFW_MOD_CONTROL) != 0 ? Drag::lights : Drag::orbit;
+        return;
     }
+    const bool has_shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+    const bool has_control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    if (button == GLFW_MOUSE_BUTTON_MIDDLE)
+        drag_ = Drag::pan;
+    else if (has_control)
+        drag_ = has_shift ? Drag::environment : Drag::lights;
+    else
+        drag_ = has_shift ? Drag::pan : Drag::orbit;
 }
 
 void UserInterface::on_move(const glm::vec2& place) {
@@ -479,6 +484,7 @@ void UserInterface::apply(const Move& move, ViewerState& state) const {
     if (move.drag == Drag::orbit) return orbit_by(state.camera(), moved, height);
     if (move.drag == Drag::pan) return pan_by(state.camera(), moved, height);
     if (move.drag == Drag::lights) return state.orbit_lights(moved);
+    if (move.drag == Drag::environment) return state.turn_environment(moved.x);
     if (move.drag == Drag::aim) return state.aim(on_view(move.place, state));
     const bool is_drag = move.drag == Drag::zoom;
     const glm::vec2 pointer = is_drag ? glm::vec2(0.0F) : on_view(move.place, state);

@@ -98,6 +98,7 @@ struct Features {
     ReflectionTerm reflection = ReflectionTerm::none;
     FresnelTerm fresnel = FresnelTerm::constant;  ///< Phong's model only.
     bool refraction = false;
+    bool environment_rotation = false;
     // The picture.
     OutputCoding output = OutputCoding::srgb;
     ToneMapping tone_mapping = ToneMapping::none;

@@ -177,6 +177,8 @@ struct Environment {
     float intensity = 1.0F;
     bool skybox = true;   ///< The environment is visible behind the model.
     bool lights = false;  ///< Surfaces scatter its light, by spherical harmonics of order 2.
+    /// Radians by which it is rotated about the world's y axis, from +z to +x. Finite.
+    float rotation = 0.0F;
 };
 
 /// The curve from radiance times exposure to the picture, by channel.
