@@ -28,14 +28,14 @@ vec3 diffuse_scattering(float n_dot_l) { return diffuse_color * n_dot_l; }
 // The highlight around the light's mirror direction. Source: [Phong 1975].
 
 #include "phong.glsl#cosine_power"
+#include <highlight_color>
 #include <sharpness>
 
-uniform vec3 specular_color;
 uniform float shininess;
 
 vec3 specular_highlight(Surface surface, vec3 light_world) {
     vec3 mirrored_world = reflect(-light_world, surface.normal_world);
-    return specular_color * dimmed(shininess) *
+    return highlight_color(surface, light_world) * dimmed(shininess) *
            cosine_power(mirrored_world, surface.view_world, sharpened(shininess));
 }
 
@@ -45,15 +45,37 @@ vec3 specular_highlight(Surface surface, vec3 light_world) {
 
 #include "phong.glsl#cosine_power"
 #include "vector.glsl#normalized_or"
+#include <highlight_color>
 #include <sharpness>
 
-uniform vec3 specular_color;
 uniform float shininess;
 
 vec3 specular_highlight(Surface surface, vec3 light_world) {
     vec3 half_world = normalized_or(light_world + surface.view_world, vec3(0.0));
-    return specular_color * dimmed(shininess) *
+    return highlight_color(surface, light_world) * dimmed(shininess) *
            cosine_power(surface.normal_world, half_world, sharpened(shininess));
+}
+
+#part color
+// The color of highlights at all angles.
+
+uniform vec3 specular_color;
+
+vec3 highlight_color(Surface surface, vec3 light_world) { return specular_color; }
+
+#part fresnel_color
+// The color of highlights by Schlick's approximation at the half vector. If light and eye are
+// opposite, their angle to it counts as 90 degrees. Source: [Schlick 1994].
+
+#include "vector.glsl#normalized_or"
+
+uniform vec3 specular_color;
+uniform vec3 specular_gain;  // What is added at grazing angles.
+
+vec3 highlight_color(Surface surface, vec3 light_world) {
+    vec3 half_world = normalized_or(light_world + surface.view_world, vec3(0.0));
+    float m = clamp(1.0 - dot(half_world, surface.view_world), 0.0, 1.0);
+    return specular_color + specular_gain * (m * m * m * m * m);
 }
 
 #part cosine_power

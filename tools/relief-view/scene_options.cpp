@@ -239,6 +239,10 @@ void add_material_options(CLI::App& app, ViewOptions& options) {
         "Set the exponent of highlights; larger values make them smaller and sharper. Materials "
         "without a specular color get gray 0.25. Default: the model's value, else 32.")
         .group(materials_group);
+    add_switch(app, "--highlight-fresnel", options.highlight_fresnel,
+               "Make highlights brighter at grazing angles, by Schlick's approximation. Materials "
+               "without a specular color get gray 0.25.")
+        .group(materials_group);
 }
 
 void check_materials(const ViewOptions& options) {
@@ -254,11 +258,12 @@ void check_materials(const ViewOptions& options) {
 }
 
 std::string reason_for_phong(const ViewOptions& options) {
-    const std::array<std::pair<bool, const char*>, 9> reasons{{
+    const std::array<std::pair<bool, const char*>, 10> reasons{{
         {options.shading == SceneOptions::MaterialModel::phong, "--shading phong"},
         {options.interpolation == Interpolation::gouraud, "--interpolation gouraud"},
         {options.specular.has_value(), "--specular"},
         {options.shininess.has_value(), "--shininess"},
+        {options.highlight_fresnel, "--highlight-fresnel"},
         {options.reflectivity.has_value(), "--reflectivity"},
         {options.reflection_roughness.has_value(), "--reflection-roughness"},
         {options.fresnel.has_value() || options.no_fresnel, "--fresnel"},
@@ -279,8 +284,8 @@ constexpr glm::vec3 default_specular{0.25F};
 bool has_overrides(const ViewOptions& o) {
     return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.tangent_frame ||
            o.specular_antialiasing || o.interpolation || o.material || o.metallic_roughness ||
-           o.specular || o.shininess || o.reflectivity || o.reflection_roughness || o.fresnel ||
-           o.no_fresnel || o.transmission;
+           o.specular || o.shininess || o.highlight_fresnel || o.reflectivity ||
+           o.reflection_roughness || o.fresnel || o.no_fresnel || o.transmission;
 }
 
 /// A map requires that at least one mesh has texture coordinates. Meshes without them are noted.
@@ -371,6 +376,7 @@ void set_highlights(Scene& scene, const ViewOptions& options, std::vector<std::s
         }
         material.specular_model = options.specular.value_or(material.specular_model);
         material.shininess = options.shininess.value_or(material.shininess);
+        material.highlight_fresnel |= options.highlight_fresnel;
     }
     if (added != 0) {
         notes.push_back(fmt::format("{} without a specular color got gray {:g}",
@@ -483,7 +489,8 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
         }
     }
     if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);
-    if (options.specular || options.shininess) set_highlights(scene, options, notes);
+    if (options.specular || options.shininess || options.highlight_fresnel)
+        set_highlights(scene, options, notes);
     set_shading(scene, options);
     note_hidden_maps(scene, notes);
 }

@@ -182,6 +182,7 @@ struct ViewOptions {
     std::optional<std::string> material;  ///< A name of the table of classic materials.
     std::optional<MetallicOption> metallic_roughness;
     std::optional<float> shininess;
+    bool highlight_fresnel = false;
     std::optional<SpecularModel> specular;
 
     std::vector<std::filesystem::path> environment;  ///< One image, one folder or six files.

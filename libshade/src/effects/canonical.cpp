@@ -70,7 +70,8 @@ void drop_lights(Features& f) {
         f.light_ranges = false;
         f.falloff = FalloffTerm::inverse_square;
     }
-    if (f.specular == SpecularTerm::none) f.specular_texture = f.highlight_colors = false;
+    if (f.specular == SpecularTerm::none)
+        f.specular_texture = f.highlight_colors = f.highlight_fresnel = false;
     if (light_count(f) == 0) f.lights_in_buffer = false;
     if (light_row_layout(f).count > max_block_rows) f.lights_in_buffer = true;
     if (light_count(f) == 0 && f.interpolation == Interpolation::gouraud) {

@@ -531,6 +531,14 @@ std::vector<EffectRow> lighting_rows() {
              one_value<&F::specular, SpecularTerm::blinn_phong>("Blinn-Phong highlights", not_lit),
          .decide = [](Subject s) { return of_highlights(s, false); },
          .phong_only = true},
+        {.effect = one_switch<&F::highlight_fresnel>("highlight Fresnel", no_highlights),
+         .decide =
+             [](Subject s) {
+                 if (!s.material.highlight_fresnel) return Decision{false, s.name + " has none"};
+                 const bool grows = glm::any(glm::lessThan(s.material.specular, glm::vec3(1.0F)));
+                 return Decision{grows, s.name + (grows ? " has it" : " has white highlights")};
+             },
+         .phong_only = true},
         {.effect = one_switch<&F::specular_texture>("specular texture", no_highlights),
          .decide = [](Subject s) { return of_texture(s, s.material.specular_texture.has_value()); },
          .phong_only = true},

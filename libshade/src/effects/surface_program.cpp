@@ -394,7 +394,8 @@ Steps light_steps(By f, bool in_this_stage) {
 Steps scattering_steps(By f, bool in_this_stage) {
     const bool lit = in_this_stage && has_lights(f);
     const bool phong = lit && !f.metallic_roughness;
-    const Takes highlight{.uniforms = {"specular_color", "shininess"}};
+    const bool highlights = phong && f.specular != SpecularTerm::none;
+    const Takes highlight{.uniforms = {"shininess"}};
     return {
         {"receive",
          "",
@@ -407,6 +408,14 @@ Steps scattering_steps(By f, bool in_this_stage) {
          "vec3 specular_highlight(Surface surface, vec3 light_world) { return vec3(0.0); }",
          {{"phong.glsl#phong", phong && f.specular == SpecularTerm::phong, highlight},
           {"phong.glsl#blinn_phong", phong && f.specular == SpecularTerm::blinn_phong, highlight}}},
+        {"highlight_color",
+         "",
+         {{"phong.glsl#color",
+           highlights && !f.highlight_fresnel,
+           {.uniforms = {"specular_color"}}},
+          {"phong.glsl#fresnel_color",
+           highlights && f.highlight_fresnel,
+           {.uniforms = {"specular_color", "specular_gain"}}}}},
     };
 }
 

@@ -231,10 +231,21 @@ double highlight(const Material& material, const Surface& at, const glm::dvec3& 
     return normalized ? s * (shininess + 2.0) / 8.0 : s;
 }
 
-/// The sums over all lights at one point, before they are multiplied by the surface's colors.
+/// Returns the term k of the formula.
+glm::dvec3 highlight_color(const Material& material, const Surface& at, const glm::dvec3& light) {
+    const glm::dvec3 specular(material.specular);
+    if (!material.highlight_fresnel) return specular;
+    const glm::dvec3 sum = light + at.view_world;
+    const double length = glm::length(sum);
+    const double cosine = length > 1e-15 ? glm::dot(at.view_world, sum) / length : 0.0;
+    return specular +
+           glm::max(1.0 - specular, 0.0) * std::pow(std::clamp(1.0 - cosine, 0.0, 1.0), 5.0);
+}
+
+/// The sums over all lights at one point, before they are multiplied by the surface's textures.
 struct LightSums {
     glm::dvec3 scattered{0.0};   ///< sum L max(n.l, 0)
-    glm::dvec3 highlights{0.0};  ///< sum H s [n.l > 0]
+    glm::dvec3 highlights{0.0};  ///< sum H s k [n.l > 0]
 };
 
 LightSums light_sums(const Context& context, const Surface& at) {
@@ -244,8 +255,9 @@ LightSums light_sums(const Context& context, const Surface& at) {
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
         sums.scattered += light.irradiance * n_dot_l;
-        sums.highlights +=
-            light.highlight_irradiance * highlight(context.material, at, light.light_world);
+        sums.highlights += light.highlight_irradiance *
+                           highlight(context.material, at, light.light_world) *
+                           highlight_color(context.material, at, light.light_world);
     }
     return sums;
 }
@@ -316,7 +328,6 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
         occlusion(context) * tint * (ambient + diffuse * environment_irradiance(context)) +
         tint * diffuse * lights.scattered;
     const glm::dvec3 highlights =
-        glm::dvec3(material.specular) *
         glm::dvec3(context.look_up(material.specular_texture, ImageUse::color)) * lights.highlights;
     // Without an environment there are neither reflections nor transmitted light.
     glm::dvec3 mirrors(0.0);

@@ -34,6 +34,7 @@ const std::map<std::string_view, Setter>& setters() {
         {"ambient_scattered", set_member<&DrawValues::ambient_scattered>},
         {"diffuse_color", set_member<&DrawValues::diffuse_color>},
         {"specular_color", set_member<&DrawValues::specular_color>},
+        {"specular_gain", set_member<&DrawValues::specular_gain>},
         {"shininess", set_member<&DrawValues::shininess>},
         {"emission_color", set_member<&DrawValues::emission_color>},
         {"base_color", set_member<&DrawValues::base_color>},
@@ -127,6 +128,10 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.ambient_scattered = material.ambient * scene.ambient;
     values.diffuse_color = material.diffuse;
     values.specular_color = material.specular * specular_normalization(material);
+    if (material.highlight_fresnel) {
+        values.specular_gain =
+            glm::max(1.0F - material.specular, glm::vec3(0.0F)) * specular_normalization(material);
+    }
     values.shininess = material.shininess;
     values.emission_color = material.emission;
     if (const auto& physical = material.metallic_roughness) {

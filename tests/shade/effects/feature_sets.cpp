@@ -104,6 +104,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::environment_diffuse>("environment light"),
         field<&F::diffuse>("diffuse"),
         field<&F::specular, 3>("specular"),
+        field<&F::highlight_fresnel>("highlight Fresnel"),
         field<&F::emission>("emission"),
         field<&F::emission_texture>("emission texture"),
         field<&F::reflection, 3>("reflection"),
@@ -260,6 +261,7 @@ Material material_calling_for(const Features& f) {
         m.metallic_roughness->anisotropy_rotation = 0.7F;
     }
     if (f.specular != SpecularTerm::none) m.specular = glm::vec3(0.5F, 0.4F, 0.3F);
+    m.highlight_fresnel = f.highlight_fresnel;
     m.shininess = 12.0F;
     if (f.specular == SpecularTerm::phong) m.specular_model = SpecularModel::phong;
     if (f.emission) m.emission = glm::vec3(0.1F, 0.05F, 0.02F);

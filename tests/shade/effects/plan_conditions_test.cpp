@@ -104,6 +104,7 @@ const Change flat = with(&Material::interpolation, Interpolation::flat);
 const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
 const Change scattering = with(&Material::diffuse, faint);
 const Change shiny = with(&Material::specular, faint);
+const Change gleaming = with(&Material::highlight_fresnel, true);
 const Change phong = with(&Material::specular_model, SpecularModel::phong);
 const Change emissive = with(&Material::emission, faint);
 const Change mirror = with(&Material::reflectivity, faint);
@@ -555,6 +556,13 @@ const std::vector<Boundary> highlight_boundaries = {
     {"dielectric Fresnel", "reflectivity", {environment, dielectric}, {}, {mirror}},
     {"conductor Fresnel", "asked for", {mirror, environment}, {}, {conductor}},
     {"conductor Fresnel", "an environment", {mirror, conductor}, {}, {environment}},
+    {"highlight Fresnel", "the option", {shiny}, {}, {gleaming}},
+    {"highlight Fresnel", "highlights", {gleaming}, {}, {shiny}},
+    {"highlight Fresnel",
+     "a color below white",
+     {gleaming, with(&Material::specular, glm::vec3(1.0F))},
+     {},
+     {with(&Material::specular, glm::vec3(1, 1, 0.999F))}},
     {"environment rotation", "a rotation", {environment, mirror}, {}, {rotated}},
     {"environment rotation", "a mirror", {environment, rotated}, {}, {mirror}},
     {"refraction", "transmission", {environment}, {}, {transmitting}},

@@ -273,6 +273,13 @@ TEST(ReferenceShading, OfHighlightsFollowsEachModel) {
     material.shininess = 14.0F;
     scene.materials = {material};
     expect_near(in_the_middle(scene), by_channel * 2.0 * std::pow(0.75, 7.0));
+    // Schlick's factor at the half vector, 30 degrees from the eye.
+    material.highlight_fresnel = true;
+    scene.materials = {material};
+    const glm::dvec3 specular(material.specular);
+    const glm::dvec3 color =
+        specular + (1.0 - specular) * std::pow(1.0 - std::sqrt(3.0) / 2.0, 5.0);
+    expect_near(in_the_middle(scene), 2.0 * color * 2.0 * std::pow(0.75, 7.0));
 }
 
 TEST(ReferenceShading, OfHighlightsHasItsOwnTextureAndLampColour) {

@@ -179,6 +179,7 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "Phong highlights",
                                "Blinn-Phong highlights",
                                "specular texture",
+                               "highlight Fresnel",
                                "emission",
                                "emission texture",
                                "mirror reflection",

@@ -93,6 +93,8 @@ Material random_material(Scene& scene, Dice& dice, bool physical) {
     material.shininess = std::exp(dice.between(0.0F, 5.0F));
     material.specular_model = one_of(dice, {SpecularModel::phong, SpecularModel::blinn_phong,
                                             SpecularModel::blinn_phong_normalized});
+    // Without a throw of its own, so that the other values of a seed stay.
+    material.highlight_fresnel = material.specular.r > 0.5F;
     if (physical && dice.chance(0.3)) {
         material.metallic_roughness = MetallicRoughness{dice.color(), dice.between(0.0F, 1.0F),
                                                         dice.between(0.1F, 1.0F), std::nullopt};

@@ -239,6 +239,13 @@ std::vector<AddedThing> material_effects() {
                                    s.materials[0].specular_model = model;
                                    s.materials[0].interpolation = where;
                                }});
+            effects.push_back({"Fresnel on highlights", [=](Scene& s, test::Dice&) {
+                                   s.materials[0].specular = {0.3F, 0.1F, 1.5F};
+                                   s.materials[0].shininess = 3.0F;
+                                   s.materials[0].specular_model = model;
+                                   s.materials[0].interpolation = where;
+                                   s.materials[0].highlight_fresnel = true;
+                               }});
         }
     }
     return effects;

@@ -534,6 +534,7 @@ bool edit_phong(Material& material) {
     changed |= edit_color(material, &Material::specular);
     changed |= slide("Shininess", material.shininess, {0.0F, 1000.0F, "%.0f", true});
     changed |= choose("Highlights", material.specular_model);
+    changed |= check("Fresnel on highlights", material.highlight_fresnel);
     return changed;
 }
 

@@ -92,6 +92,7 @@ struct Features {
     bool environment_diffuse = false;
     bool diffuse = false;                        ///< Light of light sources is scattered.
     SpecularTerm specular = SpecularTerm::none;  ///< Phong's model only.
+    bool highlight_fresnel = false;
     bool emission = false;
     bool emission_texture = false;
     // The environment in the surface.

@@ -82,9 +82,9 @@ struct MetallicRoughness {
     float roughness = 1.0F;
     std::optional<Texture> texture;  ///< Green multiplies roughness, blue metallic.
     // The reflection of the dielectric share (KHR_materials_ior, KHR_materials_specular).
-    float refractive_index = 1.5F;   ///< 0 counts as infinite.
-    float specular = 1.0F;           ///< The weight of the reflection.
-    glm::vec3 specular_color{1.0F};  ///< Tints the reflection at normal incidence.
+    float refractive_index = 1.5F;                    ///< 0 counts as infinite.
+    float specular = 1.0F;                            ///< The weight of the reflection.
+    glm::vec3 specular_color{1.0F};                   ///< Tints the reflection at normal incidence.
     std::optional<Texture> specular_texture{};        ///< Alpha multiplies specular.
     std::optional<Texture> specular_color_texture{};  ///< sRGB color.
     // A clear layer on top (KHR_materials_clearcoat), which only a normal map of its own bends.
@@ -130,11 +130,13 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 ///              + emission * emission_texture
 ///     scattered  = occlusion * tint (ambient * scene.ambient + diffuse * E(n))
 ///                + tint sum_i L diffuse max(n.l, 0)
-///     highlights = specular * specular_texture * sum_i H s [n.l > 0]
+///     highlights = specular_texture * sum_i H s k [n.l > 0]
 ///
 ///     tint = diffuse_texture * vertex color
 ///     s    = max(n.h, 0)^shininess (Blinn-Phong), that times (shininess + 2) / 8
 ///            (blinn_phong_normalized), or max(r.v, 0)^shininess (Phong); x^0 is 1
+///     k    = specular, or with highlight_fresnel
+///            specular + max(1 - specular, 0) (1 - v.h)^5 [Schlick 1994]
 ///     E(n) = the environment's irradiance over pi; 0 unless Environment::lights
 ///     F    = Fresnel's factor at n.v, clamped to [0,1]: by Schlick reflectivity +
 ///            (grazing_reflectivity - reflectivity) (1 - n.v)^5. If reflectivity is zero or the
@@ -206,6 +208,7 @@ struct Material {
     glm::vec3 emission{0.0F};
     float shininess = 32.0F;  ///< 0 to 1e6.
     SpecularModel specular_model = SpecularModel::blinn_phong;
+    bool highlight_fresnel = false;  ///< Highlights become brighter at grazing angles.
     std::optional<MetallicRoughness> metallic_roughness;
 
     glm::vec3 reflectivity{0.0F};  ///< At normal incidence; zero: no environment reflection.
@@ -224,7 +227,7 @@ struct Material {
     float occlusion_strength = 1.0F;           ///< Within [0,1].
     std::optional<Texture> opacity_texture;    ///< Red.
     std::optional<NormalMap> normal_map;
-    std::optional<BumpMap> bump_map;  ///< Not together with a normal map.
+    std::optional<BumpMap> bump_map;                    ///< Not together with a normal map.
     TangentFrame tangent_frame = TangentFrame::stored;  ///< Of maps and of anisotropy.
     /// Widens highlights by the variance of a minified normal map's normals within a pixel
     /// [Toksvig 2005].

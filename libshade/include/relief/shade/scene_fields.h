@@ -207,6 +207,7 @@ inline constexpr auto fields_of<Material> = std::tuple{
     SceneField{"emission", &Material::emission, {0, max_reflectance}, FieldUnit::color},
     SceneField{"shininess", &Material::shininess, {0, 1e6F}},
     SceneField{"specular_model", &Material::specular_model},
+    SceneField{"highlight_fresnel", &Material::highlight_fresnel},
     SceneField{"metallic_roughness", &Material::metallic_roughness},
     SceneField{"reflectivity", &Material::reflectivity, {0, 1}, FieldUnit::color},
     SceneField{"grazing_reflectivity", &Material::grazing_reflectivity, {0, 1}, FieldUnit::color},
