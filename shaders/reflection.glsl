@@ -9,14 +9,14 @@
 
 #include <fresnel>
 #include <mirror_image>
+#include <reflected_direction>
 #include <refraction>
 
 vec3 with_reflection(Surface surface, vec3 scattered) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
     vec3 fresnel = fresnel_factor(n_dot_v);
-    vec3 mirrored_world = reflect(-surface.view_world, surface.normal_world);
     return with_refraction(surface, scattered) * (vec3(1.0) - fresnel) +
-           mirror_image(mirrored_world) * fresnel;
+           mirror_image(reflected_direction(surface)) * fresnel;
 }
 
 #part metallic_roughness
@@ -42,6 +42,11 @@ vec3 with_reflection(Surface surface, vec3 scattered) {
 vec3 with_reflection(Surface surface, vec3 scattered) {
     return with_refraction(surface, scattered);
 }
+
+#part by_normal
+// The environment along the normal.
+
+vec3 reflected_direction(Surface surface) { return surface.normal_world; }
 
 #part mirror
 // A sharp mirror image.

@@ -101,13 +101,14 @@ void drop_layers(Features& f) {
     f.clearcoat_normal_map &= f.clearcoat && f.interpolation == Interpolation::per_pixel;
 }
 
-/// A rotation shows where the environment is looked up by direction. The light that it scatters is
-/// rotated before.
-void drop_rotation(Features& f) {
+/// Rotation and direction show where the environment is looked up by direction. The light that it
+/// scatters is rotated before.
+void drop_lookups(Features& f) {
     const bool mirrored =
         f.reflection != ReflectionTerm::none && (f.metallic_roughness || !has_black_mirror(f));
     const bool refracted = f.refraction && !has_black_transmission(f);
     f.environment_rotation &= mirrored || refracted;
+    f.reflection_by_normal &= mirrored && !f.metallic_roughness;
 }
 
 void drop_normal(Features& f) {
@@ -240,7 +241,7 @@ Features canonical(Features f) {
     settle_model(f);
     drop_lights(f);
     drop_layers(f);
-    drop_rotation(f);
+    drop_lookups(f);
     drop_normal(f);
     drop_colors(f);
     drop_alpha(f);

@@ -563,6 +563,14 @@ std::vector<EffectRow> picture_rows() {
          .phong_only = true},
         {.effect = one_value<&F::reflection, ReflectionTerm::glossy>("glossy reflection", ""),
          .decide = [](Subject s) { return of_reflection(s, true); }},
+        {.effect = one_switch<&F::reflection_by_normal>("reflection by normal", not_reflecting),
+         .decide =
+             [](Subject s) {
+                 const bool has_it = s.material.reflection_by_normal;
+                 return Decision{has_it, s.name + (has_it ? " has it" : " mirrors the view")};
+             },
+         .choice = "the direction of reflections is the material's choice",
+         .phong_only = true},
         {.effect =
              one_value<&F::fresnel, FresnelTerm::schlick>("Schlick's Fresnel", not_reflecting),
          .decide = of_schlick,

@@ -525,6 +525,10 @@ Steps reflection_steps(By f) {
            {.uniforms = {"environment_intensity", "blurred_levels"},
             .samplers = {"blurred_environment", "environment_brdf"}}},
           {"reflection.glsl#phong", phong}}},
+        {"reflected_direction",
+         "vec3 reflected_direction(Surface surface) "
+         "{ return reflect(-surface.view_world, surface.normal_world); }",
+         {{"reflection.glsl#by_normal", f.reflection_by_normal}}},
         {"mirror_image",
          "",
          {{"view.glsl#no_mirror_image", phong && has_black_mirror(f)},

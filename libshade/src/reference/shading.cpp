@@ -290,6 +290,12 @@ glm::dvec3 environment_irradiance(const Context& context) {
     return context.prepared.environment->diffuse(context.surface.normal_world);
 }
 
+/// Returns the environment along the normal.
+glm::dvec3 along_normal(const Context& context, double roughness) {
+    return context.prepared.environment->blurred(context.surface.normal_world, roughness,
+                                                 context.trace);
+}
+
 /// Returns the environment that a surface with this normal reflects.
 glm::dvec3 reflected(const Context& context, const glm::dvec3& normal, double roughness) {
     if (!context.prepared.environment) return glm::dvec3(0.0);
@@ -340,7 +346,9 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
     radiance += (1.0 - mirrors) * (1.0 - transmission) * scattered;
     if (mirrors != glm::dvec3(0.0)) {
         const double roughness = static_cast<double>(material.reflection_roughness);
-        radiance += mirrors * reflected(context, at.normal_world, roughness);
+        radiance += mirrors * (material.reflection_by_normal
+                                   ? along_normal(context, roughness)
+                                   : reflected(context, at.normal_world, roughness));
     }
     if (transmission > 0.0) radiance += (1.0 - mirrors) * transmission * refracted(context);
     return radiance;

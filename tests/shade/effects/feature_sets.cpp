@@ -109,6 +109,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::emission_texture>("emission texture"),
         field<&F::reflection, 3>("reflection"),
         field<&F::fresnel, 4>("fresnel"),
+        field<&F::reflection_by_normal>("reflection by normal"),
         field<&F::refraction>("refraction"),
         field<&F::environment_rotation>("environment rotation"),
         field<&F::output, 4>("output"),
@@ -262,6 +263,7 @@ Material material_calling_for(const Features& f) {
     }
     if (f.specular != SpecularTerm::none) m.specular = glm::vec3(0.5F, 0.4F, 0.3F);
     m.highlight_fresnel = f.highlight_fresnel;
+    m.reflection_by_normal = f.reflection_by_normal;
     m.shininess = 12.0F;
     if (f.specular == SpecularTerm::phong) m.specular_model = SpecularModel::phong;
     if (f.emission) m.emission = glm::vec3(0.1F, 0.05F, 0.02F);

@@ -104,6 +104,7 @@ const Change flat = with(&Material::interpolation, Interpolation::flat);
 const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
 const Change scattering = with(&Material::diffuse, faint);
 const Change shiny = with(&Material::specular, faint);
+const Change by_normal = with(&Material::reflection_by_normal, true);
 const Change gleaming = with(&Material::highlight_fresnel, true);
 const Change phong = with(&Material::specular_model, SpecularModel::phong);
 const Change emissive = with(&Material::emission, faint);
@@ -563,6 +564,8 @@ const std::vector<Boundary> highlight_boundaries = {
      {gleaming, with(&Material::specular, glm::vec3(1.0F))},
      {},
      {with(&Material::specular, glm::vec3(1, 1, 0.999F))}},
+    {"reflection by normal", "the option", {environment, mirror}, {}, {by_normal}},
+    {"reflection by normal", "a mirror", {environment, by_normal}, {}, {mirror}},
     {"environment rotation", "a rotation", {environment, mirror}, {}, {rotated}},
     {"environment rotation", "a mirror", {environment, rotated}, {}, {mirror}},
     {"refraction", "transmission", {environment}, {}, {transmitting}},

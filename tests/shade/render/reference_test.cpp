@@ -412,6 +412,11 @@ std::vector<AddedThing> environment_effects() {
                            s.environment = test::random_environment(d);
                            s.materials[0].transmission = 0.7F;
                        }});
+    effects.push_back({"reflection by normal", [](Scene& s, test::Dice& d) {
+                           s.environment = test::random_environment(d);
+                           s.materials[0].reflectivity = glm::vec3(0.6F);
+                           s.materials[0].reflection_by_normal = true;
+                       }});
     effects.push_back({"rotation", [](Scene& s, test::Dice& d) {
                            s.environment = test::random_environment(d);
                            s.environment->rotation = 2.0F;
@@ -522,6 +527,9 @@ TEST_F(AgainstReference, AgreesInBlurredSurroundings) {
             expect_agreement(glossy_sphere(roughness, metallic), blurred_tolerance);
         }
     }
+    Scene painted = glossy_sphere(0.4F, std::nullopt);
+    painted.materials[0].reflection_by_normal = true;
+    expect_agreement(painted, blurred_tolerance);
 }
 
 TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {

@@ -543,6 +543,7 @@ bool edit_reflection(Material& material) {
     bool changed = edit_color(material, &Material::reflectivity);
     changed |= choose("Fresnel", material.fresnel);
     changed |= slide(material, &Material::reflection_roughness);
+    changed |= check("Reflection by normal", material.reflection_by_normal);
     changed |= slide(material, &Material::transmission);
     changed |= slide("Refractive index", material.refractive_index, {1.0F, 3.0F});
     return changed;

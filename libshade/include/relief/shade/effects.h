@@ -98,6 +98,7 @@ struct Features {
     // The environment in the surface.
     ReflectionTerm reflection = ReflectionTerm::none;
     FresnelTerm fresnel = FresnelTerm::constant;  ///< Phong's model only.
+    bool reflection_by_normal = false;            ///< Phong's model only.
     bool refraction = false;
     bool environment_rotation = false;
     // The picture.

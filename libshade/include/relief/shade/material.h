@@ -141,7 +141,8 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 ///     F    = Fresnel's factor at n.v, clamped to [0,1]: by Schlick reflectivity +
 ///            (grazing_reflectivity - reflectivity) (1 - n.v)^5. If reflectivity is zero or the
 ///            scene has no environment, F and transmission count as 0
-///     reflected(d) = the environment in direction d, blurred by reflection_roughness
+///     reflected(d) = the environment in direction d, blurred by reflection_roughness; with
+///            reflection_by_normal, d is n instead
 ///     refracted = v refracted by refractive_index, once, at the first surface
 ///     occlusion = 1 + occlusion_strength (occlusion_texture - 1)
 ///
@@ -218,6 +219,9 @@ struct Material {
     glm::vec3 conductor_index{0.2F};       ///< The real part of a metal's index, by channel.
     glm::vec3 conductor_absorption{3.0F};  ///< The imaginary part.
     float reflection_roughness = 0.0F;     ///< 0: a mirror; else the blur of GGX.
+    /// The environment is looked up along the normal, not along the mirrored view: as if painted on
+    /// the surface.
+    bool reflection_by_normal = false;
     float transmission = 0.0F;  ///< The transmitted share of the light that is not reflected.
 
     std::optional<Texture> diffuse_texture;    ///< sRGB color; alpha is used unless opaque.

@@ -217,6 +217,7 @@ inline constexpr auto fields_of<Material> = std::tuple{
     SceneField{
         "conductor_absorption", &Material::conductor_absorption, {0, 1e3F}, FieldUnit::color},
     SceneField{"reflection_roughness", &Material::reflection_roughness, {0, 1}},
+    SceneField{"reflection_by_normal", &Material::reflection_by_normal},
     SceneField{"transmission", &Material::transmission, {0, 1}},
     SceneField{"diffuse_texture", &Material::diffuse_texture},
     SceneField{"specular_texture", &Material::specular_texture},
