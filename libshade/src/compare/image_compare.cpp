@@ -598,7 +598,7 @@ void raise_band(const std::array<const LinearPicture*, 2>& pictures, const FlipF
                                 picture.opponent[2].row(y)[x]);
         };
         const auto line = static_cast<std::size_t>(y) * static_cast<std::size_t>(band.width);
-        // Where the filtered pictures are equal, as around an object, the error is 0.
+        // The error is 0 where the filtered pictures are equal, as around an object.
         const auto is_equal = [&](int x) {
             const auto are_equal = [&](const Rows& one, const Rows& other) {
                 return one.row(y)[x] == other.row(y)[x];

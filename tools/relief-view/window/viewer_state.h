@@ -282,7 +282,7 @@ class ViewerState {
     [[nodiscard]] nlohmann::ordered_json json(const RenderedPicture& drawn) const;
 
   private:
-    /// What an edit changes.
+    /// The values that an edit can change.
     struct EditState {
         std::shared_ptr<const Scene> scene;
         LightRows light_rows;

@@ -90,7 +90,7 @@ struct GltfMaterial {
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;
     bool double_sided = false;
-    bool unlit = false;              ///< KHR_materials_unlit
+    bool unlit = false;  ///< KHR_materials_unlit
     // KHR_materials_ior and KHR_materials_specular.
     float refractive_index = 1.5F;
     float specular = 1.0F;
