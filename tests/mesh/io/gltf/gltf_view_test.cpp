@@ -54,12 +54,12 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
                      "specularColorTexture": {"index": 1}},
                 "KHR_materials_clearcoat": {"clearcoatFactor": 0.25, "clearcoatRoughnessFactor": 0.125,
                     "clearcoatTexture": {"index": 1}, "clearcoatRoughnessTexture": {"index": 2},
-                    "clearcoatNormalTexture": {"index": 3, "scale": 0.5}},
+                    "clearcoatNormalTexture": {"index": 2, "scale": 0.5}},
                 "KHR_materials_sheen": {"sheenColorFactor": [0.1, 0.2, 0.3], "sheenRoughnessFactor": 0.5,
                     "sheenColorTexture": {"index": 0}, "sheenRoughnessTexture": {"index": 1}},
                 "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 1.5,
                     "iridescenceThicknessMinimum": 50, "iridescenceThicknessMaximum": 250,
-                    "iridescenceTexture": {"index": 2}, "iridescenceThicknessTexture": {"index": 3}},
+                    "iridescenceTexture": {"index": 2}, "iridescenceThicknessTexture": {"index": 0}},
                 "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": -0.5,
                     "anisotropyTexture": {"index": 0}},
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
@@ -87,12 +87,12 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(full.specular_color_texture->image, full.occlusion_texture->image);
     EXPECT_EQ(full.clearcoat_texture->image, full.occlusion_texture->image);
     EXPECT_EQ(full.clearcoat_roughness_texture->image, full.metallic_roughness_texture->image);
-    EXPECT_EQ(full.clearcoat_normal_texture->image, full.emission_texture->image);
+    EXPECT_EQ(full.clearcoat_normal_texture->image, full.metallic_roughness_texture->image);
     EXPECT_EQ(full.clearcoat_normal_scale, 0.5F);
     EXPECT_EQ(full.sheen_color_texture->image, full.normal_texture->image);
     EXPECT_EQ(full.anisotropy_texture->image, full.normal_texture->image);
     EXPECT_EQ(full.iridescence_texture->image, full.metallic_roughness_texture->image);
-    EXPECT_EQ(full.iridescence_thickness_texture->image, full.emission_texture->image);
+    EXPECT_EQ(full.iridescence_thickness_texture->image, full.normal_texture->image);
     EXPECT_FALSE(plain.specular_texture || plain.clearcoat_normal_texture);
     EXPECT_EQ(plain.clearcoat, 0.0F);
     EXPECT_EQ(full.clearcoat, 0.25F);
