@@ -52,7 +52,7 @@ function(relief_add_library component folder)
     add_library(${target})
     add_library(relief::${component} ALIAS ${target})
     relief_position_independent(${target})
-    # Until version 1.0, each minor version may change the binary interface.
+    # A minor version may add members to structs, which changes the binary interface.
     set_target_properties(
         ${target}
         PROPERTIES EXPORT_NAME ${component}
@@ -112,7 +112,7 @@ function(relief_install_package)
     configure_package_config_file(
         ${PROJECT_SOURCE_DIR}/cmake/relief-config.cmake.in ${PROJECT_BINARY_DIR}/relief-config.cmake
         INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
-    write_basic_package_version_file(${PROJECT_BINARY_DIR}/relief-config-version.cmake COMPATIBILITY SameMinorVersion)
+    write_basic_package_version_file(${PROJECT_BINARY_DIR}/relief-config-version.cmake COMPATIBILITY SameMajorVersion)
     install(FILES ${PROJECT_BINARY_DIR}/relief-config.cmake ${PROJECT_BINARY_DIR}/relief-config-version.cmake
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief
             COMPONENT development)

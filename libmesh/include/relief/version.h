@@ -3,7 +3,7 @@
 /// The version of relief, by Semantic Versioning. CMakeLists.txt reads RELIEF_VERSION from here.
 #pragma once
 
-#define RELIEF_VERSION "0.9.0"
-#define RELIEF_VERSION_MAJOR 0
-#define RELIEF_VERSION_MINOR 9
+#define RELIEF_VERSION "1.0.0"
+#define RELIEF_VERSION_MAJOR 1
+#define RELIEF_VERSION_MINOR 0
 #define RELIEF_VERSION_PATCH 0
