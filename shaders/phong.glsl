@@ -70,7 +70,7 @@ vec3 highlight_color(Surface surface, vec3 light_world) { return specular_color;
 #include "vector.glsl#normalized_or"
 
 uniform vec3 specular_color;
-uniform vec3 specular_gain;  // What is added at grazing angles.
+uniform vec3 specular_gain;  // The increase towards grazing angles.
 
 vec3 highlight_color(Surface surface, vec3 light_world) {
     vec3 half_world = normalized_or(light_world + surface.view_world, vec3(0.0));

@@ -314,7 +314,8 @@ Decision of_refraction(Subject s) {
 Decision of_rotation(Subject s) {
     if (!s.scene.environment) return {false, "the scene has no environment"};
     const bool is_rotated = s.scene.environment->rotation != 0.0F;
-    return {is_rotated, is_rotated ? "the environment is rotated" : "the environment is not"};
+    return {is_rotated,
+            is_rotated ? "the environment is rotated" : "the environment is not rotated"};
 }
 
 Decision of_tone(Subject s, ToneMapping tone) {

@@ -169,7 +169,8 @@ std::vector<Image> images_of(const Environment& environment) {
 
 EnvironmentLookup::EnvironmentLookup(const Environment& environment, Report& report)
     : intensity_(static_cast<double>(environment.intensity)),
-      rotation_(static_cast<double>(environment.rotation)) {
+      turn_(portable::cos(static_cast<double>(environment.rotation)),
+            portable::sin(static_cast<double>(environment.rotation))) {
     for (const Image& image : images_of(environment))
         images_.emplace_back(storable_radiance(image, report));
     if (std::holds_alternative<Equirectangular>(environment.source)) {
@@ -219,9 +220,7 @@ glm::dvec3 EnvironmentLookup::face_radiance(const glm::dvec3& direction) const {
 
 glm::dvec3 EnvironmentLookup::in_map(const glm::dvec3& direction_world) const {
     const glm::dvec3& d = direction_world;
-    const double cosine = std::cos(rotation_);
-    const double sine = std::sin(rotation_);
-    return {cosine * d.x - sine * d.z, d.y, sine * d.x + cosine * d.z};
+    return {turn_.x * d.x - turn_.y * d.z, d.y, turn_.y * d.x + turn_.x * d.z};
 }
 
 glm::dvec3 EnvironmentLookup::radiance(const glm::dvec3& direction_world) const {

@@ -151,7 +151,7 @@ class EnvironmentLookup {
 
     Layout layout_ = Layout::faces;
     double intensity_ = 1.0;
-    double rotation_ = 0.0;
+    glm::dvec2 turn_{1.0, 0.0};   ///< The cosine and the sine of the rotation.
     std::vector<Texels> images_;  ///< Six faces, or one image.
     IrradianceSh irradiance_{};   ///< Multiplied by the intensity.
 };

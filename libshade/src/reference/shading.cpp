@@ -231,15 +231,19 @@ double highlight(const Material& material, const Surface& at, const glm::dvec3& 
     return normalized ? s * (shininess + 2.0) / 8.0 : s;
 }
 
+/// Returns the unit half vector, or zero if light and eye are opposite.
+glm::dvec3 half_vector(const glm::dvec3& light, const Surface& at) {
+    const glm::dvec3 sum = light + at.view_world;
+    const double length = glm::length(sum);
+    return length > 1e-15 ? sum / length : glm::dvec3(0.0);
+}
+
 /// Returns the term k of the formula.
 glm::dvec3 highlight_color(const Material& material, const Surface& at, const glm::dvec3& light) {
     const glm::dvec3 specular(material.specular);
     if (!material.highlight_fresnel) return specular;
-    const glm::dvec3 sum = light + at.view_world;
-    const double length = glm::length(sum);
-    const double cosine = length > 1e-15 ? glm::dot(at.view_world, sum) / length : 0.0;
-    return specular +
-           glm::max(1.0 - specular, 0.0) * std::pow(std::clamp(1.0 - cosine, 0.0, 1.0), 5.0);
+    const double cosine = std::clamp(glm::dot(at.view_world, half_vector(light, at)), 0.0, 1.0);
+    return specular + glm::max(1.0 - specular, 0.0) * portable::pow(1.0 - cosine, 5.0);
 }
 
 /// The sums over all lights at one point, before they are multiplied by the surface's textures.
@@ -426,13 +430,6 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
             thickness};
 }
 
-/// Returns the unit half vector, or zero if light and eye are opposite: then nothing is reflected.
-glm::dvec3 half_vector(const glm::dvec3& light, const Surface& at) {
-    const glm::dvec3 sum = light + at.view_world;
-    const double length = glm::length(sum);
-    return length > 1e-15 ? sum / length : glm::dvec3(0.0);
-}
-
 /// Returns pi D V of GGX about a normal. \param n_dot_l  positive
 double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface& at, double n_dot_l,
                 double roughness) {
@@ -448,7 +445,7 @@ double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface&
     return std::numbers::pi * distribution * visibility;
 }
 
-/// What facets mirror and what scattering lacks, before and behind a film.
+/// The light that facets mirror, and the light that scattering therefore lacks.
 struct Mirrored {
     glm::dvec3 mirrored;
     glm::dvec3 blocked;

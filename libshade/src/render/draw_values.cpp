@@ -159,7 +159,8 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.exposure = scene.exposure;
     if (!scene.environment) return;
     values.environment_intensity = scene.environment->intensity;
-    values.environment_turn = environment_turn(*scene.environment);
+    if (scene.environment->rotation != 0.0F)
+        values.environment_turn = environment_turn(*scene.environment);
     values.transmission = material.transmission;
     values.refraction_ratio = 1.0F / material.refractive_index;
     if (material.reflectivity == glm::vec3(0.0F)) return;

@@ -28,7 +28,7 @@ struct DrawValues {
 
     glm::vec3 ambient_scattered{0.0F};  ///< For metallic-roughness, the ambient light itself.
     glm::vec3 diffuse_color{0.0F};
-    glm::vec3 specular_gain{0.0F};   ///< What Fresnel's factor adds at grazing angles.
+    glm::vec3 specular_gain{0.0F};   ///< The increase towards grazing angles.
     glm::vec3 specular_color{0.0F};  ///< With the normalization of the model.
     float shininess = 0.0F;
     glm::vec3 emission_color{0.0F};

@@ -706,7 +706,7 @@ TEST(EffectPlan, NamesWhatDecided) {
         {"environment light", {environment}, "the environment is not to light surfaces"},
         {"environment light", {environment, scattered, black_surface}, "material 'body' is black"},
         {"environment rotation", {}, "the scene has no environment"},
-        {"environment rotation", {environment, mirror}, "the environment is not"},
+        {"environment rotation", {environment, mirror}, "the environment is not rotated"},
         {"environment rotation", {environment, mirror, rotated}, "the environment is rotated"},
         {"environment rotation",
          {environment, rotated},

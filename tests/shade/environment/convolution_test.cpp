@@ -339,7 +339,7 @@ TEST(IrradianceSh, OfARotatedEnvironmentAreThoseOfTheTurnedNormal) {
         const double c = std::cos(radians), s = std::sin(radians);
         double worst = 0.0;
         for (const glm::dvec3& n : spread_directions(60)) {
-            // What was towards +z is now towards +x for a quarter turn.
+            // A quarter turn moves the light at +z to +x.
             const glm::dvec3 now(c * n.x + s * n.z, n.y, c * n.z - s * n.x);
             worst = std::max(
                 worst, glm::length(irradiance_over_pi(turned, now) - irradiance_over_pi(sh, n)));

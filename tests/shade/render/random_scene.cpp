@@ -93,7 +93,7 @@ Material random_material(Scene& scene, Dice& dice, bool physical) {
     material.shininess = std::exp(dice.between(0.0F, 5.0F));
     material.specular_model = one_of(dice, {SpecularModel::phong, SpecularModel::blinn_phong,
                                             SpecularModel::blinn_phong_normalized});
-    // Without a throw of its own, so that the other values of a seed stay.
+    // It takes no random number of its own, so that the other values of a seed stay.
     material.highlight_fresnel = material.specular.r > 0.5F;
     if (physical && dice.chance(0.3)) {
         material.metallic_roughness = MetallicRoughness{dice.color(), dice.between(0.0F, 1.0F),
@@ -243,7 +243,7 @@ Environment random_environment(Dice& dice, int face_size) {
     environment.lights = dice.chance(0.5);
     environment.intensity = dice.between(0.3F, 1.2F);
     environment.skybox = dice.chance(0.5);
-    // Without a throw of its own, so that the other values of a seed stay.
+    // It takes no random number of its own, so that the other values of a seed stay.
     if (environment.lights) environment.rotation = 6.0F * (environment.intensity - 0.75F);
     return environment;
 }

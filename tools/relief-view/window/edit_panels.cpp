@@ -314,11 +314,7 @@ bool edit_row(LightRow& row, const BoundingSphere& sphere) {
     if (changed) row.light = converted_to(row.light, type, sphere);
     changed |= edit_light(row.light);
     if (row.carried.node) ImGui::TextDisabled("Its node moves it, until it is moved here.");
-    float speed = glm::degrees(row.speed);
-    if (slide("Rotation", speed, {-180.0F, 180.0F, "%.0f deg/s"})) {
-        row.speed = glm::radians(speed);
-        changed = true;
-    }
+    changed |= slide_angle("Rotation", row.speed, {-180.0F, 180.0F, "%.0f deg/s"});
     return changed;
 }
 
@@ -517,11 +513,8 @@ bool edit_metallic_roughness(MetallicRoughness& model) {
     changed |= edit_color(model, &MetallicRoughness::sheen_color);
     changed |= slide(model, &MetallicRoughness::sheen_roughness);
     changed |= slide(model, &MetallicRoughness::anisotropy);
-    float rotation = glm::degrees(model.anisotropy_rotation);
-    if (slide("Anisotropy rotation", rotation, {-180.0F, 180.0F, "%.0f deg"})) {
-        model.anisotropy_rotation = glm::radians(rotation);
-        changed = true;
-    }
+    changed |= slide_angle("Anisotropy rotation", model.anisotropy_rotation,
+                           {-180.0F, 180.0F, "%.0f deg"});
     changed |= slide(model, &MetallicRoughness::iridescence);
     changed |= slide("Film index", model.iridescence_index, {1.0F, 3.0F});
     changed |= slide("Film thickness", model.iridescence_thickness, {0.0F, 1200.0F, "%.0f nm"});

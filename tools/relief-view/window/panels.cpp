@@ -129,6 +129,13 @@ bool slide(const char* label, float& value, const Slider& slider) {
     return changed;
 }
 
+bool slide_angle(const char* label, float& radians, const Slider& degrees) {
+    float value = glm::degrees(radians);
+    const bool changed = slide(label, value, degrees);
+    if (changed) radians = glm::radians(value);
+    return changed;
+}
+
 bool drag_up(const char* label, float& value, float step) {
     constexpr float max = 1e6F;
     const bool changed = ImGui::DragFloat(begin_row(label).c_str(), &value, step, 0.0F, max, "%.3g",
@@ -497,9 +504,8 @@ void draw_scene_panel(const PanelInput& input, PanelRequests& requests) {
     draw_tree(state);
     draw_findings(input);
     OrbitCamera& camera = state.camera();
-    float degrees = glm::degrees(camera.vertical_fov);
-    if (slide("Field of view", degrees, {min_fov_degrees, max_fov_degrees, "%.1f deg"}))
-        camera.vertical_fov = glm::radians(degrees);
+    slide_angle("Field of view", camera.vertical_fov,
+                {min_fov_degrees, max_fov_degrees, "%.1f deg"});
 }
 
 namespace {
@@ -527,11 +533,7 @@ const char* layout_of(const Environment& environment) {
 bool edit(Environment& environment) {
     ImGui::TextDisabled("%s", layout_of(environment));
     bool changed = drag_up("Intensity", environment.intensity);
-    float rotation = glm::degrees(environment.rotation);
-    if (slide("Rotation", rotation, {-180.0F, 180.0F, "%.0f deg"})) {
-        environment.rotation = glm::radians(rotation);
-        changed = true;
-    }
+    changed |= slide_angle("Rotation", environment.rotation, {-180.0F, 180.0F, "%.0f deg"});
     changed |= check("Show as background", environment.skybox);
     changed |= check("Environment light", environment.lights);
     return changed;

@@ -83,6 +83,9 @@ struct Slider {
 /// \return whether the value changed
 bool slide(const char* label, float& value, const Slider& slider = {});
 
+/// A slider in degrees for a value in radians.
+bool slide_angle(const char* label, float& radians, const Slider& degrees);
+
 /// A slider with the title and the range of a scene field.
 template <typename Owner>
 bool slide(Owner& owner, float Owner::*member) {
