@@ -12,9 +12,12 @@ in vec3 position_world;
 in vec2 texcoord_surface;
 
 #part eye
-// The position of the camera.
+// The vector to the camera, in homogeneous coordinates: (x,y,z,1) is the position of a perspective
+// camera, (x,y,z,0) the direction to an orthographic one.
 
-uniform vec3 eye_world;
+uniform vec4 eye_world;
+
+vec3 to_eye(vec3 position_world) { return eye_world.xyz - eye_world.w * position_world; }
 
 #part diffuse_color
 // The share of light that the surface scatters.

@@ -38,7 +38,7 @@ Surface surface_here() {
     vec2 kind = clamp(metallic_and_roughness(), vec2(0.0), vec2(1.0));
     float widened_roughness = widened(max(kind.y, min_roughness));
     float alpha = widened_roughness * widened_roughness;
-    return Surface(normal, position_world, normalized_or(eye_world - position_world, normal),
+    return Surface(normal, position_world, normalized_or(to_eye(position_world), normal),
                    base * (1.0 - kind.x), mix(dielectric_reflectance(), base, kind.x),
                    1.0 - kind.x, widened_roughness, alpha * alpha);
 }

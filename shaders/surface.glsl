@@ -52,5 +52,5 @@ struct Surface {
 
 Surface surface_here() {
     vec3 normal = shading_normal();
-    return Surface(normal, position_world, normalized_or(eye_world - position_world, normal));
+    return Surface(normal, position_world, normalized_or(to_eye(position_world), normal));
 }

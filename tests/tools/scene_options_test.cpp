@@ -154,6 +154,86 @@ TEST(SceneOptions, ACameraWithItsPlaceMovesNoLight) {
     EXPECT_NEAR(glm::distance(glm::vec3(placed.camera.world_from_view[3]), eye), 0.0F, 1e-5F);
 }
 
+/// A triangle of two materials that a variant exchanges, and two cameras, of which the second is
+/// orthographic.
+std::filesystem::path model_with_choices(const Workplace& workplace) {
+    workplace.write("choices.gltf", R"({"asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_materials_variants"],
+        "extensions": {"KHR_materials_variants": {"variants": [{"name": "day"}, {"name": "night"}]}},
+        "materials": [{"name": "white"}, {"name": "black"}],
+        "buffers": [{"byteLength": 36, "uri":
+            "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0, "extensions":
+            {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [1]}]}}}]}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}},
+            {"name": "plan", "type": "orthographic",
+             "orthographic": {"xmag": 2, "ymag": 2, "znear": 0, "zfar": 8}}],
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 3]},
+            {"camera": 1, "translation": [0, 0, 4]}]})");
+    return workplace / "choices.gltf";
+}
+
+TEST(SceneOptions, AVariantGivesPrimitivesItsMaterials) {
+    const Workplace workplace;
+    ViewOptions options = of(model_with_choices(workplace));
+    const auto material = [&] {
+        const Scene scene = composed(options).scene();
+        return scene.materials.at(*scene.meshes.at(0)->material_ranges.at(0).material).name;
+    };
+    EXPECT_EQ(material(), "white");
+    options.material_variant = "day";
+    EXPECT_EQ(material(), "white") << "this variant does not name the primitive";
+    options.material_variant = "night";
+    EXPECT_EQ(material(), "black");
+    options.material_variant = "2";
+    EXPECT_EQ(material(), "black");
+    options.material_variant = "dusk";
+    EXPECT_THROW(composed(options), Error);
+}
+
+TEST(SceneOptions, ACameraOfTheFileCanBeChosen) {
+    const Workplace workplace;
+    ViewOptions options = of(model_with_choices(workplace));
+    EXPECT_EQ(composed(options).camera.world_from_view[3].z, 3.0F);
+    EXPECT_FALSE(composed(options).camera.orthographic_height);
+    options.model_camera = "plan";
+    const Camera plan = composed(options).camera;
+    EXPECT_EQ(plan.world_from_view[3].z, 4.0F);
+    EXPECT_EQ(plan.orthographic_height, 4.0F);
+    EXPECT_GT(plan.near, 0.0F) << "glTF allows 0";
+    options.model_camera = "camera 1";
+    EXPECT_EQ(composed(options).camera.world_from_view[3].z, 3.0F);
+    options.model_camera = "3";
+    EXPECT_THROW(composed(options), UsageError);
+}
+
+TEST(SceneOptions, AnOrthographicCameraShowsTheWholeModel) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");  // From (-1,-1,0) to (1,1,0).
+    ViewOptions options = of(workplace / "square.obj");
+    options.orthographic = true;
+    options.size = {200, 100};
+    options.camera = CameraOption{};
+    EXPECT_NEAR(composed(options).camera.orthographic_height.value(), 2.08F, 1e-5F);
+    options.camera->distance_factor = 0.5F;
+    EXPECT_NEAR(composed(options).camera.orthographic_height.value(), 1.04F, 1e-5F);
+    options.camera->place = CameraPlace{glm::vec3(0.0F), 2.0F};
+    options.vertical_fov = glm::radians(90.0F);
+    EXPECT_NEAR(composed(options).camera.orthographic_height.value(), 4.0F, 1e-5F);
+    // A camera of the file keeps its place.
+    options = of(model_with_choices(workplace));
+    options.orthographic = true;
+    const ComposedScene drawn = composed(options);
+    EXPECT_EQ(drawn.camera.world_from_view[3].z, 3.0F);
+    EXPECT_NEAR(drawn.camera.orthographic_height.value(), 2.0F * 1.04F, 1e-5F)
+        << "the triangle reaches 1 above the axis of the camera";
+    EXPECT_EQ(drawn.scene().camera, drawn.camera);
+}
+
 TEST(SceneOptions, LightsOnTheCommandLineReplaceAllOthers) {
     const Workplace workplace;
     workplace.write_square("square.obj");

@@ -61,6 +61,11 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
                "Set the axis of the model that points up. auto is z for STL files and y for "
                "others. Default: auto.")
         .group(model_group);
+    add_value(app, "--material-variant", "NAME|N",
+              "Draw the material variant of this name or number of a glTF file "
+              "(KHR_materials_variants). Default: the materials without a variant.",
+              [&](const std::string&, const std::string& text) { options.material_variant = text; })
+        .group(model_group);
     add_choice(app, "--normals", options.normals, enum_choices<NormalMode>(),
                "The source of normals, as in relief-mesh process: the file (keep), one per "
                "triangle (flat), or an average around each vertex. Default: keep; glTF without "
@@ -79,6 +84,14 @@ void check_model(const ViewOptions& options) {
         refuse(given && is_scene, option, "applies to model files, not to scene files", remedy);
     };
     refuse_for_scene(options.up.has_value(), "--up", "rotate the nodes of the scene");
+    const std::string extension = extension_of(options.model);
+    const bool is_gltf = extension == ".gltf" || extension == ".glb";
+    refuse(options.material_variant && !is_gltf, "--material-variant",
+           "only glTF files have material variants", "leave it out");
+    refuse(options.model_camera && !is_gltf, "--model-camera", "only glTF files have cameras",
+           "use --camera");
+    refuse(options.model_camera && options.camera, "--model-camera", "contradicts --camera",
+           "leave one of them out");
     refuse_for_scene(options.normals.has_value(), "--normals",
                      "set 'normals' beside 'model' in the scene");
     refuse_for_scene(options.crease_degrees.has_value(), "--crease",
@@ -95,6 +108,7 @@ SceneOptions scene_options(const ViewOptions& options) {
     if (options.crease_degrees)
         read.crease_angle = *options.crease_degrees * std::numbers::pi / 180.0;
     read.up = options.up.value_or(read.up);
+    read.material_variant = options.material_variant;
     return read;
 }
 
@@ -758,6 +772,24 @@ Camera default_camera(const Scene& scene, const ViewOptions& options) {
                   view.distance_factor);
 }
 
+/// Makes the camera orthographic, so that it shows the whole model, enlarged by the factor of
+/// --camera. A camera that follows the scene keeps this height.
+void make_orthographic(ComposedScene& composed, const ViewOptions& options) {
+    Scene& scene = composed.scene();
+    const float aspect = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
+    if (composed.camera_follows_scene) {
+        scene.camera = orthographic(scene, composed.camera, aspect);
+        composed.camera = *scene.camera;
+        return;
+    }
+    const CameraOption view = options.camera.value_or(
+        CameraOption{.azimuth = default_azimuth, .elevation = default_elevation});
+    const Camera whole =
+        framed(scene, view.azimuth, view.elevation, composed.camera.vertical_fov, aspect);
+    composed.camera = orthographic(scene, whole, aspect);
+    *composed.camera.orthographic_height *= view.distance_factor;
+}
+
 std::size_t light_count(const Scene& scene) {
     return scene.directional_lights.size() + scene.point_lights.size() + scene.spot_lights.size();
 }
@@ -813,12 +845,12 @@ void mark_lights(ComposedScene& composed, float share) {
     add_light_markers(composed.graph, share * std::max(size, std::numeric_limits<float>::min()));
 }
 
-/// Returns the key animation that --animation names; none for all of them.
-std::optional<std::size_t> clip_of(const SceneGraph& graph, const std::string& text) {
-    if (text == "all") return std::nullopt;
-    const std::vector<std::string> names = clip_names(graph);
+/// Returns the index of a thing of the file that an option names or numbers from 1.
+/// \param thing  for messages, for example "animation"
+std::size_t named_index(const std::string& option, const std::string& thing,
+                        const std::vector<std::string>& names, const std::string& text) {
     if (names.empty()) {
-        throw UsageError("--animation: the model has no animation of its own to choose",
+        throw UsageError(fmt::format("{}: the model has no {} of its own to choose", option, thing),
                          "leave it out");
     }
     const auto found = std::find(names.begin(), names.end(), text);
@@ -827,8 +859,23 @@ std::optional<std::size_t> clip_of(const SceneGraph& graph, const std::string& t
         if (text == fmt::format("{}", i + 1)) return i;
     }
     throw UsageError(
-        fmt::format("--animation {}: no such animation{}", text, did_you_mean(text, names)),
+        fmt::format("{} {}: no such {}{}", option, text, thing, did_you_mean(text, names)),
         fmt::format("there are {}", fmt::join(names, ", ")));
+}
+
+/// Selects what --animation, --model-camera and --time name, and moves the scene accordingly.
+void select_pose(SceneGraph& graph, const ViewOptions& options) {
+    if (options.animation) {
+        graph.clip.reset();
+        if (*options.animation != "all")
+            graph.clip =
+                named_index("--animation", "animation", clip_names(graph), *options.animation);
+    }
+    if (options.model_camera)
+        choose_camera(graph, named_index("--model-camera", "camera", camera_names(graph),
+                                         *options.model_camera));
+    if (options.time || options.animation || options.model_camera)
+        pose(graph, options.time.value_or(0.0));
 }
 
 }  // namespace
@@ -843,8 +890,7 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
         });
     });
     if (!options.size_given) options.size = composed.graph.picture_size.value_or(options.size);
-    if (options.animation) composed.graph.clip = clip_of(composed.graph, *options.animation);
-    if (options.time || options.animation) pose(composed.graph, options.time.value_or(0.0));
+    select_pose(composed.graph, options);
     Scene& scene = composed.scene();
     if (scene.instances.empty()) throw FileError(options.model, "contains no triangles");
     if (options.frames && duration(composed.graph) == 0.0 && !options.seconds)
@@ -864,9 +910,11 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
         composed.at_rest.push_back(instance.world_from_object);
     if (options.light_markers) mark_lights(composed, *options.light_markers);
     if (has_place(options)) {
-        const OrbitCamera orbit =
-            orbit_of(*options.camera, *options.camera->place, composed.camera.vertical_fov);
+        const OrbitCamera orbit = orbit_of(*options.camera, *options.camera->place,
+                                           composed.camera.vertical_fov, options.orthographic);
         composed.camera = camera_of(orbit, bounding_sphere(world_bounds(scene)));
+    } else if (options.orthographic) {
+        make_orthographic(composed, options);
     }
     return composed;
 }

@@ -235,6 +235,15 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
                   options.vertical_fov = parse_fov(subject, text);
               })
         .group(group);
+    add_switch(app, "--orthographic", options.orthographic,
+               "Use parallel projection. The size of the model is that at the target of --camera, "
+               "else the whole model is shown.")
+        .group(group);
+    add_value(app, "--model-camera", "NAME|N",
+              "Look through the camera of this name or number of a glTF file. Default: the first "
+              "camera.",
+              [&](const std::string&, const std::string& text) { options.model_camera = text; })
+        .group(group);
 }
 
 void check_output(const ViewOptions& options) {

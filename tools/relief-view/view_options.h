@@ -176,6 +176,7 @@ struct ViewOptions {
     std::optional<NormalMode> normals;
     std::optional<double> crease_degrees;
     std::optional<UpAxis> up;
+    std::optional<std::string> material_variant;  ///< Its name or number in a glTF file.
 
     std::optional<SceneOptions::MaterialModel> shading;
     std::optional<Interpolation> interpolation;
@@ -204,7 +205,9 @@ struct ViewOptions {
     std::optional<float> light_markers;  ///< Radius relative to the size of the scene.
     std::optional<CameraOption> camera;
     std::optional<float> vertical_fov;
-    std::optional<glm::vec4> background;  ///< Linear RGB and alpha.
+    bool orthographic = false;
+    std::optional<std::string> model_camera;  ///< The name or number of a camera of the file.
+    std::optional<glm::vec4> background;      ///< Linear RGB and alpha.
 
     std::optional<int> turntable;  ///< Pictures per turn.
     std::optional<int> frames;     ///< Pictures of the animation.

@@ -5,6 +5,7 @@
 // shaders/README.md. Sources: [Porter and Duff 1984] (composition), [Narkowicz 2016] (the fit to
 // the film curve).
 #include "relief/shade/reference.h"
+#include "scene/scene_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -76,11 +77,8 @@ std::vector<reference::ViewMesh> view_meshes(const PreparedScene& prepared) {
 class Tracer {
   public:
     Tracer(const PreparedScene& prepared, const ReferenceSettings& settings)
-        : prepared_(prepared),
-          settings_(settings),
-          visibility_(view_meshes(prepared), static_cast<double>(camera().near),
-                      static_cast<double>(camera().far)) {
-        top_ = portable::tan(static_cast<double>(camera().vertical_fov) * 0.5);
+        : prepared_(prepared), settings_(settings), visibility_(view_meshes(prepared), camera()) {
+        top_ = half_height(camera());
     }
 
     /// \param x, y  in pixels from the upper left corner
@@ -96,6 +94,10 @@ class Tracer {
   private:
     [[nodiscard]] const Camera& camera() const { return *prepared_.scene.camera; }
     [[nodiscard]] glm::dvec2 on_view_plane(double x, double y) const;
+    /// Returns the direction of the ray, in the space of the camera.
+    [[nodiscard]] glm::dvec3 direction(const glm::dvec2& view_plane) const {
+        return {camera().orthographic_height ? glm::dvec2(0.0) : view_plane, -1.0};
+    }
     [[nodiscard]] bool uses_opengl(const Hit& hit, const Material& material) const {
         return material.double_sided || !reference::is_back(prepared_, hit);
     }
@@ -109,7 +111,7 @@ class Tracer {
     const PreparedScene& prepared_;
     const ReferenceSettings& settings_;
     reference::Visibility visibility_;
-    double top_ = 1.0;  ///< The upper edge of the picture on the plane at distance 1.
+    double top_ = 1.0;  ///< The upper edge of the picture, as half_height() defines it.
 };
 
 glm::dvec2 Tracer::on_view_plane(double x, double y) const {
@@ -137,8 +139,8 @@ glm::dvec4 Tracer::skybox(const glm::dvec2& view_plane, Trace& trace) const {
     const auto& environment = prepared_.scene.environment;
     if (!environment || !environment->skybox) return glm::dvec4(0.0);
     const glm::dmat3 world_from_view(camera().world_from_view);
-    const glm::dvec3 direction = world_from_view * glm::dvec3(view_plane, -1.0);
-    const glm::dvec3 radiance = prepared_.environment->looked_up(direction, trace);
+    const glm::dvec3 radiance =
+        prepared_.environment->looked_up(world_from_view * direction(view_plane), trace);
     return {limited(radiance, max_radiance), 1.0};
 }
 
@@ -147,8 +149,9 @@ glm::dvec4 Tracer::skybox(const glm::dvec2& view_plane, Trace& trace) const {
 bool Tracer::is_too_close(const Hit& front, const Hit& behind) const {
     const double near = static_cast<double>(camera().near);
     const double far = static_cast<double>(camera().far);
-    const double scale = near * far / (far - near);
-    const double apart = scale * (1.0 / front.depth - 1.0 / behind.depth);
+    const double apart = camera().orthographic_height
+                             ? (behind.depth - front.depth) / (far - near)
+                             : near * far / (far - near) * (1.0 / front.depth - 1.0 / behind.depth);
     return apart < 1e-6 && !is_same_surface(front, behind);
 }
 
@@ -207,7 +210,7 @@ bool Tracer::is_continuous(const Sample& a, const Sample& b) const {
 bool Tracer::is_edge_on(const Sample& sample, double x, double y) const {
     if (sample.trace.places().empty()) return false;
     const auto ray = [&](double right, double down) {
-        return glm::dvec3(on_view_plane(x + right, y + down), -1.0);
+        return direction(on_view_plane(x + right, y + down));
     };
     return std::any_of(sample.layers.begin(), sample.layers.end(), [&](const Hit& hit) {
         const reference::PreparedInstance& instance = prepared_.instances[hit.instance];

@@ -177,15 +177,15 @@ struct Hit {
 
 class Visibility {
   public:
-    /// \param near, far  the depth range of hits
-    Visibility(std::vector<ViewMesh> meshes, double near, double far);
+    /// \param camera  its projection, and the depth range of hits
+    Visibility(std::vector<ViewMesh> meshes, const Camera& camera);
     ~Visibility();
     Visibility(const Visibility&) = delete;
     Visibility& operator=(const Visibility&) = delete;
 
-    /// Returns all hits of the ray through (x, y, -1), nearest first. If the ray hits an edge or a
-    /// vertex that triangles of an instance share, only the nearest of them is a hit; ties: the
-    /// first one.
+    /// Returns all hits of the ray through (x, y, -1), nearest first. It begins at the origin, or,
+    /// if the camera is orthographic, at (x, y, 0). If the ray hits an edge or a vertex that
+    /// triangles of an instance share, only the nearest of them is a hit; ties: the first one.
     [[nodiscard]] std::vector<Hit> hits(double x, double y) const;
 
   private:
@@ -195,6 +195,7 @@ class Visibility {
     std::vector<ViewMesh> meshes_;
     double near_;
     double far_;
+    bool is_orthographic_;
     std::unique_ptr<EmbreeScene> embree_;
 };
 
@@ -222,7 +223,8 @@ struct PreparedScene {
 
     const Scene& scene;
     std::vector<Material> materials;  ///< Without the textures that cannot be read.
-    glm::dvec3 eye_world;
+    glm::dvec4
+        eye_world;  ///< Homogeneous: the position, or the direction to an orthographic camera.
     std::vector<Mesh> meshes;
     std::vector<PreparedInstance> instances;
     SceneTexels texels;

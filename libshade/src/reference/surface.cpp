@@ -20,17 +20,20 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/scene_file.h"
 #include "render/textures.h"
+#include "scene/scene_parts.h"
 
 namespace relief::reference {
 
 // Rays from the eye
 
-Visibility::Visibility(std::vector<ViewMesh> meshes, double near, double far)
+Visibility::Visibility(std::vector<ViewMesh> meshes, const Camera& camera)
     : meshes_(std::move(meshes)),
-      near_(near),
-      far_(far),
-      embree_(
-          std::make_unique<EmbreeScene>(EmbreeSpace{glm::dvec3(0.0), far}, SceneBuild::thorough)) {
+      near_(static_cast<double>(camera.near)),
+      far_(static_cast<double>(camera.far)),
+      is_orthographic_(camera.orthographic_height.has_value()) {
+    const double reach = is_orthographic_ ? std::max(far_, half_height(camera)) : far_;
+    embree_ =
+        std::make_unique<EmbreeScene>(EmbreeSpace{glm::dvec3(0.0), reach}, SceneBuild::thorough);
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         if (meshes_[i].triangles.empty()) continue;
         embree_->add(static_cast<std::uint32_t>(i), meshes_[i].positions_view,
@@ -67,12 +70,13 @@ bool Visibility::is_repeated(const std::vector<Hit>& all, std::size_t index) con
 }
 
 std::vector<Hit> Visibility::hits(double x, double y) const {
-    const glm::dvec3 direction(x, y, -1.0);
+    const glm::dvec3 origin = is_orthographic_ ? glm::dvec3(x, y, 0.0) : glm::dvec3(0.0);
+    const glm::dvec3 direction = glm::dvec3(x, y, -1.0) - origin;
     // The search range is slightly larger; the exact depth decides below.
     std::vector<MetTriangle> candidates;
-    embree_->find_all({glm::dvec3(0.0), direction, 0.999 * near_, 1.001 * far_}, candidates);
+    embree_->find_all({origin, direction, 0.999 * near_, 1.001 * far_}, candidates);
 
-    const RayFrame ray = frame_of(glm::dvec3(0.0), direction);
+    const RayFrame ray = frame_of(origin, direction);
     std::vector<Hit> all;
     for (const MetTriangle& met : candidates) {
         const std::array<glm::dvec3, 3> corners = embree_->corners(met);
@@ -219,7 +223,8 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
     validate(scene);
     if (!scene.camera) throw InvalidInput("the scene has no camera");
     const glm::dmat4 world_from_view(scene.camera->world_from_view);
-    eye_world = glm::dvec3(world_from_view[3]);
+    eye_world = scene.camera->orthographic_height ? glm::dvec4(glm::dvec3(world_from_view[2]), 0.0)
+                                                  : glm::dvec4(glm::dvec3(world_from_view[3]), 1.0);
     decode_textures(*this, scene, report);
     for (const Mesh& mesh : scene.meshes) {
         meshes.push_back(framed_mesh(materials, mesh, report));
@@ -441,7 +446,9 @@ void face_viewer(const PreparedScene& prepared, const Hit& hit, Surface& surface
         surface.normal_world = -surface.normal_world;
         surface.coat_normal_world = -surface.coat_normal_world;
     }
-    surface.view_world = unit_or(prepared.eye_world - surface.position_world, surface.normal_world);
+    surface.view_world =
+        unit_or(glm::dvec3(prepared.eye_world) - prepared.eye_world.w * surface.position_world,
+                surface.normal_world);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "environment/convolution.h"
 #include "portable_math.h"
 #include "render/program_cache.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 
@@ -206,13 +207,19 @@ void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode
 glm::dmat4 clip_from_world(const Camera& camera, double aspect) {
     const double near = static_cast<double>(camera.near);
     const double far = static_cast<double>(camera.far);
-    const double y = 1.0 / portable::tan(static_cast<double>(camera.vertical_fov) * 0.5);
+    const double y = 1.0 / half_height(camera);
     glm::dmat4 clip_from_view(0.0);
     clip_from_view[0][0] = y / aspect;
     clip_from_view[1][1] = y;
-    clip_from_view[2][2] = (far + near) / (near - far);
-    clip_from_view[2][3] = -1.0;
-    clip_from_view[3][2] = 2.0 * far * near / (near - far);
+    if (camera.orthographic_height) {
+        clip_from_view[2][2] = 2.0 / (near - far);
+        clip_from_view[3][2] = (far + near) / (near - far);
+        clip_from_view[3][3] = 1.0;
+    } else {
+        clip_from_view[2][2] = (far + near) / (near - far);
+        clip_from_view[2][3] = -1.0;
+        clip_from_view[3][2] = 2.0 * far * near / (near - far);
+    }
     return clip_from_view * glm::inverse(glm::dmat4(camera.world_from_view));
 }
 

@@ -24,7 +24,7 @@ struct DrawValues {
     glm::mat3 world_from_object_normal{1.0F};   ///< Inverse transpose, times a positive number.
     glm::mat3 world_from_object_tangent{1.0F};  ///< The matrix itself, times a positive number.
     float handedness = 1.0F;                    ///< -1 if the matrix mirrors, else 1.
-    glm::vec3 eye_world{0.0F};
+    glm::vec4 eye_world{0.0F};                  ///< Homogeneous: see inputs.glsl#eye.
 
     glm::vec3 ambient_scattered{0.0F};  ///< For metallic-roughness, the ambient light itself.
     glm::vec3 diffuse_color{0.0F};

@@ -17,6 +17,7 @@
 #include "progress_stage.h"
 #include "relief/shade/scene_file.h"
 #include "render/draw_values.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 
@@ -218,8 +219,8 @@ Skybox::Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, O
       exposure_(scene.exposure) {}
 
 void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const {
-    const auto y =
-        static_cast<float>(portable::tan(static_cast<double>(camera.vertical_fov) * 0.5));
+    // All rays of an orthographic camera have the same direction.
+    const float y = camera.orthographic_height ? 0.0F : static_cast<float>(half_height(camera));
     const glm::mat3 world_from_view(camera.world_from_view);
     const glm::mat3 world_from_screen(world_from_view[0] * (y * aspect), world_from_view[1] * y,
                                       -world_from_view[2]);

@@ -411,11 +411,40 @@ std::vector<Material> materials_from(const GltfView& view, const SceneOptions& o
 
 // Nodes, meshes, lights, cameras and animations
 
+std::vector<std::string> variant_names(const GltfView& view) {
+    std::vector<std::string> names = view.material_variants;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i].empty()) names[i] = fmt::format("variant {}", i + 1);
+    }
+    return names;
+}
+
+/// Returns the index of the variant that the options select; none for the primitives' own
+/// materials. \throws InvalidInput if there is no such variant
+std::optional<std::size_t> variant_of(const GltfView& view, const SceneOptions& options) {
+    if (!options.material_variant) return std::nullopt;
+    const std::vector<std::string> names = variant_names(view);
+    const auto found = std::find(names.begin(), names.end(), *options.material_variant);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (*options.material_variant == fmt::format("{}", i + 1)) return i;
+    }
+    throw InvalidInput(
+        fmt::format("no material variant '{}' among: {}", *options.material_variant,
+                    names.empty() ? "none" : fmt::to_string(fmt::join(names, ", "))));
+}
+
 /// Returns a primitive with the texture coordinates at which its material looks up its images. Its
 /// tangents belong to the stored coordinates, so they are transformed together with them.
-Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
-               const std::vector<GltfMaterial>& materials) {
+Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id, const GltfView& view,
+               const SceneOptions& options) {
     Mesh mesh = document.mesh(id);
+    if (const auto variant = variant_of(view, options)) {
+        const auto material = document.variant_material(id, *variant);
+        if (material && !mesh.material_ranges.empty())
+            mesh.material_ranges.front().material = static_cast<std::uint32_t>(*material);
+    }
+    const std::vector<GltfMaterial>& materials = view.materials;
     if (mesh.material_ranges.empty() || !mesh.material_ranges.front().material) return mesh;
     const TexcoordSource source =
         texcoord_source(materials[*mesh.material_ranges.front().material]);
@@ -433,13 +462,12 @@ Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id,
 /// and ignores its tangents; the effect plan computes tangents where it needs them.
 ///
 /// \param options  replaces the normals unless they are kept; a crease angle smooths missing ones
-Mesh drawable_mesh(const GltfDocument& document, GltfPrimitiveId id,
-                   const std::vector<GltfMaterial>& materials, const SceneOptions& options,
-                   Report& report) {
+Mesh drawable_mesh(const GltfDocument& document, GltfPrimitiveId id, const GltfView& view,
+                   const SceneOptions& options, Report& report) {
     FrameOptions frames = frame_options("", options);
     frames.if_missing = options.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
     frames.tangents = TangentMethod::none;
-    Mesh mesh = mesh_from(document, id, materials);
+    Mesh mesh = mesh_from(document, id, view, options);
     if (options.normals == NormalMode::keep && !mesh.normals.empty()) return mesh;
     return with_frames(std::move(mesh), frames, report).mesh;
 }
@@ -498,7 +526,7 @@ std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const Gl
     if (deformation.targets.empty() && deformation.joints.empty()) return std::nullopt;
     FrameOptions frames = frame_options("", options);
     frames.if_missing = options.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
-    Mesh mesh = mesh_from(document, item.what, view.materials);
+    Mesh mesh = mesh_from(document, item.what, view, options);
     const bool keeps = options.normals == NormalMode::keep && !mesh.normals.empty();
     result.has_flat_normals =
         !keeps && (options.normals == NormalMode::flat ||
@@ -552,8 +580,7 @@ void add_instances(const GltfDocument& document, const GltfView& view, const Sce
             const auto key = std::pair(item.what.mesh, item.what.primitive);
             const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
             if (is_new) {
-                scene.meshes.push_back(
-                    drawable_mesh(document, item.what, view.materials, options, report));
+                scene.meshes.push_back(drawable_mesh(document, item.what, view, options, report));
             }
             scene.instances.push_back({entry->second, item.world_from_object, item.name});
         }
@@ -587,21 +614,31 @@ void add_lights(const GltfView& view, SceneGraph& graph) {
     }
 }
 
-/// Adds the first camera.
-void add_camera(const GltfView& view, SceneGraph& graph, Report& report) {
-    if (view.cameras.empty()) return;
-    const auto& item = view.cameras.front();
-    const glm::mat3 axes(item.world_from_object);
-    if (!(glm::length(glm::cross(axes[1], axes[2])) > 0.0F)) {
-        report.add("camera without a direction", "camera", 0, "left out");
-        return;
+/// Adds the cameras; the first one becomes the scene's.
+void add_cameras(const GltfView& view, SceneGraph& graph, Report& report) {
+    // The near plane of an orthographic camera may be at 0 in glTF.
+    constexpr float min_near_share = 1e-4F;
+    for (std::size_t i = 0; i < view.cameras.size(); ++i) {
+        const auto& item = view.cameras[i];
+        const GltfCamera& read = item.what;
+        const glm::mat3 axes(item.world_from_object);
+        if (!(glm::length(glm::cross(axes[1], axes[2])) > 0.0F)) {
+            report.add("camera without a direction", "camera", i, "left out");
+            continue;
+        }
+        FileCamera& result = graph.cameras.emplace_back();
+        result.name = read.name.empty() ? item.name : read.name;
+        result.carried = Carried{item.node};
+        result.sees_all = !read.far;
+        Camera& camera = result.camera;
+        camera.vertical_fov = read.vertical_fov;
+        camera.near = read.near;
+        camera.far = read.far.value_or(2.0F * camera.near);
+        camera.orthographic_height = read.orthographic_height;
+        if (camera.orthographic_height)
+            camera.near = std::max(camera.near, min_near_share * camera.far);
     }
-    Camera& camera = graph.scene.camera.emplace();
-    camera.vertical_fov = item.what.vertical_fov;
-    camera.near = item.what.near;
-    camera.far = item.what.far.value_or(2.0F * camera.near);
-    graph.camera_sees_all = !item.what.far;
-    graph.camera = Carried{item.node};
+    if (!graph.cameras.empty()) choose_camera(graph, 0);
 }
 
 void add_nodes(const GltfView& view, SceneGraph& graph, Report& report) {
@@ -661,11 +698,9 @@ SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path&
     add_nodes(view, graph, report);
     add_instances(document, view, options, graph, report);
     add_lights(view, graph);
-    add_camera(view, graph, report);
+    add_cameras(view, graph, report);
     add_animations(document, graph, report);
-    for (std::size_t i = 0; i < view.material_variants.size(); ++i)
-        report.add("material variant", "variant", i,
-                   "not selectable: drawn with its own materials");
+    graph.material_variants = variant_names(view);
     return graph;
 }
 
@@ -680,7 +715,7 @@ std::vector<Scene> mesh_scenes(const GltfDocument& document, std::span<const std
         if (place == meshes.end()) continue;
         Scene& scene = scenes[static_cast<std::size_t>(place - meshes.begin())];
         scene.instances.push_back({scene.meshes.size(), glm::mat4(1.0F), ""});
-        scene.meshes.push_back(drawable_mesh(document, id, view.materials, {}, report));
+        scene.meshes.push_back(drawable_mesh(document, id, view, {}, report));
     }
     return scenes;
 }

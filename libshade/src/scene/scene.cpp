@@ -202,7 +202,32 @@ Camera framed(const Bounds& world, float azimuth, float elevation, float vertica
     return camera;
 }
 
+double half_height(const Camera& camera) {
+    return camera.orthographic_height
+               ? 0.5 * static_cast<double>(*camera.orthographic_height)
+               : portable::tan(static_cast<double>(camera.vertical_fov) * 0.5);
+}
+
+Camera orthographic(const Scene& scene, Camera camera, float aspect) {
+    const glm::mat4 view_from_world = glm::inverse(camera.world_from_view);
+    float half = 0.0F;
+    for (const Instance& instance : scene.instances) {
+        const glm::mat4 view_from_object = view_from_world * instance.world_from_object;
+        for (const glm::vec3& position : scene.meshes[instance.mesh]->positions) {
+            const glm::vec3 point(view_from_object * glm::vec4(position, 1.0F));
+            const float reach = std::max(std::abs(point.x) / aspect, std::abs(point.y));
+            if (std::isfinite(reach)) half = std::max(half, reach);
+        }
+    }
+    camera.orthographic_height = half > 0.0F ? 2.0F * vertex_margin * half : 1.0F;
+    return camera;
+}
+
 Camera at_distance(Camera camera, const glm::vec3& target, float factor) {
+    if (camera.orthographic_height) {
+        *camera.orthographic_height *= factor;
+        return camera;
+    }
     // A smaller ratio of near to far would cost depth precision.
     constexpr float min_near_share = 1e-4F;
     const glm::vec3 eye(camera.world_from_view[3]);

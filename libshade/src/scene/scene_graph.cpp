@@ -432,6 +432,25 @@ void pose_camera(SceneGraph& graph, const NodeMatrices& nodes) {
 
 }  // namespace
 
+void choose_camera(SceneGraph& graph, std::size_t index) {
+    if (index >= graph.cameras.size()) {
+        throw InvalidInput(fmt::format("no camera {}: there are {}", index, graph.cameras.size()));
+    }
+    const FileCamera& chosen = graph.cameras[index];
+    graph.scene.camera = chosen.camera;
+    graph.camera = chosen.carried;
+    graph.camera_sees_all = chosen.sees_all;
+}
+
+std::vector<std::string> camera_names(const SceneGraph& graph) {
+    std::vector<std::string> names;
+    for (const FileCamera& camera : graph.cameras) {
+        names.push_back(camera.name.empty() ? fmt::format("camera {}", names.size() + 1)
+                                            : camera.name);
+    }
+    return names;
+}
+
 void pose(SceneGraph& graph, double seconds) {
     if (!std::isfinite(seconds))
         throw InvalidInput(fmt::format("the time is {}, but must be finite", seconds));

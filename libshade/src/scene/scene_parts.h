@@ -36,6 +36,10 @@ inline bool is_finite(const glm::mat4& matrix) {
 /// \param owner  begins the message: "camera: "
 void check_field_of_view(const std::string& owner, float vertical_fov);
 
+/// Returns half of the height of the picture: in world units if the camera is orthographic, else on
+/// the plane at distance 1.
+double half_height(const Camera& camera);
+
 // Scene graphs
 
 /// Returns the axes of a viewer who looks at a point from a direction on the sphere. Defined at the

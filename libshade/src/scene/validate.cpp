@@ -191,6 +191,12 @@ void validate(const Camera& camera) {
                         "far and finite",
                         camera.near, camera.far));
     }
+    if (!camera.orthographic_height) return;
+    const float height = *camera.orthographic_height;
+    if (!(height > 0.0F && std::isfinite(height))) {
+        throw InvalidInput(fmt::format(
+            "camera: orthographic_height is {}, but must be positive and finite", height));
+    }
 }
 
 void validate_transforms(const Scene& scene) {

@@ -36,9 +36,16 @@ Placed wall() {
     return placed(test::grid(4), {-0.5, -0.5, -1.0});
 }
 
+Camera depth_range(float near, float far) {
+    Camera camera;
+    camera.near = near;
+    camera.far = far;
+    return camera;
+}
+
 TEST(Visibility, MeetsSharedEdgesAndVerticesOnceInside) {
     const Placed mesh = wall();
-    const Visibility visibility({mesh.view()}, 0.1, 10.0);
+    const Visibility visibility({mesh.view()}, depth_range(0.1F, 10.0F));
     for (int y = -30; y <= 30; ++y) {
         for (int x = -30; x <= 30; ++x) {
             const auto hits = visibility.hits(x / 64.0, y / 64.0);
@@ -55,7 +62,7 @@ TEST(Visibility, KnowsWhereATriangleIsMet) {
     Placed mesh;
     mesh.positions = {{-1, -1, -2}, {3, -1, -4}, {-1, 3, -2}};
     mesh.triangles = {{0, 1, 2}};
-    const Visibility visibility({mesh.view()}, 0.1, 10.0);
+    const Visibility visibility({mesh.view()}, depth_range(0.1F, 10.0F));
     // The point (0.5, 0, -2.75) has the weights 3/8, 3/8, 1/4.
     const auto hits = visibility.hits(0.5 / 2.75, 0.0);
     ASSERT_EQ(hits.size(), 1U);
@@ -70,7 +77,7 @@ TEST(Visibility, FindsEveryHitNearestFirst) {
     const Placed back = placed(test::grid(1), {-0.5, -0.5, -3.0});
     const Placed front = placed(test::grid(1), {-0.5, -0.5, -2.0});
     const Placed ball = placed(test::sphere(24, 12), {0.0, 0.0, -5.0});
-    const Visibility visibility({back.view(), front.view(), ball.view()}, 0.1, 10.0);
+    const Visibility visibility({back.view(), front.view(), ball.view()}, depth_range(0.1F, 10.0F));
     const auto hits = visibility.hits(0.01, 0.02);
     ASSERT_EQ(hits.size(), 4U);
     EXPECT_EQ(hits[0].instance, 1U);
@@ -81,19 +88,37 @@ TEST(Visibility, FindsEveryHitNearestFirst) {
     EXPECT_FALSE(hits[3].counter_clockwise) << "the far side, from within";
 }
 
+TEST(Visibility, OrthographicRaysAreParallel) {
+    Placed mesh;
+    mesh.positions = {{-1, -1, -2}, {3, -1, -4}, {-1, 3, -2}};
+    mesh.triangles = {{0, 1, 2}};
+    Camera camera = depth_range(0.1F, 10.0F);
+    camera.orthographic_height = 8.0F;
+    const Visibility visibility({mesh.view()}, camera);
+    for (const double x : {-0.9, 0.5, 1.9}) {
+        const auto hits = visibility.hits(x, 0.0);
+        ASSERT_EQ(hits.size(), 1U) << x;
+        // The plane's depth grows by 2 over the 4 units of x.
+        EXPECT_NEAR(hits[0].depth, 2.0 + 0.5 * (x + 1.0), 1e-14);
+    }
+    EXPECT_TRUE(visibility.hits(2.1, 0.0).empty());
+}
+
 TEST(Visibility, EndsAtTheCamerasNearAndFar) {
     const Placed mesh = wall();  // The wall is at depth 1.
-    EXPECT_EQ(Visibility({mesh.view()}, 1.0, 10.0).hits(0.01, 0.02).size(), 1U);
-    EXPECT_EQ(Visibility({mesh.view()}, 1.0000001, 10.0).hits(0.01, 0.02).size(), 0U);
-    EXPECT_EQ(Visibility({mesh.view()}, 0.1, 1.0).hits(0.01, 0.02).size(), 1U);
-    EXPECT_EQ(Visibility({mesh.view()}, 0.1, 0.9999999).hits(0.01, 0.02).size(), 0U);
+    EXPECT_EQ(Visibility({mesh.view()}, depth_range(1.0F, 10.0F)).hits(0.01, 0.02).size(), 1U);
+    EXPECT_EQ(Visibility({mesh.view()}, depth_range(1.0000001F, 10.0F)).hits(0.01, 0.02).size(),
+              0U);
+    EXPECT_EQ(Visibility({mesh.view()}, depth_range(0.1F, 1.0F)).hits(0.01, 0.02).size(), 1U);
+    EXPECT_EQ(Visibility({mesh.view()}, depth_range(0.1F, 0.9999999F)).hits(0.01, 0.02).size(), 0U);
 }
 
 TEST(Visibility, DoesNotDependOnScale) {
     for (const double scale : {1e-30, 1e-12, 1e12, 1e30}) {
         SCOPED_TRACE(scale);
         const Placed ball = placed(test::sphere(24, 12), {0.0, 0.0, -5.0}, scale);
-        const Visibility visibility({ball.view()}, 0.1 * scale, 10.0 * scale);
+        const Visibility visibility({ball.view()}, depth_range(static_cast<float>(0.1 * scale),
+                                                               static_cast<float>(10.0 * scale)));
         const auto hits = visibility.hits(0.03, -0.05);
         ASSERT_EQ(hits.size(), 2U);
         // The ray hits the exact sphere at 4.0279. Its facets lie up to a hundredth inside.
@@ -104,7 +129,7 @@ TEST(Visibility, DoesNotDependOnScale) {
 TEST(Visibility, HasNoHolesInAFineMesh) {
     // With 131,072 triangles, edges are everywhere, and Embree's floats differ from exact values.
     const Placed ball = placed(test::sphere(256, 256), {0.0, 0.0, -3.0});
-    const Visibility visibility({ball.view()}, 0.1, 10.0);
+    const Visibility visibility({ball.view()}, depth_range(0.1F, 10.0F));
     std::size_t odd = 0;
     for (int y = 0; y < 200; ++y) {
         for (int x = 0; x < 200; ++x) {
@@ -121,8 +146,9 @@ TEST(Visibility, MeetsNothingWithoutAreaOrPlace) {
     mesh.positions.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0, -2);
     mesh.positions.emplace_back(std::numeric_limits<double>::infinity(), 0, -2);
     mesh.triangles = {{0, 1, 2}, {0, 0, 0}, {0, 1, 4}, {0, 1, 5}};
-    EXPECT_TRUE(Visibility({mesh.view()}, 0.1, 10.0).hits(0.01, 0.01).empty());
-    EXPECT_TRUE(Visibility({}, 0.1, 10.0).hits(0.0, 0.0).empty());
+    const Camera camera = depth_range(0.1F, 10.0F);
+    EXPECT_TRUE(Visibility({mesh.view()}, camera).hits(0.01, 0.01).empty());
+    EXPECT_TRUE(Visibility({}, camera).hits(0.0, 0.0).empty());
 }
 
 }  // namespace

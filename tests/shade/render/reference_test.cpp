@@ -546,6 +546,28 @@ TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {
     expect_agreement(scene, blurred_tolerance);
 }
 
+/// Makes the camera of a scene orthographic, with the size at the origin.
+Scene seen_in_parallel(Scene scene) {
+    Camera& camera = *scene.camera;
+    const float distance = glm::length(glm::vec3(camera.world_from_view[3]));
+    camera.orthographic_height = 2.0F * distance * std::tan(0.5F * camera.vertical_fov);
+    return scene;
+}
+
+TEST_F(AgainstReference, AgreesForOrthographicCameras) {
+    // Highlights, mirror images and the skybox depend on the direction to the camera.
+    for (const std::optional<float> metallic :
+         {std::optional<float>(), std::optional(0.0F), std::optional(1.0F)}) {
+        Scene scene = glossy_sphere(0.3F, metallic);
+        scene.environment->skybox = true;
+        expect_agreement(seen_in_parallel(scene), blurred_tolerance);
+    }
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        expect_agreement(seen_in_parallel(test::random_scene(seed)));
+    }
+}
+
 constexpr std::uint64_t few_scenes = 10;
 
 TEST_F(AgainstReference, AgreesInRandomScenes) {

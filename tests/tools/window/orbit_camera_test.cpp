@@ -97,6 +97,29 @@ TEST(OrbitCamera, FittingShowsTheWholeSphere) {
     }
 }
 
+TEST(OrbitCamera, ParallelProjectionKeepsTheSizeAtTheTarget) {
+    OrbitCamera orbit;
+    orbit.target = {1.0F, 2.0F, 3.0F};
+    orbit.azimuth = 0.4F;
+    orbit.distance = 0.2F;  // Within the sphere.
+    orbit.vertical_fov = glm::radians(60.0F);
+    orbit.orthographic = true;
+    const Camera camera = camera_of(orbit, unit_sphere);
+    EXPECT_NEAR(camera.orthographic_height.value(), 0.4F * std::tan(glm::radians(30.0F)), 1e-6F);
+    const glm::vec3 back(camera.world_from_view[2]);
+    EXPECT_GT(glm::dot(glm::vec3(camera.world_from_view[3]), back), 1.0F)
+        << "the whole sphere is in front of the camera";
+    const Ray ray = ray_through(camera, {0.0F, 1.0F});
+    EXPECT_NEAR(glm::dot(ray.direction, -back), 1.0F, 1e-6F);
+    EXPECT_NEAR(glm::dot(ray.origin - orbit.target, glm::vec3(camera.world_from_view[1])),
+                0.5F * *camera.orthographic_height, 1e-6F);
+    const Camera again = camera_of(orbit_of(camera, unit_sphere), unit_sphere);
+    EXPECT_NEAR(*again.orthographic_height, *camera.orthographic_height, 1e-6F);
+    EXPECT_NEAR(glm::distance(again.world_from_view[2], camera.world_from_view[2]), 0.0F, 1e-6F);
+    fit(orbit, unit_sphere, 2.0F);
+    EXPECT_NEAR(camera_of(orbit, unit_sphere).orthographic_height.value(), 2.08F, 1e-5F);
+}
+
 TEST(OrbitCamera, TakesOverAnotherCamera) {
     OrbitCamera orbit;
     orbit.target = {0.2F, -0.1F, 0.3F};
@@ -155,7 +178,7 @@ TEST(OrbitCamera, IsReadBackFromItsTextBitForBit) {
         const CameraOption read = parse_camera("", to_text(orbit));
         ASSERT_TRUE(read.place);
         const float fov = parse_fov("", degrees_text(orbit.vertical_fov));
-        const Camera again = camera_of(orbit_of(read, *read.place, fov), unit_sphere);
+        const Camera again = camera_of(orbit_of(read, *read.place, fov, false), unit_sphere);
         const Camera camera = camera_of(orbit, unit_sphere);
         ASSERT_EQ(again.world_from_view, camera.world_from_view) << to_text(orbit);
         ASSERT_EQ(again.vertical_fov, camera.vertical_fov);

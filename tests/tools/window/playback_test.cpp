@@ -234,5 +234,26 @@ TEST_F(PlayingState, TheCameraFollowsUntilItIsMoved) {
     EXPECT_EQ(state_.camera().azimuth, azimuth);
 }
 
+TEST(PlaybackTest, FollowsTheChosenCamera) {
+    SceneGraph graph = moving_scene();
+    graph.cameras.push_back({"fixed", Camera{}, {}, false});
+    graph.cameras.push_back({"", Camera{}, {0}, false});
+    choose_camera(graph, 0);
+    Playback playback;
+    playback.take(graph, false);
+    EXPECT_THAT(playback.cameras(), ElementsAre("fixed", "camera 2"));
+    EXPECT_FALSE(playback.camera()) << "it does not move";
+    playback.choose_camera(1, 0.0);
+    ASSERT_TRUE(playback.camera());
+    playback.set_time(1.0);
+    Scene scene = graph.scene;
+    EXPECT_NEAR(x_of(playback, scene), 2.0F, rounding);
+    EXPECT_NEAR(playback.shown_camera().world_from_view[3].x, 2.0F, rounding);
+    playback.take(graph, true);
+    EXPECT_EQ(playback.chosen_camera(), 1U) << "the file was read again";
+    playback.take(graph, false);
+    EXPECT_EQ(playback.chosen_camera(), 0U);
+}
+
 }  // namespace
 }  // namespace relief::tools

@@ -122,7 +122,7 @@ class DrawThread::Drawer {
         pose_ = request.pose;
         drawn.error = failure_;
         if (!renderer_) return;
-        if (!failure_.empty() && is_same_view(drawn.camera, request.camera)) return;
+        if (!failure_.empty() && drawn.camera == request.camera) return;
         draw_prepared(request, drawn);
     }
 
@@ -139,10 +139,6 @@ class DrawThread::Drawer {
 
     static std::uint64_t revision_of(const std::optional<BesideRequest>& beside) {
         return beside ? beside->revision : 0;
-    }
-
-    static bool is_same_view(const Camera& a, const Camera& b) {
-        return a.world_from_view == b.world_from_view && a.vertical_fov == b.vertical_fov;
     }
 
     void show(const Image& picture, const DrawRequest& request, RenderedPicture& drawn) {

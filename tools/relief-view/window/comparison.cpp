@@ -41,12 +41,8 @@ ComparisonResult numbers_of(const ComparisonKey& key, const Image& left, const I
 }  // namespace
 
 ComparisonKey key_of(const DrawRequest& request) {
-    return {request.revision,
-            request.beside ? request.beside->revision : 0,
-            request.camera.world_from_view,
-            request.camera.vertical_fov,
-            request.settings.width,
-            request.settings.height};
+    return {request.revision, request.beside ? request.beside->revision : 0, request.camera,
+            request.settings.width, request.settings.height};
 }
 
 std::optional<DrawTask> ComparisonJob::begin(const DrawRequest& request) {

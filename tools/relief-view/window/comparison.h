@@ -23,8 +23,7 @@ namespace relief::tools {
 struct ComparisonKey {
     std::uint64_t revision = 0;
     std::uint64_t beside = 0;
-    glm::mat4 world_from_view{0.0F};
-    float vertical_fov = 0.0F;
+    Camera camera;
     int width = 0;
     int height = 0;
     friend bool operator==(const ComparisonKey&, const ComparisonKey&) = default;

@@ -53,8 +53,15 @@ BoundingSphere bounding_sphere(const Bounds& bounds) {
 
 Camera camera_of(const OrbitCamera& orbit, const BoundingSphere& sphere) {
     const glm::mat3 axes = axes_of(orbit);
-    const glm::vec3 eye = orbit.target + orbit.distance * axes[2];
+    float distance = orbit.distance;
+    if (orbit.orthographic) {
+        // The model stays in front of the near plane when the picture is enlarged.
+        const float depth = glm::dot(sphere.center - orbit.target, axes[2]);
+        distance = std::max(distance, depth + 1.5F * margin * sphere.radius);
+    }
+    const glm::vec3 eye = orbit.target + distance * axes[2];
     Camera camera;
+    if (orbit.orthographic) camera.orthographic_height = visible_height(orbit);
     camera.world_from_view = glm::mat4(axes);
     camera.world_from_view[3] = glm::vec4(eye, 1.0F);
     camera.vertical_fov = orbit.vertical_fov;
@@ -69,8 +76,10 @@ Camera with_depth_range(Camera camera, const BoundingSphere& sphere) {
     return camera;
 }
 
-OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov) {
-    return {place.target, option.azimuth, option.elevation, place.distance, vertical_fov};
+OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov,
+                     bool orthographic) {
+    return {place.target,   option.azimuth, option.elevation,
+            place.distance, vertical_fov,   orthographic};
 }
 
 OrbitCamera orbit_of(const Camera& camera, const BoundingSphere& sphere) {
@@ -86,6 +95,10 @@ OrbitCamera orbit_of(const Camera& camera, const BoundingSphere& sphere) {
     const float depth = glm::dot(eye - sphere.center, back);
     orbit.distance = depth > min_distance * sphere.radius ? depth : sphere.radius;
     orbit.target = eye - orbit.distance * back;
+    if (camera.orthographic_height) {
+        orbit.orthographic = true;
+        orbit.distance = *camera.orthographic_height / (2.0F * std::tan(0.5F * orbit.vertical_fov));
+    }
     return orbit;
 }
 
@@ -114,8 +127,10 @@ void zoom_by(OrbitCamera& orbit, float steps, const glm::vec2& pointer,
 void fit(OrbitCamera& orbit, const BoundingSphere& sphere, float aspect) {
     const float half_height = 0.5F * orbit.vertical_fov;
     const float half_width = std::atan(std::tan(half_height) * aspect);
+    const float half = std::min(half_height, half_width);
     orbit.target = sphere.center;
-    orbit.distance = margin * sphere.radius / std::sin(std::min(half_height, half_width));
+    orbit.distance =
+        margin * sphere.radius / (orbit.orthographic ? std::tan(half) : std::sin(half));
 }
 
 std::string degrees_text(float radians) {
@@ -172,6 +187,11 @@ double nearest_in(const Mesh& mesh, const dvec3& origin, const dvec3& direction)
 }  // namespace
 
 Ray ray_through(const Camera& camera, const glm::vec2& pointer) {
+    if (camera.orthographic_height) {
+        const glm::vec2 place = 0.5F * *camera.orthographic_height * pointer;
+        return {glm::vec3(camera.world_from_view * glm::vec4(place, 0.0F, 1.0F)),
+                -glm::vec3(camera.world_from_view[2])};
+    }
     const float half_height = std::tan(0.5F * camera.vertical_fov);
     const glm::vec3 view(half_height * pointer.x, half_height * pointer.y, -1.0F);
     return {glm::vec3(camera.world_from_view[3]), glm::mat3(camera.world_from_view) * view};
@@ -194,9 +214,9 @@ void aim_at(OrbitCamera& orbit, const glm::vec3& point) {
     const Camera camera = camera_of(orbit, BoundingSphere{});
     const glm::vec3 back(camera.world_from_view[2]);
     const float depth = glm::dot(glm::vec3(camera.world_from_view[3]) - point, back);
-    if (!(depth > 0.0F)) return;
+    if (!(depth > 0.0F) && !orbit.orthographic) return;
     orbit.target = point;
-    orbit.distance = depth;
+    if (!orbit.orthographic) orbit.distance = depth;
 }
 
 namespace {
@@ -230,6 +250,7 @@ ViewText parse_view_text(const std::string& text) {
     view.camera = parse_camera("pasted " + *camera, *camera);
     if (const auto fov = value_of(words, "--fov"))
         view.vertical_fov = parse_fov("pasted --fov " + *fov, *fov);
+    view.orthographic = std::find(words.begin(), words.end(), "--orthographic") != words.end();
     return view;
 }
 

@@ -21,6 +21,8 @@ struct OrbitCamera {
     float elevation = 0.0F;  ///< Above the horizon, -90 to 90 degrees.
     float distance = 1.0F;   ///< From the target; positive.
     float vertical_fov = 0.610865238F;
+    /// Parallel projection. The size at the target is that of a perspective camera.
+    bool orthographic = false;
 
     friend bool operator==(const OrbitCamera&, const OrbitCamera&) = default;
 };
@@ -44,7 +46,8 @@ Camera camera_of(const OrbitCamera& orbit, const BoundingSphere& sphere);
 Camera with_depth_range(Camera camera, const BoundingSphere& sphere);
 
 /// The camera of --camera AZIMUTH,ELEVATION@X,Y,Z,DISTANCE.
-OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov);
+OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov,
+                     bool orthographic);
 
 /// The orbit of another camera, around the point of its axis that is nearest to the center of the
 /// sphere.
@@ -95,6 +98,7 @@ void aim_at(OrbitCamera& orbit, const glm::vec3& point);
 struct ViewText {
     CameraOption camera;
     std::optional<float> vertical_fov;
+    bool orthographic = false;
 };
 
 /// \param text  "--camera 30,20@0,0,0,3 --fov 35", which may contain other options, or only the

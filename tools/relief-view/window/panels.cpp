@@ -483,6 +483,20 @@ void draw_findings(const PanelInput& input) {
     draw(input.drawn.findings);
 }
 
+/// Draws the choice of a material variant, if the file has any.
+void choose_variant(const ViewerState& state, PanelRequests& requests) {
+    std::vector<std::string> names = state.playback().material_variants();
+    if (names.empty()) return;
+    names.insert(names.begin(), "none");
+    std::size_t index = 0;
+    const std::optional<std::string>& chosen = state.options().material_variant;
+    for (std::size_t i = 1; chosen && i < names.size(); ++i) {
+        if (names[i] == *chosen || *chosen == fmt::format("{}", i)) index = i;
+    }
+    if (choose_index("Material variant", index, names))
+        requests.material_variant = index == 0 ? "" : names[index];
+}
+
 }  // namespace
 
 void draw_scene_panel(const PanelInput& input, PanelRequests& requests) {
@@ -503,9 +517,15 @@ void draw_scene_panel(const PanelInput& input, PanelRequests& requests) {
     ImGui::TextWrapped("%s", state.options().model.filename().c_str());
     draw_tree(state);
     draw_findings(input);
+    choose_variant(state, requests);
+    if (const std::vector<std::string> cameras = state.playback().cameras(); cameras.size() > 1) {
+        std::size_t index = state.playback().chosen_camera();
+        if (choose_index("Camera", index, cameras)) state.choose_camera(index);
+    }
     OrbitCamera& camera = state.camera();
     slide_angle("Field of view", camera.vertical_fov,
                 {min_fov_degrees, max_fov_degrees, "%.1f deg"});
+    check("Orthographic", camera.orthographic);
 }
 
 namespace {

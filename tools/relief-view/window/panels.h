@@ -168,8 +168,9 @@ struct PanelInput {
 
 /// The panels' requests to the window.
 struct PanelRequests {
-    std::vector<Action> actions;                ///< Of buttons and menus.
-    std::optional<std::filesystem::path> open;  ///< A file that was selected.
+    std::vector<Action> actions;                  ///< Of buttons and menus.
+    std::optional<std::filesystem::path> open;    ///< A file that was selected.
+    std::optional<std::string> material_variant;  ///< Empty: the materials without a variant.
     bool cancel_loading = false;
     bool save_picture = false;
     bool save_turn = false;

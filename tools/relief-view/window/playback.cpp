@@ -42,6 +42,11 @@ void Playback::take(const SceneGraph& graph, bool is_same) {
     const std::size_t clip_count = clips_.size();
     graph_ = graph;
     clips_ = clip_names(graph_);
+    if (is_same && chosen_camera_ < graph_.cameras.size()) {
+        relief::choose_camera(graph_, chosen_camera_);
+    } else {
+        chosen_camera_ = 0;
+    }
     if (is_same && clips_.size() == clip_count) {
         graph_.clip = clip;
     } else if (!is_same) {
@@ -50,6 +55,13 @@ void Playback::take(const SceneGraph& graph, bool is_same) {
         is_playing_ = true;
     }
     measure();
+}
+
+void Playback::choose_camera(std::size_t index, double seconds) {
+    chosen_camera_ = index;
+    relief::choose_camera(graph_, index);
+    measure();
+    relief::pose(graph_, duration_ == 0.0 ? seconds : time_);
 }
 
 void Playback::set_clip(std::optional<std::size_t> clip) {

@@ -64,6 +64,19 @@ class Playback {
     /// The camera of the last pose, if the animation moves it.
     [[nodiscard]] std::optional<Camera> camera() const;
 
+    /// The names of the cameras of the file, and the one whose motion camera() tells.
+    [[nodiscard]] std::vector<std::string> cameras() const { return camera_names(graph_); }
+    [[nodiscard]] std::size_t chosen_camera() const { return chosen_camera_; }
+    /// \param seconds  the time of the pose at which shown_camera() stands, if nothing moves
+    void choose_camera(std::size_t index, double seconds);
+    /// The camera of the last pose. Requires cameras().
+    [[nodiscard]] const Camera& shown_camera() const { return *graph_.scene.camera; }
+
+    /// The names of the material variants of the file.
+    [[nodiscard]] const std::vector<std::string>& material_variants() const {
+        return graph_.material_variants;
+    }
+
     /// The box of everything at several times of the animation.
     [[nodiscard]] const Bounds& reach() const { return reach_; }
 
@@ -85,6 +98,7 @@ class Playback {
     float speed_ = 1.0F;
     bool is_playing_ = true;
     bool moves_camera_ = false;
+    std::size_t chosen_camera_ = 0;
     Bounds reach_;
 };
 

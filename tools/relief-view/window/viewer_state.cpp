@@ -36,6 +36,7 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::bottom, "Ctrl+7", "View from below"},
         {Action::narrow_fov, "[", "Decrease the field of view"},
         {Action::widen_fov, "]", "Increase the field of view"},
+        {Action::orthographic, "5", "Switch between perspective and orthographic camera"},
         {Action::brighter, "Ctrl+Up", "Increase the exposure by half a stop"},
         {Action::darker, "Ctrl+Down", "Decrease the exposure by half a stop"},
         {Action::turntable, "Space", "Start or stop the turntable"},
@@ -429,8 +430,9 @@ void ViewerState::take(Loaded loaded) {
     mark_health();
     if (is_new) {
         const std::optional<CameraOption>& view = options_.camera;
-        camera_ = view && view->place ? orbit_of(*view, *view->place, camera.vertical_fov)
-                                      : orbit_of(camera, sphere_);
+        camera_ = view && view->place
+                      ? orbit_of(*view, *view->place, camera.vertical_fov, options_.orthographic)
+                      : orbit_of(camera, sphere_);
         followed_.reset();
         if (loaded.composed->camera_follows_scene && playback_.camera()) followed_ = camera_;
     }
@@ -648,7 +650,7 @@ void ViewerState::apply_view_text(const std::string& text) {
         // Without a target, only the direction changes.
         const CameraPlace place =
             view.camera.place.value_or(CameraPlace{camera_.target, camera_.distance});
-        camera_ = orbit_of(view.camera, place, fov);
+        camera_ = orbit_of(view.camera, place, fov, view.orthographic);
     } catch (const UsageError& error) {
         error_ = error.what();
     }
@@ -657,6 +659,14 @@ void ViewerState::apply_view_text(const std::string& text) {
 void ViewerState::set_effects(EffectRequest effects) {
     effects_ = std::move(effects);
     ++revision_;
+}
+
+void ViewerState::choose_camera(std::size_t index) {
+    playback_.choose_camera(index, options_.time.value_or(0.0));
+    if (scene_) move_to(playback_.time());
+    camera_ = orbit_of(playback_.shown_camera(), sphere_);
+    followed_.reset();
+    if (playback_.camera()) followed_ = camera_;
 }
 
 void ViewerState::mark_health() {
@@ -731,6 +741,9 @@ void ViewerState::act(Action action) {
             return;
         case Action::widen_fov:
             camera_.vertical_fov = changed_fov(camera_.vertical_fov, fov_step);
+            return;
+        case Action::orthographic:
+            camera_.orthographic = !camera_.orthographic;
             return;
         case Action::brighter:
         case Action::darker:
@@ -815,8 +828,9 @@ std::optional<DrawRequest> ViewerState::request() const {
 }
 
 std::string ViewerState::command_line() const {
-    return fmt::format("--camera {} --fov {} --size {}x{}", to_text(camera_),
-                       degrees_text(camera_.vertical_fov), view_.x, view_.y) +
+    return fmt::format("--camera {} --fov {}{} --size {}x{}", to_text(camera_),
+                       degrees_text(camera_.vertical_fov),
+                       camera_.orthographic ? " --orthographic" : "", view_.x, view_.y) +
            command_line_of(options_.debug);
 }
 
@@ -830,7 +844,8 @@ nlohmann::ordered_json ViewerState::json(const RenderedPicture& drawn) const {
                                       {"elevation", glm::degrees(camera_.elevation)},
                                       {"distance", camera_.distance},
                                       {"target", numbers(camera_.target)},
-                                      {"fov", glm::degrees(camera_.vertical_fov)}}},
+                                      {"fov", glm::degrees(camera_.vertical_fov)},
+                                      {"orthographic", camera_.orthographic}}},
                                     {"show", debug_view_info(options_.debug.view).name},
                                     {"overlays", overlays_json(options_.debug, markers_)},
                                     {"light_markers", has_light_markers_},

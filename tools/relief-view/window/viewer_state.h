@@ -38,6 +38,7 @@ enum class Action {
     bottom,
     narrow_fov,
     widen_fov,
+    orthographic,
     brighter,
     darker,
     turntable,
@@ -232,6 +233,10 @@ class ViewerState {
 
     void set_effects(EffectRequest effects);
     [[nodiscard]] const EffectRequest& effects() const { return effects_; }
+
+    /// Shows the picture of a camera of the file, and follows it if the animation moves it.
+    /// \param index  into playback().cameras()
+    void choose_camera(std::size_t index);
 
     /// Sets the debug view and the overlays.
     void set_debug(const DebugChoices& choices);

@@ -711,6 +711,7 @@ class WindowLoop {
         if (const auto view = std::exchange(requested_view_size_, std::nullopt))
             system_.grow(*view - state_.view());
         measure(drawn, events.panels);
+        use_variant(events.panels.material_variant);
         handle_accuracy_requests(events.panels);
         if (events.panels.save_picture) save(0);
         if (events.panels.save_scene) saving_.save_scene(state_);
@@ -779,10 +780,8 @@ class WindowLoop {
 
     /// Returns whether two requests show the same picture, in any resolution.
     static bool is_same(const DrawRequest& a, const DrawRequest& b) {
-        return a.revision == b.revision && a.pose == b.pose &&
-               a.camera.world_from_view == b.camera.world_from_view &&
-               a.camera.vertical_fov == b.camera.vertical_fov && a.instead == b.instead &&
-               a.beside.has_value() == b.beside.has_value() &&
+        return a.revision == b.revision && a.pose == b.pose && a.camera == b.camera &&
+               a.instead == b.instead && a.beside.has_value() == b.beside.has_value() &&
                (!a.beside || a.beside->revision == b.beside->revision) &&
                a.settings.width == b.settings.width && a.settings.height == b.settings.height;
     }
@@ -812,6 +811,15 @@ class WindowLoop {
             refused.error = error.what();
             state_.take(std::move(refused));
         }
+    }
+
+    /// Reads the model with the materials of a variant.
+    void use_variant(const std::optional<std::string>& variant) {
+        if (!variant) return;
+        read_with([&](ViewOptions options) {
+            options.material_variant = variant->empty() ? std::nullopt : variant;
+            return options;
+        });
     }
 
     /// Starts measurements, and applies the chosen method. A kernel is an option of the height map,

@@ -144,12 +144,14 @@ struct GltfLight {
     float outer_cone = 0.785398163F;
 };
 
-/// A perspective camera; it looks along its node's -z.
+/// A camera; it looks along its node's -z.
 struct GltfCamera {
     std::string name;
     float vertical_fov = 0.8F;  ///< Radians.
     float near = 0.1F;
     std::optional<float> far;  ///< Infinite if absent.
+    /// The height of the picture in units of length, if the camera is orthographic.
+    std::optional<float> orthographic_height{};
 };
 
 /// A node at rest: its transform relative to its parent.
@@ -233,7 +235,7 @@ struct GltfInstance {
 };
 
 /// The data of a document that a renderer needs. Animations and skins are at rest; instances of
-/// EXT_mesh_gpu_instancing are separate items; orthographic cameras are left out.
+/// EXT_mesh_gpu_instancing are separate items.
 struct GltfView {
     std::vector<GltfNode> nodes;  ///< All nodes of the document, in its order.
     std::vector<GltfInstance<GltfPrimitiveId>> primitives;  ///< Triangles only.
@@ -354,6 +356,13 @@ class GltfDocument {
     /// Returns the morph targets and the joints of a primitive.
     /// \throws InvalidInput if an attribute has the wrong type, or as mesh()
     [[nodiscard]] GltfDeformation deformation(GltfPrimitiveId id) const;
+
+    /// Returns the material that a variant of KHR_materials_variants gives to a primitive.
+    /// \param variant  index into GltfView::material_variants
+    /// \return none if the variant does not change the material of this primitive
+    /// \throws InvalidInput if there is no such primitive
+    [[nodiscard]] std::optional<std::size_t> variant_material(GltfPrimitiveId id,
+                                                              std::size_t variant) const;
 
     /// Returns how the vertices of mesh(id) move with joints and morph targets. Attributes of other
     /// types than glTF allows count as absent.

@@ -436,13 +436,18 @@ class SceneWalk {
         }
         if (const auto index = index_in(node, "camera")) {
             const Json& json = contents_.root["cameras"][*index];
-            const Json* perspective = find(json, "perspective");
-            if (perspective == nullptr) return;
             GltfCamera camera;
             camera.name = text_in(json, "name");
-            camera.vertical_fov = float_in(*perspective, "yfov", camera.vertical_fov);
-            camera.near = float_in(*perspective, "znear", camera.near);
-            if (perspective->contains("zfar")) camera.far = float_in(*perspective, "zfar", 0.0F);
+            const Json* lens = find(json, "perspective");
+            if (lens != nullptr) {
+                camera.vertical_fov = float_in(*lens, "yfov", camera.vertical_fov);
+            } else {
+                lens = find(json, "orthographic");
+                if (lens == nullptr) return;
+                camera.orthographic_height = 2.0F * float_in(*lens, "ymag", 1.0F);
+            }
+            camera.near = float_in(*lens, "znear", camera.near);
+            if (lens->contains("zfar")) camera.far = float_in(*lens, "zfar", 0.0F);
             view_.cameras.push_back({camera, world_from_node, name, number});
         }
     }
@@ -505,6 +510,21 @@ std::vector<std::string> variants_of(const Json& root) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> GltfDocument::variant_material(GltfPrimitiveId id,
+                                                          std::size_t variant) const {
+    const GltfContents& contents = contents_->data;
+    const Json* mappings =
+        find(primitive_json(contents, id), "extensions", "KHR_materials_variants", "mappings");
+    if (mappings == nullptr) return std::nullopt;
+    for (const Json& mapping : *mappings) {
+        for (const Json& number : array_in(mapping, "variants")) {
+            if (number.get<double>() == static_cast<double>(variant))
+                return index_in(mapping, "material");
+        }
+    }
+    return std::nullopt;
+}
 
 GltfView GltfDocument::view() const {
     const GltfContents& contents = contents_->data;

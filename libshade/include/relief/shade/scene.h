@@ -140,12 +140,17 @@ struct ImageSource {
 /// The maximum of a material's color components.
 inline constexpr float max_reflectance = 1e9F;
 
-/// A perspective camera that looks along its own -z.
+/// A camera that looks along its own -z.
 struct Camera {
     glm::mat4 world_from_view{1.0F};  ///< Rotation and translation only.
     float vertical_fov = 0.8F;
     float near = 0.1F;
     float far = 100.0F;
+    /// The height of the picture in world units. If present, the projection is orthographic and
+    /// vertical_fov has no effect.
+    std::optional<float> orthographic_height = std::nullopt;
+
+    friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// Six square images of one size, in OpenGL's order and orientation: +x -x +y -y +z -z, each looked
@@ -279,8 +284,16 @@ void add_default_lights(Scene& scene, const Camera& camera);
 Camera framed(const Scene& scene, float azimuth, float elevation, float vertical_fov, float aspect,
               float distance_factor = 1.0F);
 
+/// Returns an orthographic camera with the place and the depth range of another camera. Its height
+/// is the smallest that shows every finite vertex, with a small margin; 1 for a scene without
+/// extent.
+///
+/// \param aspect  width / height of the picture, positive
+Camera orthographic(const Scene& scene, Camera camera, float aspect);
+
 /// Moves a camera along its line of sight: its distance from `target` is multiplied by `factor`.
-/// The depth range moves along and still contains the same objects.
+/// The depth range moves along and still contains the same objects. The height of an orthographic
+/// camera is multiplied instead.
 Camera at_distance(Camera camera, const glm::vec3& target, float factor);
 
 // Scenes whose objects are attached to nodes, and the animations of nodes: key frames, orbits,
@@ -348,6 +361,16 @@ struct DeformedMesh {
     bool has_flat_normals = false;  ///< The normals of the deformed triangles.
 };
 
+/// A camera of a file.
+struct FileCamera {
+    std::string name;
+    Camera camera;
+    Carried carried;
+    /// True if the far plane must stay behind all moving meshes, because the file does not name
+    /// one.
+    bool sees_all = false;
+};
+
 /// A scene with its nodes and animations.
 ///
 /// The lists of Carried correspond to the scene's lists of the same name; if one is shorter, the
@@ -366,6 +389,11 @@ struct SceneGraph {
     /// True if the far plane must stay behind all moving meshes, because the file does not name
     /// one.
     bool camera_sees_all = false;
+    /// All cameras of a glTF file. The scene's camera is the first one; see choose_camera().
+    std::vector<FileCamera> cameras;
+    /// The names of the material variants of a glTF file, "variant 1" and so on where a name is
+    /// empty. SceneOptions::material_variant selects one.
+    std::vector<std::string> material_variants;
     /// All play at the same time, except key animations other than `clip`. If two move the same
     /// node, the later one wins.
     std::vector<Animation> animations;
@@ -385,6 +413,13 @@ struct SceneGraph {
 /// \throws InvalidInput if an index of a node does not exist, nodes form a cycle, the time is not
 ///         finite, or keys are not as KeyChannel requires
 void pose(SceneGraph& graph, double seconds);
+
+/// Makes a camera of the file the scene's camera. The next pose() places it.
+/// \param index  into SceneGraph::cameras \throws InvalidInput if there is no such camera
+void choose_camera(SceneGraph& graph, std::size_t index);
+
+/// Returns the names of the cameras of the file, "camera 1" and so on where a name is empty.
+std::vector<std::string> camera_names(const SceneGraph& graph);
 
 /// Returns the duration of the longest animation that plays: the time of its last key, or of a full
 /// rotation. 0 without animations; those of speed 0 are ignored.

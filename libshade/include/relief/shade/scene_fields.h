@@ -288,7 +288,9 @@ inline constexpr auto fields_of<Camera> =
                           FieldUnit::radians,
                           "vertical field of view"},
                SceneField{"near", &Camera::near, {}, FieldUnit::world_length},
-               SceneField{"far", &Camera::far, {}, FieldUnit::world_length}};
+               SceneField{"far", &Camera::far, {}, FieldUnit::world_length},
+               SceneField{"orthographic_height", &Camera::orthographic_height, positive_range,
+                          FieldUnit::world_length}};
 
 inline constexpr SceneField ambient_field{
     "ambient", &Scene::ambient, {0, max_light}, FieldUnit::color, "ambient light"};

@@ -58,6 +58,9 @@ struct SceneOptions {
     /// The axis of a model file that points up. Models within scene files stand as the scene file
     /// says.
     UpAxis up = UpAxis::automatic;
+    /// The variant of a glTF file's materials (KHR_materials_variants), by its name or its number
+    /// from 1. If absent, primitives have their own materials.
+    std::optional<std::string> material_variant = std::nullopt;
 };
 
 /// Returns whether the z axis of a model file points up.
@@ -71,10 +74,10 @@ FrameOptions frame_options(const std::filesystem::path& model, const SceneOption
 /// scene graph, posed at time 0.
 ///
 /// Meshes without normals get flat normals in glTF (as it requires) and angle-weighted normals in
-/// other formats, with hard edges in STL. The effect plan computes tangents. Lights and the first
-/// camera come from glTF; none are added. Formats that do not define sides (all but glTF) are
-/// double-sided. glTF's light units (lux, candela) become irradiance over pi, so that the picture
-/// is the one that KHR_lights_punctual describes.
+/// other formats, with hard edges in STL. The effect plan computes tangents. Lights and
+/// cameras come from glTF, of which the first one shows the scene; none are added. Formats that do
+/// not define sides (all but glTF) are double-sided. glTF's light units (lux, candela) become
+/// irradiance over pi, so that the picture is the one that KHR_lights_punctual describes.
 ///
 /// If animations move the same property of a node, the first one plays (SceneGraph::clip).
 ///

@@ -181,7 +181,7 @@ TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
              "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}},
             {"type": "directional"}, {"type": "point"}]}},
         "cameras": [{"type": "perspective", "name": "c", "perspective": {"yfov": 0.7, "znear": 0.01}},
-                    {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 1}}],
+                    {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 2, "znear": 0, "zfar": 3}}],
         "scenes": [{"nodes": []}, {"nodes": [0, 4]}], "scene": 1,
         "nodes": [{"children": [1, 2, 3], "translation": [1, 2, 3]},
             {"name": "lamp", "rotation": [0, 0.70710678, 0, 0.70710678], "scale": [2, 2, 2],
@@ -207,13 +207,16 @@ TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
     EXPECT_EQ(view.lights[1].what.type, LightType::directional);
     EXPECT_EQ(view.lights[2].what.type, LightType::point);
     EXPECT_FALSE(view.lights[2].what.range);
-    // Scenes are perspective, so the orthographic camera is omitted.
-    ASSERT_EQ(view.cameras.size(), 2U);
+    ASSERT_EQ(view.cameras.size(), 3U);
     EXPECT_EQ(view.cameras[0].what.vertical_fov, 0.7F);
     EXPECT_EQ(view.cameras[0].what.near, 0.01F);
     EXPECT_FALSE(view.cameras[0].what.far);
-    EXPECT_EQ(glm::vec3(view.cameras[1].world_from_object[3]), glm::vec3(7, 8, 9));
-    EXPECT_EQ(view.cameras[1].name, "last");
+    EXPECT_FALSE(view.cameras[0].what.orthographic_height);
+    EXPECT_EQ(view.cameras[1].what.orthographic_height, 4.0F) << "twice ymag";
+    EXPECT_EQ(view.cameras[1].what.near, 0.0F);
+    EXPECT_EQ(view.cameras[1].what.far, 3.0F);
+    EXPECT_EQ(glm::vec3(view.cameras[2].world_from_object[3]), glm::vec3(7, 8, 9));
+    EXPECT_EQ(view.cameras[2].name, "last");
 }
 
 TEST_F(GltfViewTest, InstancesAreRepeated) {
