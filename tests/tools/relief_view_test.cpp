@@ -437,6 +437,10 @@ TEST(ViewCommand, SavedScenesKeepTheUpAxisAndTheNormals) {
     };
     std::filesystem::create_directory(workplace / "out");
     const auto hard = draw("roof.stl");
+    // The studio has no file, but a name in scene files.
+    const auto studio = draw("roof.stl --environment studio --save-scene out/studio.json");
+    EXPECT_NE(studio, hard);
+    EXPECT_EQ(draw("out/studio.json"), studio);
     const auto smooth = draw("roof.stl --crease 120 --save-scene out/smooth.json");
     EXPECT_NE(smooth, hard);
     EXPECT_NE(draw("roof.stl --up y --crease 120"), smooth);
@@ -467,7 +471,7 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
          {"square.obj --output out/old.png --no-state", 2,
           "--no-state: no window is opened (leave it out)"},
          {"square.obj --output out/p.jpg", 2,
-          "--output out/p.jpg: unsupported format (use .png, .exr or .apng)"},
+          "--output out/p.jpg: unsupported format (use .png, .exr, .apng, .mp4 or .webm)"},
          {"square.obj --output out/old.png --size 5", 2, "--size 5: not a size like 1920x1080"},
          {"square.obj --output out/old.png --samples 2", 2, "--samples 2: not one of 1, 4"},
          {"square.obj --output out/old.png --fov 180", 2,

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "relief/mesh/image_file.h"
@@ -97,6 +99,74 @@ void write_moving_triangle(const Workplace& workplace) {
         .write(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
 }
 
+/// Replaces PATH while it exists.
+class SearchPath {
+  public:
+    explicit SearchPath(const std::string& path) : before_(std::getenv("PATH")) {
+        ::setenv("PATH", path.c_str(), 1);
+    }
+    SearchPath(const SearchPath&) = delete;
+    SearchPath& operator=(const SearchPath&) = delete;
+    ~SearchPath() { ::setenv("PATH", before_.c_str(), 1); }
+
+  private:
+    std::string before_;
+};
+
+TEST(Video, ReceivesEveryPictureAndReplacesTheFileAtTheEnd) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    // Stands in for ffmpeg: keeps its words, and writes its input to the file it is to write.
+    workplace.write("ffmpeg",
+                    "#!/bin/sh\necho \"$@\" > words\n"
+                    "for last; do :; done\n/bin/cat > \"${last#file:}\"\n");
+    std::filesystem::permissions(workplace / "ffmpeg", std::filesystem::perms::owner_all);
+    const std::string video =
+        "relief-view square.obj --turntable 3 --size 32x16 --camera 0,0 --fps 10 --output v.mp4";
+    workplace.write("v.mp4", "an older file");
+    {
+        const SearchPath path((workplace / ".").string());
+        const ProgramResult result = workplace.run(video);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.out, HasSubstr("wrote     v.mp4"));
+    }
+    EXPECT_THAT(workplace.read("words"), HasSubstr("-pix_fmt rgb24 -s 32x16 -r 10 -i pipe:0"));
+    const std::string pictures = workplace.read("v.mp4");
+    ASSERT_EQ(pictures.size(), 3U * 32U * 16U * 3U);
+    ASSERT_EQ(
+        workplace.run("relief-view square.obj --size 32x16 --camera 0,0 --output p.png").exit_code,
+        0);
+    const Image still = picture_in(workplace / "p.png");
+    const auto samples = still.as<std::uint8_t>();
+    for (std::size_t i = 0; i < 32U * 16U; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            ASSERT_EQ(static_cast<std::uint8_t>(pictures[3 * i + c]),
+                      samples[static_cast<std::size_t>(still.channels) * i + c]);
+        }
+    }
+}
+
+TEST(Video, OfAProgramThatFailsLeavesTheOldFile) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    workplace.write("ffmpeg", "#!/bin/sh\n/bin/cat > /dev/null\nexit 1\n");
+    std::filesystem::permissions(workplace / "ffmpeg", std::filesystem::perms::owner_all);
+    workplace.write("v.webm", "an older file");
+    const std::string video = "relief-view square.obj --turntable 2 --size 32x16 --output v.webm";
+    const auto run_with = [&](const std::string& folder) {
+        const SearchPath path(folder);
+        return workplace.run(video);
+    };
+    const ProgramResult failed = run_with((workplace / ".").string());
+    EXPECT_EQ(failed.exit_code, 1);
+    EXPECT_THAT(failed.error, HasSubstr("v.webm: ffmpeg failed"));
+    const ProgramResult missing = run_with("/nonexistent");
+    EXPECT_EQ(missing.exit_code, 1);
+    EXPECT_THAT(missing.error, HasSubstr("needs the program ffmpeg, which is not installed"));
+    EXPECT_EQ(workplace.read("v.webm"), "an older file");
+    EXPECT_FALSE(std::filesystem::exists(workplace / "v.webm.part"));
+}
+
 TEST(Frames, ShowTheAnimationEvenlySpacedInTime) {
     const Workplace workplace;
     write_moving_triangle(workplace);
@@ -124,7 +194,7 @@ TEST(SequenceRefusal, SaysWhyAndLeavesNothingBehind) {
           "--turntable: contradicts --frames"},
          {"square.obj --output out/old.png --seconds 4", 2, "--seconds: needs --frames"},
          {"square.obj --output out/old.png --turntable 4 --fps 10", 2,
-          "--fps: applies to .apng animations"},
+          "--fps: applies to animations and videos"},
          {"square.obj --output out/a.apng", 2,
           "--output out/a.apng: an animation needs several pictures"},
          {"square.obj --output out/old.png --frames 4", 2,

@@ -523,7 +523,8 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
     add_repeatable(
         app, "--environment", "FILE...",
         "Use an environment: one image, six square images in the order +x -x +y -y +z -z, or a "
-        "folder with six images whose names end in posx, negx, posy, negy, posz, negz.",
+        "folder with six images whose names end in posx, negx, posy, negy, posz, negz. studio is a "
+        "built-in photo studio, which lights the model and is not visible behind it.",
         [&](const std::string&, const std::string& text) {
             options.environment.emplace_back(text);
         })
@@ -614,6 +615,11 @@ decltype(Environment::source) one_image(const ViewOptions& options) {
     return Equirectangular{image_file(file)};
 }
 
+/// A file of this name can be given as ./studio.
+bool uses_studio(const ViewOptions& options) {
+    return options.environment.size() == 1 && options.environment.front() == "studio";
+}
+
 }  // namespace
 
 void add_environment_options(CLI::App& app, ViewOptions& options) {
@@ -652,18 +658,22 @@ void check_environment(const ViewOptions& options) {
            "--refractive-index", "neither --fresnel dielectric nor --transmission uses it",
            "give one of them, or leave it out");
     const bool one = files == 1 && !std::filesystem::is_directory(options.environment.front());
-    refuse(options.environment_layout && !one, "--environment-layout",
-           "applies to one image, not to six", "leave it out");
+    refuse(options.environment_layout && (!one || uses_studio(options)), "--environment-layout",
+           "applies to one image, not to six or to the studio", "leave it out");
+    refuse(options.no_skybox && uses_studio(options), "--no-skybox",
+           "the studio is not visible behind the model", "leave it out");
     refuse(options.left_handed_environment && one, "--left-handed", "applies to six images",
            "leave it out");
-    refuse(options.background && files != 0 && !options.no_skybox, "--background",
-           "the environment hides it", "add --no-skybox, or leave one of them out");
+    refuse(options.background && files != 0 && !options.no_skybox && !uses_studio(options),
+           "--background", "the environment hides it", "add --no-skybox, or leave one of them out");
 }
 
 Environment environment_of(const ViewOptions& options) {
     const std::vector<std::filesystem::path>& files = options.environment;
     Environment environment;
-    if (files.size() == 6) {
+    if (uses_studio(options)) {
+        environment = studio_environment();
+    } else if (files.size() == 6) {
         CubeFaces faces;
         std::transform(files.begin(), files.end(), faces.faces.begin(), image_file);
         environment.source = std::move(faces);
@@ -676,7 +686,7 @@ Environment environment_of(const ViewOptions& options) {
         faces->left_handed = options.left_handed_environment;
     environment.intensity = options.environment_intensity.value_or(1.0F);
     environment.rotation = glm::radians(options.environment_rotation.value_or(0.0F));
-    environment.skybox = !options.no_skybox;
+    environment.skybox = !options.no_skybox && !uses_studio(options);
     return environment;
 }
 
@@ -738,11 +748,12 @@ void set_environment(Scene& scene, const ViewOptions& options) {
     }
     scene.environment = environment_of(options);
     const bool physical = std::any_of(scene.materials.begin(), scene.materials.end(), is_physical);
-    scene.environment->lights = options.environment_light.value_or(physical);
+    scene.environment->lights =
+        options.environment_light.value_or(physical || uses_studio(options));
     const bool reflected = std::any_of(
         scene.materials.begin(), scene.materials.end(),
         [](const Material& material) { return material.reflectivity != glm::vec3(0.0F); });
-    if (!reflected && !physical && !scene.environment->lights && options.no_skybox) {
+    if (!reflected && !physical && !scene.environment->lights && !scene.environment->skybox) {
         throw UsageError(
             "--environment: has no effect, because no material reflects it and --no-skybox hides "
             "it",

@@ -4,8 +4,16 @@
 #include "view_command.h"
 
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <numbers>
@@ -42,6 +50,14 @@ bool is_sequence(const ViewOptions& options) {
     return options.turntable || options.frames;
 }
 
+bool is_video(const std::filesystem::path& output) {
+    return extension_of(output) == ".mp4" || extension_of(output) == ".webm";
+}
+
+bool is_animation(const std::filesystem::path& output) {
+    return is_video(output) || extension_of(output) == ".apng";
+}
+
 }  // namespace
 
 void add_sequence_options(CLI::App& app, ViewOptions& options) {
@@ -57,7 +73,7 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
     add_count("--turntable", options.turntable,
               "Draw N pictures while the model rotates once about its vertical axis. A .png or "
               ".exr output becomes numbered files (spin-0001.png, or # in the name for each "
-              "digit); an .apng output becomes an animation.");
+              "digit); .apng, .mp4 and .webm outputs become animations.");
     add_count("--frames", options.frames,
               "Draw N pictures of the scene's animation, evenly spaced in time.");
     add_number(app, "--seconds", "S", options.seconds, {1e-3, 1e6, ""},
@@ -65,7 +81,7 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
                "animation ends.")
         .group(group);
     add_number(app, "--fps", "F", options.frames_per_second, {0.1, 1000, ""},
-               "Set the pictures per second of an .apng animation. Default: 25.")
+               "Set the pictures per second of an animation or video. Default: 25.")
         .group(group);
     add_value(app, "--animation", "NAME|N|all",
               "Play the animation of this name or number of a glTF file, or all of them at once. "
@@ -80,13 +96,18 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
 }
 
 void check_sequence(const ViewOptions& options) {
-    const bool animated = options.output && extension_of(*options.output) == ".apng";
+    const bool has_video = options.output && is_video(*options.output);
+    const bool animated = options.output && is_animation(*options.output);
     refuse(options.turntable && options.frames, "--turntable", "contradicts --frames",
            "leave one of them out");
     refuse(options.seconds && !options.frames, "--seconds", "needs --frames",
            "add --frames, or leave it out");
-    refuse(options.frames_per_second && !animated, "--fps", "applies to .apng animations",
-           "write an .apng, or leave it out");
+    refuse(options.frames_per_second && !animated, "--fps", "applies to animations and videos",
+           "write an .apng, .mp4 or .webm, or leave it out");
+    refuse(has_video && options.background && options.background->a < 1.0F, "--background",
+           "a video has no transparent pixels", "choose a color, or write an .apng");
+    refuse(has_video && options.size_given && (options.size.x % 2 != 0 || options.size.y % 2 != 0),
+           "--size", "the width and the height of a video must be even", "");
     refuse(animated && !is_sequence(options), "--output " + options.output.value_or("").string(),
            "an animation needs several pictures", "add --turntable or --frames, or write a .png");
     refuse(options.time && options.frames, "--time", "contradicts --frames, which sets the times",
@@ -149,6 +170,123 @@ class AnimationSink : public PictureSink {
     AnimatedPng animation_;
 };
 
+/// Multiplies the color by alpha, because a video has no transparent pixels.
+void append_opaque(std::vector<std::byte>& rgb, const std::uint8_t* texel, int channels) {
+    constexpr std::uint8_t opaque = 255;
+    const std::uint8_t alpha = channels == 4 ? texel[3] : opaque;
+    for (int i = 0; i < 3; ++i) {
+        const std::uint8_t code = texel[channels < 3 ? 0 : i];
+        if (alpha == opaque) {
+            rgb.push_back(static_cast<std::byte>(code));
+            continue;
+        }
+        const float linear = linear_from_srgb(static_cast<float>(code) / 255.0F);
+        const float coded = srgb_from_linear(linear * static_cast<float>(alpha) / 255.0F);
+        rgb.push_back(static_cast<std::byte>(std::lround(coded * 255.0F)));
+    }
+}
+
+/// Sends the pictures to the program ffmpeg, which compresses them: H.264 for .mp4, VP9 for .webm.
+/// The video replaces an existing file when it is complete.
+class VideoSink : public PictureSink {
+  public:
+    VideoSink(std::filesystem::path file, double frames_per_second)
+        : file_(std::move(file)), rate_(frames_per_second) {
+        part_ = file_;
+        part_ += ".part";
+    }
+    VideoSink(const VideoSink&) = delete;
+    VideoSink& operator=(const VideoSink&) = delete;
+    ~VideoSink() override {
+        if (process_ <= 0) return;
+        ::close(socket_);
+        ::kill(process_, SIGKILL);
+        ::waitpid(process_, nullptr, 0);
+        std::error_code unused;
+        std::filesystem::remove(part_, unused);
+    }
+
+    void take(const Image& picture) override {
+        if (process_ <= 0) start(picture.width, picture.height);
+        rgb_.clear();
+        const std::span<const std::uint8_t> samples = picture.as<std::uint8_t>();
+        const auto channels = static_cast<std::size_t>(picture.channels);
+        for (std::size_t i = 0; i + channels <= samples.size(); i += channels)
+            append_opaque(rgb_, &samples[i], picture.channels);
+        std::size_t sent = 0;
+        while (sent < rgb_.size()) {
+            const ssize_t count =
+                ::send(socket_, rgb_.data() + sent, rgb_.size() - sent, MSG_NOSIGNAL);
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) fail("ffmpeg ended early");
+            sent += static_cast<std::size_t>(count);
+        }
+    }
+
+    void finish() override {
+        ::shutdown(socket_, SHUT_WR);
+        int status = 0;
+        while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+        }
+        ::close(socket_);
+        process_ = 0;
+        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+            std::error_code unused;
+            std::filesystem::remove(part_, unused);
+            fail("ffmpeg failed");
+        }
+        std::filesystem::rename(part_, file_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& problem) const { throw FileError(file_, problem); }
+
+    void start(int width, int height) {
+        std::vector<std::string> words = {
+            "ffmpeg", "-loglevel", "error", "-y",
+            // The input: raw pictures from the socket.
+            "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", fmt::format("{}x{}", width, height), "-r",
+            fmt::format("{}", rate_), "-i", "pipe:0",
+            // The colors of HD video.
+            "-vf", "scale=out_color_matrix=bt709:out_range=tv", "-pix_fmt", "yuv420p",
+            "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"};
+        const std::vector<std::string> mp4 = {"-c:v", "libx264", "-crf",      "16",
+                                              "-f",   "mp4",     "-movflags", "+faststart"};
+        const std::vector<std::string> webm = {"-c:v", "libvpx-vp9", "-crf", "20", "-b:v",
+                                               "0",    "-row-mt",    "1",    "-f", "webm"};
+        const std::vector<std::string>& format = extension_of(file_) == ".mp4" ? mp4 : webm;
+        words.insert(words.end(), format.begin(), format.end());
+        words.push_back("file:" + part_.string());
+        std::vector<char*> arguments;
+        for (std::string& word : words)
+            arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+
+        std::array<int, 2> ends{};
+        if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+            fail("cannot start ffmpeg");
+        posix_spawn_file_actions_t actions;
+        ::posix_spawn_file_actions_init(&actions);
+        ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+        const int error =
+            ::posix_spawnp(&process_, "ffmpeg", &actions, nullptr, arguments.data(), environ);
+        ::posix_spawn_file_actions_destroy(&actions);
+        ::close(ends[1]);
+        socket_ = ends[0];
+        if (error == 0) return;
+        ::close(socket_);
+        process_ = 0;
+        fail("needs the program ffmpeg, which is not installed");
+    }
+
+    std::filesystem::path file_;
+    std::filesystem::path part_;
+    double rate_;
+    pid_t process_ = 0;
+    int socket_ = -1;
+    std::vector<std::byte> rgb_;
+};
+
 double time_of(const ComposedScene& composed, const ViewOptions& options, int index) {
     if (!options.frames) return options.time.value_or(0.0);
     const double all = options.seconds.value_or(duration(composed.graph));
@@ -176,8 +314,9 @@ void turn(ComposedScene& composed, double angle) {
 std::unique_ptr<PictureSink> make_sink(const ViewOptions& options) {
     const std::filesystem::path& output = *options.output;
     const int count = picture_count(options);
+    const double rate = options.frames_per_second.value_or(default_frames_per_second);
+    if (is_video(output)) return std::make_unique<VideoSink>(output, rate);
     if (extension_of(output) == ".apng") {
-        const double rate = options.frames_per_second.value_or(default_frames_per_second);
         return std::make_unique<AnimationSink>(output, count, 1.0 / rate);
     }
     if (options.turntable || options.frames) return std::make_unique<NumberedFiles>(output);
@@ -394,8 +533,7 @@ std::string frames_text(const SequenceTimes& times) {
 /// For example "out/spin-0001.png to out/spin-0024.png", or one file with its size.
 std::string written(const ViewOptions& options) {
     const std::filesystem::path& output = *options.output;
-    const bool numbered = (options.turntable || options.frames) && extension_of(output) != ".apng";
-    if (!numbered) return file_and_size(output);
+    if (!is_sequence(options) || is_animation(output)) return file_and_size(output);
     return fmt::format("{} to {}", numbered_file(output, 1).string(),
                        numbered_file(output, picture_count(options)).string());
 }

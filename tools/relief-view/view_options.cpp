@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <string_view>
 #include <vector>
@@ -133,7 +134,8 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Output";
     add_path(
         app, "--output", options.output,
-        "Write the picture to FILE: .png (8 bit, sRGB), .exr (linear float) or .apng (animated).")
+        "Write the picture to FILE: .png (8 bit, sRGB), .exr (linear float), .apng (animated), or "
+        ".mp4 or .webm (videos, by the program ffmpeg).")
         .group(group);
     add_value(app, "--size", "WxH",
               "Set the width and height in pixels; in a window, those of the view. Default: the "
@@ -265,8 +267,10 @@ void check_output(const ViewOptions& options) {
            "applies to display colors, not to linear radiance", "write a .png, or leave it out");
     if (!options.output) return;
     const std::string extension = extension_of(*options.output);
-    refuse(extension != ".png" && extension != ".exr" && extension != ".apng",
-           "--output " + options.output->string(), "unsupported format", "use .png, .exr or .apng");
+    constexpr std::array formats = {".png", ".exr", ".apng", ".mp4", ".webm"};
+    refuse(std::find(formats.begin(), formats.end(), extension) == formats.end(),
+           "--output " + options.output->string(), "unsupported format",
+           "use .png, .exr, .apng, .mp4 or .webm");
     refuse(*options.output == options.model, "--output", "would overwrite the model", "");
     require_folder_of(*options.output);
 }

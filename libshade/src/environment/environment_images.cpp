@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images of an environment; environment_images.h has the conventions. Angular maps are computed
-// in double; their GLSL counterpart is in gl/cube_map.cpp. Images that do not fit together throw
-// InvalidInput.
+// The images of an environment, and the built-in studio; environment_images.h has the conventions.
+// Angular maps are computed in double; their GLSL counterpart is in gl/cube_map.cpp. Images that do
+// not fit together throw InvalidInput.
 #include "environment/environment_images.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "portable_math.h"
 #include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
 
 namespace relief {
 
@@ -191,6 +193,84 @@ Image storable_radiance(const Image& image, Report& report) {
     for (std::size_t i = 0; i < samples.size(); ++i)
         samples[i] = storable(samples[i], i / channels, report);
     return linear;
+}
+
+// The studio
+
+namespace {
+
+/// A light with soft edges: a rectangle of angles around its center, in degrees.
+struct Softbox {
+    double azimuth = 0.0;  ///< From +z towards +x.
+    double elevation = 0.0;
+    double half_width = 0.0;
+    double half_height = 0.0;
+    double radiance = 0.0;
+};
+
+constexpr std::array studio_lights = {
+    Softbox{-40.0, 38.0, 24.0, 18.0, 6.0},  // The key light.
+    Softbox{65.0, 15.0, 14.0, 26.0, 1.4},   // Fills the shadows.
+    Softbox{-150.0, 25.0, 5.0, 32.0, 4.5},  // Two strips outline the model.
+    Softbox{150.0, 25.0, 5.0, 32.0, 4.5},
+};
+constexpr double ceiling_radiance = 2.0;
+
+/// Rises from 0 at -1 to 1 at 1, with a slope of 0 at both.
+double smooth(double x) {
+    const double t = std::clamp(0.5 * (x + 1.0), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+/// \param azimuth, elevation  in degrees
+double studio_radiance(double azimuth, double elevation) {
+    constexpr double edge = 2.0;  // Half of the width of soft edges, in degrees.
+    double radiance = 0.07 + 0.14 * smooth(elevation / 90.0);
+    for (const Softbox& light : studio_lights) {
+        const double across = std::abs(std::remainder(azimuth - light.azimuth, 360.0));
+        const double up = std::abs(elevation - light.elevation);
+        radiance += light.radiance * smooth((light.half_width - across) / edge) *
+                    smooth((light.half_height - up) / edge);
+    }
+    return radiance + ceiling_radiance * smooth((elevation - 68.0) / edge);
+}
+
+Image studio_image() {
+    constexpr int height = 256;
+    constexpr int width = 2 * height;
+    Image image = make_image(width, height, 3, 32, ColorSpace::linear);
+    const auto samples = image.as<float>();
+    std::size_t next = 0;
+    for (int y = 0; y < height; ++y) {
+        const double elevation = 90.0 - 180.0 * (y + 0.5) / height;
+        for (int x = 0; x < width; ++x) {
+            // The center of a panorama is -z, and +x is to its right.
+            const double azimuth = 180.0 - 360.0 * ((x + 0.5) / width - 0.5);
+            const auto radiance = static_cast<float>(studio_radiance(azimuth, elevation));
+            for (int channel = 0; channel < 3; ++channel)
+                samples[next++] = radiance;
+        }
+    }
+    return image;
+}
+
+constexpr const char* studio_name = "studio";
+
+}  // namespace
+
+Environment studio_environment() {
+    static const Shared<Image> image = studio_image();
+    Environment environment;
+    environment.source = Equirectangular{{studio_name, image}};
+    environment.skybox = false;
+    environment.lights = true;
+    return environment;
+}
+
+bool is_studio(const Environment& environment) {
+    const auto* panorama = std::get_if<Equirectangular>(&environment.source);
+    return panorama != nullptr && panorama->image.name == studio_name &&
+           std::holds_alternative<Shared<Image>>(panorama->image.source);
 }
 
 }  // namespace relief

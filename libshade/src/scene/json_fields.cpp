@@ -107,7 +107,7 @@ void read_material(const JsonCursor& object, JsonImages& images, Material& mater
 
 Environment environment_from(const JsonCursor& object, JsonImages& images) {
     allow_fields<Environment>(
-        object, {"faces", "folder", "cross", "panorama", "angular_map", "left_handed"});
+        object, {"faces", "folder", "cross", "panorama", "angular_map", "studio", "left_handed"});
     Environment environment;
     int sources = 0;
     if (const auto faces = object.find("faces")) {
@@ -136,8 +136,15 @@ Environment environment_from(const JsonCursor& object, JsonImages& images) {
     single("cross", CubeCross{});
     single("panorama", Equirectangular{});
     single("angular_map", AngularMap{});
-    if (sources != 1)
-        object.fail("must have one of 'faces', 'folder', 'cross', 'panorama' and 'angular_map'");
+    if (const auto studio = object.find("studio")) {
+        if (!studio->boolean()) studio->fail("can only be true");
+        environment = studio_environment();
+        ++sources;
+    }
+    if (sources != 1) {
+        object.fail(
+            "must have one of 'faces', 'folder', 'cross', 'panorama', 'angular_map' and 'studio'");
+    }
     read_fields(object, images, environment);
     if (const auto left_handed = object.find("left_handed")) {
         auto* cube = std::get_if<CubeFaces>(&environment.source);
@@ -194,7 +201,9 @@ Json matrix_json(const glm::mat4& matrix) {
 
 Json environment_json(const Environment& environment, const SourceName& name) {
     Json object;
-    if (const auto* cube = std::get_if<CubeFaces>(&environment.source)) {
+    if (is_studio(environment)) {
+        object["studio"] = true;
+    } else if (const auto* cube = std::get_if<CubeFaces>(&environment.source)) {
         object["faces"] = Json::array();
         for (const ImageSource& face : cube->faces)
             object["faces"].push_back(name(face));

@@ -370,8 +370,8 @@ class SceneReader {
         if (level > max_node_levels)
             object.fail(fmt::format("lies more than {} levels deep", max_node_levels));
         object.allow({"name", "translation", "rotation", "scale", "matrix", "model", "shape",
-                      "material", "material_changes", "normals", "crease", "light", "camera",
-                      "orbit", "turntable", "children"});
+                      "material", "material_variant", "material_changes", "normals", "crease",
+                      "light", "camera", "orbit", "turntable", "children"});
         const std::size_t index = graph_.nodes.size();
         graph_.nodes.push_back(node_from(object));
         graph_.nodes.back().parent = parent;
@@ -391,7 +391,8 @@ class SceneReader {
         const auto shape = object.find("shape");
         if (model && shape) shape->fail("stands beside 'model': a node has one of them");
         if (!model && !shape) {
-            for (const char* key : {"material", "material_changes", "normals", "crease"}) {
+            for (const char* key :
+                 {"material", "material_variant", "material_changes", "normals", "crease"}) {
                 if (const auto extra = object.find(key))
                     extra->fail("needs a 'model' or a 'shape' beside it");
             }
@@ -399,7 +400,7 @@ class SceneReader {
         }
         const std::size_t first_mesh = graph_.scene.meshes.size();
         const std::size_t first_material = graph_.scene.materials.size();
-        for (const char* key : {"normals", "crease"}) {
+        for (const char* key : {"normals", "crease", "material_variant"}) {
             const auto extra = object.find(key);
             if (extra && !model) extra->fail("needs a 'model' beside it");
         }
@@ -427,6 +428,11 @@ class SceneReader {
         const std::filesystem::path file = images_.file(cursor);
         SceneOptions options = options_;
         options.up = UpAxis::y;
+        if (const auto variant = node.find("material_variant")) {
+            if (file.extension() != ".gltf" && file.extension() != ".glb")
+                variant->fail("needs a glTF model");
+            options.material_variant = variant->text();
+        }
         if (const auto normals = node.find("normals"))
             options.normals = one_of(*normals, enum_names<NormalMode>);
         if (const auto crease = node.find("crease")) {

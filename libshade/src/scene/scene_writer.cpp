@@ -102,6 +102,8 @@ class SceneWriter {
             Json node = {{"model", relative_path(file_.parent_path(), saved_.source)}};
             if (is_z_up(saved_.source, saved_.options))
                 node["matrix"] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+            if (saved_.options.material_variant)
+                node["material_variant"] = *saved_.options.material_variant;
             if (saved_.options.normals != NormalMode::keep)
                 node["normals"] = enum_name(saved_.options.normals);
             if (saved_.options.crease_angle)

@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include "environment/environment_images.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
+#include "relief/shade/scene.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -278,6 +281,46 @@ TEST(AngularMap, MustBeSquare) {
                      "angular map 'ball.hdr' has 512 x 256 texels, but must be square");
     }
     EXPECT_THROW(check_angular_map(Image{}, "nothing"), InvalidInput);
+}
+
+/// Returns the irradiance over pi of a surface in a panorama.
+double irradiance(const Image& panorama, const glm::dvec3& normal) {
+    const auto samples = panorama.as<float>();
+    double sum = 0.0;
+    for (int y = 0; y < panorama.height; ++y) {
+        const double elevation = pi * (0.5 - (y + 0.5) / panorama.height);
+        for (int x = 0; x < panorama.width; ++x) {
+            const double right = 2.0 * pi * ((x + 0.5) / panorama.width - 0.5);  // From -z to +x.
+            const glm::dvec3 direction(std::cos(elevation) * std::sin(right), std::sin(elevation),
+                                       -std::cos(elevation) * std::cos(right));
+            const double weight = std::cos(elevation) * 2.0 * pi * pi /
+                                  (static_cast<double>(panorama.width) * panorama.height);
+            const auto texel = static_cast<std::size_t>(3 * (y * panorama.width + x));
+            sum += static_cast<double>(samples[texel]) * weight *
+                   std::max(glm::dot(direction, normal), 0.0);
+        }
+    }
+    return sum / pi;
+}
+
+TEST(Studio, LightsTheFrontFromTheLeftAndAbove) {
+    const Environment studio = studio_environment();
+    EXPECT_TRUE(is_studio(studio));
+    EXPECT_TRUE(studio.lights);
+    EXPECT_FALSE(studio.skybox);
+    const auto& source = std::get<Equirectangular>(studio.source).image.source;
+    const Image& image = *std::get<Shared<Image>>(source);
+    EXPECT_EQ(glm::ivec2(image.width, image.height), glm::ivec2(512, 256));
+    const glm::dvec3 to_key = glm::normalize(glm::dvec3(-0.5, 0.78, 0.6));
+    const double key = irradiance(image, to_key);
+    EXPECT_NEAR(key, 1.2, 0.1);
+    EXPECT_NEAR(irradiance(image, {0.0, 0.0, 1.0}), 0.75, 0.1);
+    EXPECT_LT(irradiance(image, {1.0, 0.0, 0.0}), 0.7 * key);
+    EXPECT_LT(irradiance(image, {0.0, -1.0, 0.0}), 0.2 * key);
+    // Other environments with the same name are files.
+    Environment file = studio;
+    file.source = Equirectangular{{"studio", std::filesystem::path("studio")}};
+    EXPECT_FALSE(is_studio(file));
 }
 
 }  // namespace

@@ -259,7 +259,7 @@ TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
     EXPECT_GT(scene.camera->far, 8.0F);
 }
 
-TEST_F(SceneFile, EnvironmentsComeInFiveLayouts) {
+TEST_F(SceneFile, EnvironmentsComeInFiveLayoutsOrAreTheStudio) {
     const SceneGraph faces = load(R"("environment": {"faces": ["posx.png", "negx.png", "posy.png",
         "negy.png", "posz.png", "negz.png"], "left_handed": true, "intensity": 2, "skybox": false,
         "lights": true, "rotation": 90})");
@@ -276,6 +276,12 @@ TEST_F(SceneFile, EnvironmentsComeInFiveLayouts) {
     EXPECT_NO_THROW((void)std::get<CubeCross>(source(R"({"cross": "a.png"})")));
     EXPECT_NO_THROW((void)std::get<Equirectangular>(source(R"({"panorama": "a.png"})")));
     EXPECT_NO_THROW((void)std::get<AngularMap>(source(R"({"angular_map": "a.png"})")));
+    const Environment studio =
+        load(R"("environment": {"studio": true, "intensity": 3})").scene.environment.value();
+    EXPECT_TRUE(is_studio(studio));
+    EXPECT_EQ(studio.intensity, 3.0F);
+    EXPECT_TRUE(studio.lights && !studio.skybox);
+    EXPECT_THROW(load(R"("environment": {"studio": false})"), FileError);
 }
 
 TEST_F(SceneFile, CamerasLookAtAPlaceOrFrameTheScene) {

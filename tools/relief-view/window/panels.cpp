@@ -567,6 +567,8 @@ void draw_environment_panel(const PanelInput& input) {
     std::optional<std::string> name;
     if (state.scene().environment) name = name_of(*state.scene().environment);
     const FileChoice choice = file_field("Image or folder", name);
+    if (!name && ImGui::Button("Photo studio")) state.set_environment("studio");
+    if (!name) probe_item("Photo studio");
     if (choice.file) {
         state.set_environment(*choice.file);
     } else if (choice.is_cleared) {

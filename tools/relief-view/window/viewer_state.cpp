@@ -565,7 +565,7 @@ void ViewerState::set_environment(const std::filesystem::path& file) {
     options.environment = {file};
     try_edit([&](Scene& scene) {
         Environment environment = environment_of(options);
-        environment.lights = std::any_of(
+        environment.lights |= std::any_of(
             scene.materials.begin(), scene.materials.end(), [](const Material& material) {
                 return model_of(material) == ShadingModel::metallic_roughness;
             });

@@ -270,6 +270,16 @@ inline constexpr glm::vec4 default_background{0.01299F, 0.01521F, 0.01938F, 1.0F
 /// dim cool light from the right, and sets a small ambient light.
 void add_default_lights(Scene& scene, const Camera& camera);
 
+/// Returns a neutral photo studio as an environment: a large soft light from the front left, a dim
+/// one from the right, two strips behind that outline the model, and a panel above, in a gray room.
+/// It is generated, so that no file is needed, as a panorama of 512 x 256 texels. Its irradiance
+/// from the front is about that of the default lights. Surfaces scatter its light; it is not
+/// visible as a background.
+Environment studio_environment();
+
+/// Returns true if the environment has the image of studio_environment().
+bool is_studio(const Environment& environment);
+
 // Computes cameras that show a scene as large as possible. World space; angles in radians.
 
 /// Computes a camera that sees every finite vertex of a scene, with a small margin. It is closer
