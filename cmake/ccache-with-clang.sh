@@ -7,8 +7,9 @@
 #
 # CMake includes a precompiled header twice: as PCH, and by the absolute path of its text, which adds nothing. Where the
 # PCH is used, the script leaves the second out.
-set -e
+set -eo pipefail
 arguments=()
+compiles_header=
 while [ $# -gt 0 ]; do
     case "$1 ${2:-} ${3:-} ${4:-}" in
     '-Xclang -emit-pch '*) compiles_header=yes ;;

@@ -160,13 +160,16 @@ std::filesystem::path model_with_choices(const Workplace& workplace) {
     workplace.write("choices.gltf", R"({"asset": {"version": "2.0"},
         "extensionsUsed": ["KHR_materials_variants"],
         "extensions": {"KHR_materials_variants": {"variants": [{"name": "day"}, {"name": "night"}]}},
-        "materials": [{"name": "white"}, {"name": "black"}],
+        "materials": [{"name": "white"}, {"name": "black", "pbrMetallicRoughness":
+            {"baseColorTexture": {"index": 0, "texCoord": 1}}}],
+        "images": [{"uri": "wall.png"}], "textures": [{"source": 0}],
         "buffers": [{"byteLength": 36, "uri":
             "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
         "bufferViews": [{"buffer": 0, "byteLength": 36}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
-            "min": [0, 0, 0], "max": [1, 1, 0]}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0, "extensions":
+            "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_1": 1}, "material": 0, "extensions":
             {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [1]}]}}}]}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}},
             {"name": "plan", "type": "orthographic",
@@ -189,6 +192,8 @@ TEST(SceneOptions, AVariantGivesPrimitivesItsMaterials) {
     EXPECT_EQ(material(), "white") << "this variant does not name the primitive";
     options.material_variant = "night";
     EXPECT_EQ(material(), "black");
+    EXPECT_EQ(composed(options).scene().meshes.at(0)->texcoords.size(), 3U)
+        << "those of the set of this material's texture";
     options.material_variant = "2";
     EXPECT_EQ(material(), "black");
     options.material_variant = "dusk";

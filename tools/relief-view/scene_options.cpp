@@ -84,6 +84,12 @@ void check_model(const ViewOptions& options) {
         refuse(given && is_scene, option, "applies to model files, not to scene files", remedy);
     };
     refuse_for_scene(options.up.has_value(), "--up", "rotate the nodes of the scene");
+    refuse_for_scene(options.normals.has_value(), "--normals",
+                     "set 'normals' beside 'model' in the scene");
+    refuse_for_scene(options.crease_degrees.has_value(), "--crease",
+                     "set 'crease' beside 'model' in the scene");
+    refuse(options.crease_degrees && options.normals == NormalMode::flat, "--crease",
+           "contradicts --normals flat, which makes all edges hard", "leave one of them out");
     const std::string extension = extension_of(options.model);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     refuse(options.material_variant && !is_gltf, "--material-variant",
@@ -92,12 +98,6 @@ void check_model(const ViewOptions& options) {
            "use --camera");
     refuse(options.model_camera && options.camera, "--model-camera", "contradicts --camera",
            "leave one of them out");
-    refuse_for_scene(options.normals.has_value(), "--normals",
-                     "set 'normals' beside 'model' in the scene");
-    refuse_for_scene(options.crease_degrees.has_value(), "--crease",
-                     "set 'crease' beside 'model' in the scene");
-    refuse(options.crease_degrees && options.normals == NormalMode::flat, "--crease",
-           "contradicts --normals flat, which makes all edges hard", "leave one of them out");
 }
 
 SceneOptions scene_options(const ViewOptions& options) {
@@ -686,7 +686,7 @@ Environment environment_of(const ViewOptions& options) {
         faces->left_handed = options.left_handed_environment;
     environment.intensity = options.environment_intensity.value_or(1.0F);
     environment.rotation = glm::radians(options.environment_rotation.value_or(0.0F));
-    environment.skybox = !options.no_skybox && !uses_studio(options);
+    environment.skybox &= !options.no_skybox;
     return environment;
 }
 
@@ -749,7 +749,7 @@ void set_environment(Scene& scene, const ViewOptions& options) {
     scene.environment = environment_of(options);
     const bool physical = std::any_of(scene.materials.begin(), scene.materials.end(), is_physical);
     scene.environment->lights =
-        options.environment_light.value_or(physical || uses_studio(options));
+        options.environment_light.value_or(physical || scene.environment->lights);
     const bool reflected = std::any_of(
         scene.materials.begin(), scene.materials.end(),
         [](const Material& material) { return material.reflectivity != glm::vec3(0.0F); });

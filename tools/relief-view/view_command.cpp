@@ -23,6 +23,7 @@
 #include "common/model_file.h"
 #include "common/summary.h"
 #include "effect_options.h"
+#include "files.h"
 #include "picture_comparison.h"
 #include "portable_math.h"
 #include "relief/mesh/execution.h"
@@ -175,7 +176,7 @@ void append_opaque(std::vector<std::byte>& rgb, const std::uint8_t* texel, int c
     constexpr std::uint8_t opaque = 255;
     const std::uint8_t alpha = channels == 4 ? texel[3] : opaque;
     for (int i = 0; i < 3; ++i) {
-        const std::uint8_t code = texel[channels < 3 ? 0 : i];
+        const std::uint8_t code = texel[i];
         if (alpha == opaque) {
             rgb.push_back(static_cast<std::byte>(code));
             continue;
@@ -190,11 +191,8 @@ void append_opaque(std::vector<std::byte>& rgb, const std::uint8_t* texel, int c
 /// The video replaces an existing file when it is complete.
 class VideoSink : public PictureSink {
   public:
-    VideoSink(std::filesystem::path file, double frames_per_second)
-        : file_(std::move(file)), rate_(frames_per_second) {
-        part_ = file_;
-        part_ += ".part";
-    }
+    VideoSink(const std::filesystem::path& file, double frames_per_second)
+        : file_(file), rate_(frames_per_second) {}
     VideoSink(const VideoSink&) = delete;
     VideoSink& operator=(const VideoSink&) = delete;
     ~VideoSink() override {
@@ -202,8 +200,6 @@ class VideoSink : public PictureSink {
         ::close(socket_);
         ::kill(process_, SIGKILL);
         ::waitpid(process_, nullptr, 0);
-        std::error_code unused;
-        std::filesystem::remove(part_, unused);
     }
 
     void take(const Image& picture) override {
@@ -230,16 +226,14 @@ class VideoSink : public PictureSink {
         }
         ::close(socket_);
         process_ = 0;
-        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-            std::error_code unused;
-            std::filesystem::remove(part_, unused);
-            fail("ffmpeg failed");
-        }
-        std::filesystem::rename(part_, file_);
+        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail("ffmpeg failed");
+        file_.commit();
     }
 
   private:
-    [[noreturn]] void fail(const std::string& problem) const { throw FileError(file_, problem); }
+    [[noreturn]] void fail(const std::string& problem) const {
+        throw FileError(file_.file(), problem);
+    }
 
     void start(int width, int height) {
         std::vector<std::string> words = {
@@ -254,9 +248,9 @@ class VideoSink : public PictureSink {
                                               "-f",   "mp4",     "-movflags", "+faststart"};
         const std::vector<std::string> webm = {"-c:v", "libvpx-vp9", "-crf", "20", "-b:v",
                                                "0",    "-row-mt",    "1",    "-f", "webm"};
-        const std::vector<std::string>& format = extension_of(file_) == ".mp4" ? mp4 : webm;
+        const std::vector<std::string>& format = extension_of(file_.file()) == ".mp4" ? mp4 : webm;
         words.insert(words.end(), format.begin(), format.end());
-        words.push_back("file:" + part_.string());
+        words.push_back("file:" + file_.temporary().string());
         std::vector<char*> arguments;
         for (std::string& word : words)
             arguments.push_back(word.data());
@@ -279,8 +273,7 @@ class VideoSink : public PictureSink {
         fail("needs the program ffmpeg, which is not installed");
     }
 
-    std::filesystem::path file_;
-    std::filesystem::path part_;
+    FileReplacement file_;
     double rate_;
     pid_t process_ = 0;
     int socket_ = -1;

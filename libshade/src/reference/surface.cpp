@@ -223,8 +223,7 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
     validate(scene);
     if (!scene.camera) throw InvalidInput("the scene has no camera");
     const glm::dmat4 world_from_view(scene.camera->world_from_view);
-    eye_world = scene.camera->orthographic_height ? glm::dvec4(glm::dvec3(world_from_view[2]), 0.0)
-                                                  : glm::dvec4(glm::dvec3(world_from_view[3]), 1.0);
+    eye_world = glm::dvec4(homogeneous_eye(*scene.camera));
     decode_textures(*this, scene, report);
     for (const Mesh& mesh : scene.meshes) {
         meshes.push_back(framed_mesh(materials, mesh, report));

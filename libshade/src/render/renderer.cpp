@@ -537,9 +537,7 @@ void Renderer::Implementation::set_state(const Draw& draw) const {
 void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
     DrawValues values = draw.values;
     values.clip_from_object = glm::mat4(to_clip * glm::dmat4(values.world_from_object));
-    values.eye_world = camera.orthographic_height
-                           ? glm::vec4(glm::vec3(camera.world_from_view[2]), 0.0F)
-                           : glm::vec4(glm::vec3(camera.world_from_view[3]), 1.0F);
+    values.eye_world = homogeneous_eye(camera);
     draw.program->linked.use();
     for (const std::string& name : draw.program->planned.uniforms) {
         set_uniform(draw.program->linked, name, values);

@@ -434,21 +434,31 @@ std::optional<std::size_t> variant_of(const GltfView& view, const SceneOptions& 
                     names.empty() ? "none" : fmt::to_string(fmt::join(names, ", "))));
 }
 
+/// A document that is read as a scene, and how.
+struct ReadDocument {
+    const GltfDocument& document;
+    const GltfView& view;
+    const SceneOptions& options;
+    std::optional<std::size_t> variant = variant_of(view, options);
+
+    /// Returns a primitive with the material of the variant.
+    [[nodiscard]] Mesh mesh(GltfPrimitiveId id, int texcoord_set = 0) const {
+        Mesh result = document.mesh(id, texcoord_set);
+        if (!variant || result.material_ranges.empty()) return result;
+        if (const auto material = document.variant_material(id, *variant))
+            result.material_ranges.front().material = static_cast<std::uint32_t>(*material);
+        return result;
+    }
+};
+
 /// Returns a primitive with the texture coordinates at which its material looks up its images. Its
 /// tangents belong to the stored coordinates, so they are transformed together with them.
-Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id, const GltfView& view,
-               const SceneOptions& options) {
-    Mesh mesh = document.mesh(id);
-    if (const auto variant = variant_of(view, options)) {
-        const auto material = document.variant_material(id, *variant);
-        if (material && !mesh.material_ranges.empty())
-            mesh.material_ranges.front().material = static_cast<std::uint32_t>(*material);
-    }
-    const std::vector<GltfMaterial>& materials = view.materials;
+Mesh mesh_from(const ReadDocument& read, GltfPrimitiveId id) {
+    Mesh mesh = read.mesh(id);
     if (mesh.material_ranges.empty() || !mesh.material_ranges.front().material) return mesh;
     const TexcoordSource source =
-        texcoord_source(materials[*mesh.material_ranges.front().material]);
-    if (source.set != 0) mesh = document.mesh(id, source.set);
+        texcoord_source(read.view.materials[*mesh.material_ranges.front().material]);
+    if (source.set != 0) mesh = read.mesh(id, source.set);
     if (source.transform == GltfTextureTransform{}) return mesh;
     for (glm::vec2& texcoord : mesh.texcoords)
         texcoord = transformed(source.transform, texcoord);
@@ -461,13 +471,13 @@ Mesh mesh_from(const GltfDocument& document, GltfPrimitiveId id, const GltfView&
 /// Returns the mesh of a primitive with normals. glTF demands flat ones for a mesh without normals,
 /// and ignores its tangents; the effect plan computes tangents where it needs them.
 ///
-/// \param options  replaces the normals unless they are kept; a crease angle smooths missing ones
-Mesh drawable_mesh(const GltfDocument& document, GltfPrimitiveId id, const GltfView& view,
-                   const SceneOptions& options, Report& report) {
+/// The options replace the normals unless they are kept; a crease angle smooths missing ones.
+Mesh drawable_mesh(const ReadDocument& read, GltfPrimitiveId id, Report& report) {
+    const SceneOptions& options = read.options;
     FrameOptions frames = frame_options("", options);
     frames.if_missing = options.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
     frames.tangents = TangentMethod::none;
-    Mesh mesh = mesh_from(document, id, view, options);
+    Mesh mesh = mesh_from(read, id);
     if (options.normals == NormalMode::keep && !mesh.normals.empty()) return mesh;
     return with_frames(std::move(mesh), frames, report).mesh;
 }
@@ -508,12 +518,14 @@ void take_vertices(const std::vector<std::uint32_t>& source, std::vector<Value>&
 
 /// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal
 /// maps or its anisotropy need, because they are deformed with it.
-std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const GltfView& view,
+std::optional<DeformedMesh> deformed_mesh(const ReadDocument& read,
                                           const GltfInstance<GltfPrimitiveId>& item,
-                                          const SceneOptions& options, Report& report) {
+                                          Report& report) {
+    const GltfView& view = read.view;
+    const SceneOptions& options = read.options;
     const GltfNode& node = view.nodes[item.node];
     if (!node.skin && !node.has_morph_targets) return std::nullopt;
-    GltfDeformation deformation = document.deformation(item.what);
+    GltfDeformation deformation = read.document.deformation(item.what);
     DeformedMesh result;
     result.node = item.node;
     result.weights = node.morph_weights;
@@ -526,7 +538,7 @@ std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const Gl
     if (deformation.targets.empty() && deformation.joints.empty()) return std::nullopt;
     FrameOptions frames = frame_options("", options);
     frames.if_missing = options.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
-    Mesh mesh = mesh_from(document, item.what, view, options);
+    Mesh mesh = mesh_from(read, item.what);
     const bool keeps = options.normals == NormalMode::keep && !mesh.normals.empty();
     result.has_flat_normals =
         !keeps && (options.normals == NormalMode::flat ||
@@ -564,13 +576,13 @@ std::optional<DeformedMesh> deformed_mesh(const GltfDocument& document, const Gl
 }
 
 /// Adds meshes and instances. A primitive with several instances is read once.
-void add_instances(const GltfDocument& document, const GltfView& view, const SceneOptions& options,
-                   SceneGraph& graph, Report& report) {
+void add_instances(const ReadDocument& read, SceneGraph& graph, Report& report) {
     Scene& scene = graph.scene;
+    const GltfView& view = read.view;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
     ProgressStage stage("meshes", view.primitives.size());
     for (const auto& item : view.primitives) {
-        if (auto deformed = deformed_mesh(document, view, item, options, report)) {
+        if (auto deformed = deformed_mesh(read, item, report)) {
             deformed->mesh = scene.meshes.size();
             if (!deformed->joints.empty()) deformed->skinned_instance = scene.instances.size();
             scene.meshes.push_back(deformed->rest);
@@ -579,9 +591,7 @@ void add_instances(const GltfDocument& document, const GltfView& view, const Sce
         } else {
             const auto key = std::pair(item.what.mesh, item.what.primitive);
             const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
-            if (is_new) {
-                scene.meshes.push_back(drawable_mesh(document, item.what, view, options, report));
-            }
+            if (is_new) scene.meshes.push_back(drawable_mesh(read, item.what, report));
             scene.instances.push_back({entry->second, item.world_from_object, item.name});
         }
         graph.instances.push_back({item.node, item.node_from_object});
@@ -616,8 +626,6 @@ void add_lights(const GltfView& view, SceneGraph& graph) {
 
 /// Adds the cameras; the first one becomes the scene's.
 void add_cameras(const GltfView& view, SceneGraph& graph, Report& report) {
-    // The near plane of an orthographic camera may be at 0 in glTF.
-    constexpr float min_near_share = 1e-4F;
     for (std::size_t i = 0; i < view.cameras.size(); ++i) {
         const auto& item = view.cameras[i];
         const GltfCamera& read = item.what;
@@ -635,6 +643,7 @@ void add_cameras(const GltfView& view, SceneGraph& graph, Report& report) {
         camera.near = read.near;
         camera.far = read.far.value_or(2.0F * camera.near);
         camera.orthographic_height = read.orthographic_height;
+        // The near plane of an orthographic camera may be at 0 in glTF.
         if (camera.orthographic_height)
             camera.near = std::max(camera.near, min_near_share * camera.far);
     }
@@ -696,7 +705,7 @@ SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path&
     SceneGraph graph;
     add_appearance(view, model, options, graph.scene, report);
     add_nodes(view, graph, report);
-    add_instances(document, view, options, graph, report);
+    add_instances({document, view, options}, graph, report);
     add_lights(view, graph);
     add_cameras(view, graph, report);
     add_animations(document, graph, report);
@@ -710,12 +719,14 @@ std::vector<Scene> mesh_scenes(const GltfDocument& document, std::span<const std
     Scene appearance;
     add_appearance(view, file, {}, appearance, report);
     std::vector<Scene> scenes(meshes.size(), appearance);
+    const SceneOptions options;
+    const ReadDocument read{document, view, options};
     for (const GltfPrimitiveId id : document.triangle_primitives()) {
         const auto place = std::find(meshes.begin(), meshes.end(), id.mesh);
         if (place == meshes.end()) continue;
         Scene& scene = scenes[static_cast<std::size_t>(place - meshes.begin())];
         scene.instances.push_back({scene.meshes.size(), glm::mat4(1.0F), ""});
-        scene.meshes.push_back(drawable_mesh(document, id, view, {}, report));
+        scene.meshes.push_back(drawable_mesh(read, id, report));
     }
     return scenes;
 }

@@ -145,24 +145,32 @@ float distance_to_see(const glm::vec3& point, float tan_x, float tan_y) {
     return point.z + vertex_margin * std::max(std::abs(point.x) / tan_x, std::abs(point.y) / tan_y);
 }
 
+/// Calls visit(point) for every vertex, relative to a place of the world and in the axes of a
+/// camera.
+template <typename Visit>
+void for_each_point(const Scene& scene, const Camera& camera, const glm::vec3& place,
+                    const Visit& visit) {
+    const glm::mat3 view_from_world = glm::transpose(glm::mat3(camera.world_from_view));
+    for (const Instance& instance : scene.instances) {
+        glm::mat4 from_place = instance.world_from_object;
+        from_place[3] -= glm::vec4(place, 0.0F);
+        const glm::mat4 view_from_object = glm::mat4(view_from_world) * from_place;
+        for (const glm::vec3& position : scene.meshes[instance.mesh]->positions)
+            visit(glm::vec3(view_from_object * glm::vec4(position, 1.0F)));
+    }
+}
+
 /// Returns the factor by which the distance from the camera to `target` must change for the camera
 /// to see every finite vertex. 1 if there is none.
 float fitting_factor(const Scene& scene, const Camera& camera, const glm::vec3& target,
                      float aspect) {
     const float tan_y = tan_of_half(camera.vertical_fov);
     const float tan_x = aspect * tan_y;
-    const glm::mat3 view_from_world = glm::transpose(glm::mat3(camera.world_from_view));
     float needed = 0;
-    for (const Instance& instance : scene.instances) {
-        glm::mat4 from_target = instance.world_from_object;
-        from_target[3] -= glm::vec4(target, 0.0F);
-        const glm::mat4 view_from_object = glm::mat4(view_from_world) * from_target;
-        for (const glm::vec3& position : scene.meshes[instance.mesh]->positions) {
-            const glm::vec3 point(view_from_object * glm::vec4(position, 1.0F));
-            const float distance = distance_to_see(point, tan_x, tan_y);
-            if (std::isfinite(distance)) needed = std::max(needed, distance);
-        }
-    }
+    for_each_point(scene, camera, target, [&](const glm::vec3& point) {
+        const float distance = distance_to_see(point, tan_x, tan_y);
+        if (std::isfinite(distance)) needed = std::max(needed, distance);
+    });
     const float distance = glm::distance(glm::vec3(camera.world_from_view[3]), target);
     return needed > 0 && distance > 0 ? needed / distance : 1.0F;
 }
@@ -209,16 +217,12 @@ double half_height(const Camera& camera) {
 }
 
 Camera orthographic(const Scene& scene, Camera camera, float aspect) {
-    const glm::mat4 view_from_world = glm::inverse(camera.world_from_view);
     float half = 0.0F;
-    for (const Instance& instance : scene.instances) {
-        const glm::mat4 view_from_object = view_from_world * instance.world_from_object;
-        for (const glm::vec3& position : scene.meshes[instance.mesh]->positions) {
-            const glm::vec3 point(view_from_object * glm::vec4(position, 1.0F));
-            const float reach = std::max(std::abs(point.x) / aspect, std::abs(point.y));
-            if (std::isfinite(reach)) half = std::max(half, reach);
-        }
-    }
+    for_each_point(scene, camera, glm::vec3(camera.world_from_view[3]),
+                   [&](const glm::vec3& point) {
+                       const float reach = std::max(std::abs(point.x) / aspect, std::abs(point.y));
+                       if (std::isfinite(reach)) half = std::max(half, reach);
+                   });
     camera.orthographic_height = half > 0.0F ? 2.0F * vertex_margin * half : 1.0F;
     return camera;
 }
@@ -228,8 +232,6 @@ Camera at_distance(Camera camera, const glm::vec3& target, float factor) {
         *camera.orthographic_height *= factor;
         return camera;
     }
-    // A smaller ratio of near to far would cost depth precision.
-    constexpr float min_near_share = 1e-4F;
     const glm::vec3 eye(camera.world_from_view[3]);
     const float moved = (factor - 1.0F) * glm::distance(eye, target);
     camera.world_from_view[3] = glm::vec4(target + factor * (eye - target), 1.0F);

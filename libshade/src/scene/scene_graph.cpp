@@ -437,6 +437,7 @@ void choose_camera(SceneGraph& graph, std::size_t index) {
         throw InvalidInput(fmt::format("no camera {}: there are {}", index, graph.cameras.size()));
     }
     const FileCamera& chosen = graph.cameras[index];
+    graph.chosen_camera = index;
     graph.scene.camera = chosen.camera;
     graph.camera = chosen.carried;
     graph.camera_sees_all = chosen.sees_all;

@@ -40,6 +40,16 @@ void check_field_of_view(const std::string& owner, float vertical_fov);
 /// the plane at distance 1.
 double half_height(const Camera& camera);
 
+/// Returns the position of a perspective camera as (x,y,z,1), and the direction to an orthographic
+/// camera as (x,y,z,0), in world space.
+inline glm::vec4 homogeneous_eye(const Camera& camera) {
+    return camera.orthographic_height ? glm::vec4(glm::vec3(camera.world_from_view[2]), 0.0F)
+                                      : glm::vec4(glm::vec3(camera.world_from_view[3]), 1.0F);
+}
+
+/// The smallest ratio of the near to the far plane. A smaller one would cost depth precision.
+inline constexpr float min_near_share = 1e-4F;
+
 // Scene graphs
 
 /// Returns the axes of a viewer who looks at a point from a direction on the sphere. Defined at the

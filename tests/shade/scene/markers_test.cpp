@@ -42,6 +42,11 @@ TEST(Framing, TheDepthRangeMovesAlongWithTheCamera) {
         EXPECT_GE(moved.far * 1.0001F, farthest_corner(moved));
     }
     EXPECT_NO_THROW(validate(at_distance(camera, glm::vec3(0.0F), 0.01F)));
+    Camera parallel = camera;
+    parallel.orthographic_height = 3.0F;
+    const Camera enlarged = at_distance(parallel, glm::vec3(0.0F), 0.5F);
+    EXPECT_EQ(enlarged.orthographic_height, 1.5F);
+    EXPECT_EQ(enlarged.world_from_view, parallel.world_from_view);
 }
 
 /// Returns the largest |x| or |y| of all finite vertices in normalized device coordinates. The edge

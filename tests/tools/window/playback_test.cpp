@@ -243,7 +243,7 @@ TEST(PlaybackTest, FollowsTheChosenCamera) {
     playback.take(graph, false);
     EXPECT_THAT(playback.cameras(), ElementsAre("fixed", "camera 2"));
     EXPECT_FALSE(playback.camera()) << "it does not move";
-    playback.choose_camera(1, 0.0);
+    playback.choose_camera(1);
     ASSERT_TRUE(playback.camera());
     playback.set_time(1.0);
     Scene scene = graph.scene;
@@ -253,6 +253,9 @@ TEST(PlaybackTest, FollowsTheChosenCamera) {
     EXPECT_EQ(playback.chosen_camera(), 1U) << "the file was read again";
     playback.take(graph, false);
     EXPECT_EQ(playback.chosen_camera(), 0U);
+    choose_camera(graph, 1);
+    playback.take(graph, false);
+    EXPECT_EQ(playback.chosen_camera(), 1U) << "--model-camera";
 }
 
 }  // namespace

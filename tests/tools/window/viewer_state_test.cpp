@@ -283,6 +283,37 @@ TEST_F(State, CommandLineRestoresTheView) {
     EXPECT_GT(glm::length(state().camera().target), 0.0F);
 }
 
+TEST_F(State, TheOrthographicCameraIsSwitchedAndCopied) {
+    show("square.obj");
+    EXPECT_FALSE(state().request()->camera.orthographic_height);
+    state().act(Action::orthographic);
+    const Camera before = state().request()->camera;
+    ASSERT_TRUE(before.orthographic_height);
+    const OrbitCamera& orbit = state().camera();
+    EXPECT_FLOAT_EQ(*before.orthographic_height,
+                    2.0F * orbit.distance * std::tan(0.5F * orbit.vertical_fov));
+    const std::string text = state().command_line();
+    EXPECT_THAT(text, testing::HasSubstr(" --orthographic"));
+    state().act(Action::orthographic);
+    EXPECT_FALSE(state().request()->camera.orthographic_height);
+    state().apply_view_text(text);
+    EXPECT_EQ(state().request()->camera, before);
+    state().apply_view_text("0,0");
+    EXPECT_TRUE(state().request()->camera.orthographic_height) << "only the direction changes";
+}
+
+TEST_F(State, TheStudioLightsTheSceneWithoutAFile) {
+    show("square.obj");
+    state().set_environment("studio");
+    EXPECT_EQ(state().error(), "");
+    ASSERT_TRUE(state().scene().environment);
+    EXPECT_TRUE(is_studio(*state().scene().environment));
+    EXPECT_TRUE(state().scene().environment->lights);
+    EXPECT_FALSE(state().scene().environment->skybox);
+    state().act(Action::undo);
+    EXPECT_FALSE(state().scene().environment);
+}
+
 TEST_F(State, HidesInstancesFromThePictureAndNotFromTheScene) {
     show("square.obj");
     const std::uint64_t revision = state().request()->revision;

@@ -40,13 +40,10 @@ void copy_places(const std::vector<Light>& from, const std::vector<Carried>& car
 void Playback::take(const SceneGraph& graph, bool is_same) {
     const std::optional<std::size_t> clip = graph_.clip;
     const std::size_t clip_count = clips_.size();
+    const std::size_t camera = graph_.chosen_camera;
     graph_ = graph;
     clips_ = clip_names(graph_);
-    if (is_same && chosen_camera_ < graph_.cameras.size()) {
-        relief::choose_camera(graph_, chosen_camera_);
-    } else {
-        chosen_camera_ = 0;
-    }
+    if (is_same && camera < graph_.cameras.size()) relief::choose_camera(graph_, camera);
     if (is_same && clips_.size() == clip_count) {
         graph_.clip = clip;
     } else if (!is_same) {
@@ -57,11 +54,9 @@ void Playback::take(const SceneGraph& graph, bool is_same) {
     measure();
 }
 
-void Playback::choose_camera(std::size_t index, double seconds) {
-    chosen_camera_ = index;
+void Playback::choose_camera(std::size_t index) {
     relief::choose_camera(graph_, index);
     measure();
-    relief::pose(graph_, duration_ == 0.0 ? seconds : time_);
 }
 
 void Playback::set_clip(std::optional<std::size_t> clip) {

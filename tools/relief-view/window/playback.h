@@ -66,9 +66,9 @@ class Playback {
 
     /// The names of the cameras of the file, and the one whose motion camera() tells.
     [[nodiscard]] std::vector<std::string> cameras() const { return camera_names(graph_); }
-    [[nodiscard]] std::size_t chosen_camera() const { return chosen_camera_; }
-    /// \param seconds  the time of the pose at which shown_camera() stands, if nothing moves
-    void choose_camera(std::size_t index, double seconds);
+    [[nodiscard]] std::size_t chosen_camera() const { return graph_.chosen_camera; }
+    /// The next pose() places the camera.
+    void choose_camera(std::size_t index);
     /// The camera of the last pose. Requires cameras().
     [[nodiscard]] const Camera& shown_camera() const { return *graph_.scene.camera; }
 
@@ -98,7 +98,6 @@ class Playback {
     float speed_ = 1.0F;
     bool is_playing_ = true;
     bool moves_camera_ = false;
-    std::size_t chosen_camera_ = 0;
     Bounds reach_;
 };
 

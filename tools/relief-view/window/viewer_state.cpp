@@ -647,10 +647,11 @@ void ViewerState::apply_view_text(const std::string& text) {
     try {
         const ViewText view = parse_view_text(text);
         const float fov = view.vertical_fov.value_or(camera_.vertical_fov);
-        // Without a target, only the direction changes.
+        // Without a target, the place and the projection stay.
         const CameraPlace place =
             view.camera.place.value_or(CameraPlace{camera_.target, camera_.distance});
-        camera_ = orbit_of(view.camera, place, fov, view.orthographic);
+        const bool keeps = !view.camera.place && camera_.orthographic;
+        camera_ = orbit_of(view.camera, place, fov, view.orthographic || keeps);
     } catch (const UsageError& error) {
         error_ = error.what();
     }
@@ -662,8 +663,8 @@ void ViewerState::set_effects(EffectRequest effects) {
 }
 
 void ViewerState::choose_camera(std::size_t index) {
-    playback_.choose_camera(index, options_.time.value_or(0.0));
-    if (scene_) move_to(playback_.time());
+    playback_.choose_camera(index);
+    move_to(playback_.time());
     camera_ = orbit_of(playback_.shown_camera(), sphere_);
     followed_.reset();
     if (playback_.camera()) followed_ = camera_;

@@ -235,7 +235,7 @@ class ViewerState {
     [[nodiscard]] const EffectRequest& effects() const { return effects_; }
 
     /// Shows the picture of a camera of the file, and follows it if the animation moves it.
-    /// \param index  into playback().cameras()
+    /// Requires a scene. \param index  into playback().cameras()
     void choose_camera(std::size_t index);
 
     /// Sets the debug view and the overlays.

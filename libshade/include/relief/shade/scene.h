@@ -401,6 +401,7 @@ struct SceneGraph {
     bool camera_sees_all = false;
     /// All cameras of a glTF file. The scene's camera is the first one; see choose_camera().
     std::vector<FileCamera> cameras;
+    std::size_t chosen_camera = 0;  ///< By choose_camera(), an index into `cameras`.
     /// The names of the material variants of a glTF file, "variant 1" and so on where a name is
     /// empty. SceneOptions::material_variant selects one.
     std::vector<std::string> material_variants;
