@@ -210,12 +210,6 @@ Camera framed(const Bounds& world, float azimuth, float elevation, float vertica
     return camera;
 }
 
-double half_height(const Camera& camera) {
-    return camera.orthographic_height
-               ? 0.5 * static_cast<double>(*camera.orthographic_height)
-               : portable::tan(static_cast<double>(camera.vertical_fov) * 0.5);
-}
-
 Camera orthographic(const Scene& scene, Camera camera, float aspect) {
     float half = 0.0F;
     for_each_point(scene, camera, glm::vec3(camera.world_from_view[3]),

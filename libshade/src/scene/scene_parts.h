@@ -38,7 +38,11 @@ void check_field_of_view(const std::string& owner, float vertical_fov);
 
 /// Returns half of the height of the picture: in world units if the camera is orthographic, else on
 /// the plane at distance 1.
-double half_height(const Camera& camera);
+inline double half_height(const Camera& camera) {
+    return camera.orthographic_height
+               ? 0.5 * static_cast<double>(*camera.orthographic_height)
+               : portable::tan(static_cast<double>(camera.vertical_fov) * 0.5);
+}
 
 /// Returns the position of a perspective camera as (x,y,z,1), and the direction to an orthographic
 /// camera as (x,y,z,0), in world space.
