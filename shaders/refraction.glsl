@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The environment seen through the surface.
+// What is seen through the surface: the environment behind Phong's surfaces, and the picture of what
+// is behind glTF's.
 
 #part refracted
 // Light is refracted once, at the surface; total internal reflection is black.
@@ -21,3 +22,131 @@ vec3 with_refraction(Surface surface, vec3 scattered) {
 uniform float transmission;
 
 vec3 with_refraction(Surface surface, vec3 scattered) { return scattered * (1.0 - transmission); }
+
+#part transmission_share
+// The share of the light that passes through glTF's surface instead of being scattered.
+
+#include <transmission_texture>
+
+uniform float transmission;
+
+float transmission_here() { return transmission * transmission_texel(); }
+
+#part transmission
+// The picture behind the surface replaces a share of the scattered light. It is tinted as scattered
+// light is, and lacks what facets mirror. Rough surfaces look up a coarser level of the picture.
+// Texels are fetched and mixed here, so that the weights are exact.
+// Source: KHR_materials_transmission.
+
+#include "inputs.glsl#min_roughness"
+#include "refraction.glsl#transmission_share"
+#include <film>
+#include <grazing>
+#include <path>
+
+uniform sampler2D behind;  // Radiance multiplied by coverage. Each level has half the size.
+uniform float blurred_level;  // The level for roughness 1.
+uniform vec3 background_radiance;
+
+vec4 behind_texel(ivec2 texel, int level) {
+    return texelFetch(behind, clamp(texel, ivec2(0), textureSize(behind, level) - 1), level);
+}
+
+vec4 behind_at(vec2 place, int level) {
+    vec2 texels = place * vec2(textureSize(behind, level)) - 0.5;
+    ivec2 first = ivec2(floor(texels));
+    vec2 share = texels - vec2(first);
+    return mix(mix(behind_texel(first, level), behind_texel(first + ivec2(1, 0), level), share.x),
+               mix(behind_texel(first + ivec2(0, 1), level),
+                   behind_texel(first + ivec2(1, 1), level), share.x),
+               share.y);
+}
+
+vec3 radiance_behind(vec2 place, float level) {
+    int sharper = int(level);
+    float share = level - float(sharper);
+    vec4 texel = behind_at(place, sharper);
+    if (share > 0.0) texel = mix(texel, behind_at(place, sharper + 1), share);
+    return texel.rgb + (1.0 - texel.a) * background_radiance;
+}
+
+vec3 with_transmission(Surface surface, vec3 scattered) {
+    float share = transmission_here();
+    float m = 1.0 - clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
+    vec3 blocking = blocking_f0(surface);
+    vec3 blocked = blocked_by_film(
+        surface, 1.0 - m, 1.0,
+        blocking + (grazing_reflectance(surface) - blocking) * (m * m * m * m * m));
+    float level = blurred_level * (surface.roughness - min_roughness) / (1.0 - min_roughness);
+    Path path = path_through(surface, vec2(textureSize(behind, 0)));
+    vec3 seen = radiance_behind(path.place, level) * path.transmittance;
+    vec3 passing = seen * surface.scattered_color * (vec3(1.0) - blocked);
+    return scattered * (1.0 - share) + passing * share;
+}
+
+#part transmission_dimming
+// For a debug view of another term: transmission only dims the scattered light.
+
+#include "refraction.glsl#transmission_share"
+
+vec3 with_transmission(Surface surface, vec3 scattered) {
+    return scattered * (1.0 - transmission_here());
+}
+
+#part transmission_texture
+// The share from a texture: red.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D transmission_texture;
+
+float transmission_texel() { return texture(transmission_texture, texcoord_surface).r; }
+
+#part path
+// The path of light through the surface: where it comes from in the picture behind the surface,
+// from 0 to 1, and the share that is not absorbed.
+
+struct Path {
+    vec2 place;
+    vec3 transmittance;
+};
+
+#part thin
+// A thin sheet neither bends the path nor absorbs light.
+
+#include "refraction.glsl#path"
+
+Path path_through(Surface surface, vec2 picture_size) {
+    return Path(gl_FragCoord.xy / picture_size, vec3(1.0));
+}
+
+#part volume
+// Light is refracted where it leaves the surface to the eye, and absorbed on a path whose length is
+// the thickness. A path that begins behind the eye counts as straight. Source: KHR_materials_volume.
+
+#include "refraction.glsl#path"
+#include <thickness_texture>
+
+uniform mat4 clip_from_world;
+uniform float thickness;
+uniform float object_scale;
+uniform vec3 absorption;  // The logarithm of the attenuation of a unit of length.
+uniform float volume_index_ratio;  // The outside's refractive index over the inside's.
+
+Path path_through(Surface surface, vec2 picture_size) {
+    float path_length = thickness * thickness_texel() * object_scale;
+    vec3 bent_world = refract(-surface.view_world, surface.normal_world, volume_index_ratio);
+    vec4 clip = clip_from_world * vec4(surface.position_world + bent_world * path_length, 1.0);
+    vec2 place = clip.w > 0.0 ? clamp(0.5 * clip.xy / clip.w + 0.5, vec2(0.0), vec2(1.0))
+                              : gl_FragCoord.xy / picture_size;
+    return Path(place, exp(-absorption * path_length));
+}
+
+#part thickness_texture
+// The share of the thickness from a texture: green.
+
+#include "inputs.glsl#texcoord"
+
+uniform sampler2D thickness_texture;
+
+float thickness_texel() { return texture(thickness_texture, texcoord_surface).g; }

@@ -12,6 +12,7 @@ invariant out vec4 color;
 #include <environment_light>
 #include <tint>
 #include <specular_texture>
+#include <transmission>
 #include <reflection>
 #include <sheen>
 #include <emission>
@@ -27,7 +28,8 @@ void main() {
     add_lights(surface, lighting);
     add_environment_light(surface, lighting);
 
-    vec3 scattered = lighting.scattered * scattering_tint(surface);
+    vec3 scattered =
+        with_transmission(surface, lighting.scattered * scattering_tint(surface));
     vec3 highlights = lighting.highlights * specular_texture_color();
     vec3 reflected = with_sheen(surface, with_reflection(surface, scattered) + highlights);
     vec3 radiance = with_clearcoat(surface, reflected + emitted_radiance());

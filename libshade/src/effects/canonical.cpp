@@ -54,6 +54,7 @@ void settle_model(Features& f) {
         if (f.interpolation == Interpolation::gouraud) f.interpolation = Interpolation::per_pixel;
     } else {
         f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
+        f.transmission = false;
     }
     if (f.reflection == ReflectionTerm::none) f.fresnel = FresnelTerm::constant;
 }
@@ -83,7 +84,7 @@ void drop_lights(Features& f) {
 /// True if light of any kind reaches glTF's surface, apart from its emission.
 bool is_lit_anyhow(const Features& f) {
     return light_count(f) > 0 || f.ambient || f.environment_diffuse ||
-           f.reflection != ReflectionTerm::none;
+           f.reflection != ReflectionTerm::none || transmits(f);
 }
 
 /// Sheen and coat belong to glTF's model, and so does anisotropy, which stretches highlights and
@@ -114,7 +115,7 @@ void drop_lookups(Features& f) {
 void drop_normal(Features& f) {
     const bool per_pixel_lights = light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
     const bool seen = per_pixel_lights || f.reflection != ReflectionTerm::none || f.refraction ||
-                      f.environment_diffuse || f.sheen;
+                      f.environment_diffuse || f.sheen || transmits(f);
     // A coat shows the normal without its map.
     const bool plain_seen = seen || f.clearcoat;
     if (!seen) f.detail = NormalDetail::none;
@@ -139,7 +140,7 @@ void drop_colors(Features& f) {
     const bool from_everywhere = f.ambient || f.environment_diffuse ||
                                  (f.metallic_roughness && f.reflection != ReflectionTerm::none);
     if (!from_everywhere) f.occlusion_texture = false;
-    if (!from_everywhere && !f.diffuse) {
+    if (!from_everywhere && !f.diffuse && !transmits(f)) {
         f.metallic_roughness &= f.clearcoat;
         f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
         if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
@@ -149,6 +150,11 @@ void drop_colors(Features& f) {
     f.specular_color_texture &= f.dielectric_reflectance;
     f.iridescence_texture &= f.iridescence;
     f.film_thickness_texture &= f.iridescence;
+    // In views of one term it needs scattered light to dim.
+    f.transmission &= transmits(f) || f.ambient || f.environment_diffuse || light_count(f) > 0;
+    f.transmission_texture &= f.transmission;
+    f.volume &= transmits(f);
+    f.thickness_texture &= f.volume;
 }
 
 std::string counted(std::uint32_t count, std::string_view kind) {
@@ -229,6 +235,7 @@ Features term_features(Features f) {
     if (term != DebugView::reflection && term != DebugView::refraction && !dims)
         f.reflection = ReflectionTerm::none;
     if (term != DebugView::refraction && !dims) f.refraction = false;
+    f.transmission &= is_scattered;
     return f;
 }
 

@@ -154,7 +154,7 @@ std::string missing_data_reason(const Drawn& drawn, DebugView view) {
 /// True if light shows the normal in the picture; if not, its effects say nothing about the map.
 bool is_normal_seen(const Features& f) {
     return f.directional_lights + f.point_lights + f.spot_lights > 0 || f.environment_diffuse ||
-           f.reflection != ReflectionTerm::none || f.refraction;
+           f.reflection != ReflectionTerm::none || f.refraction || f.transmission;
 }
 
 /// Makes one draw show the view. \return why it has nothing to show; empty if it has something

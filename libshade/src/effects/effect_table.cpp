@@ -301,10 +301,8 @@ Decision of_schlick(Subject s) {
 }
 
 Decision of_refraction(Subject s) {
-    const std::vector<std::string>& undrawn = s.material.undrawn_extensions;
-    const std::string transmission = "KHR_materials_transmission";
-    if (is_physical(s) && std::find(undrawn.begin(), undrawn.end(), transmission) != undrawn.end())
-        return {false, fmt::format("{} has {}, which is not drawn", s.name, transmission)};
+    if (is_physical(s) && s.material.metallic_roughness->transmission > 0.0F)
+        return {false, s.name + " shows what is behind it by transmission instead"};
     if (!(s.material.transmission > 0.0F) || is_physical(s))
         return {false, s.name + " lets nothing through"};
     if (!s.scene.environment) return {false, "the scene has no environment"};
@@ -322,6 +320,15 @@ Decision of_tone(Subject s, ToneMapping tone) {
     if (s.scene.tone_mapping == tone) return {true, "the scene asks for it"};
     return {false, s.scene.tone_mapping == ToneMapping::none ? "radiance above 1 is shown as 1"
                                                              : "the scene asks for another curve"};
+}
+
+Decision of_transmission(Subject s) {
+    if (!is_physical(s)) return {false, s.name + " is Phong's model"};
+    const MetallicRoughness& model = *s.material.metallic_roughness;
+    if (!(model.transmission > 0.0F)) return {false, s.name + " lets nothing through"};
+    const bool textured = model.texture && !s.mesh.texcoords.empty();
+    return of_material(s, model.metallic < 1.0F || textured, "shows what is behind it",
+                       "is a metal everywhere");
 }
 
 const char* coat_map_hidden_by(const Features& requested, const Features& /*shown*/) {
@@ -380,6 +387,17 @@ std::vector<EffectRow> model_rows() {
                      is_physical(s) && s.material.metallic_roughness->iridescence > 0.0F;
                  return of_material(s, has, "has a thin film", "has none");
              }},
+        {.effect =
+             one_switch<&F::transmission>("transmission", "the material is not metallic-roughness"),
+         .decide = of_transmission,
+         .choice = "what is behind it would be drawn first"},
+        {.effect = one_switch<&F::volume>("volume", "the surface lets nothing through"),
+         .decide =
+             [](Subject s) {
+                 const bool has = is_physical(s) && s.material.metallic_roughness->thickness > 0.0F;
+                 return of_material(s, has, "encloses a volume", "is thin");
+             },
+         .choice = "a thin surface does not refract"},
         {.effect = one_switch<&F::anisotropy>(
              "anisotropy", "the material is not metallic-roughness, or mirrors nothing"),
          .decide = of_anisotropy,
@@ -401,6 +419,10 @@ std::vector<EffectRow> model_rows() {
                                                                         no_film),
         model_texture<&F::film_thickness_texture, &M::iridescence_thickness_texture>(
             "film thickness texture", no_film),
+        model_texture<&F::transmission_texture, &M::transmission_texture>(
+            "transmission texture", "the surface lets nothing through"),
+        model_texture<&F::thickness_texture, &M::thickness_texture>("thickness texture",
+                                                                    "there is no volume"),
         {.effect = one_value<&F::interpolation, Interpolation::gouraud>("Gouraud",
                                                                         "no light is interpolated"),
          .decide =

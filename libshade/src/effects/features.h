@@ -38,6 +38,12 @@ inline bool has_black_transmission(const Features& f) {
     return is_term(f.view) && f.view != DebugView::refraction;
 }
 
+/// True if the surface shows what is behind it by transmission. In a view of one term, transmission
+/// only dims the scattered light: what is behind belongs to other terms.
+inline bool transmits(const Features& f) {
+    return f.transmission && !is_term(f.view);
+}
+
 /// True if the view shows a vector of the tangent frame.
 inline bool shows_frame(const Features& f) {
     return f.view == DebugView::tangent || f.view == DebugView::bitangent ||
@@ -113,6 +119,7 @@ inline constexpr std::array frame_effects = {
     FrameEffect{"prefiltered environment", &FramePlan::prefiltered_map},
     FrameEffect{"environment BRDF table", &FramePlan::environment_brdf},
     FrameEffect{"environment irradiance", &FramePlan::environment_irradiance},
+    FrameEffect{"transmission background", &FramePlan::transmission_background},
     FrameEffect{"sorted blending", &FramePlan::sorted_blending},
     FrameEffect{"finishing pass", &FramePlan::finishing_pass},
 };

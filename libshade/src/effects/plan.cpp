@@ -103,12 +103,19 @@ void plan_finishing(const FrameSettings& settings, FramePlan& plan) {
     set_frame_effect(plan, &FramePlan::sorted_blending, blends,
                      blends ? "a material lets through what is behind it"
                             : "every material is opaque or has holes only");
+    const bool transmits =
+        std::any_of(plan.draws.begin(), plan.draws.end(),
+                    [](const DrawPlan& draw) { return relief::transmits(draw.features); });
+    set_frame_effect(plan, &FramePlan::transmission_background, transmits,
+                     transmits ? "a material shows what is behind it by transmission"
+                               : "no material shows what is behind it by transmission");
     const bool averaged = settings.samples > 1 && !is_data(settings.view);
     set_frame_effect(
-        plan, &FramePlan::finishing_pass, averaged || blends,
+        plan, &FramePlan::finishing_pass, averaged || blends || transmits,
         averaged ? fmt::format("{} samples a pixel are averaged in linear light", settings.samples)
         : blends ? "what is blended must be in linear light"
-                 : "one sample a pixel, and nothing is blended: surfaces write codes");
+        : transmits ? "what shows through surfaces must be in linear light"
+                    : "one sample a pixel, and nothing is blended: surfaces write codes");
 }
 
 }  // namespace

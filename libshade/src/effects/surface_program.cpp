@@ -58,11 +58,12 @@ bool is_flat(By f) {
 /// True if the surface under sheen and coat sends light to the eye, apart from its emission.
 bool has_lit_base(By f) {
     return has_lights(f) || f.ambient || f.environment_diffuse ||
-           f.reflection != ReflectionTerm::none;
+           f.reflection != ReflectionTerm::none || transmits(f);
 }
 /// True if glTF's roughness and Fresnel factors show. Ambient light has neither.
 bool has_lit_facets(By f) {
-    return has_lights(f) || f.environment_diffuse || f.reflection != ReflectionTerm::none;
+    return has_lights(f) || f.environment_diffuse || f.reflection != ReflectionTerm::none ||
+           transmits(f);
 }
 
 /// The values that a stage needs of the surface.
@@ -75,7 +76,8 @@ struct Needs {
 
 /// \param lights  the stage computes them  \param rest  and everything else that shows the normal
 Needs needs_of(By f, bool lights, bool rest) {
-    const bool reflects = rest && (f.reflection != ReflectionTerm::none || f.refraction);
+    const bool reflects =
+        rest && (f.reflection != ReflectionTerm::none || f.refraction || transmits(f));
     const bool lit_around = rest && f.environment_diffuse;
     Needs needs;
     needs.lights = lights && has_lights(f);
@@ -129,7 +131,8 @@ bool passes_normal(By f) {
 bool has_model_texture(By f) {
     return f.specular_weight_texture || f.specular_color_texture || f.sheen_color_texture ||
            f.clearcoat_texture || f.clearcoat_roughness_texture || f.clearcoat_normal_map ||
-           f.anisotropy_texture || f.iridescence_texture || f.film_thickness_texture;
+           f.anisotropy_texture || f.iridescence_texture || f.film_thickness_texture ||
+           f.transmission_texture || f.thickness_texture;
 }
 bool passes_texcoord(By f) {
     return f.diffuse_texture || f.specular_texture || f.metallic_roughness_texture ||
@@ -234,6 +237,36 @@ Steps film_steps(By f) {
                f.film_thickness_texture,
                {.uniforms = {"iridescence_thickness_minimum"},
                 .samplers = {"film_thickness_texture"}}}}}};
+}
+
+/// Returns the steps of what shows through glTF's surfaces.
+Steps transmission_steps(By f) {
+    return {{"transmission",
+             "vec3 with_transmission(Surface surface, vec3 scattered) { return scattered; }",
+             {{"refraction.glsl#transmission_dimming",
+               f.transmission && !transmits(f),
+               {.uniforms = {"transmission"}}},
+              {"refraction.glsl#transmission",
+               transmits(f),
+               {.uniforms = {"transmission", "blurred_level", "background_radiance"},
+                .samplers = {"behind"}}}}},
+            {"transmission_texture",
+             "float transmission_texel() { return 1.0; }",
+             {{"refraction.glsl#transmission_texture",
+               f.transmission_texture,
+               {.samplers = {"transmission_texture"}}}}},
+            {"path",
+             "",
+             {{"refraction.glsl#thin", transmits(f) && !f.volume},
+              {"refraction.glsl#volume",
+               f.volume,
+               {.uniforms = {"clip_from_world", "thickness", "object_scale", "absorption",
+                             "volume_index_ratio"}}}}},
+            {"thickness_texture",
+             "float thickness_texel() { return 1.0; }",
+             {{"refraction.glsl#thickness_texture",
+               f.thickness_texture,
+               {.samplers = {"thickness_texture"}}}}}};
 }
 
 /// Returns the steps of glTF's facets. Canonical features have anisotropy only where it shows.
@@ -648,6 +681,7 @@ Steps lit_steps(By f) {
                    film_steps(f),
                    facet_steps(f, lights_here),
                    layer_steps(f),
+                   transmission_steps(f),
                    normal_steps(f),
                    light_steps(f, lights_here),
                    scattering_steps(f, lights_here),

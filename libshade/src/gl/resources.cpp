@@ -9,6 +9,7 @@
 #include <array>
 #include <cassert>
 
+#include "gl/cube_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/renderer.h"
@@ -371,6 +372,14 @@ void RenderTarget::copy(const RenderTarget& other) const {
                          GL_NEAREST);
 }
 
+void RenderTarget::copy_to(const Framebuffer& other) const {
+    const Api& api = *api_;
+    api->BindFramebuffer(GL_READ_FRAMEBUFFER, draw_.name());
+    api->BindFramebuffer(GL_DRAW_FRAMEBUFFER, other.name());
+    api->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                         GL_NEAREST);
+}
+
 Image RenderTarget::read(ColorSpace color_space) const {
     const Api& api = *api_;
     if (samples_ > 1) {
@@ -392,6 +401,41 @@ Image RenderTarget::read(ColorSpace color_space) const {
     api.check("reading a picture back");
     flip_rows(image);
     return image;
+}
+
+MippedCopy::MippedCopy(const Api& api, const RenderTarget& like)
+    : api_(&api), width_(like.width()), height_(like.height()), color_(api) {
+    api->BindTexture(GL_TEXTURE_2D, color_.name());
+    const int last = level_count(std::max(width_, height_)) - 1;
+    for (int level = 0; level <= last; ++level) {
+        api->TexImage2D(GL_TEXTURE_2D, level, static_cast<GLint>(internal_format(like.format())),
+                        std::max(width_ >> level, 1), std::max(height_ >> level, 1), 0, GL_RGBA,
+                        GL_UNSIGNED_BYTE, nullptr);
+    }
+    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, last);
+    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    api->BindTexture(GL_TEXTURE_2D, 0);
+    for (int level = 0; level <= last; ++level) {
+        levels_.emplace_back(api);
+        api->BindFramebuffer(GL_FRAMEBUFFER, levels_.back().name());
+        api->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+                                  color_.name(), level);
+        check_complete(api, width_, height_);
+    }
+}
+
+void MippedCopy::copy(const RenderTarget& drawn) const {
+    const Api& api = *api_;
+    drawn.copy_to(levels_.front());
+    for (std::size_t level = 1; level < levels_.size(); ++level) {
+        const auto width = [&](std::size_t l) { return std::max(width_ >> l, 1); };
+        const auto height = [&](std::size_t l) { return std::max(height_ >> l, 1); };
+        api->BindFramebuffer(GL_READ_FRAMEBUFFER, levels_[level - 1].name());
+        api->BindFramebuffer(GL_DRAW_FRAMEBUFFER, levels_[level].name());
+        api->BlitFramebuffer(0, 0, width(level - 1), height(level - 1), 0, 0, width(level),
+                             height(level), GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    }
 }
 
 }  // namespace relief::gl

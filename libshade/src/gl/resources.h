@@ -155,6 +155,12 @@ class RenderTarget {
     /// Copies the color of another target of the same size; both have one sample a pixel.
     void copy(const RenderTarget& other) const;
 
+    /// Copies the color into a framebuffer of the same size, which stays bound; samples are
+    /// averaged.
+    void copy_to(const Framebuffer& other) const;
+
+    [[nodiscard]] ColorFormat format() const { return format_; }
+
   private:
     const Api* api_;
     int width_;
@@ -164,6 +170,26 @@ class RenderTarget {
     Texture color_;
     Renderbuffer depth_;
     Framebuffer draw_;
+};
+
+/// A copy of a target's color with all mip levels, for lookups by texelFetch.
+class MippedCopy {
+  public:
+    /// \param like  its size and format are those of the copy \throws GpuError
+    MippedCopy(const Api& api, const RenderTarget& like);
+
+    /// Copies the color, samples averaged. A texel of each further level is the bilinear mean at
+    /// its center in the level before.
+    void copy(const RenderTarget& drawn) const;
+
+    [[nodiscard]] const Texture& color() const { return color_; }
+
+  private:
+    const Api* api_;
+    int width_;
+    int height_;
+    Texture color_;
+    std::vector<Framebuffer> levels_;
 };
 
 }  // namespace relief::gl

@@ -14,6 +14,7 @@
 #include "portable_math.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
+#include "scene/scene_parts.h"
 
 namespace relief::reference {
 
@@ -33,7 +34,8 @@ void for_each_texture(const Material& material, Each each) {
         for (const auto* data :
              {&model->texture, &model->specular_texture, &model->clearcoat_texture,
               &model->clearcoat_roughness_texture, &model->anisotropy_texture,
-              &model->iridescence_texture, &model->iridescence_thickness_texture})
+              &model->iridescence_texture, &model->iridescence_thickness_texture,
+              &model->transmission_texture, &model->thickness_texture})
             each(*data, ImageUse::data);
         each(model->specular_color_texture, ImageUse::color);
         each(model->sheen_color_texture, ImageUse::color);
@@ -305,6 +307,82 @@ glm::dvec3 EnvironmentLookup::diffuse(const glm::dvec3& normal_world) const {
 glm::dvec2 directional_albedo(double n_dot_v, double roughness) {
     // A surface seen edge-on gets the limit.
     return environment_brdf(std::max(n_dot_v, 1e-4), roughness);
+}
+
+// The picture behind transmissive surfaces
+
+glm::dvec4 PictureBehind::Level::bilinear(const glm::dvec2& place) const {
+    const glm::dvec2 scaled = place * glm::dvec2(width, height) - 0.5;
+    const glm::dvec2 first = glm::floor(scaled);
+    const glm::dvec2 share = scaled - first;
+    const auto at = [&](double x, double y) {
+        const auto column = static_cast<std::size_t>(std::clamp(x, 0.0, width - 1.0));
+        const auto row = static_cast<std::size_t>(std::clamp(y, 0.0, height - 1.0));
+        return texels[row * static_cast<std::size_t>(width) + column];
+    };
+    return glm::mix(glm::mix(at(first.x, first.y), at(first.x + 1.0, first.y), share.x),
+                    glm::mix(at(first.x, first.y + 1.0), at(first.x + 1.0, first.y + 1.0), share.x),
+                    share.y);
+}
+
+PictureBehind::PictureBehind(const Scene& scene, Level picture, std::vector<std::uint8_t> edges)
+    : view_from_world_(glm::inverse(glm::dmat4(scene.camera->world_from_view))),
+      half_size_(half_height(*scene.camera) * picture.width / picture.height,
+                 half_height(*scene.camera)),
+      is_orthographic_(scene.camera->orthographic_height.has_value()),
+      background_(glm::dvec3(scene.background) * static_cast<double>(scene.background.a)),
+      edges_(std::move(edges)) {
+    levels_.push_back(std::move(picture));
+    while (levels_.back().width > 1 || levels_.back().height > 1) {
+        const Level& before = levels_.back();
+        Level level{std::max(before.width / 2, 1), std::max(before.height / 2, 1), {}};
+        for (int y = 0; y < level.height; ++y) {
+            for (int x = 0; x < level.width; ++x)
+                level.texels.push_back(
+                    before.bilinear({(x + 0.5) / level.width, (y + 0.5) / level.height}));
+        }
+        levels_.push_back(std::move(level));
+    }
+}
+
+std::optional<glm::dvec2> PictureBehind::place_of(const glm::dvec3& position_world) const {
+    const glm::dvec3 view(view_from_world_ * glm::dvec4(position_world, 1.0));
+    const double w = is_orthographic_ ? 1.0 : -view.z;
+    if (!(w > 0.0)) return std::nullopt;
+    const glm::dvec2 place = glm::dvec2(view) / (w * half_size_);
+    return glm::clamp(glm::dvec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y), 0.0, 1.0);
+}
+
+bool PictureBehind::touches_edge(const glm::dvec2& place) const {
+    const Level& picture = levels_.front();
+    const glm::dvec2 scaled = place * glm::dvec2(picture.width, picture.height) - 0.5;
+    // Weights below a millionth do not count.
+    for (double y = std::floor(scaled.y + 1e-6); y <= std::ceil(scaled.y - 1e-6); y += 1.0) {
+        for (double x = std::floor(scaled.x + 1e-6); x <= std::ceil(scaled.x - 1e-6); x += 1.0) {
+            const double column = std::clamp(x, 0.0, picture.width - 1.0);
+            const double row = std::clamp(y, 0.0, picture.height - 1.0);
+            if (edges_[static_cast<std::size_t>(row * picture.width + column)] != 0) return true;
+        }
+    }
+    return false;
+}
+
+glm::dvec3 PictureBehind::look_up(const glm::dvec3& position_world,
+                                  const glm::dvec3& alternative_world, double blur,
+                                  Trace& trace) const {
+    std::optional<glm::dvec2> place = place_of(position_world);
+    trace.decide(place ? 1 : 0);
+    if (!place) place = place_of(alternative_world);
+    if (!place) return glm::dvec3(0.0);
+    const double level = blur * static_cast<double>(levels_.size() - 1);
+    const double sharper = std::floor(level);
+    const Level& first = levels_[static_cast<std::size_t>(sharper)];
+    glm::dvec4 texel = first.bilinear(*place);
+    if (level > sharper)
+        texel = glm::mix(texel, levels_[static_cast<std::size_t>(sharper) + 1].bilinear(*place),
+                         level - sharper);
+    if (level < 1.0 && touches_edge(*place)) trace.doubt();
+    return glm::dvec3(texel) + (1.0 - texel.a) * background_;
 }
 
 }  // namespace relief::reference

@@ -76,8 +76,13 @@ std::vector<reference::ViewMesh> view_meshes(const PreparedScene& prepared) {
 /// Traces the rays of a picture.
 class Tracer {
   public:
-    Tracer(const PreparedScene& prepared, const ReferenceSettings& settings)
-        : prepared_(prepared), settings_(settings), visibility_(view_meshes(prepared), camera()) {
+    /// \param only_covering  surfaces with transmission or blending are invisible
+    Tracer(const PreparedScene& prepared, const ReferenceSettings& settings,
+           const reference::Visibility& visibility, bool only_covering)
+        : prepared_(prepared),
+          settings_(settings),
+          visibility_(visibility),
+          only_covering_(only_covering) {
         top_ = half_height(camera());
     }
 
@@ -101,6 +106,11 @@ class Tracer {
     [[nodiscard]] bool uses_opengl(const Hit& hit, const Material& material) const {
         return material.double_sided || !reference::is_back(prepared_, hit);
     }
+    [[nodiscard]] bool is_covering(const Hit& hit, const Material& material) const {
+        const bool has_texcoords = !prepared_.instances[hit.instance].mesh->texcoords.empty();
+        return material.alpha_mode != AlphaMode::blend &&
+               !reference::is_transmissive(material, has_texcoords);
+    }
     [[nodiscard]] bool is_same_surface(const Hit& a, const Hit& b) const;
     [[nodiscard]] bool is_too_close(const Hit& front, const Hit& behind) const;
     /// Adds the color of a hit, alpha multiplied in. \return whether it hides all hits behind it
@@ -110,7 +120,8 @@ class Tracer {
 
     const PreparedScene& prepared_;
     const ReferenceSettings& settings_;
-    reference::Visibility visibility_;
+    const reference::Visibility& visibility_;
+    bool only_covering_;
     double top_ = 1.0;  ///< The upper edge of the picture, as half_height() defines it.
 };
 
@@ -122,7 +133,8 @@ glm::dvec2 Tracer::on_view_plane(double x, double y) const {
 
 bool Tracer::add(const Hit& hit, Sample& sample) const {
     const Material& material = prepared_.material_of(hit.instance, hit.triangle);
-    if (!uses_opengl(hit, material)) return false;
+    if (!uses_opengl(hit, material) || (only_covering_ && !is_covering(hit, material)))
+        return false;
     sample.layers.push_back(hit);
     const reference::Shaded shaded = reference::shade(prepared_, hit, material, sample.trace);
     const double alpha = coverage(material, shaded.alpha);
@@ -203,6 +215,7 @@ bool Tracer::is_same_surface(const Hit& a, const Hit& b) const {
 
 bool Tracer::is_continuous(const Sample& a, const Sample& b) const {
     return a.trace.decided_like(b.trace) && !a.ambiguous && !b.ambiguous &&
+           !a.trace.is_doubtful() &&
            std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(),
                       [&](const Hit& i, const Hit& j) { return is_same_surface(i, j); });
 }
@@ -271,6 +284,32 @@ ReferenceHit first_shown(const PreparedScene& prepared, const Sample& sample) {
     return {hit.instance, hit.triangle, reference::is_back(prepared, hit)};
 }
 
+bool has_transmission(const PreparedScene& prepared) {
+    return std::any_of(prepared.materials.begin(), prepared.materials.end(),
+                       [](const Material& m) { return reference::is_transmissive(m, true); });
+}
+
+/// Returns the picture behind transmissive surfaces.
+reference::PictureBehind picture_behind(const PreparedScene& prepared,
+                                        const ReferenceSettings& settings,
+                                        const reference::Visibility& visibility) {
+    const Tracer tracer(prepared, settings, visibility, true);
+    reference::PictureBehind::Level picture{settings.width, settings.height, {}};
+    const auto width = static_cast<std::size_t>(settings.width);
+    picture.texels.resize(width * static_cast<std::size_t>(settings.height));
+    std::vector<std::uint8_t> edges(picture.texels.size());
+    parallel_for(edges.size(), width, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t pixel = begin; pixel < end; ++pixel) {
+            const double x = static_cast<double>(pixel % width) + 0.5;
+            const double y = static_cast<double>(pixel / width) + 0.5;
+            const Sample sample = tracer.trace(x, y);
+            picture.texels[pixel] = {glm::dvec3(sample.color) * sample.color.a, sample.color.a};
+            edges[pixel] = is_near_edge(tracer, sample, x, y, settings.edge_margin) ? 1 : 0;
+        }
+    });
+    return {prepared.scene, std::move(picture), std::move(edges)};
+}
+
 void check(const ReferenceSettings& settings) {
     if (!(settings.edge_margin >= 0.0 && settings.edge_margin <= 1.0)) {
         throw InvalidInput("the reference's edge margin must be within [0, 1] pixels");
@@ -284,8 +323,11 @@ Reference render_reference(const Scene& scene, const ReferenceSettings& settings
     Reference result;
     result.radiance = make_image(settings.width, settings.height, 4, 32, ColorSpace::linear);
     result.edges = make_image(settings.width, settings.height, 1, 8, ColorSpace::data);
-    const PreparedScene prepared(scene, report);
-    const Tracer tracer(prepared, settings);
+    PreparedScene prepared(scene, report);
+    const reference::Visibility visibility(view_meshes(prepared), *scene.camera);
+    if (has_transmission(prepared))
+        prepared.behind.emplace(picture_behind(prepared, settings, visibility));
+    const Tracer tracer(prepared, settings, visibility, false);
     const auto width = static_cast<std::size_t>(settings.width);
     result.hits.resize(width * static_cast<std::size_t>(settings.height));
     const std::span<float> radiance = result.radiance.as<float>();

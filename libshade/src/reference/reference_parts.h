@@ -62,6 +62,10 @@ class Trace {
     ///                the number of texels in a radian
     void look_up(const glm::dvec3& texels) { places_.push_back(texels); }
 
+    /// Notes a lookup in a pixel whose own color rounding may decide.
+    void doubt() { is_doubtful_ = true; }
+    [[nodiscard]] bool is_doubtful() const { return is_doubtful_; }
+
     [[nodiscard]] bool decided_like(const Trace& other) const {
         return hash_ == other.hash_ && places_.size() == other.places_.size();
     }
@@ -70,6 +74,7 @@ class Trace {
   private:
     std::uint64_t hash_ = 0xCBF29CE484222325ULL;
     std::vector<glm::dvec3> places_;
+    bool is_doubtful_ = false;
 };
 
 /// An image as RGBA: gray as (g, g, g, 1), gray with alpha as (g, g, g, a), RGB as (r, g, b, 1).
@@ -156,6 +161,41 @@ class EnvironmentLookup {
     IrradianceSh irradiance_{};   ///< Multiplied by the intensity.
 };
 
+/// The picture behind transmissive surfaces, as Material says, with its mip levels: a texel of each
+/// further level is the bilinear mean at its center in the level before.
+class PictureBehind {
+  public:
+    struct Level {
+        int width = 0;
+        int height = 0;
+        std::vector<glm::dvec4> texels;  ///< Radiance times coverage, and coverage; row 0 on top.
+
+        /// \param place  from 0 to 1, y downwards
+        [[nodiscard]] glm::dvec4 bilinear(const glm::dvec2& place) const;
+    };
+
+    /// \param edges  1 for each pixel whose color rounding may decide
+    PictureBehind(const Scene& scene, Level picture, std::vector<std::uint8_t> edges);
+
+    /// Returns the radiance around the projection of a point, or of the alternative if the point is
+    /// not in front of the eye.
+    /// \param blur  from 0, none, to 1, the last level
+    [[nodiscard]] glm::dvec3 look_up(const glm::dvec3& position_world,
+                                     const glm::dvec3& alternative_world, double blur,
+                                     Trace& trace) const;
+
+  private:
+    [[nodiscard]] std::optional<glm::dvec2> place_of(const glm::dvec3& position_world) const;
+    [[nodiscard]] bool touches_edge(const glm::dvec2& place) const;
+
+    glm::dmat4 view_from_world_;
+    glm::dvec2 half_size_;  ///< Of the picture, as half_height() defines it.
+    bool is_orthographic_;
+    glm::dvec3 background_;
+    std::vector<Level> levels_;
+    std::vector<std::uint8_t> edges_;
+};
+
 /// Returns GGX's directional albedo: x multiplies f0, y is added (environment/convolution.h).
 glm::dvec2 directional_albedo(double n_dot_v, double roughness);
 
@@ -232,6 +272,7 @@ struct PreparedScene {
     std::map<std::size_t, int> normal_map_bits;           ///< By image.
     std::optional<EnvironmentLookup> environment;
     std::map<float, SheenAlbedo> sheen_albedos;  ///< By sheen roughness.
+    std::optional<PictureBehind> behind;         ///< If a surface is transmissive.
 };
 
 /// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal
@@ -249,6 +290,10 @@ struct Surface {
     glm::dvec3 tangent_world{0.0};
     glm::dvec3 bitangent_world{0.0};
 };
+
+/// Tells whether a material shows what is behind it by transmission, on a mesh with or without
+/// texture coordinates.
+bool is_transmissive(const Material& material, bool has_texcoords);
 
 /// Tells whether the hit shows the back of its triangle.
 bool is_back(const PreparedScene& prepared, const Hit& hit);

@@ -390,7 +390,8 @@ Anisotropy anisotropy_at(const Context& context) {
 
 /// The quantities of metallic-roughness at a point.
 struct Microfacets {
-    glm::dvec3 scattering;  ///< c
+    glm::dvec3 scattering;  ///< c (1 - T)
+    glm::dvec3 passing;     ///< c T
     glm::dvec3 f0;
     glm::dvec3 blocking_f0;  ///< f0'
     double f90;
@@ -420,7 +421,10 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
                  static_cast<double>(model.iridescence_thickness),
                  context.look_up(model.iridescence_thickness_texture, ImageUse::data).g);
     const double largest = std::max({dielectric.r, dielectric.g, dielectric.b});
-    return {base * (1.0 - metallic),
+    const double transmission = static_cast<double>(model.transmission) *
+                                context.look_up(model.transmission_texture, ImageUse::data).r;
+    return {base * ((1.0 - metallic) * (1.0 - transmission)),
+            base * ((1.0 - metallic) * transmission),
             glm::mix(dielectric, base, metallic),
             glm::mix(glm::dvec3(largest), base, metallic),
             glm::mix(specular, 1.0, metallic),
@@ -543,6 +547,38 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     return light;
 }
 
+/// Returns the light from behind the surface.
+glm::dvec3 passing_light(const Context& context, const Microfacets& facets, const Hit& hit) {
+    const Surface& at = context.surface;
+    if (!is_transmissive(context.material, at.has_texcoord)) return glm::dvec3(0.0);
+    const MetallicRoughness& model = *context.material.metallic_roughness;
+    const double index = static_cast<double>(model.refractive_index);
+    const double ratio = index > 0.0 ? 1.0 / index : 0.0;
+    const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
+    const glm::dvec3 blocked =
+        with_film(context, facets, n_dot_v, 1.0,
+                  {facets.f0, glm::mix(facets.blocking_f0, glm::dvec3(facets.f90),
+                                       portable::pow(1.0 - n_dot_v, 5.0))})
+            .blocked;
+    const glm::dmat3 world_from_object(
+        context.prepared.scene.instances[hit.instance].world_from_object);
+    const double scale = portable::pow(std::abs(glm::determinant(world_from_object)), 1.0 / 3.0);
+    const double length = static_cast<double>(model.thickness) * scale *
+                          context.look_up(model.thickness_texture, ImageUse::data).g;
+    const glm::dvec3 path = length * glm::refract(-at.view_world, at.normal_world, ratio);
+    const double spread = index > 0.0 ? std::clamp(2.0 * index - 2.0, 0.0, 1.0) : 1.0;
+    const double blur = spread * (facets.roughness - min_roughness) / (1.0 - min_roughness);
+    glm::dvec3 light = context.prepared.behind->look_up(at.position_world + path, at.position_world,
+                                                        blur, context.trace);
+    if (model.attenuation_distance) {
+        const double lengths = length / static_cast<double>(*model.attenuation_distance);
+        const glm::dvec3 color = glm::max(glm::dvec3(model.attenuation_color), 1e-6);
+        for (int i = 0; i < 3; ++i)
+            light[i] *= portable::pow(color[i], lengths);
+    }
+    return facets.passing * (1.0 - blocked) * light;
+}
+
 /// Returns the sums of light that a layer receives about a normal: sum_i L lobe(n.l, h).
 template <typename Lobe>
 glm::dvec3 received(const Context& context, const glm::dvec3& normal, Lobe lobe) {
@@ -608,10 +644,12 @@ glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     return glm::mix(base, coat, weight * (0.04 + 0.96 * portable::pow(1.0 - n_dot_v, 5.0)));
 }
 
-glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3& tint) {
+glm::dvec3 metallic_roughness_radiance(const Context& context, const Hit& hit,
+                                       const glm::dvec3& tint) {
     const Surface& at = context.surface;
     const Microfacets facets = microfacets_at(context, tint);
-    glm::dvec3 radiance = occlusion(context) * indirect_light(context, facets);
+    glm::dvec3 radiance =
+        occlusion(context) * indirect_light(context, facets) + passing_light(context, facets, hit);
     for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
@@ -623,6 +661,12 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const glm::dvec3&
 }
 
 }  // namespace
+
+bool is_transmissive(const Material& material, bool has_texcoords) {
+    const std::optional<MetallicRoughness>& model = material.metallic_roughness;
+    return model && !material.unlit && model->transmission > 0.0F &&
+           (model->metallic < 1.0F || (model->texture && has_texcoords));
+}
 
 Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material,
              Trace& trace) {
@@ -638,7 +682,8 @@ Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& mate
                                     : material.diffuse;
         return {glm::dvec3(color) * tint, alpha};
     }
-    if (material.metallic_roughness) return {metallic_roughness_radiance(context, tint), alpha};
+    if (material.metallic_roughness)
+        return {metallic_roughness_radiance(context, hit, tint), alpha};
     return {phong_radiance(context, hit, tint), alpha};
 }
 

@@ -56,6 +56,13 @@ const std::map<std::string_view, Setter>& setters() {
         {"iridescence_index", set_member<&DrawValues::iridescence_index>},
         {"iridescence_thickness", set_member<&DrawValues::iridescence_thickness>},
         {"iridescence_thickness_minimum", set_member<&DrawValues::iridescence_thickness_minimum>},
+        {"clip_from_world", set_member<&DrawValues::clip_from_world>},
+        {"thickness", set_member<&DrawValues::thickness>},
+        {"object_scale", set_member<&DrawValues::object_scale>},
+        {"absorption", set_member<&DrawValues::absorption>},
+        {"volume_index_ratio", set_member<&DrawValues::volume_index_ratio>},
+        {"blurred_level", set_member<&DrawValues::blurred_level>},
+        {"background_radiance", set_member<&DrawValues::background_radiance>},
         {"occlusion_strength", set_member<&DrawValues::occlusion_strength>},
         {"opacity", set_member<&DrawValues::opacity>},
         {"alpha_cutoff", set_member<&DrawValues::alpha_cutoff>},
@@ -100,6 +107,37 @@ glm::vec3 reflectance_of_index(const MetallicRoughness& model) {
     return glm::vec3(root * root * glm::dvec3(model.specular_color));
 }
 
+/// Returns the share of the roughness by which light that passes a surface is blurred: none without
+/// refraction.
+double passing_blur(double index) {
+    return index > 0.0 ? std::clamp(2.0 * index - 2.0, 0.0, 1.0) : 1.0;
+}
+
+/// Returns the logarithm of the attenuation of a unit of length. Colors count as at least 1e-6.
+double absorption(double color, double distance) {
+    return -portable::log(std::max(color, 1e-6)) / distance;
+}
+
+double cube_root_of_determinant(const glm::dmat3& matrix) {
+    const double determinant = std::abs(glm::determinant(matrix));
+    return determinant > 0.0 ? portable::exp(portable::log(determinant) / 3.0) : 0.0;
+}
+
+/// \param last  the last level of the picture behind
+void set_transmission(DrawValues& values, const MetallicRoughness& model, int last) {
+    const double index = static_cast<double>(model.refractive_index);
+    values.transmission = model.transmission;
+    values.thickness = model.thickness;
+    values.volume_index_ratio = index > 0.0 ? static_cast<float>(1.0 / index) : 0.0F;
+    values.blurred_level = static_cast<float>(last * passing_blur(index));
+    if (!model.attenuation_distance) return;
+    for (int i = 0; i < 3; ++i) {
+        values.absorption[i] =
+            static_cast<float>(absorption(static_cast<double>(model.attenuation_color[i]),
+                                          static_cast<double>(*model.attenuation_distance)));
+    }
+}
+
 /// Without a color, the table stays zero: nothing reads it.
 void set_sheen(DrawValues& values, const MetallicRoughness& model) {
     if (!is_not_black(model.sheen_color)) return;
@@ -125,7 +163,7 @@ glm::vec2 environment_turn(const Environment& environment) {
     return {portable::cos(rotation), portable::sin(rotation)};
 }
 
-void set_material(DrawValues& values, const Material& material, const Scene& scene) {
+void set_material(DrawValues& values, const Material& material, const Scene& scene, int last) {
     values.ambient_scattered = material.ambient * scene.ambient;
     values.diffuse_color = material.diffuse;
     values.specular_color = material.specular * specular_normalization(material);
@@ -152,7 +190,9 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
         values.anisotropy = physical->anisotropy;
         const double rotation = static_cast<double>(physical->anisotropy_rotation);
         values.anisotropy_direction = glm::vec2(portable::cos(rotation), portable::sin(rotation));
+        set_transmission(values, *physical, last);
     }
+    values.background_radiance = glm::vec3(scene.background) * scene.background.a;
     values.occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F;
     values.opacity = material.alpha_mode == AlphaMode::opaque ? 1.0F : material.opacity;
     values.alpha_cutoff = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 0.0F;
@@ -162,7 +202,7 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.environment_intensity = scene.environment->intensity;
     if (scene.environment->rotation != 0.0F)
         values.environment_turn = environment_turn(*scene.environment);
-    values.transmission = material.transmission;
+    if (!material.metallic_roughness) values.transmission = material.transmission;
     values.refraction_ratio = 1.0F / material.refractive_index;
     if (material.reflectivity == glm::vec3(0.0F)) return;
     values.reflectivity = material.reflectivity;
@@ -182,6 +222,7 @@ void set_place(DrawValues& values, const glm::mat4& world_from_object) {
     values.world_from_object_normal = scaled_to_one(mirrors ? -cofactors : cofactors);
     values.world_from_object_tangent = scaled_to_one(m);
     values.handedness = mirrors ? -1.0F : 1.0F;
+    values.object_scale = static_cast<float>(cube_root_of_determinant(glm::dmat3(m)));
 }
 
 void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode flat) {

@@ -50,6 +50,13 @@ struct DrawValues {
     float iridescence_index = 1.3F;
     float iridescence_thickness = 400.0F;
     float iridescence_thickness_minimum = 100.0F;
+    glm::mat4 clip_from_world{1.0F};
+    float thickness = 0.0F;
+    float object_scale = 1.0F;  ///< The cube root of the determinant of world_from_object.
+    glm::vec3 absorption{0.0F};
+    float volume_index_ratio = 1.0F;
+    float blurred_level = 0.0F;  ///< Of the picture behind, for roughness 1.
+    glm::vec3 background_radiance{0.0F};
     float occlusion_strength = 0.0F;
     float opacity = 1.0F;
     float alpha_cutoff = 0.0F;
@@ -80,12 +87,14 @@ struct DrawValues {
 bool set_uniform(const gl::LinkedProgram& program, std::string_view name, const DrawValues& values);
 
 /// Sets the values of a material and of the scene's light, except for those of environment maps.
-void set_material(DrawValues& values, const Material& material, const Scene& scene);
+///
+/// \param last_level  of the picture behind transmissive surfaces
+void set_material(DrawValues& values, const Material& material, const Scene& scene, int last_level);
 
 /// Returns the cosine and the sine of the rotation of an environment.
 glm::vec2 environment_turn(const Environment& environment);
 
-/// Sets the values of an instance's matrix, except for clip_from_object.
+/// Sets the values of an instance's matrix, except for clip_from_object and clip_from_world.
 ///
 /// The normal matrix is the cofactor matrix, which is the inverse transpose times the determinant
 /// and also exists for singular matrices: if a matrix flattens to a plane, normals become

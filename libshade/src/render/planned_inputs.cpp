@@ -9,6 +9,7 @@
 #include <map>
 #include <string_view>
 
+#include "effects/features.h"
 #include "render/textures.h"
 
 namespace relief {
@@ -47,6 +48,7 @@ const std::map<std::string_view, SharedSampler>& shared_samplers() {
         {"environment", {true, "the surface mirrors it or lets it through"}},
         {"blurred_environment", {true, "the surface mirrors it blurred; a level for a roughness"}},
         {"environment_brdf", {false, "how much a rough surface mirrors, by angle and roughness"}},
+        {"behind", {true, "the surface shows what is behind it; levels for roughness"}},
         {"light_buffer", {false, "the lights are in a buffer"}},
     };
     return all;
@@ -87,16 +89,23 @@ DrawInputs planned_inputs(const Scene& scene, const DrawPlan& draw) {
 }
 
 std::vector<PlannedPass> planned_passes(const FramePlan& plan) {
-    const auto any = [&](bool blended) {
+    enum class Kind { covering, transmissive, blended };
+    const auto any = [&](Kind kind) {
         return std::any_of(plan.draws.begin(), plan.draws.end(), [&](const DrawPlan& draw) {
-            return (draw.features.alpha == AlphaMode::blend) == blended;
+            const Features& f = draw.features;
+            return kind == (f.alpha == AlphaMode::blend ? Kind::blended
+                            : transmits(f)              ? Kind::transmissive
+                                                        : Kind::covering);
         });
     };
     std::vector<PlannedPass> passes;
-    if (any(false)) passes.push_back({"surfaces", "nearest first by the depth buffer"});
+    if (any(Kind::covering)) passes.push_back({"surfaces", "nearest first by the depth buffer"});
     if (plan.skybox)
         passes.push_back({"skybox", "the environment is seen where nothing is nearer"});
-    if (any(true)) passes.push_back({"blended surfaces", "sorted, farthest first"});
+    if (plan.transmission_background)
+        passes.push_back({"transmission background", "a copy of the picture and its mip levels"});
+    if (any(Kind::transmissive)) passes.push_back({"transmissive surfaces", "they show the copy"});
+    if (any(Kind::blended)) passes.push_back({"blended surfaces", "sorted, farthest first"});
     for (const EffectReason& reason : plan.reasons) {
         if (reason.effect == "finishing pass" && reason.on) {
             passes.push_back({"finishing", reason.reason});

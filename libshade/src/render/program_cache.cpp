@@ -29,7 +29,7 @@ std::vector<gl::Location> attribute_locations() {
             at("color_linear", Attribute::color_linear)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 22> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 25> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
     {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
@@ -47,10 +47,13 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 22> texture_units{{
     {"anisotropy_texture", TextureUnit::anisotropy_texture},
     {"iridescence_texture", TextureUnit::iridescence_texture},
     {"film_thickness_texture", TextureUnit::film_thickness_texture},
+    {"transmission_texture", TextureUnit::transmission_texture},
+    {"thickness_texture", TextureUnit::thickness_texture},
     {"environment", TextureUnit::environment},
     {"blurred_environment", TextureUnit::blurred_environment},
     {"environment_brdf", TextureUnit::environment_brdf},
     {"light_buffer", TextureUnit::light_buffer},
+    {"behind", TextureUnit::behind},
     {"drawn", TextureUnit::drawn},
 }};
 

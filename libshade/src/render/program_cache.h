@@ -45,10 +45,13 @@ enum class TextureUnit : GLint {
     anisotropy_texture,
     iridescence_texture,
     film_thickness_texture,
+    transmission_texture,
+    thickness_texture,
     environment,
     blurred_environment,
     environment_brdf,
     light_buffer,
+    behind,
     drawn,
 };
 
@@ -56,7 +59,7 @@ enum class TextureUnit : GLint {
 std::string_view sampler_name(TextureUnit unit);
 
 /// The number of units of materials.
-inline constexpr std::size_t material_unit_count = 17;
+inline constexpr std::size_t material_unit_count = 19;
 
 /// The binding point of the uniform block Lights.
 inline constexpr GLuint lights_binding = 0;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws a scene by its effect plan. The constructor decodes and uploads only what the plan names. A
-// frame draws the opaque surfaces, the skybox, the blended surfaces in painter's order, the
-// finishing pass with sRGB codes by [IEC 61966-2-1], and the overlays. Finished pictures are
-// exchanged between threads. Tests: tests/shade/render/renderer_test.cpp, shading_test.cpp,
-// forced_effects_test.cpp, picture_exchange_test.cpp.
+// frame draws the opaque surfaces, the skybox, the transmissive surfaces over a copy of these, the
+// blended surfaces in painter's order, the finishing pass with sRGB codes by [IEC 61966-2-1], and
+// the overlays. Finished pictures are exchanged between threads. Tests:
+// tests/shade/render/renderer_test.cpp, shading_test.cpp, forced_effects_test.cpp,
+// picture_exchange_test.cpp.
 #include "relief/shade/renderer.h"
 
 #include <fmt/format.h>
@@ -20,7 +21,9 @@
 #include <utility>
 #include <vector>
 
+#include "effects/features.h"
 #include "effects/shader_source.h"
+#include "gl/cube_map.h"
 #include "gl/resources.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
@@ -81,6 +84,10 @@ class Picture {
     /// Binds the target of draws and clears it.
     void begin() const;
 
+    /// Copies what was drawn, with its mip levels, and binds the copy for transmissive surfaces.
+    /// \throws GpuError
+    void copy_behind();
+
     /// Runs the finishing pass and waits for its completion.
     void finish() const;
 
@@ -92,6 +99,11 @@ class Picture {
     /// Returns the finished picture: one level, row 0 at the bottom.
     [[nodiscard]] const gl::RenderTarget& target() const {
         return finished_ ? *finished_ : *samples_;
+    }
+
+    /// Returns the last mip level of a copy.
+    [[nodiscard]] int last_level() const {
+        return gl::level_count(std::max(samples_->width(), samples_->height())) - 1;
     }
 
     [[nodiscard]] float aspect() const {
@@ -107,7 +119,8 @@ class Picture {
     std::shared_ptr<const gl::RenderTarget> samples_;
     std::shared_ptr<const gl::RenderTarget> finished_;
     std::shared_ptr<const gl::LinkedProgram> finishing_;
-    gl::VertexArray empty_vertices_;  ///< Core OpenGL draws only with a vertex array.
+    std::optional<gl::MippedCopy> behind_;  ///< Made when it is needed.
+    gl::VertexArray empty_vertices_;        ///< Core OpenGL draws only with a vertex array.
 };
 
 gl::ColorFormat format_of(OutputCoding coding) {
@@ -176,6 +189,17 @@ void Picture::begin() const {
     gl->ClearColor(color.r, color.g, color.b, color.a);
     gl->ClearDepth(1.0);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void Picture::copy_behind() {
+    const gl::Api& gl = *api_;
+    // Making the copy binds it, too: the texture of another unit must stay bound.
+    gl->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(TextureUnit::behind));
+    if (!behind_) behind_.emplace(gl, *samples_);
+    behind_->copy(*samples_);
+    gl->BindTexture(GL_TEXTURE_2D, behind_->color().name());
+    gl->BindSampler(static_cast<GLuint>(TextureUnit::behind), 0);
+    samples_->bind();
 }
 
 void Picture::finish() const {
@@ -255,6 +279,11 @@ struct Draw {
 
 bool is_blended(const Draw& draw) {
     return draw.features.alpha == AlphaMode::blend;
+}
+
+/// True for surfaces that are part of the transmission background.
+bool is_covering(const Draw& draw) {
+    return !is_blended(draw) && !transmits(draw.features);
 }
 
 /// The scene objects that the plan of a draw refers to.
@@ -477,7 +506,7 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& 
     draw.mesh = instance.mesh;
     draw.range = plan_of_draw.range;
     draw.both_sides = p.material.double_sided;
-    set_material(draw.values, p.material, scene);
+    set_material(draw.values, p.material, scene, picture.last_level());
     set_environment_values(draw);
     set_place(draw.values, instance.world_from_object);
     bind_planned_textures(draw, p);
@@ -537,6 +566,7 @@ void Renderer::Implementation::set_state(const Draw& draw) const {
 void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
     DrawValues values = draw.values;
     values.clip_from_object = glm::mat4(to_clip * glm::dmat4(values.world_from_object));
+    values.clip_from_world = glm::mat4(to_clip);
     values.eye_world = homogeneous_eye(camera);
     draw.program->linked.use();
     for (const std::string& name : draw.program->planned.uniforms) {
@@ -610,11 +640,17 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
     if (counts_fragments) count_fragments();
     const glm::dmat4 to_clip = clip_from_world(camera, static_cast<double>(picture.aspect()));
     for (Draw& draw : draws) {
-        if (!is_blended(draw)) issue(draw, to_clip, camera);
+        if (is_covering(draw)) issue(draw, to_clip, camera);
     }
     if (skybox) {
         api->Disable(GL_CULL_FACE);
         skybox->draw(api, camera, picture.aspect());
+    }
+    if (plan.transmission_background) {
+        picture.copy_behind();
+        for (Draw& draw : draws) {
+            if (!is_covering(draw) && !is_blended(draw)) issue(draw, to_clip, camera);
+        }
     }
     if (plan.sorted_blending) issue_blended(to_clip, camera);
     if (counts_fragments) api->Disable(GL_BLEND);
@@ -664,8 +700,10 @@ FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& 
         check_draw(scene, draw);
         draw.features = canonical(draw.features);
         plan.sorted_blending |= draw.features.alpha == AlphaMode::blend;
+        plan.transmission_background |= transmits(draw.features);
     }
-    plan.finishing_pass |= plan.sorted_blending || settings.samples > 1;
+    plan.finishing_pass |=
+        plan.sorted_blending || plan.transmission_background || settings.samples > 1;
     for (DrawPlan& draw : plan.draws) {
         draw.features.output = drawn_coding(settings, plan.finishing_pass);
         draw.features = canonical(draw.features);

@@ -134,6 +134,10 @@ const std::array<TextureRow, material_unit_count>& texture_rows() {
                                            "iridescence texture"),
         model_row<&P::iridescence_thickness_texture>(TextureUnit::film_thickness_texture,
                                                      ImageUse::data, "film thickness texture"),
+        model_row<&P::transmission_texture>(TextureUnit::transmission_texture, ImageUse::data,
+                                            "transmission texture"),
+        model_row<&P::thickness_texture>(TextureUnit::thickness_texture, ImageUse::data,
+                                         "thickness texture"),
     }};
     return all;
 }

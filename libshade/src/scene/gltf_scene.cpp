@@ -130,6 +130,12 @@ MetallicRoughness factors_of(const GltfMaterial& material) {
         film(material.iridescence_thickness, &MetallicRoughness::iridescence_thickness);
     model.iridescence_thickness_minimum = film(material.iridescence_thickness_minimum,
                                                &MetallicRoughness::iridescence_thickness_minimum);
+    model.transmission = usable(material.transmission, 1.0F);
+    model.thickness = usable(material.thickness, std::numeric_limits<float>::max());
+    model.attenuation_color = usable(material.attenuation_color, 1.0F);
+    if (material.attenuation_distance && std::isfinite(*material.attenuation_distance)) {
+        model.attenuation_distance = std::max(*material.attenuation_distance, positive_range.min);
+    }
     return model;
 }
 
@@ -181,7 +187,8 @@ TexcoordSource texcoord_source(const GltfMaterial& material) {
           &material.anisotropy_texture, &material.specular_texture,
           &material.specular_color_texture, &material.clearcoat_texture,
           &material.clearcoat_roughness_texture, &material.sheen_color_texture,
-          &material.iridescence_texture, &material.iridescence_thickness_texture}) {
+          &material.iridescence_texture, &material.iridescence_thickness_texture,
+          &material.transmission_texture, &material.thickness_texture}) {
         if (*texture) return {(*texture)->texcoord_set, (*texture)->transform};
     }
     return {};
@@ -340,6 +347,8 @@ void add_textures(MetallicRoughness& model, const GltfMaterial& material,
     model.anisotropy_texture = texture(material.anisotropy_texture);
     model.iridescence_texture = texture(material.iridescence_texture);
     model.iridescence_thickness_texture = texture(material.iridescence_thickness_texture);
+    model.transmission_texture = texture(material.transmission_texture);
+    model.thickness_texture = texture(material.thickness_texture);
 }
 
 /// Sets textures and alpha, which are the same in both material models.
@@ -376,6 +385,7 @@ void add_undrawn_extensions(Material& result, const GltfMaterial& material, std:
         if (material.iridescence > 0.0F) names.emplace_back("KHR_materials_iridescence");
         if (material.clearcoat > 0.0F) names.emplace_back("KHR_materials_clearcoat");
         if (material.sheen_color != glm::vec3(0.0F)) names.emplace_back("KHR_materials_sheen");
+        if (material.transmission > 0.0F) names.emplace_back("KHR_materials_transmission");
         std::sort(names.begin(), names.end());
     }
     for (const std::string& name : names) {

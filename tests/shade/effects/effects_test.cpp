@@ -51,22 +51,26 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
         const Features c = canonical(f);
         const bool uses_lights = c.diffuse || c.specular != SpecularTerm::none;
         const bool reflects = c.reflection != ReflectionTerm::none;
-        const bool uses_map =
-            uses_lights || reflects || c.refraction || c.environment_diffuse || c.sheen;
+        const bool uses_map = uses_lights || reflects || c.refraction || c.environment_diffuse ||
+                              c.sheen || c.transmission;
         const bool uses_normal = uses_map || c.clearcoat;
-        const bool lit = has_lights(c) || c.ambient || c.environment_diffuse || reflects;
+        const bool lit =
+            has_lights(c) || c.ambient || c.environment_diffuse || reflects || c.transmission;
         const bool all_around =
             c.ambient || c.environment_diffuse || (c.metallic_roughness && reflects);
-        const bool scatters = c.unlit || all_around || c.diffuse;
+        const bool scatters = c.unlit || all_around || c.diffuse || c.transmission;
         const bool sound =
             has_lights(c) == uses_lights && (uses_map || c.detail == NormalDetail::none) &&
             (uses_normal || !c.double_sided) && (has_lights(c) || !c.lights_in_buffer) &&
             (c.point_lights + c.spot_lights > 0 ||
              (!c.light_ranges && c.falloff == FalloffTerm::inverse_square)) &&
             (c.emission || !c.emission_texture) && (all_around || !c.occlusion_texture) &&
-            (c.metallic_roughness || (!c.metallic_roughness_texture && !c.dielectric_reflectance &&
-                                      !c.sheen && !c.clearcoat && !c.iridescence)) &&
-            (lit || !c.iridescence) && (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
+            (c.metallic_roughness ||
+             (!c.metallic_roughness_texture && !c.dielectric_reflectance && !c.sheen &&
+              !c.clearcoat && !c.iridescence && !c.transmission)) &&
+            (c.transmission || (!c.transmission_texture && !c.volume)) &&
+            (c.volume || !c.thickness_texture) && (lit || !c.iridescence) && (lit || !c.sheen) &&
+            (lit || c.emission || !c.clearcoat) &&
             ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
             (c.dielectric_reflectance ||
              (!c.specular_weight_texture && !c.specular_color_texture)) &&

@@ -81,6 +81,10 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::anisotropy_texture>("anisotropy texture"),
         field<&F::iridescence_texture>("iridescence texture"),
         field<&F::film_thickness_texture>("film thickness texture"),
+        field<&F::transmission>("transmission"),
+        field<&F::transmission_texture>("transmission texture"),
+        field<&F::volume>("volume"),
+        field<&F::thickness_texture>("thickness texture"),
         field<&F::interpolation, 3>("interpolation"),
         field<&F::diffuse_texture>("diffuse texture"),
         field<&F::specular_texture>("specular texture"),
@@ -223,6 +227,8 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
     if (f.iridescence_texture) model.iridescence_texture = data("film", 16, 40);
     if (f.film_thickness_texture)
         model.iridescence_thickness_texture = data("film thickness", 17, 0);
+    if (f.transmission_texture) model.transmission_texture = data("transmission", 18, 40);
+    if (f.thickness_texture) model.thickness_texture = data("thickness", 19, 40);
 }
 
 Material material_calling_for(const Features& f) {
@@ -256,6 +262,12 @@ Material material_calling_for(const Features& f) {
     if (f.iridescence) {
         m.metallic_roughness->iridescence = 0.8F;
         m.metallic_roughness->iridescence_thickness = 350.0F;
+    }
+    if (f.transmission) m.metallic_roughness->transmission = 0.6F;
+    if (f.volume) {
+        m.metallic_roughness->thickness = 0.4F;
+        m.metallic_roughness->attenuation_distance = 0.8F;
+        m.metallic_roughness->attenuation_color = {0.9F, 0.5F, 0.3F};
     }
     if (f.anisotropy) {
         m.metallic_roughness->anisotropy = 0.6F;
@@ -321,7 +333,7 @@ Features attainable(Features f) {
     if (f.metallic_roughness && environment) f.reflection = ReflectionTerm::glossy;
     if (lights && f.environment_diffuse) f.diffuse = true;
     if (f.output == OutputCoding::half) f.output = OutputCoding::srgb;
-    if (f.alpha == AlphaMode::blend && f.output != OutputCoding::linear) {
+    if ((f.alpha == AlphaMode::blend || f.transmission) && f.output != OutputCoding::linear) {
         f.output = OutputCoding::half;
     }
     return f;

@@ -99,6 +99,11 @@ const Change coat_map = with(&MetallicRoughness::clearcoat_normal_map, NormalMap
 const Change brush_texture = with(&MetallicRoughness::anisotropy_texture, Texture{});
 const Change film_texture = with(&MetallicRoughness::iridescence_texture, Texture{});
 const Change thickness_texture = with(&MetallicRoughness::iridescence_thickness_texture, Texture{});
+const Change clear = with(&MetallicRoughness::transmission, 0.001F);
+const Change thick = with(&MetallicRoughness::thickness, 0.001F);
+const Change clear_texture = with(&MetallicRoughness::transmission_texture, Texture{});
+const Change volume_texture = with(&MetallicRoughness::thickness_texture, Texture{});
+const Change metal = with(&MetallicRoughness::metallic, 1.0F);
 const Change gouraud = with(&Material::interpolation, Interpolation::gouraud);
 const Change flat = with(&Material::interpolation, Interpolation::flat);
 const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().ambient = black; };
@@ -255,6 +260,28 @@ const std::vector<Boundary> color_boundaries = {
     {"iridescence texture", "a film", {film_texture}, {}, {filmy}},
     {"film thickness texture", "has one", {filmy}, {}, {thickness_texture}},
     {"film thickness texture", "a film", {thickness_texture}, {}, {filmy}},
+    {"transmission", "its share", {no_metal}, {}, {clear}},
+    {"transmission",
+     "not all metal",
+     {clear},
+     {metal},
+     {with(&MetallicRoughness::metallic, 0.999F)}},
+    {"transmission", "a texture of metal", {clear, metal}, {}, {physical_texture}},
+    {"transmission", "texture coordinates", {clear, metal, physical_texture}, {no_texcoords}, {}},
+    {"transmission", "lit", {clear}, {unlit}, {}},
+    {"transmission texture", "has one", {clear}, {}, {clear_texture}},
+    {"transmission texture", "transmission", {clear_texture}, {}, {clear}},
+    {"volume", "a thickness", {clear}, {}, {thick}},
+    {"volume", "transmission", {thick}, {}, {clear}},
+    {"thickness texture", "has one", {clear, thick}, {}, {volume_texture}},
+    {"thickness texture", "a volume", {clear, volume_texture}, {}, {thick}},
+    {"metallic-roughness", "what is behind", {no_suns}, {no_metal}, {clear}},
+    {"diffuse texture", "what is behind", {no_suns, diffuse_texture, no_metal}, {}, {clear}},
+    {"normal map", "what is behind", {no_suns, normal_map, no_metal}, {}, {clear}},
+    {"sheen", "what is behind", {sheen, no_suns}, {}, {clear}},
+    {"clearcoat", "what is behind", {clearcoat, no_suns}, {}, {clear}},
+    {"iridescence", "what is behind", {filmy, no_suns}, {}, {clear}},
+    {"transmission background", "a surface", {no_metal}, {}, {clear}},
     {"metallic-roughness", "coated emission", {no_suns, emissive}, {no_metal}, {clearcoat}},
     {"normal map", "a sheen", {normal_map, no_suns, ambient, no_metal}, {clearcoat}, {sheen}},
     {"double-sided normals", "a coat", {double_sided, no_suns, ambient, no_metal}, {}, {clearcoat}},

@@ -436,6 +436,93 @@ std::vector<AddedThing> environment_effects() {
     return effects;
 }
 
+/// Adds cubes behind the model, and makes it let them through.
+MetallicRoughness& clear_before_cubes(Scene& scene, float roughness, float thickness) {
+    Mesh cube = test::cube();
+    cube.material_ranges = {{0, 12, 1}};
+    scene.meshes.emplace_back(cube);
+    scene.materials.resize(2);
+    scene.materials[1].diffuse = {0.9F, 0.4F, 0.1F};
+    for (const float x : {-0.7F, 0.5F}) {
+        glm::mat4 place(0.4F);
+        place[3] = {x, 0.5F * x, -1.5F, 1.0F};
+        scene.instances.push_back({scene.meshes.size() - 1, place, "behind"});
+    }
+    scene.background = {0.2F, 0.4F, 0.6F, 0.8F};
+    MetallicRoughness& model = scene.materials[0].metallic_roughness.emplace();
+    model = {{0.9F, 0.8F, 0.6F}, 0.1F, roughness, std::nullopt};
+    model.transmission = 0.9F;
+    model.thickness = thickness;
+    model.attenuation_distance = 0.7F;
+    model.attenuation_color = {0.9F, 0.3F, 0.0F};
+    return model;
+}
+
+std::vector<AddedThing> transmission_effects() {
+    using M = MetallicRoughness;
+    std::vector<AddedThing> effects;
+    for (const float roughness : {0.0F, 0.2F, 0.6F, 1.0F}) {
+        for (const float thickness : {0.0F, 0.6F}) {
+            effects.push_back({"transmission", [=](Scene& s, test::Dice&) {
+                                   clear_before_cubes(s, roughness, thickness);
+                               }});
+        }
+    }
+    effects.push_back({"without any light", [](Scene& s, test::Dice& d) {
+                           clear_before_cubes(s, 0.1F, 0.4F);
+                           s.ambient = glm::vec3(0.0F);
+                           s.directional_lights.clear();
+                           s.point_lights.clear();
+                           s.materials[1].emission = {0.8F, 0.3F, 0.1F};
+                           s.materials[0].diffuse_texture =
+                               image(s, test::random_image(d, 3, ColorSpace::linear));
+                       }});
+    for (const float index : {0.0F, 1.0F, 2.2F}) {
+        effects.push_back({"another index", [=](Scene& s, test::Dice&) {
+                               M& model = clear_before_cubes(s, 0.3F, 0.4F);
+                               model.refractive_index = index;
+                               model.specular_color = {0.3F, 0.6F, 0.9F};
+                           }});
+    }
+    effects.push_back({"under film, sheen and coat", [](Scene& s, test::Dice&) {
+                           M& model = clear_before_cubes(s, 0.3F, 0.4F);
+                           model.iridescence = 0.9F;
+                           model.iridescence_thickness = 480.0F;
+                           model.sheen_color = {0.3F, 0.6F, 0.1F};
+                           model.sheen_roughness = 0.6F;
+                           model.clearcoat = 0.8F;
+                           model.clearcoat_roughness = 0.6F;
+                       }});
+    effects.push_back({"textures", [](Scene& s, test::Dice& d) {
+                           M& model = clear_before_cubes(s, 0.3F, 0.4F);
+                           model.transmission_texture =
+                               image(s, test::random_image(d, 3, ColorSpace::data));
+                           model.thickness_texture =
+                               image(s, test::random_image(d, 3, ColorSpace::data));
+                       }});
+    effects.push_back({"blended", [](Scene& s, test::Dice&) {
+                           clear_before_cubes(s, 0.3F, 0.4F);
+                           s.materials[0].alpha_mode = AlphaMode::blend;
+                           s.materials[0].opacity = 0.6F;
+                       }});
+    effects.push_back({"normal map", [](Scene& s, test::Dice& d) {
+                           clear_before_cubes(s, 0.3F, 0.4F);
+                           s.materials[0].normal_map = NormalMap{image(s, test::random_normals(d))};
+                           s.materials[0].normal_map->flat = FlatCode::middle;
+                           s.materials[0].double_sided = true;
+                       }});
+    effects.push_back({"orthographic camera", [](Scene& s, test::Dice&) {
+                           clear_before_cubes(s, 0.3F, 0.4F);
+                           s.camera->orthographic_height = 3.0F;
+                       }});
+    effects.push_back({"path that begins behind the eye", [](Scene& s, test::Dice&) {
+                           M& model = clear_before_cubes(s, 0.0F, 1e4F);
+                           model.attenuation_distance.reset();
+                           s.instances[0].world_from_object[0].x *= -1.0F;
+                       }});
+    return effects;
+}
+
 class EffectOnItsOwn : public AgainstReference {
   protected:
     void expect_agreement_of_each(const std::vector<AddedThing>& effects) const {
@@ -476,6 +563,10 @@ TEST_F(EffectOnItsOwn, OfTexturesLooksAsTheReferenceSays) {
 
 TEST_F(EffectOnItsOwn, OfSurfaceDetailLooksAsTheReferenceSays) {
     expect_agreement_of_each(detail_effects());
+}
+
+TEST_F(EffectOnItsOwn, OfTransmissionLooksAsTheReferenceSays) {
+    expect_agreement_of_each(transmission_effects());
 }
 
 TEST_F(EffectOnItsOwn, OfTheEnvironmentLooksAsTheReferenceSays) {
@@ -543,6 +634,9 @@ TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {
     scene.materials[0].metallic_roughness = brushed_metal();
     expect_agreement(scene, blurred_tolerance);
     scene.materials[0].metallic_roughness = filmed(0.3F);
+    expect_agreement(scene, blurred_tolerance);
+    clear_before_cubes(scene, 0.4F, 0.5F);
+    scene.environment->skybox = true;
     expect_agreement(scene, blurred_tolerance);
 }
 

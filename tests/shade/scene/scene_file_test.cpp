@@ -131,14 +131,15 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_TRUE(neutral.materials[0].undrawn_extensions.empty());
     const auto [scene, report] = load(
         R"({"extensions": {"KHR_materials_dispersion": {"dispersion": 1}}},
-           {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5},
+           {"extensions": {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5},
                            "KHR_materials_dispersion": {"dispersion": 0.1}}})",
-        R"(, "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_dispersion"],
-           "extensionsRequired": ["KHR_materials_transmission"])");
+        R"(, "extensionsUsed": ["KHR_materials_diffuse_transmission", "KHR_materials_dispersion"],
+           "extensionsRequired": ["KHR_materials_diffuse_transmission"])");
     EXPECT_EQ(report.count("KHR_materials_dispersion"), 2U);
-    EXPECT_EQ(report.count("KHR_materials_transmission, which the file requires"), 1U);
-    EXPECT_THAT(scene.materials[1].undrawn_extensions,
-                testing::ElementsAre("KHR_materials_dispersion", "KHR_materials_transmission"));
+    EXPECT_EQ(report.count("KHR_materials_diffuse_transmission, which the file requires"), 1U);
+    EXPECT_THAT(
+        scene.materials[1].undrawn_extensions,
+        testing::ElementsAre("KHR_materials_diffuse_transmission", "KHR_materials_dispersion"));
     const auto [drawn, textures] = load(
         R"({"extensions": {"KHR_materials_ior": {"ior": 0.5}, "KHR_materials_specular":
                 {"specularFactor": 0.25, "specularColorFactor": [2, 1, -1]},
@@ -159,9 +160,16 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
                            "KHR_materials_anisotropy": {"anisotropyStrength": 3, "anisotropyRotation": -2},
                            "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 0.5,
                                                          "iridescenceThicknessMaximum": -1},
+                           "KHR_materials_transmission": {"transmissionFactor": 2},
+                           "KHR_materials_volume": {"thicknessFactor": -1, "attenuationDistance": 0,
+                                                    "attenuationColor": [2, 0.5, -1]},
                            "KHR_materials_sheen": {"sheenColorFactor": [0, 0.5, 0]}}})",
         "");
     EXPECT_TRUE(none.empty());
+    EXPECT_EQ(layered.materials[0].metallic_roughness->transmission, 1.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->thickness, 0.0F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->attenuation_distance, 1e-30F);
+    EXPECT_EQ(layered.materials[0].metallic_roughness->attenuation_color, glm::vec3(1, 0.5F, 0));
     EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence, 0.5F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence_index, 1.0F);
     EXPECT_EQ(layered.materials[0].metallic_roughness->iridescence_thickness, 0.0F);
@@ -174,6 +182,7 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
                                    report_of_phong);
     EXPECT_EQ(report_of_phong.count("KHR_materials_clearcoat"), 1U) << "Phong has no layers";
     EXPECT_EQ(report_of_phong.count("KHR_materials_sheen"), 1U);
+    EXPECT_EQ(report_of_phong.count("KHR_materials_transmission"), 1U);
     EXPECT_EQ(report_of_phong.count("KHR_materials_anisotropy"), 1U);
     EXPECT_EQ(report_of_phong.count("KHR_materials_iridescence"), 1U);
 }
@@ -182,10 +191,12 @@ TEST(LoadScene, HasTheTexturesOfMaterialExtensions) {
     const test::TemporaryDirectory folder;
     write_text(folder / "m.gltf", R"({"asset": {"version": "2.0"}, "images": [
         {"uri": "0.png"}, {"uri": "1.png"}, {"uri": "2.png"}, {"uri": "3.png"}, {"uri": "4.png"},
-        {"uri": "5.png"}, {"uri": "6.png"}, {"uri": "7.png"}, {"uri": "8.png"}],
+        {"uri": "5.png"}, {"uri": "6.png"}, {"uri": "7.png"}, {"uri": "8.png"}, {"uri": "9.png"}, {"uri": "10.png"}],
       "textures": [{"source": 0}, {"source": 1}, {"source": 2}, {"source": 3}, {"source": 4},
-        {"source": 5}, {"source": 6}, {"source": 7}, {"source": 8}],
+        {"source": 5}, {"source": 6}, {"source": 7}, {"source": 8}, {"source": 9}, {"source": 10}],
       "materials": [{"extensions": {
+        "KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": {"index": 9}},
+        "KHR_materials_volume": {"thicknessFactor": 1, "thicknessTexture": {"index": 10}},
         "KHR_materials_specular": {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 1}},
         "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 2},
             "clearcoatRoughnessTexture": {"index": 3}, "clearcoatNormalTexture": {"index": 4, "scale": 0.5}},
@@ -205,7 +216,9 @@ TEST(LoadScene, HasTheTexturesOfMaterialExtensions) {
                                                model.sheen_color_texture,
                                                model.anisotropy_texture,
                                                model.iridescence_texture,
-                                               model.iridescence_thickness_texture};
+                                               model.iridescence_thickness_texture,
+                                               model.transmission_texture,
+                                               model.thickness_texture};
     for (std::size_t i = 0; i < std::size(textures); ++i) {
         ASSERT_TRUE(textures[i]) << i;
         EXPECT_EQ(textures[i]->image, i);

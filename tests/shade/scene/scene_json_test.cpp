@@ -119,7 +119,9 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
             "clearcoat_roughness_texture": "b.png", "clearcoat_normal_map": {"texture": "a.png", "scale": 0.5},
             "sheen_color_texture": "b.png", "anisotropy_texture": "a.png", "iridescence_texture": "b.png",
             "iridescence_thickness_texture": "a.png", "iridescence_thickness_minimum": 50,
-            "iridescence": 0.25, "iridescence_index": 1.75, "iridescence_thickness": 550},
+            "iridescence": 0.25, "iridescence_index": 1.75, "iridescence_thickness": 550,
+            "transmission": 0.875, "transmission_texture": "a.png", "thickness": 2, "thickness_texture": "b.png",
+            "attenuation_distance": 3, "attenuation_color": [0.5, 1, 0]},
         "reflectivity": 0.3, "grazing_reflectivity": 0.9, "fresnel": "conductor", "refractive_index": 1.33,
         "conductor_index": 0.4, "conductor_absorption": 5, "reflection_roughness": 0.6,
         "diffuse_texture": "a.png", "specular_texture": "b.png", "emission_texture": {"image": "a.png",
@@ -156,15 +158,21 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
     EXPECT_EQ(m.metallic_roughness->iridescence_thickness, 550.0F);
     EXPECT_EQ(m.metallic_roughness->iridescence_thickness_minimum, 50.0F);
     EXPECT_EQ(m.metallic_roughness->clearcoat_normal_map->scale, 0.5F);
+    EXPECT_EQ(m.metallic_roughness->transmission, 0.875F);
+    EXPECT_EQ(m.metallic_roughness->thickness, 2.0F);
+    EXPECT_EQ(m.metallic_roughness->attenuation_distance, 3.0F);
+    EXPECT_EQ(m.metallic_roughness->attenuation_color, glm::vec3(0.5F, 1, 0));
     for (const auto& texture :
          {m.metallic_roughness->specular_texture, m.metallic_roughness->clearcoat_texture,
           m.metallic_roughness->anisotropy_texture,
-          m.metallic_roughness->iridescence_thickness_texture})
+          m.metallic_roughness->iridescence_thickness_texture,
+          m.metallic_roughness->transmission_texture})
         EXPECT_EQ(texture->image, m.metallic_roughness->texture->image);
     for (const auto& texture :
          {m.metallic_roughness->specular_color_texture,
           m.metallic_roughness->clearcoat_roughness_texture,
-          m.metallic_roughness->sheen_color_texture, m.metallic_roughness->iridescence_texture})
+          m.metallic_roughness->sheen_color_texture, m.metallic_roughness->iridescence_texture,
+          m.metallic_roughness->thickness_texture})
         EXPECT_EQ(texture->image, m.specular_texture->image);
     EXPECT_EQ(m.metallic_roughness->texture->image, m.diffuse_texture->image);
     EXPECT_EQ(m.reflectivity, glm::vec3(0.3F));

@@ -518,6 +518,14 @@ bool edit_metallic_roughness(MetallicRoughness& model) {
     changed |= slide(model, &MetallicRoughness::iridescence);
     changed |= slide("Film index", model.iridescence_index, {1.0F, 3.0F});
     changed |= slide("Film thickness", model.iridescence_thickness, {0.0F, 1200.0F, "%.0f nm"});
+    changed |= slide(model, &MetallicRoughness::transmission);
+    changed |= drag_up("Thickness", model.thickness);
+    float distance = model.attenuation_distance.value_or(0.0F);
+    if (drag_up("Attenuation distance (0: clear)", distance)) {
+        model.attenuation_distance = distance > 0.0F ? std::optional(distance) : std::nullopt;
+        changed = true;
+    }
+    changed |= edit_color(model, &MetallicRoughness::attenuation_color);
     return changed;
 }
 

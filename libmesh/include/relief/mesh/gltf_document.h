@@ -119,6 +119,13 @@ struct GltfMaterial {
     float iridescence_thickness = 400.0F;                      ///< The maximum.
     std::optional<GltfTexture> iridescence_texture;            ///< Red.
     std::optional<GltfTexture> iridescence_thickness_texture;  ///< Green: from minimum to maximum.
+    // KHR_materials_transmission and KHR_materials_volume.
+    float transmission = 0.0F;
+    std::optional<GltfTexture> transmission_texture;  ///< Red.
+    float thickness = 0.0F;                           ///< In the space of the mesh.
+    std::optional<GltfTexture> thickness_texture;     ///< Green.
+    std::optional<float> attenuation_distance;        ///< In world space; infinite if absent.
+    glm::vec3 attenuation_color{1.0F};
     /// The extensions that change the appearance and are not among the members above, and the
     /// textures of those that are ("sheenRoughnessTexture of KHR_materials_sheen"), sorted.
     /// Extensions whose values change nothing are left out.

@@ -201,7 +201,8 @@ bool has_members(std::string_view name) {
     static constexpr std::array names = {
         "KHR_materials_unlit",      "KHR_materials_emissive_strength", "KHR_materials_ior",
         "KHR_materials_specular",   "KHR_materials_clearcoat",         "KHR_materials_sheen",
-        "KHR_materials_anisotropy", "KHR_materials_iridescence",
+        "KHR_materials_anisotropy", "KHR_materials_iridescence",       "KHR_materials_transmission",
+        "KHR_materials_volume",
     };
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -212,6 +213,7 @@ bool is_member(std::string_view texture) {
         "specularTexture",           "specularColorTexture",   "clearcoatTexture",
         "clearcoatRoughnessTexture", "clearcoatNormalTexture", "sheenColorTexture",
         "anisotropyTexture",         "iridescenceTexture",     "iridescenceThicknessTexture",
+        "transmissionTexture",       "thicknessTexture",
     };
     return std::find(names.begin(), names.end(), texture) != names.end();
 }
@@ -274,6 +276,17 @@ void add_extensions(const Json& root, const Json& json, GltfMaterial& material) 
         material.iridescence_texture = texture_in(root, *film, "iridescenceTexture");
         material.iridescence_thickness_texture =
             texture_in(root, *film, "iridescenceThicknessTexture");
+    }
+    if (const Json* transmission = find(json, "extensions", "KHR_materials_transmission")) {
+        material.transmission = float_in(*transmission, "transmissionFactor", 0.0F);
+        material.transmission_texture = texture_in(root, *transmission, "transmissionTexture");
+    }
+    if (const Json* volume = find(json, "extensions", "KHR_materials_volume")) {
+        material.thickness = float_in(*volume, "thicknessFactor", 0.0F);
+        material.thickness_texture = texture_in(root, *volume, "thicknessTexture");
+        if (find(*volume, "attenuationDistance") != nullptr)
+            material.attenuation_distance = float_in(*volume, "attenuationDistance", 0.0F);
+        material.attenuation_color = vector_in(*volume, "attenuationColor", glm::vec3(1.0F));
     }
 }
 

@@ -65,6 +65,10 @@ struct Features {
     bool iridescence = false;  ///< KHR_materials_iridescence
     bool iridescence_texture = false;
     bool film_thickness_texture = false;
+    bool transmission = false;  ///< KHR_materials_transmission
+    bool transmission_texture = false;
+    bool volume = false;  ///< KHR_materials_volume
+    bool thickness_texture = false;
     Interpolation interpolation = Interpolation::per_pixel;
     // Factors of the colors.
     bool diffuse_texture = false;
@@ -137,9 +141,10 @@ struct FramePlan {
     bool environment_brdf = false;        ///< The table of GGX's directional albedo.
     bool environment_irradiance = false;  ///< Its spherical harmonics.
     bool skybox = false;
-    bool sorted_blending = false;       ///< Blended draws last, farthest triangle first.
-    bool finishing_pass = false;        ///< Averages and codes the drawn samples.
-    std::vector<EffectReason> reasons;  ///< Those of the frame-wide effects.
+    bool transmission_background = false;  ///< A copy of what is behind transmissive surfaces.
+    bool sorted_blending = false;          ///< Blended draws last, farthest triangle first.
+    bool finishing_pass = false;           ///< Averages and codes the drawn samples.
+    std::vector<EffectReason> reasons;     ///< Those of the frame-wide effects.
 };
 
 /// Returns the canonical effects of a draw of this material and mesh in this scene.
@@ -202,10 +207,10 @@ const Material& default_material();
 // texture is white, its lights are black, and the picture does not change by a bit. Effects
 // without a neutral form are properties of the scene and are refused: the reflection model and
 // interpolation (unlit, metallic-roughness, Gouraud, flat), the meaning of maps (object-space
-// normal maps, derivative frames, antialiasing of an existing map), blending, the falloff of
-// existing lights, the exact Fresnel term of an existing reflection, tone curves, and whether the
-// environment is visible or lights surfaces. Any effect can be forced off, which changes the
-// picture.
+// normal maps, derivative frames, antialiasing of an existing map), blending, transmission, the
+// falloff of existing lights, the exact Fresnel term of an existing reflection, tone curves, and
+// whether the environment is visible or lights surfaces. Any effect can be forced off, which
+// changes the picture.
 
 /// The effects before single ones are forced.
 enum class EffectBase {

@@ -111,6 +111,16 @@ struct MetallicRoughness {
     float iridescence_thickness_minimum = 100.0F;            ///< Where the thickness texture is 0.
     std::optional<Texture> iridescence_texture{};            ///< Red multiplies iridescence.
     std::optional<Texture> iridescence_thickness_texture{};  ///< Green: from minimum to thickness.
+    // What lies behind shows through the surface (KHR_materials_transmission), which may enclose a
+    // volume that refracts and absorbs light (KHR_materials_volume).
+    float transmission = 0.0F;  ///< The share of the light that passes instead of being scattered.
+    std::optional<Texture> transmission_texture{};  ///< Red multiplies transmission.
+    float thickness = 0.0F;  ///< Of the volume, in object space; 0: a thin sheet.
+    std::optional<Texture> thickness_texture{};  ///< Green multiplies thickness.
+    /// The distance in world space after which white light has attenuation_color; if absent, the
+    /// volume is clear.
+    std::optional<float> attenuation_distance = std::nullopt;
+    glm::vec3 attenuation_color{1.0F};
 };
 
 /// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
@@ -178,6 +188,16 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// with I(n.v) (A + B), and f0 in ambient light that with I(1). The film lies in air, also under a
 /// coat.
 ///
+/// With transmission T, the scattered light is multiplied by 1 - T, and what is behind is added:
+///
+///     T c (1 - f') behind exp(-length log(1 / attenuation_color) / attenuation_distance)
+///
+/// f' is at n.v. `behind` is the picture of the skybox and of all surfaces without transmission and
+/// blending, over the background, whose color counts as radiance. It is looked up where the
+/// refracted ray is after `length`, the thickness times the scale of the object (the cube root of
+/// its determinant), seen from the eye; for thickness 0, at the pixel itself. Rough surfaces look
+/// up coarser levels of the picture. The surface itself covers what is behind.
+///
 /// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
 /// color, D' and V' Charlie's distribution and visibility for alpha = sheen_roughness^2
 /// (convolution.h), E their directional albedo at n.v, which counts as at most 1, n' the normal
@@ -197,9 +217,9 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 ///
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
 /// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B, with KHR_materials_ior,
-/// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy
-/// and KHR_materials_iridescence, [Estevez and Kulla 2017] and [Belcour and Barla 2017]. The CPU
-/// implementation is reference.h.
+/// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
+/// KHR_materials_iridescence, KHR_materials_transmission and KHR_materials_volume, [Estevez and
+/// Kulla 2017] and [Belcour and Barla 2017]. The CPU implementation is reference.h.
 struct Material {
     std::string name;
     Interpolation interpolation = Interpolation::per_pixel;

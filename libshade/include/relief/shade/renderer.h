@@ -178,7 +178,7 @@ class Renderer {
 
     /// Prepares the scene with another plan: that of plan_effects() with effects added, which
     /// changes no pixel, or removed. Contradictory sets are made canonical, and a finishing pass is
-    /// added if samples or blending need it.
+    /// added if samples, blending or transmission need it.
     Renderer(const Context& context, const Scene& scene, FramePlan plan,
              const FrameSettings& settings, Report& report = IgnoredReport());
     /// The same with a cache, which provides resources and keeps new ones.

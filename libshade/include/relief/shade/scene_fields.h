@@ -195,7 +195,15 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
                &MetallicRoughness::iridescence_thickness_minimum,
                {0, 1e6F}},
     SceneField{"iridescence_texture", &MetallicRoughness::iridescence_texture},
-    SceneField{"iridescence_thickness_texture", &MetallicRoughness::iridescence_thickness_texture}};
+    SceneField{"iridescence_thickness_texture", &MetallicRoughness::iridescence_thickness_texture},
+    SceneField{"transmission", &MetallicRoughness::transmission, {0, 1}},
+    SceneField{"transmission_texture", &MetallicRoughness::transmission_texture},
+    SceneField{"thickness", &MetallicRoughness::thickness, {0, std::numeric_limits<float>::max()}},
+    SceneField{"thickness_texture", &MetallicRoughness::thickness_texture},
+    SceneField{"attenuation_distance", &MetallicRoughness::attenuation_distance, positive_range,
+               FieldUnit::world_length},
+    SceneField{
+        "attenuation_color", &MetallicRoughness::attenuation_color, {0, 1}, FieldUnit::color}};
 
 template <>
 inline constexpr auto fields_of<Material> = std::tuple{

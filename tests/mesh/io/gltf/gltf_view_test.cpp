@@ -60,6 +60,9 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
                 "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 1.5,
                     "iridescenceThicknessMinimum": 50, "iridescenceThicknessMaximum": 250,
                     "iridescenceTexture": {"index": 2}, "iridescenceThicknessTexture": {"index": 0}},
+                "KHR_materials_transmission": {"transmissionFactor": 0.5, "transmissionTexture": {"index": 1}},
+                "KHR_materials_volume": {"thicknessFactor": 3, "attenuationDistance": 2,
+                    "attenuationColor": [0.5, 0.25, 1], "thicknessTexture": {"index": 2}},
                 "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": -0.5,
                     "anisotropyTexture": {"index": 0}},
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
@@ -99,6 +102,14 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(full.clearcoat_roughness, 0.125F);
     EXPECT_EQ(full.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
     EXPECT_EQ(full.sheen_roughness, 0.5F);
+    EXPECT_EQ(full.transmission, 0.5F);
+    EXPECT_EQ(full.transmission_texture->image, full.occlusion_texture->image);
+    EXPECT_EQ(full.thickness, 3.0F);
+    EXPECT_EQ(full.thickness_texture->image, full.metallic_roughness_texture->image);
+    EXPECT_EQ(full.attenuation_distance, 2.0F);
+    EXPECT_EQ(full.attenuation_color, glm::vec3(0.5F, 0.25F, 1));
+    EXPECT_EQ(plain.transmission, 0.0F);
+    EXPECT_FALSE(plain.attenuation_distance);
     EXPECT_EQ(plain.anisotropy, 0.0F);
     EXPECT_EQ(full.anisotropy, 0.75F);
     EXPECT_EQ(full.anisotropy_rotation, -0.5F);
