@@ -20,11 +20,23 @@ void main() {
 in vec3 direction_world;
 out vec4 color;
 
-#include "environment.glsl#radiance"
-
+#include <sky>
 #include <output>
 
-void main() {
-    vec3 radiance = environment_radiance(direction_world);
-    color = vec4(coded(radiance), 1.0);
-}
+void main() { color = vec4(coded(sky_radiance(direction_world)), 1.0); }
+
+#part sharp
+// The environment as it is.
+
+#include "environment.glsl#radiance"
+
+vec3 sky_radiance(vec3 direction_world) { return environment_radiance(direction_world); }
+
+#part blurred
+// The environment as a rough mirror shows it.
+
+#include "environment.glsl#blurred"
+
+uniform float skybox_blur;
+
+vec3 sky_radiance(vec3 direction_world) { return blurred_radiance(direction_world, skybox_blur); }

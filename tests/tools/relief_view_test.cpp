@@ -230,6 +230,9 @@ TEST(ViewCommand, TheEnvironmentStandsBehindTheModelHoweverItIsNamed) {
     EXPECT_EQ(corner("--camera 0,0 --environment sky --environment-rotation 90 square.obj"),
               (Pixel{255, 0, 0, 255}))
         << "posx turned from +x to -z";
+    const Pixel blurred = corner("--camera 0,0 --environment sky --background-blur 1 square.obj");
+    EXPECT_GT(blurred[0], blurred[1]) << "most of it is negz, which is magenta";
+    EXPECT_GT(blurred[1], 60) << "it contains light of faces with green";
 }
 
 TEST(ViewCommand, AMirrorShowsWhatIsBehindTheCamera) {
@@ -499,6 +502,10 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
           "--reflectivity: there is no --environment"},
          {"square.obj --output out/old.png --environment-rotation 90", 2,
           "--environment-rotation: there is no --environment"},
+         {"square.obj --output out/old.png --background-blur 0.5", 2,
+          "--background-blur: there is no --environment"},
+         {"square.obj --output out/old.png --environment sky --no-skybox --background-blur 0.5", 2,
+          "--background-blur: the environment is not visible behind the model"},
          {"square.obj --output out/old.png --left-handed", 2,
           "--left-handed: there is no --environment"},
          {"square.obj --output out/old.png --environment-layout cross", 2,

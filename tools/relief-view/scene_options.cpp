@@ -549,6 +549,10 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
                {-360, 360, "degrees"},
                "Rotate the environment about the y axis, counterclockwise from above. Default: 0.")
         .group(environment_group);
+    add_number(app, "--background-blur", "B", options.background_blur,
+               field_limits(&Environment::skybox_blur),
+               "Blur the visible environment: 1 as a mirror of roughness 1 shows it. Default: 0.")
+        .group(environment_group);
     add_choice(
         app, "--environment-light", options.environment_light,
         Choices<bool>{{"on", true}, {"off", false}},
@@ -648,6 +652,7 @@ void check_environment(const ViewOptions& options) {
     describe_environment(options.environment_light.has_value(), "--environment-light");
     describe_environment(options.environment_intensity.has_value(), "--environment-intensity");
     describe_environment(options.environment_rotation.has_value(), "--environment-rotation");
+    describe_environment(options.background_blur.has_value(), "--background-blur");
     const auto describe_images = [&](bool given, const char* option) {
         refuse(given && files == 0, option, "there is no --environment", give);
     };
@@ -662,6 +667,8 @@ void check_environment(const ViewOptions& options) {
            "applies to one image, not to six or to the studio", "leave it out");
     refuse(options.no_skybox && uses_studio(options), "--no-skybox",
            "the studio is not visible behind the model", "leave it out");
+    refuse(options.background_blur && (options.no_skybox || uses_studio(options)),
+           "--background-blur", "the environment is not visible behind the model", "leave it out");
     refuse(options.left_handed_environment && one, "--left-handed", "applies to six images",
            "leave it out");
     refuse(options.background && files != 0 && !options.no_skybox && !uses_studio(options),
@@ -687,6 +694,7 @@ Environment environment_of(const ViewOptions& options) {
     environment.intensity = options.environment_intensity.value_or(1.0F);
     environment.rotation = glm::radians(options.environment_rotation.value_or(0.0F));
     environment.skybox &= !options.no_skybox;
+    environment.skybox_blur = options.background_blur.value_or(0.0F);
     return environment;
 }
 
@@ -727,8 +735,9 @@ void override_scene_environment(Scene& scene, const ViewOptions& options) {
     if (!scene.environment) {
         const bool has_options = options.no_skybox || options.environment_light ||
                                  options.environment_intensity || options.environment_rotation ||
-                                 options.reflectivity || options.reflection_roughness ||
-                                 options.fresnel || options.no_fresnel || options.transmission;
+                                 options.background_blur || options.reflectivity ||
+                                 options.reflection_roughness || options.fresnel ||
+                                 options.no_fresnel || options.transmission;
         if (!has_options) return;
         throw UsageError("the scene has no environment for these options",
                          "add --environment, or leave the options out");
@@ -739,6 +748,8 @@ void override_scene_environment(Scene& scene, const ViewOptions& options) {
         options.environment_intensity.value_or(scene.environment->intensity);
     if (options.environment_rotation)
         scene.environment->rotation = glm::radians(*options.environment_rotation);
+    scene.environment->skybox_blur =
+        options.background_blur.value_or(scene.environment->skybox_blur);
 }
 
 void set_environment(Scene& scene, const ViewOptions& options) {

@@ -191,6 +191,7 @@ struct ViewOptions {
     std::optional<bool> environment_light;  ///< If absent, metallic-roughness materials decide.
     std::optional<float> environment_intensity;
     std::optional<float> environment_rotation;  ///< Degrees.
+    std::optional<float> background_blur;
     bool left_handed_environment = false;
     bool no_skybox = false;
     std::optional<float> reflectivity;

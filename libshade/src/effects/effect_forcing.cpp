@@ -256,15 +256,14 @@ void check_frame(const FramePlan& plan, const Requests& requests) {
 }
 
 void remove_skybox(FramePlan& plan) {
-    const bool mirrored = std::any_of(plan.draws.begin(), plan.draws.end(), [](const DrawPlan& d) {
-        return d.features.reflection == ReflectionTerm::mirror || d.features.refraction;
-    });
-    plan.skybox = false;
-    plan.environment_map = mirrored || plan.prefiltered_map || plan.environment_irradiance;
+    plan.skybox = plan.blurred_skybox = false;
+    const EnvironmentNeeds needs = environment_needs(plan);
+    plan.prefiltered_map = needs.blurred;
+    plan.environment_map = needs.any();
     for (EffectReason& reason : plan.reasons) {
-        if (reason.effect == "skybox") reason = {"skybox", false, "taken out"};
-        if (reason.effect == "environment map" && reason.on && !plan.environment_map) {
-            reason = {"environment map", false, "nothing shows it"};
+        for (const auto& [name, member] : frame_effects) {
+            if (reason.effect != name || !reason.on || plan.*member) continue;
+            reason = {reason.effect, false, name == "skybox" ? "taken out" : "nothing shows it"};
         }
     }
 }

@@ -59,7 +59,7 @@ inline bool shows_normal(const Features& f) {
 /// prepares them, also for draws that were changed by hand.
 struct EnvironmentNeeds {
     bool sharp = false;       ///< Mirrored without blur, or seen through a surface.
-    bool blurred = false;     ///< Mirrored by rough surfaces.
+    bool blurred = false;     ///< Mirrored by rough surfaces, or shown by a blurred skybox.
     bool irradiance = false;  ///< Scattered.
     bool brdf = false;        ///< GGX's directional albedo, for metallic-roughness.
 
@@ -115,6 +115,7 @@ struct FrameEffect {
 };
 inline constexpr std::array frame_effects = {
     FrameEffect{"skybox", &FramePlan::skybox},
+    FrameEffect{"blurred skybox", &FramePlan::blurred_skybox},
     FrameEffect{"environment map", &FramePlan::environment_map},
     FrameEffect{"prefiltered environment", &FramePlan::prefiltered_map},
     FrameEffect{"environment BRDF table", &FramePlan::environment_brdf},

@@ -83,8 +83,11 @@ void plan_environment(const Scene& scene, const FrameSettings& settings, FramePl
            "the environment is to be seen behind the model",
            is_picture ? "the environment is not to be seen itself"
                       : "a debug view shows surfaces alone");
+    decide(&FramePlan::blurred_skybox, plan.skybox && scene.environment->skybox_blur > 0.0F,
+           "its blur is not 0", "it is not blurred or not to be seen");
     const EnvironmentNeeds needs = environment_needs(plan);
-    decide(&FramePlan::prefiltered_map, needs.blurred, "a rough material reflects it",
+    decide(&FramePlan::prefiltered_map, needs.blurred,
+           plan.blurred_skybox ? "the skybox is blurred" : "a rough material reflects it",
            "no rough material reflects it");
     decide(&FramePlan::environment_brdf, needs.brdf,
            "a metallic-roughness material reflects the environment",
@@ -136,6 +139,7 @@ Features features_of(const Scene& scene, const Material& material, const Mesh& m
 
 EnvironmentNeeds environment_needs(const FramePlan& plan) {
     EnvironmentNeeds needs;
+    needs.blurred = plan.blurred_skybox;
     for (const DrawPlan& draw : plan.draws) {
         const Features& f = draw.features;
         const bool blurs = f.reflection == ReflectionTerm::glossy && !has_black_mirror(f);

@@ -775,7 +775,10 @@ ShaderSteps skybox_steps(OutputCoding coding, const Scene& scene) {
     ShaderSteps steps = output_steps(coding, scene);
     Features features;
     features.environment_rotation = scene.environment && scene.environment->rotation != 0.0F;
-    steps.merge(chosen_of({rotation_step(features)}));
+    const bool blurs = scene.environment && scene.environment->skybox_blur > 0.0F;
+    steps.merge(
+        chosen_of({rotation_step(features),
+                   {"sky", "", {{"skybox.glsl#sharp", !blurs}, {"skybox.glsl#blurred", blurs}}}}));
     return steps;
 }
 

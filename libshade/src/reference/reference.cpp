@@ -152,7 +152,8 @@ glm::dvec4 Tracer::skybox(const glm::dvec2& view_plane, Trace& trace) const {
     if (!environment || !environment->skybox) return glm::dvec4(0.0);
     const glm::dmat3 world_from_view(camera().world_from_view);
     const glm::dvec3 radiance =
-        prepared_.environment->looked_up(world_from_view * direction(view_plane), trace);
+        prepared_.environment->blurred(world_from_view * direction(view_plane),
+                                       static_cast<double>(environment->skybox_blur), trace);
     return {limited(radiance, max_radiance), 1.0};
 }
 

@@ -211,12 +211,15 @@ float EnvironmentMaps::blurred_levels() const {
     return has_blurred_ ? static_cast<float>(maps_->blurred->levels - 1) : 0.0F;
 }
 
-Skybox::Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output)
+Skybox::Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output,
+               float blurred_levels)
     : program_(programs.get("skybox", skybox_steps(output, scene))),
       empty_vertices_(api),
       intensity_(scene.environment ? scene.environment->intensity : 0.0F),
       turn_(scene.environment ? environment_turn(*scene.environment) : glm::vec2(1.0F, 0.0F)),
-      exposure_(scene.exposure) {}
+      exposure_(scene.exposure),
+      blur_(scene.environment ? scene.environment->skybox_blur : 0.0F),
+      blurred_levels_(blurred_levels) {}
 
 void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const {
     // All rays of an orthographic camera have the same direction.
@@ -229,6 +232,8 @@ void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const 
     program_->set("environment_intensity", intensity_);
     program_->set("environment_turn", turn_);
     program_->set("exposure", exposure_);
+    program_->set("skybox_blur", blur_);
+    program_->set("blurred_levels", blurred_levels_);
     api->BindVertexArray(empty_vertices_.name());
     api->DrawArrays(GL_TRIANGLES, 0, 3);
 }

@@ -96,8 +96,10 @@ class EnvironmentMaps {
 class Skybox {
   public:
     /// \param output  the encoding that surfaces write
+    /// \param blurred_levels  of the environment's maps
     /// \throws GpuError
-    Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output);
+    Skybox(const gl::Api& api, ProgramCache& programs, const Scene& scene, OutputCoding output,
+           float blurred_levels);
 
     /// The environment must be bound to its texture unit.
     void draw(const gl::Api& api, const Camera& camera, float aspect) const;
@@ -108,6 +110,8 @@ class Skybox {
     float intensity_;
     glm::vec2 turn_;
     float exposure_;
+    float blur_;
+    float blurred_levels_;
 };
 
 }  // namespace relief

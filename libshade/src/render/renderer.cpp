@@ -419,7 +419,8 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     textures.upload(scene.images);
     environment.emplace(api, cache.environments, scene, plan, shows_environment, report);
     if (plan.skybox) {
-        skybox.emplace(api, cache.programs, scene, drawn_coding(settings, plan.finishing_pass));
+        skybox.emplace(api, cache.programs, scene, drawn_coding(settings, plan.finishing_pass),
+                       environment->blurred_levels());
     }
     {
         const ProgressStage stage("programs");

@@ -344,6 +344,10 @@ TEST(EffectForcing, OfTheFrameTakesOutTheSkyboxAndItsMap) {
     EXPECT_FALSE(plan.skybox);
     EXPECT_FALSE(plan.environment_map);
     EXPECT_TRUE(forced(scene, {{"mirror reflection", true}, {"skybox", false}}).environment_map);
+    scene.environment->skybox_blur = 0.5F;
+    EXPECT_TRUE(plan_effects(scene, one_sample).prefiltered_map);
+    const FramePlan sharp = forced(scene, {{"skybox", false}});
+    EXPECT_FALSE(sharp.blurred_skybox || sharp.prefiltered_map || sharp.environment_map);
     EXPECT_EQ(refusal(scene, {{"sorted blending", true}}),
               "effect 'sorted blending' cannot be forced on: it follows from the surfaces' effects "
               "and the settings");

@@ -153,6 +153,7 @@ const Change environment =
     with(&Scene::environment, Environment{Equirectangular{}, 1.0F, false, false});
 const Change rotated = [](Frame& f) { f.scene.environment->rotation = 0.001F; };
 const Change skybox = [](Frame& f) { f.scene.environment->skybox = true; };
+const Change hazy = [](Frame& f) { f.scene.environment->skybox_blur = 0.001F; };
 const Change scattered = [](Frame& f) { f.scene.environment->lights = true; };
 
 const Change exposed = with(&Scene::exposure, 0.999F);
@@ -615,6 +616,9 @@ const std::vector<Boundary> frame_boundaries = {
     {"skybox", "asked for", {environment}, {}, {skybox}},
     {"skybox", "not a debug view", {environment, skybox}, {view_of_data}, {}},
     {"prefiltered environment", "rough", {mirror, environment}, {}, {rough}},
+    {"prefiltered environment", "a blurred skybox", {environment, skybox}, {}, {hazy}},
+    {"blurred skybox", "its blur", {environment, skybox}, {}, {hazy}},
+    {"blurred skybox", "a skybox", {environment, hazy}, {}, {skybox}},
     {"prefiltered environment", "lit", {physical, environment}, {unlit}, {}},
     {"environment BRDF table", "metallic-roughness", {mirror, environment, rough}, {}, {physical}},
     {"environment BRDF table", "an environment", {physical}, {}, {environment}},

@@ -618,6 +618,14 @@ TEST_F(AgainstReference, AgreesInBlurredSurroundings) {
             expect_agreement(glossy_sphere(roughness, metallic), blurred_tolerance);
         }
     }
+    for (const float blur : {0.1F, 0.5F, 1.0F}) {
+        SCOPED_TRACE(testing::Message() << "skybox, blur " << blur);
+        Scene open = glossy_sphere(0.2F, 1.0F);
+        open.environment->skybox = true;
+        open.environment->skybox_blur = blur;
+        open.environment->rotation = 0.8F;
+        expect_agreement(open, blurred_tolerance);
+    }
     Scene painted = glossy_sphere(0.4F, std::nullopt);
     painted.materials[0].reflection_by_normal = true;
     expect_agreement(painted, blurred_tolerance);

@@ -270,10 +270,11 @@ TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
 TEST_F(SceneFile, EnvironmentsComeInFiveLayoutsOrAreTheStudio) {
     const SceneGraph faces = load(R"("environment": {"faces": ["posx.png", "negx.png", "posy.png",
         "negy.png", "posz.png", "negz.png"], "left_handed": true, "intensity": 2, "skybox": false,
-        "lights": true, "rotation": 90})");
+        "lights": true, "rotation": 90, "skybox_blur": 0.25})");
     const Environment& environment = faces.scene.environment.value();
     EXPECT_TRUE(std::get<CubeFaces>(environment.source).left_handed);
     EXPECT_EQ(environment.intensity, 2.0F);
+    EXPECT_EQ(environment.skybox_blur, 0.25F);
     EXPECT_TRUE(environment.lights && !environment.skybox);
     EXPECT_FLOAT_EQ(environment.rotation, 0.5F * std::numbers::pi_v<float>);
     const auto source = [&](const std::string& text) {

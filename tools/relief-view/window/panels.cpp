@@ -555,6 +555,7 @@ bool edit(Environment& environment) {
     bool changed = drag_up("Intensity", environment.intensity);
     changed |= slide_angle("Rotation", environment.rotation, {-180.0F, 180.0F, "%.0f deg"});
     changed |= check("Show as background", environment.skybox);
+    if (environment.skybox) changed |= slide(environment, &Environment::skybox_blur);
     changed |= check("Environment light", environment.lights);
     return changed;
 }

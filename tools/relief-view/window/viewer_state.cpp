@@ -573,6 +573,7 @@ void ViewerState::set_environment(const std::filesystem::path& file) {
             environment.intensity = scene.environment->intensity;
             environment.rotation = scene.environment->rotation;
             environment.skybox = scene.environment->skybox;
+            environment.skybox_blur = scene.environment->skybox_blur;
             environment.lights = scene.environment->lights;
         }
         scene.environment = std::move(environment);

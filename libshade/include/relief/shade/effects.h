@@ -141,6 +141,7 @@ struct FramePlan {
     bool environment_brdf = false;        ///< The table of GGX's directional albedo.
     bool environment_irradiance = false;  ///< Its spherical harmonics.
     bool skybox = false;
+    bool blurred_skybox = false;           ///< The skybox shows the prefiltered map.
     bool transmission_background = false;  ///< A copy of what is behind transmissive surfaces.
     bool sorted_blending = false;          ///< Blended draws last, farthest triangle first.
     bool finishing_pass = false;           ///< Averages and codes the drawn samples.

@@ -184,6 +184,8 @@ struct Environment {
     bool lights = false;  ///< Surfaces scatter its light, by spherical harmonics of order 2.
     /// Radians by which it is rotated about the world's y axis, from +z to +x. Finite.
     float rotation = 0.0F;
+    /// The blur of the visible environment: 0 is none, 1 that of a mirror of roughness 1.
+    float skybox_blur = 0.0F;
 };
 
 /// The curve from radiance times exposure to the picture, by channel.

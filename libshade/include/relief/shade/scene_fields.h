@@ -284,7 +284,9 @@ template <>
 inline constexpr auto fields_of<Environment> = std::tuple{
     SceneField{
         "intensity", &Environment::intensity, {0, max_reflectance}, {}, "environment intensity"},
-    SceneField{"skybox", &Environment::skybox}, SceneField{"lights", &Environment::lights},
+    SceneField{"skybox", &Environment::skybox},
+    SceneField{"skybox_blur", &Environment::skybox_blur, {0, 1}, {}, "background blur"},
+    SceneField{"lights", &Environment::lights},
     SceneField{"rotation", &Environment::rotation, {}, FieldUnit::radians, "environment rotation"}};
 
 /// The field of view lies between 0 and pi, without either; 0 < near < far.
