@@ -26,6 +26,51 @@ int go_on(const Progress& progress, std::atomic<int>& ended) {
     throw Cancelled();
 }
 
+TEST(Thumbnails, ShowTheImagesOfASceneInCells) {
+    Image wide = make_image(200, 100, 3, 16, ColorSpace::srgb);
+    for (std::size_t i = 0; i < 300UL * 100; ++i)
+        wide.as<std::uint16_t>()[600 * (i / 300) + i % 300] = 65535;  // The left half is white.
+    Image high = make_image(1, 300, 1, 32, ColorSpace::linear);
+    for (float& sample : high.as<float>())
+        sample = 7.0F;
+    Scene scene;
+    scene.images = {{"wide", wide}, {"missing", std::filesystem::path("no.png")}, {"high", high}};
+    std::atomic<int> woken = 0;
+    Thumbnails thumbnails([&] { ++woken; });
+    thumbnails.update(scene);
+    EXPECT_FALSE(thumbnails.is_running()) << "no panel wants them";
+    thumbnails.want();
+    thumbnails.update(scene);
+    ASSERT_TRUE(eventually([&] { return woken == 1; }));
+    EXPECT_FALSE(thumbnails.place_of(0));
+    const Image picture = thumbnails.take().value();
+    EXPECT_EQ(picture.width, 16 * 96);
+    EXPECT_EQ(picture.height, 96);
+    EXPECT_EQ(thumbnails.place_of(0)->size, glm::ivec2(96, 48));
+    EXPECT_EQ(thumbnails.place_of(0)->image_size, glm::ivec2(200, 100));
+    EXPECT_FALSE(thumbnails.place_of(1)) << "it cannot be decoded";
+    EXPECT_EQ(thumbnails.place_of(2)->min, glm::ivec2(192, 0));
+    EXPECT_EQ(thumbnails.place_of(2)->size, glm::ivec2(1, 96));
+    EXPECT_FALSE(thumbnails.place_of(3));
+    const auto red_and_alpha = [&](std::size_t x, std::size_t y) {
+        const std::size_t pixel = 4 * (y * 16 * 96 + x);
+        return std::pair(picture.as<std::uint8_t>()[pixel], picture.as<std::uint8_t>()[pixel + 3]);
+    };
+    EXPECT_EQ(red_and_alpha(47, 47), std::pair(std::uint8_t{255}, std::uint8_t{255}));
+    EXPECT_EQ(red_and_alpha(48, 0), std::pair(std::uint8_t{0}, std::uint8_t{255}));
+    EXPECT_EQ(red_and_alpha(48, 48), std::pair(std::uint8_t{0}, std::uint8_t{0})) << "empty";
+    EXPECT_EQ(red_and_alpha(192, 95), std::pair(std::uint8_t{255}, std::uint8_t{255}));
+
+    thumbnails.want();
+    thumbnails.update(scene);
+    EXPECT_FALSE(thumbnails.is_running()) << "the images are the same";
+    scene.images.pop_back();
+    thumbnails.want();
+    thumbnails.update(scene);
+    EXPECT_TRUE(thumbnails.is_running());
+    EXPECT_FALSE(thumbnails.place_of(0)) << "of another scene";
+}
+
 TEST(NewestJob, ReturnsItsResultOnceAndWakes) {
     std::atomic<int> woken = 0;
     NewestJob<int> job([&] { ++woken; });

@@ -343,6 +343,9 @@ TEST_F(Panel, MaterialsTakeMapsAndChangeTheirModel) {
     enter("Bump map", "data/bricks-height.png");
     window().wait_for("the map", has("bump map"));
     EXPECT_EQ(window().state()["error"], "");
+    window().wait_for("the thumbnail", [](const json& now) {
+        return now["places"].contains("thumbnail of Bump map");
+    });
     click("clear Bump map", lacks("bump map"));
     click("clear Diffuse map", lacks("diffuse texture"));
 

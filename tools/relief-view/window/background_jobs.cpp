@@ -6,12 +6,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "effect_options.h"
+#include "progress_stage.h"
 #include "relief/mesh/statistics.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief::tools {
 
@@ -63,6 +66,123 @@ void HealthSearch::start(HealthRequest request) {
     job_.start([checked = std::move(request)](const Progress&) { return find(checked); });
 }
 
+// Thumbnails.
+
+namespace {
+
+/// Returns the name of an image and the stamp of its file, by which changes are noticed.
+std::pair<std::string, FileStamp> identity_of(const ImageSource& image) {
+    const auto* file = std::get_if<std::filesystem::path>(&image.source);
+    return {image.name + '\n' + image.origin, file == nullptr ? FileStamp{} : stamp_of(*file)};
+}
+
+/// Returns a sample as a code from 0 to 255; sRGB for linear floats.
+double code_of(std::uint8_t sample) {
+    return sample;
+}
+double code_of(std::uint16_t sample) {
+    return sample / 257.0;
+}
+double code_of(float sample) {
+    const float shown = sample > 0.0F ? std::min(sample, 1.0F) : 0.0F;  // NaN counts as 0.
+    return 255.0 * static_cast<double>(srgb_from_linear(shown));
+}
+
+/// Writes an image into a part of a picture, each pixel the mean of the codes of a rectangle.
+void reduce(const Image& image, Image& picture, const glm::ivec2& min, const glm::ivec2& size) {
+    const std::span<std::uint8_t> to = picture.as<std::uint8_t>();
+    const auto first_of = [](int i, int count, int texels) {
+        return static_cast<int>(static_cast<std::int64_t>(i) * texels / count);
+    };
+    const auto write = [&](const auto& samples, int x, int y) {
+        const int left = first_of(x, size.x, image.width);
+        const int top = first_of(y, size.y, image.height);
+        const int right = std::max(first_of(x + 1, size.x, image.width), left + 1);
+        const int bottom = std::max(first_of(y + 1, size.y, image.height), top + 1);
+        std::array<double, 4> sum{};
+        for (int row = top; row < bottom; ++row) {
+            for (int column = left; column < right; ++column) {
+                const auto texel =
+                    static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                    static_cast<std::size_t>(column);
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const auto channels = static_cast<std::size_t>(image.channels);
+                    sum[i] += code_of(samples[texel * channels + (channels < 3 ? 0 : i)]);
+                }
+            }
+        }
+        const double count = static_cast<double>(right - left) * (bottom - top);
+        const auto pixel =
+            4 * (static_cast<std::size_t>(min.y + y) * static_cast<std::size_t>(picture.width) +
+                 static_cast<std::size_t>(min.x + x));
+        for (std::size_t i = 0; i < 3; ++i)
+            to[pixel + i] = static_cast<std::uint8_t>(std::lround(sum[i] / count));
+        to[pixel + 3] = 255;
+    };
+    std::visit(
+        [&](const auto& samples) {
+            for (int y = 0; y < size.y; ++y) {
+                for (int x = 0; x < size.x; ++x)
+                    write(samples, x, y);
+            }
+        },
+        image.samples);
+}
+
+}  // namespace
+
+Thumbnails::Result Thumbnails::reduced(const std::vector<ImageSource>& images) {
+    const std::size_t count = std::min(images.size(), max_count);
+    const auto rows = static_cast<int>((count + columns - 1) / columns);
+    Result result{make_image(columns * cell, rows * cell, 4, 8, ColorSpace::srgb), {}};
+    for (std::size_t i = 0; i < count; ++i) {
+        check_cancelled();
+        Place& place = result.places.emplace_back();
+        try {
+            const Image image = decode(images[i], ImageUse::color);
+            const int longest = std::max(image.width, image.height);
+            if (image.empty()) continue;
+            const auto fitted = [&](int side) {
+                return std::max(static_cast<int>(static_cast<std::int64_t>(side) * cell / longest),
+                                1);
+            };
+            const auto index = static_cast<int>(i);
+            place = {cell * glm::ivec2(index % columns, index / columns),
+                     {fitted(image.width), fitted(image.height)},
+                     {image.width, image.height}};
+            reduce(image, result.picture, place.min, place.size);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error&) {  // The renderer reports the error.
+            place = {};
+        }
+    }
+    return result;
+}
+
+void Thumbnails::update(const Scene& scene) {
+    if (!std::exchange(is_wanted_, false) || scene.images.empty()) return;
+    std::vector<std::pair<std::string, FileStamp>> images;
+    for (const ImageSource& image : scene.images)
+        images.push_back(identity_of(image));
+    if (images == started_) return;
+    started_ = std::move(images);
+    places_.clear();
+    job_.start([sources = scene.images](const Progress&) { return reduced(sources); });
+}
+
+std::optional<Image> Thumbnails::take() {
+    std::optional<Result> result = job_.take();
+    if (!result) return std::nullopt;
+    places_ = std::move(result->places);
+    return std::move(result->picture);
+}
+
+std::optional<Thumbnails::Place> Thumbnails::place_of(std::size_t image) const {
+    if (image >= places_.size() || places_[image].size.x == 0) return std::nullopt;
+    return places_[image];
+}
+
 // Drawing.
 
 namespace {
@@ -92,10 +212,11 @@ FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
 class DrawThread::Drawer {
   public:
     Drawer(GlLoader loader, const std::string& name)
-        : context_(loader, name), cache_(context_), handover_(context_) {}
+        : context_(loader, name), cache_(context_), handover_(context_), thumbnails_(context_) {}
 
     [[nodiscard]] const std::string& renderer_name() const { return context_.renderer_name(); }
     PictureExchange& handover() { return handover_; }
+    PictureExchange& thumbnails() { return thumbnails_; }
 
     void relink() {
         cache_.drop_programs();
@@ -209,6 +330,7 @@ class DrawThread::Drawer {
     Context context_;
     RenderCache cache_;
     PictureExchange handover_;
+    PictureExchange thumbnails_;
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<Renderer> beside_;
     FrameSettings settings_;  ///< Settings of the renderer.
@@ -271,6 +393,18 @@ PictureExchange::Shown DrawThread::shown() {
     return handover_->get();
 }
 
+void DrawThread::put_thumbnails(Image picture) {
+    auto shared = std::make_shared<const Image>(std::move(picture));
+    add([this, shared](const Context&, RenderCache&) {
+        thumbnails_->put(*shared);
+        return false;
+    });
+}
+
+PictureExchange::Shown DrawThread::thumbnails() {
+    return thumbnails_->get();
+}
+
 bool DrawThread::is_busy() {
     const std::lock_guard lock(mutex_);
     return is_drawing_ || request_.has_value();
@@ -329,6 +463,7 @@ void DrawThread::run() {
             const std::lock_guard lock(mutex_);
             renderer_name_ = drawer.renderer_name();
             handover_ = &drawer.handover();
+            thumbnails_ = &drawer.thumbnails();
             is_ready_ = true;
         }
         changed_.notify_all();

@@ -12,6 +12,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <list>
 #include <map>
 #include <memory>
@@ -21,8 +22,10 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "relief/mesh/execution.h"
+#include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "relief/shade/effect_costs.h"
@@ -210,6 +213,50 @@ class HealthSearch {
 // never waits. If a scene cannot be drawn, the old picture stays, with an error message. During
 // motion, slow pictures are drawn at a lower resolution.
 
+/// Small pictures of the images of a scene, in one picture of square cells.
+class Thumbnails {
+  public:
+    static constexpr int cell = 96;                ///< Pixels.
+    static constexpr int columns = 16;             ///< Cells in a row, the first row on top.
+    static constexpr std::size_t max_count = 512;  ///< Further images have no thumbnail.
+
+    /// \param wake  called from another thread when there is a result
+    explicit Thumbnails(std::function<void()> wake) : job_(std::move(wake)) {}
+
+    /// Notes that a panel shows the images.
+    void want() { is_wanted_ = true; }
+
+    /// Starts decoding if the images are wanted and differ from those of the last start.
+    void update(const Scene& scene);
+
+    /// The picture of the last start, if it is ready: sRGB of 8 bits. Each is returned once. The
+    /// cell of an image that cannot be decoded is transparent.
+    std::optional<Image> take();
+
+    [[nodiscard]] bool is_running() const { return job_.is_running(); }
+
+    /// The place of an image in the picture.
+    struct Place {
+        glm::ivec2 min{0};  ///< The upper left corner in pixels.
+        glm::ivec2 size{0};
+        glm::ivec2 image_size{0};
+    };
+    /// Returns nothing if there is no picture yet, or the image cannot be decoded.
+    [[nodiscard]] std::optional<Place> place_of(std::size_t image) const;
+
+  private:
+    struct Result {
+        Image picture;
+        std::vector<Place> places;
+    };
+    static Result reduced(const std::vector<ImageSource>& images);
+
+    NewestJob<Result> job_;
+    bool is_wanted_ = false;
+    std::vector<std::pair<std::string, FileStamp>> started_;  ///< Names of images, and their files.
+    std::vector<Place> places_;
+};
+
 /// Reduces the resolution during motion if pictures are slow.
 class AdaptiveResolution {
   public:
@@ -310,6 +357,11 @@ class DrawThread {
 
     [[nodiscard]] RenderedPicture drawn();
     [[nodiscard]] PictureExchange::Shown shown();
+
+    /// Makes a texture of a picture, which replaces that of the last call.
+    void put_thumbnails(Image picture);
+    [[nodiscard]] PictureExchange::Shown thumbnails();
+
     /// Returns whether a request is waiting or being drawn.
     [[nodiscard]] bool is_busy();
     /// Progress of preparing a renderer. Without a preparation, the stage is empty.
@@ -339,6 +391,7 @@ class DrawThread {
     std::exception_ptr failure_;
     RenderedPicture drawn_;
     PictureExchange* handover_ = nullptr;
+    PictureExchange* thumbnails_ = nullptr;
     std::thread thread_;
 };
 

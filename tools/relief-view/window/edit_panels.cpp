@@ -587,11 +587,34 @@ bool edit_relief(Material& material) {
     return changed;
 }
 
+/// Returns the small picture of an image, if it has been made.
+std::optional<Thumbnail> thumbnail_of(const PanelInput& input, std::size_t image) {
+    if (input.thumbnails == nullptr) return std::nullopt;
+    input.thumbnails->want();
+    const std::optional<Thumbnails::Place> place = input.thumbnails->place_of(image);
+    const PictureExchange::Shown& texture = input.thumbnail_texture;
+    if (!place || texture.texture == 0) return std::nullopt;
+    // The first row of a texture is at the bottom.
+    const glm::vec2 scale(1.0F / static_cast<float>(texture.width),
+                          1.0F / static_cast<float>(texture.height));
+    const glm::vec2 min = glm::vec2(place->min) * scale;
+    const glm::vec2 max = glm::vec2(place->min + place->size) * scale;
+    return Thumbnail{texture.texture,
+                     {min.x, 1.0F - min.y},
+                     {max.x, 1.0F - max.y},
+                     place->size,
+                     place->image_size};
+}
+
 /// Edits the files of the maps. If a file cannot be used, the state reports the error.
-void edit_maps(ViewerState& state, std::size_t index) {
+void edit_maps(const PanelInput& input, std::size_t index) {
+    ViewerState& state = input.state;
     for (const MapSlot& slot : map_slots()) {
         if (!slot.is_used(state.scene().materials[index])) continue;
-        const FileChoice choice = file_field(slot.name, map_name(state.scene(), index, slot));
+        const MaybeTexture texture = slot.texture(state.scene().materials[index]);
+        const FileChoice choice =
+            file_field(slot.name, map_name(state.scene(), index, slot),
+                       texture ? thumbnail_of(input, texture->image) : std::nullopt);
         if (choice.file) {
             state.try_edit([&](Scene& scene) { set_map(scene, index, slot, *choice.file); });
         } else if (choice.is_cleared) {
@@ -616,9 +639,10 @@ void edit_part(ViewerState& state, std::size_t index, const Edit& edit) {
     if (edit(material)) state.edit([&](Scene& scene) { scene.materials[index] = material; });
 }
 
-void edit_material(ViewerState& state, std::size_t index) {
+void edit_material(const PanelInput& input, std::size_t index) {
+    ViewerState& state = input.state;
     edit_part(state, index, edit_model);
-    edit_maps(state, index);
+    edit_maps(input, index);
     edit_part(state, index, edit_relief);
     edit_part(state, index, edit_surface);
 }
@@ -660,7 +684,7 @@ void draw_material_panel(const PanelInput& input) {
         const bool is_open = ImGui::TreeNode("material", "%s", label.c_str());
         probe_item(label);
         if (is_open) {
-            edit_material(state, i);
+            edit_material(input, i);
             ImGui::TreePop();
         }
         ImGui::PopID();

@@ -159,10 +159,39 @@ std::filesystem::path path_of(std::string text) {
 
 }  // namespace
 
-FileChoice file_field(const char* label, const std::optional<std::string>& shown) {
+namespace {
+
+/// Draws a thumbnail as high as a text field; a tooltip shows it larger.
+void draw(const Thumbnail& thumbnail) {
+    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(thumbnail.texture));
+    const ImVec2 min(thumbnail.min.x, thumbnail.min.y);
+    const ImVec2 max(thumbnail.max.x, thumbnail.max.y);
+    const float height = ImGui::GetFrameHeight();
+    const glm::vec2 size =
+        glm::vec2(thumbnail.size) *
+        (height / static_cast<float>(std::max(thumbnail.size.x, thumbnail.size.y)));
+    ImGui::Image(id, {size.x, size.y}, min, max);
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    const glm::vec2 large = 6.0F * size;
+    ImGui::Image(id, {large.x, large.y}, min, max);
+    ImGui::Text("%d x %d", thumbnail.image_size.x, thumbnail.image_size.y);
+    ImGui::EndTooltip();
+}
+
+}  // namespace
+
+FileChoice file_field(const char* label, const std::optional<std::string>& shown,
+                      const std::optional<Thumbnail>& thumbnail) {
     FileChoice choice;
     begin_row(label);
     ImGui::PushID(label);
+    if (thumbnail) {
+        draw(*thumbnail);
+        probe_item(std::string("thumbnail of ") + label);
+        ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+        ImGui::SetNextItemWidth(-1.0F);
+    }
     const float button = ImGui::GetFrameHeight();
     if (shown) ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemInnerSpacing.x);
     std::string text = shown.value_or("");

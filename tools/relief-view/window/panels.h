@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -104,9 +105,20 @@ struct FileChoice {
     bool is_cleared = false;                    ///< The user pressed the clear button.
 };
 
+/// A small picture of an image, as a part of a texture.
+struct Thumbnail {
+    unsigned texture = 0;
+    glm::vec2 min{0.0F};       ///< Of the upper left corner, in texture coordinates of OpenGL.
+    glm::vec2 max{1.0F};       ///< Of the lower right corner.
+    glm::ivec2 size{0};        ///< Pixels.
+    glm::ivec2 image_size{0};  ///< Of the image itself.
+};
+
 /// A text field for the path of a file.
 /// \param shown  the current value, if there is one
-FileChoice file_field(const char* label, const std::optional<std::string>& shown);
+/// \param thumbnail  shown before the text, if there is one
+FileChoice file_field(const char* label, const std::optional<std::string>& shown,
+                      const std::optional<Thumbnail>& thumbnail = std::nullopt);
 
 /// Shows a label such as "Reading big.obj: parsing", and a progress bar if the share is known.
 void draw_progress(const std::string& what, const Progress::State& progress);
@@ -164,6 +176,8 @@ struct PanelInput {
     ShaderPanel& shaders;
     Comparison* comparison = nullptr;
     SceneAccuracy* accuracy = nullptr;
+    Thumbnails* thumbnails = nullptr;
+    PictureExchange::Shown thumbnail_texture{};
 };
 
 /// The panels' requests to the window.

@@ -582,6 +582,7 @@ class WindowLoop {
                    WindowSystem::wake}),
           loader_(WindowSystem::wake),
           health_(WindowSystem::wake),
+          thumbnails_(WindowSystem::wake),
           files_(WindowSystem::wake),
           interface_(system_),
           state_(options),
@@ -629,6 +630,8 @@ class WindowLoop {
         if (std::optional<HealthRequest> request = state_.take_health_request())
             health_.start(std::move(*request));
         if (std::optional<HealthResult> found = health_.take()) state_.take(std::move(*found));
+        if (std::optional<Image> picture = thumbnails_.take())
+            drawer_.put_thumbnails(std::move(*picture));
         take_changes(files_.take());
     }
 
@@ -701,8 +704,11 @@ class WindowLoop {
                                effect_times_,
                                shaders_,
                                &comparison_,
-                               &accuracy_};
+                               &accuracy_,
+                               &thumbnails_,
+                               drawer_.thumbnails()};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
+        if (state_.has_scene()) thumbnails_.update(state_.scene());
         // Input may arrive while the panels settle after earlier input.
         if (events.has_input) pending_frames_ = frames_to_settle;
         if (events.panels.cancel_loading) loader_.cancel();
@@ -718,8 +724,8 @@ class WindowLoop {
         if (events.panels.save_model) saving_.save_model(state_);
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
-        const bool is_busy =
-            request_picture() || was_busy || is_full_resolution_pending_ || health_.is_running();
+        const bool is_busy = request_picture() || was_busy || is_full_resolution_pending_ ||
+                             health_.is_running() || thumbnails_.is_running();
         write_state(drawn, is_busy || accuracy_.is_working() || comparison_.is_working() ||
                                saving_.is_running());
     }
@@ -938,6 +944,7 @@ class WindowLoop {
     DrawThread drawer_;
     Loader loader_;
     HealthSearch health_;
+    Thumbnails thumbnails_;
     WatchedFiles files_;
     UserInterface interface_;
     ViewerState state_;
