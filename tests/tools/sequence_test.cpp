@@ -187,6 +187,42 @@ TEST(Frames, ShowTheAnimationEvenlySpacedInTime) {
               picture_in(workplace / "out/f2.png").samples);
 }
 
+TEST(Frames, ShowMaterialsThatMove) {
+    const Workplace workplace;
+    const std::vector<float> floats = {-9, -9, 0, 9, -9, 0, 0, 9, 0,             // A triangle.
+                                       0,  1,  0, 0, 1,  1, 0, 1, 0.25F, 0.5F};  // Keys.
+    workplace.write("k.bin",
+                    std::string(reinterpret_cast<const char*>(floats.data()), 4 * floats.size()));
+    workplace.write("m.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+      "extensionsUsed": ["KHR_animation_pointer", "KHR_materials_unlit"],
+      "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+      "materials": [{"alphaMode": "BLEND", "extensions": {"KHR_materials_unlit": {}}}],
+      "buffers": [{"uri": "k.bin", "byteLength": 76}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+                      {"buffer": 0, "byteOffset": 44, "byteLength": 32}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                     "min": [-9, -9, 0], "max": [9, 9, 0]},
+                    {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
+                    {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC4"}],
+      "animations": [{"samplers": [{"input": 1, "output": 2}],
+        "channels": [{"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer":
+          {"pointer": "/materials/0/pbrMetallicRoughness/baseColorFactor"}}}}]}]})");
+    const ProgramResult result = workplace.run(
+        "relief-view m.gltf --frames 2 --size 32x32 --samples 1 --background '#000000' --output "
+        "out/f#.png");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto middle = [&](const char* file) {
+        const Image picture = picture_in(workplace / "out" / file);
+        const std::size_t pixel = static_cast<std::size_t>(picture.channels) * (16 * 32 + 16);
+        return std::pair(picture.as<std::uint8_t>()[pixel + 1],
+                         picture.as<std::uint8_t>()[pixel + 2]);
+    };
+    // Linear colors times alpha: blue 1 and green 0; then green 0.5 and blue 0.625, alpha 0.75.
+    EXPECT_EQ(middle("f1.png"), std::pair(std::uint8_t{0}, std::uint8_t{255}));
+    EXPECT_NEAR(middle("f2.png").first, 255 * srgb_from_linear(0.75F * 0.5F), 2);
+    EXPECT_NEAR(middle("f2.png").second, 255 * srgb_from_linear(0.75F * 0.625F), 2);
+}
+
 TEST(SequenceRefusal, SaysWhyAndLeavesNothingBehind) {
     const Workplace workplace;
     workplace.write_square("square.obj");

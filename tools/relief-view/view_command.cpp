@@ -321,19 +321,24 @@ void pose_for(ComposedScene& composed, const ViewOptions& options, int index) {
     if (options.turntable) turn(composed, 2.0 * std::numbers::pi * index / *options.turntable);
 }
 
-Frame draw_sequence(Renderer& renderer, ComposedScene& composed, const ViewOptions& options,
-                    Stages& stages, const std::function<void(const Frame&)>& take,
-                    SequenceTimes& times) {
+Frame draw_sequence(const std::function<std::unique_ptr<Renderer>()>& prepare,
+                    ComposedScene& composed, const ViewOptions& options, Stages& stages,
+                    const std::function<void(const Frame&)>& take, SequenceTimes& times) {
     const int count = picture_count(options);
+    std::unique_ptr<Renderer> renderer = stages.run("prepare", prepare);
+    const bool prepares_each = moves_materials(composed.graph);
     Frame frame;
     for (int i = 0; i < count; ++i) {
         stages.run("draw", fmt::format("draw {} of {}", i + 1, count), [&] {
             if (i > 0) {  // The scene is composed for the first picture.
                 pose_for(composed, options, i);
-                renderer.move(composed.scene());
+                if (prepares_each)
+                    renderer = prepare();
+                else
+                    renderer->move(composed.scene());
             }
             const bool uses_scene_camera = composed.camera_follows_scene && composed.scene().camera;
-            frame = renderer.draw(uses_scene_camera ? *composed.scene().camera : composed.camera);
+            frame = renderer->draw(uses_scene_camera ? *composed.scene().camera : composed.camera);
         });
         times.draw.push_back(frame.times.draw);
         times.read_back.push_back(frame.times.read_back);
@@ -640,10 +645,19 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
         stages.run("context", [&] { return std::make_unique<Context>(options.backend); });
     FrameMeasures measures = measure_frame(
         options, {*context, composed.scene(), settings, composed.camera}, plan, stages);
-    const std::unique_ptr<Renderer> renderer = stages.run("prepare", [&] {
-        return std::make_unique<Renderer>(*context, composed.scene(), plan, settings, report);
-    });
-    plan = renderer->plan();
+    RenderCache cache(*context);
+    bool is_first = true;
+    const auto prepare = [&] {
+        Report same;
+        if (!is_first) {  // Materials have moved.
+            plan = viewed_plan(options, composed.scene(), settings,
+                               chosen_plan(options, composed.scene(), settings), same);
+        }
+        auto renderer = std::make_unique<Renderer>(cache, *context, composed.scene(), plan,
+                                                   settings, is_first ? report : same);
+        if (std::exchange(is_first, false)) plan = renderer->plan();
+        return renderer;
+    };
     const std::unique_ptr<PictureSink> sink = options.output ? make_sink(options) : nullptr;
     Drawn drawn;
     drawn.measures = std::move(measures);
@@ -663,7 +677,7 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
         if (options.reference)
             drawn.comparison = compare_with_reference(options, picture, reference);
     };
-    drawn.frame = draw_sequence(*renderer, composed, options, stages, take, drawn.times);
+    drawn.frame = draw_sequence(prepare, composed, options, stages, take, drawn.times);
     if (sink) stages.run("write", [&] { sink->finish(); });
     return drawn;
 }

@@ -63,10 +63,12 @@ struct SequenceTimes {
 };
 
 /// Draws all pictures and passes them on. The camera moves only if it belongs to the scene.
+/// \param prepare  makes the renderer of the current scene; called again for each picture if
+///                 materials move
 /// \return the last frame
-Frame draw_sequence(Renderer& renderer, ComposedScene& composed, const ViewOptions& options,
-                    Stages& stages, const std::function<void(const Frame&)>& take,
-                    SequenceTimes& times);
+Frame draw_sequence(const std::function<std::unique_ptr<Renderer>()>& prepare,
+                    ComposedScene& composed, const ViewOptions& options, Stages& stages,
+                    const std::function<void(const Frame&)>& take, SequenceTimes& times);
 
 void add_save_options(CLI::App& app, ViewOptions& options);
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,6 +17,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -635,7 +638,9 @@ void add_lights(const GltfView& view, SceneGraph& graph) {
 }
 
 /// Adds the cameras; the first one becomes the scene's.
-void add_cameras(const GltfView& view, SceneGraph& graph, Report& report) {
+/// \return the number of each camera in the document
+std::vector<std::size_t> add_cameras(const GltfView& view, SceneGraph& graph, Report& report) {
+    std::vector<std::size_t> numbers;
     for (std::size_t i = 0; i < view.cameras.size(); ++i) {
         const auto& item = view.cameras[i];
         const GltfCamera& read = item.what;
@@ -644,6 +649,7 @@ void add_cameras(const GltfView& view, SceneGraph& graph, Report& report) {
             report.add("camera without a direction", "camera", i, "left out");
             continue;
         }
+        numbers.push_back(read.number);
         FileCamera& result = graph.cameras.emplace_back();
         result.name = read.name.empty() ? item.name : read.name;
         result.carried = Carried{item.node};
@@ -658,6 +664,7 @@ void add_cameras(const GltfView& view, SceneGraph& graph, Report& report) {
             camera.near = std::max(camera.near, min_near_share * camera.far);
     }
     if (!graph.cameras.empty()) choose_camera(graph, 0);
+    return numbers;
 }
 
 void add_nodes(const GltfView& view, SceneGraph& graph, Report& report) {
@@ -678,10 +685,192 @@ void add_nodes(const GltfView& view, SceneGraph& graph, Report& report) {
     }
 }
 
-/// Adds animations that move a node or a morph target.
-void add_animations(const GltfDocument& document, SceneGraph& graph, Report& report) {
-    for (KeyAnimation& animation : document.animations(report)) {
-        if (!animation.channels.empty()) graph.animations.emplace_back(std::move(animation));
+/// Returns a channel that moves a number or color of the scene, with converted values.
+template <typename Convert>
+KeyChannel moving(const KeyChannel& channel, std::string property, std::size_t index,
+                  const Convert& convert) {
+    KeyChannel result = channel;
+    result.node = index;
+    result.pointer = std::move(property);
+    for (glm::vec4& value : result.values)
+        value = convert(value);
+    return result;
+}
+
+KeyChannel moving(const KeyChannel& channel, std::string property, std::size_t index) {
+    return moving(channel, std::move(property), index,
+                  [](const glm::vec4& value) { return value; });
+}
+
+/// The factors of glTF's materials that become numbers of MetallicRoughness as they are.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 19> animated_factors{{
+    {"pbrMetallicRoughness/metallicFactor", "metallic"},
+    {"pbrMetallicRoughness/roughnessFactor", "roughness"},
+    {"extensions/KHR_materials_ior/ior", "refractive_index"},
+    {"extensions/KHR_materials_specular/specularFactor", "specular"},
+    {"extensions/KHR_materials_specular/specularColorFactor", "specular_color"},
+    {"extensions/KHR_materials_clearcoat/clearcoatFactor", "clearcoat"},
+    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", "clearcoat_roughness"},
+    {"extensions/KHR_materials_sheen/sheenColorFactor", "sheen_color"},
+    {"extensions/KHR_materials_sheen/sheenRoughnessFactor", "sheen_roughness"},
+    {"extensions/KHR_materials_anisotropy/anisotropyStrength", "anisotropy"},
+    {"extensions/KHR_materials_anisotropy/anisotropyRotation", "anisotropy_rotation"},
+    {"extensions/KHR_materials_iridescence/iridescenceFactor", "iridescence"},
+    {"extensions/KHR_materials_iridescence/iridescenceIor", "iridescence_index"},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum",
+     "iridescence_thickness_minimum"},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", "iridescence_thickness"},
+    {"extensions/KHR_materials_transmission/transmissionFactor", "transmission"},
+    {"extensions/KHR_materials_volume/thicknessFactor", "thickness"},
+    {"extensions/KHR_materials_volume/attenuationDistance", "attenuation_distance"},
+    {"extensions/KHR_materials_volume/attenuationColor", "attenuation_color"},
+}};
+
+/// Returns the channels for an animated property of a material; none if the scene has no such
+/// number.
+std::vector<KeyChannel> moving_material(const GltfMaterial& read, const Material& material,
+                                        const KeyChannel& channel, std::size_t index,
+                                        std::string_view property) {
+    const bool physical = material.metallic_roughness.has_value();
+    if (property == "pbrMetallicRoughness/baseColorFactor" && (physical || material.unlit)) {
+        const char* const color =
+            physical ? "materials.metallic_roughness.base_color" : "materials.diffuse";
+        return {moving(channel, color, index),
+                moving(channel, "materials.opacity", index,
+                       [](const glm::vec4& v) { return glm::vec4(v.w, 0.0F, 0.0F, 0.0F); })};
+    }
+    if (property == "emissiveFactor") {
+        return {moving(channel, "materials.emission", index,
+                       [&](const glm::vec4& v) { return v * read.emission_strength; })};
+    }
+    if (property == "extensions/KHR_materials_emissive_strength/emissiveStrength") {
+        return {moving(channel, "materials.emission", index, [&](const glm::vec4& v) {
+            return glm::vec4(read.emission_factor * v.x, 0.0F);
+        })};
+    }
+    if (property == "alphaCutoff") return {moving(channel, "materials.alpha_cutoff", index)};
+    if (property == "occlusionTexture/strength")
+        return {moving(channel, "materials.occlusion_strength", index)};
+    if (property == "normalTexture/scale" && material.normal_map)
+        return {moving(channel, "materials.normal_map.scale", index)};
+    const auto factor = std::find_if(animated_factors.begin(), animated_factors.end(),
+                                     [&](const auto& f) { return f.first == property; });
+    if (factor == animated_factors.end() || !physical) return {};
+    return {moving(channel, fmt::format("materials.metallic_roughness.{}", factor->second), index)};
+}
+
+/// Returns the channel for an animated property of one light.
+std::optional<KeyChannel> moving_light(const GltfLight& light, const KeyChannel& channel,
+                                       std::size_t index, std::string_view property) {
+    const std::string list = fmt::format("{}_lights.", enum_name(light.type));
+    const float unit = std::numbers::inv_pi_v<float>;
+    if (property == "color") {
+        return moving(channel, list + "color", index,
+                      [&](const glm::vec4& v) { return v * (light.intensity * unit); });
+    }
+    if (property == "intensity") {
+        return moving(channel, list + "color", index, [&](const glm::vec4& v) {
+            return glm::vec4(light.color * (v.x * unit), 0.0F);
+        });
+    }
+    if (property == "range" && light.type != LightType::directional)
+        return moving(channel, list + "range", index);
+    if (light.type != LightType::spot) return std::nullopt;
+    if (property == "spot/innerConeAngle") return moving(channel, list + "inner_cone", index);
+    if (property == "spot/outerConeAngle") return moving(channel, list + "outer_cone", index);
+    return std::nullopt;
+}
+
+/// Returns the channels for an animated property of the lights of all nodes that have it.
+std::vector<KeyChannel> moving_lights(const GltfView& view, const KeyChannel& channel,
+                                      std::size_t number, std::string_view property) {
+    std::vector<KeyChannel> channels;
+    std::map<LightType, std::size_t> counts;  // In the order of add_lights().
+    for (const auto& item : view.lights) {
+        const std::size_t index = counts[item.what.type]++;
+        if (item.what.number != number) continue;
+        if (auto moved = moving_light(item.what, channel, index, property))
+            channels.push_back(std::move(*moved));
+    }
+    return channels;
+}
+
+/// Returns the channels for an animated property of a camera.
+std::vector<KeyChannel> moving_cameras(const SceneGraph& graph,
+                                       const std::vector<std::size_t>& camera_numbers,
+                                       const KeyChannel& channel, std::size_t number,
+                                       std::string_view property) {
+    std::vector<KeyChannel> channels;
+    for (std::size_t i = 0; i < camera_numbers.size(); ++i) {
+        if (camera_numbers[i] != number) continue;
+        const bool orthographic = graph.cameras[i].camera.orthographic_height.has_value();
+        if (property == "perspective/yfov" && !orthographic)
+            channels.push_back(moving(channel, "cameras.fov", i));
+        if (property == "orthographic/ymag" && orthographic) {
+            channels.push_back(moving(channel, "cameras.orthographic_height", i,
+                                      [](const glm::vec4& v) { return 2.0F * v; }));
+        }
+    }
+    return channels;
+}
+
+/// Splits "/materials/3/emissiveFactor" behind a prefix "/materials/" into index and property.
+std::optional<std::pair<std::size_t, std::string_view>> index_and_property(
+    std::string_view pointer, std::string_view prefix) {
+    if (!pointer.starts_with(prefix)) return std::nullopt;
+    pointer.remove_prefix(prefix.size());
+    std::size_t index = 0;
+    const char* const end = pointer.data() + pointer.size();
+    const auto [stop, error] = std::from_chars(pointer.data(), end, index);
+    if (error != std::errc() || stop == end || *stop != '/') return std::nullopt;
+    return std::pair(index, std::string_view(stop + 1, end));
+}
+
+/// Returns what an animated property of the document moves in the scene; nothing if it is not
+/// drawn.
+std::vector<KeyChannel> moved_by(const GltfView& view, const SceneGraph& graph,
+                                 const std::vector<std::size_t>& camera_numbers,
+                                 const KeyChannel& channel) {
+    const std::vector<Material>& materials = graph.scene.materials;
+    if (const auto to = index_and_property(channel.pointer, "/materials/")) {
+        const std::size_t index = to->first;
+        if (index >= materials.size()) return {};
+        return moving_material(view.materials[index], materials[index], channel, index, to->second);
+    }
+    if (const auto to =
+            index_and_property(channel.pointer, "/extensions/KHR_lights_punctual/lights/"))
+        return moving_lights(view, channel, to->first, to->second);
+    if (const auto to = index_and_property(channel.pointer, "/cameras/"))
+        return moving_cameras(graph, camera_numbers, channel, to->first, to->second);
+    return {};
+}
+
+/// Adds animations that move a node, a morph target, or a number or color of the scene.
+void add_animations(const GltfDocument& document, const GltfView& view,
+                    const std::vector<std::size_t>& camera_numbers, SceneGraph& graph,
+                    Report& report) {
+    const std::vector<KeyAnimation> animations = document.animations(report);
+    for (std::size_t i = 0; i < animations.size(); ++i) {
+        KeyAnimation result{animations[i].name, {}};
+        for (const KeyChannel& channel : animations[i].channels) {
+            if (channel.property != KeyChannel::Property::pointer) {
+                result.channels.push_back(channel);
+                continue;
+            }
+            std::vector<KeyChannel> moved = moved_by(view, graph, camera_numbers, channel);
+            if (moved.empty()) {
+                report.add("animated property that is not drawn", "animation", i,
+                           fmt::format("left out: '{}' stays at rest", channel.pointer));
+            }
+            for (KeyChannel& part : moved) {
+                if (!is_in_range(graph, part)) {
+                    report.add("animated value outside of its range", "animation", i,
+                               fmt::format("'{}' gets the nearest allowed value", channel.pointer));
+                }
+                result.channels.push_back(std::move(part));
+            }
+        }
+        if (!result.channels.empty()) graph.animations.emplace_back(std::move(result));
     }
 }
 
@@ -717,8 +906,8 @@ SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path&
     add_nodes(view, graph, report);
     add_instances({document, view, options}, graph, report);
     add_lights(view, graph);
-    add_cameras(view, graph, report);
-    add_animations(document, graph, report);
+    const std::vector<std::size_t> camera_numbers = add_cameras(view, graph, report);
+    add_animations(document, view, camera_numbers, graph, report);
     graph.material_variants = variant_names(view);
     return graph;
 }

@@ -13,6 +13,8 @@
 #include <numbers>
 #include <set>
 #include <span>
+#include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -248,6 +250,7 @@ class Animator {
     void operator()(const KeyAnimation& animation) const {
         const double now = wrapped(seconds_, length_of(animation));
         for (const KeyChannel& channel : animation.channels) {
+            if (channel.property == KeyChannel::Property::pointer) continue;  // set_numbers()
             LocalTransform& transform = at(channel.node);
             if (channel.property == KeyChannel::Property::weights) {
                 transform.weights = weights_at(channel, now);
@@ -265,6 +268,7 @@ class Animator {
                     transform.scale = glm::vec3(value);
                     break;
                 case KeyChannel::Property::weights:
+                case KeyChannel::Property::pointer:
                     break;
             }
         }
@@ -310,6 +314,120 @@ void for_each_playing(const SceneGraph& graph, const Visit& visit) {
         if (is_clip && graph.clip && *graph.clip != clip++) continue;
         visit(animation);
     }
+}
+
+/// Calls visit(value, range) for the number or color of this name, which may be part of a member:
+/// "metallic_roughness.roughness". An absent optional number is made first, unless the owner is
+/// const. \return whether there is one
+template <typename Owner, typename Visit>
+bool visit_number(Owner& owner, std::string_view name, const Visit& visit) {
+    bool found = false;
+    const auto rest_after = [&](std::string_view own) -> std::optional<std::string_view> {
+        if (own.empty()) return name;
+        if (!name.starts_with(own) || !name.substr(own.size()).starts_with('.'))
+            return std::nullopt;
+        return name.substr(own.size() + 1);
+    };
+    for_each_field<std::remove_const_t<Owner>>([&](const auto& field) {
+        auto& member = owner.*field.member;
+        using Value = std::remove_cvref_t<decltype(member)>;
+        constexpr bool is_number = std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>;
+        const std::string_view own = field.name;
+        if constexpr (is_number) {
+            if (own != name) return;
+            visit(member, field.range);
+            found = true;
+        } else if constexpr (std::is_same_v<Value, std::optional<float>> ||
+                             std::is_same_v<Value, std::optional<glm::vec3>>) {
+            if (own != name) return;
+            found = true;
+            if constexpr (!std::is_const_v<Owner>) {
+                if (!member) member.emplace();
+            }
+            if (member) visit(*member, field.range);
+        } else if constexpr (has_fields<Value>) {
+            if (const auto rest = rest_after(own)) found |= visit_number(member, *rest, visit);
+        } else if constexpr (is_optional_value<Value>) {
+            if constexpr (has_fields<typename Value::value_type>) {
+                const auto rest = rest_after(own);
+                if (rest && member) found |= visit_number(*member, *rest, visit);
+            }
+        }
+    });
+    return found;
+}
+
+/// Calls visit(value, range) for the number or color that a channel moves. \return whether there
+/// is one
+template <typename Graph, typename Visit>
+bool visit_moved(Graph& graph, const KeyChannel& channel, const Visit& visit) {
+    const std::string_view pointer = channel.pointer;
+    const std::size_t dot = std::min(pointer.find('.'), pointer.size());
+    const std::string_view list = pointer.substr(0, dot);
+    const std::string_view name = pointer.substr(std::min(dot + 1, pointer.size()));
+    const auto in = [&](auto& objects) {
+        return channel.node < objects.size() && visit_number(objects[channel.node], name, visit);
+    };
+    if (list == "materials") return in(graph.scene.materials);
+    if (list == "directional_lights") return in(graph.scene.directional_lights);
+    if (list == "point_lights") return in(graph.scene.point_lights);
+    if (list == "spot_lights") return in(graph.scene.spot_lights);
+    return list == "cameras" && channel.node < graph.cameras.size() &&
+           visit_number(graph.cameras[channel.node].camera, name, visit);
+}
+
+float nearest(const glm::vec4& value, float /*as*/, const FieldRange& range) {
+    return std::clamp(value.x, range.min, range.max);
+}
+glm::vec3 nearest(const glm::vec4& value, const glm::vec3& /*as*/, const FieldRange& range) {
+    return glm::clamp(glm::vec3(value), range.min, range.max);
+}
+
+glm::vec4 as_vector(float number) {
+    return {number, 0.0F, 0.0F, 0.0F};
+}
+glm::vec4 as_vector(const glm::vec3& color) {
+    return {color, 0.0F};
+}
+
+/// Keeps what validate() demands beyond the ranges of fields.
+void keep_valid(SceneGraph& graph, const KeyChannel& channel) {
+    if (channel.pointer.starts_with("spot_lights.")) {
+        SpotLight& spot = graph.scene.spot_lights[channel.node];
+        spot.outer_cone = std::max(spot.outer_cone, 1e-3F);
+        spot.inner_cone = std::min(spot.inner_cone, std::nextafter(spot.outer_cone, 0.0F));
+    } else if (channel.pointer.starts_with("cameras.")) {
+        Camera& camera = graph.cameras[channel.node].camera;
+        camera.vertical_fov =
+            std::clamp(camera.vertical_fov, 1e-3F, std::numbers::pi_v<float> - 1e-3F);
+        if (!graph.scene.camera || graph.chosen_camera != channel.node) return;
+        graph.scene.camera->vertical_fov = camera.vertical_fov;
+        graph.scene.camera->orthographic_height = camera.orthographic_height;
+    }
+}
+
+/// Calls visit(channel, seconds) for each channel of numbers and colors that plays.
+template <typename Visit>
+void for_each_pointer(const SceneGraph& graph, double seconds, const Visit& visit) {
+    for_each_playing(graph, [&](const Animation& animation) {
+        const auto* keys = std::get_if<KeyAnimation>(&animation);
+        if (keys == nullptr) return;
+        for (const KeyChannel& channel : keys->channels) {
+            if (channel.property == KeyChannel::Property::pointer)
+                visit(channel, wrapped(seconds, length_of(*keys)));
+        }
+    });
+}
+
+/// Sets the numbers and colors that animations move.
+void set_numbers(SceneGraph& graph, double seconds) {
+    for_each_pointer(graph, seconds, [&](const KeyChannel& channel, double now) {
+        const glm::vec4 value = value_at(channel, now);
+        const bool found = visit_moved(graph, channel, [&](auto& moved, const FieldRange& range) {
+            moved = nearest(value, moved, range);
+        });
+        if (found) keep_valid(graph, channel);
+    });
 }
 
 std::vector<LocalTransform> transforms_at(const SceneGraph& graph, double seconds) {
@@ -481,7 +599,44 @@ void pose(SceneGraph& graph, double seconds) {
                  light.direction_world = direction_of(matrix);
              });
     deform(graph, world_from_node, weights);
+    set_numbers(graph, seconds);
     pose_camera(graph, nodes);
+}
+
+bool moves_materials(const SceneGraph& graph) {
+    bool moves = false;
+    for_each_pointer(graph, 0.0, [&](const KeyChannel& channel, double /*now*/) {
+        moves |= channel.pointer.starts_with("materials.");
+    });
+    return moves;
+}
+
+void check_pointer(const SceneGraph& graph, const KeyChannel& channel) {
+    if (visit_moved(graph, channel, [](const auto& /*moved*/, const FieldRange& /*range*/) {}))
+        return;
+    throw InvalidInput(fmt::format("an animation moves '{}' of object {}, which does not exist",
+                                   channel.pointer, channel.node));
+}
+
+bool is_in_range(const SceneGraph& graph, const KeyChannel& channel) {
+    bool is_in = true;
+    SceneGraph copy;  // Of the objects, because an optional number may be absent.
+    copy.scene.materials = graph.scene.materials;
+    copy.scene.directional_lights = graph.scene.directional_lights;
+    copy.scene.point_lights = graph.scene.point_lights;
+    copy.scene.spot_lights = graph.scene.spot_lights;
+    copy.cameras = graph.cameras;
+    visit_moved(copy, channel, [&](auto& moved, const FieldRange& range) {
+        for (std::size_t key = 0; key < channel.times.size(); ++key) {
+            const glm::vec4& value = key_value(channel, key);
+            moved = nearest(value, moved, range);
+            const glm::vec4 kept = as_vector(moved);
+            is_in &=
+                kept.x == value.x && (std::is_same_v<std::remove_cvref_t<decltype(moved)>, float> ||
+                                      (kept.y == value.y && kept.z == value.z));
+        }
+    });
+    return is_in;
 }
 
 double duration(const SceneGraph& graph) {
@@ -516,13 +671,14 @@ std::vector<std::string> clip_names(const SceneGraph& graph) {
 }
 
 bool clips_exclude_each_other(const SceneGraph& graph) {
-    std::set<std::pair<std::size_t, KeyChannel::Property>> moved;
+    using Moved = std::tuple<std::size_t, KeyChannel::Property, std::string>;
+    std::set<Moved> moved;
     for (const Animation& animation : graph.animations) {
         const auto* keys = std::get_if<KeyAnimation>(&animation);
         if (keys == nullptr) continue;
-        std::set<std::pair<std::size_t, KeyChannel::Property>> own;
+        std::set<Moved> own;
         for (const KeyChannel& channel : keys->channels)
-            own.emplace(channel.node, channel.property);
+            own.emplace(channel.node, channel.property, channel.pointer);
         for (const auto& property : own) {
             if (!moved.insert(property).second) return true;
         }
@@ -584,11 +740,28 @@ void shift_images(Material& material, std::size_t by) {
 void shift_node(Animation& animation, std::size_t by) {
     if (auto* keys = std::get_if<KeyAnimation>(&animation)) {
         for (KeyChannel& channel : keys->channels)
-            channel.node += by;
+            if (channel.property != KeyChannel::Property::pointer) channel.node += by;
     } else if (auto* orbit = std::get_if<Orbit>(&animation)) {
         orbit->node += by;
     } else if (auto* turntable = std::get_if<Turntable>(&animation)) {
         turntable->node += by;
+    }
+}
+
+/// Shifts the indices of materials and lights that an animation moves. Animations of cameras are
+/// removed, because the part has no camera.
+void shift_pointers(Animation& animation, const Scene& before) {
+    auto* const keys = std::get_if<KeyAnimation>(&animation);
+    if (keys == nullptr) return;
+    std::erase_if(keys->channels, [](const KeyChannel& channel) {
+        return channel.pointer.starts_with("cameras.");
+    });
+    for (KeyChannel& channel : keys->channels) {
+        const auto is_in = [&](std::string_view list) { return channel.pointer.starts_with(list); };
+        if (is_in("materials.")) channel.node += before.materials.size();
+        if (is_in("directional_lights.")) channel.node += before.directional_lights.size();
+        if (is_in("point_lights.")) channel.node += before.point_lights.size();
+        if (is_in("spot_lights.")) channel.node += before.spot_lights.size();
     }
 }
 
@@ -671,8 +844,10 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     });
     for (SceneNode& child : part.nodes)
         child.parent = child.parent ? *child.parent + first_node : node;
-    for (Animation& animation : part.animations)
+    for (Animation& animation : part.animations) {
         shift_node(animation, first_node);
+        shift_pointers(animation, graph.scene);
+    }
     append_objects(graph, part, Carriers(node, first_node));
     join(graph.scene.images, std::move(part.scene.images));
     join(graph.scene.materials, std::move(part.scene.materials));

@@ -72,6 +72,13 @@ glm::vec4 value_at(const KeyChannel& channel, double seconds);
 /// Checks that keys are as KeyChannel requires. \throws InvalidInput naming the first offence
 void check_keys(const KeyChannel& channel);
 
+/// Checks that a channel of Property::pointer names a number or color of the graph.
+/// \throws InvalidInput if it does not
+void check_pointer(const SceneGraph& graph, const KeyChannel& channel);
+
+/// Returns whether all keys of such a channel are within the range of its field.
+bool is_in_range(const SceneGraph& graph, const KeyChannel& channel);
+
 /// Adds a model to a graph as a part that hangs on a node: the world of the part becomes the space
 /// of the node, and its animations play along. Its ambient light is added; its camera, environment
 /// and settings are not.

@@ -299,10 +299,11 @@ void validate_motion(const SceneGraph& graph, const std::string& thing,
     for (const KeyChannel& channel : animation.channels) {
         if (channel.property == KeyChannel::Property::weights) {
             check_node(graph, thing, channel.node);
-        } else {
+        } else if (channel.property != KeyChannel::Property::pointer) {
             check_parts(graph, thing, channel.node);
         }
         try {
+            if (channel.property == KeyChannel::Property::pointer) check_pointer(graph, channel);
             check_keys(channel);
         } catch (const InvalidInput& error) {
             throw InvalidInput(thing + ": " + error.what());

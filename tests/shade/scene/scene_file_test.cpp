@@ -187,6 +187,70 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_EQ(report_of_phong.count("KHR_materials_iridescence"), 1U);
 }
 
+TEST(LoadScene, AnimatesNumbersThatPointersName) {
+    const test::TemporaryDirectory folder;
+    const std::vector<float> keys = {0, 2, 0, 0, 0, 0, 1, 0.5F, 0.25F, 0.75F};  // Times and colors.
+    std::ofstream(folder / "k.bin", std::ios::binary)
+        .write(reinterpret_cast<const char*>(keys.data()),
+               static_cast<std::streamsize>(4 * keys.size()));
+    std::string channels;
+    const auto add = [&](const std::string& pointer, int sampler) {
+        channels += fmt::format(
+            R"({}{{"sampler": {}, "target": {{"path": "pointer", "extensions":
+               {{"KHR_animation_pointer": {{"pointer": "{}"}}}}}}}})",
+            channels.empty() ? "" : ",", sampler, pointer);
+    };
+    add("/materials/0/pbrMetallicRoughness/baseColorFactor", 0);
+    add("/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor", 1);
+    add("/materials/1/extensions/KHR_materials_emissive_strength/emissiveStrength", 1);
+    add("/materials/2/emissiveFactor", 0);
+    add("/materials/2/pbrMetallicRoughness/baseColorFactor", 0);
+    add("/extensions/KHR_lights_punctual/lights/1/color", 0);
+    add("/cameras/0/perspective/yfov", 1);
+    add("/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/"
+        "offset",
+        1);
+    add("/materials/9/alphaCutoff", 1);
+    add("/cameras/0/perspective/aspectRatio", 1);
+    add("/extensions/KHR_lights_punctual/lights/0/spot/innerConeAngle", 1);
+    write_text(folder / "m.gltf", R"({"asset": {"version": "2.0"},
+      "extensionsUsed": ["KHR_animation_pointer", "KHR_lights_punctual", "KHR_materials_clearcoat",
+                         "KHR_materials_emissive_strength", "KHR_materials_unlit"],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional"},
+                     {"type": "point", "intensity": 3.14159265}]}},
+      "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1, "zfar": 9}}],
+      "nodes": [{"extensions": {"KHR_lights_punctual": {"light": 0}}},
+                {"extensions": {"KHR_lights_punctual": {"light": 1}}},
+                {"extensions": {"KHR_lights_punctual": {"light": 1}}}, {"camera": 0}],
+      "materials": [{}, {"emissiveFactor": [1, 0.5, 0]},
+                    {"extensions": {"KHR_materials_unlit": {},
+                                    "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}],
+      "buffers": [{"uri": "k.bin", "byteLength": 40}],
+      "bufferViews": [{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteOffset": 8, "byteLength": 32}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR"},
+                    {"bufferView": 1, "componentType": 5126, "count": 2, "type": "VEC4"}],
+      "animations": [{"samplers": [{"input": 0, "output": 1}, {"input": 0, "output": 0}],
+                      "channels": [)" +
+                                      channels + "]}]}");
+    Report report;
+    SceneGraph graph = load_scene_graph(folder / "m.gltf", {}, report);
+    EXPECT_EQ(report.count("animated property that is not drawn"), 4U);
+    EXPECT_EQ(report.count("animated value outside of its range"), 1U) << "a clear coat of 2";
+    EXPECT_NO_THROW(validate(graph));
+    pose(graph, 1.0);
+    const Scene& scene = graph.scene;
+    EXPECT_EQ(scene.materials[0].metallic_roughness->base_color, glm::vec3(0.5F, 0.25F, 0.125F));
+    EXPECT_EQ(scene.materials[0].opacity, 0.375F);
+    EXPECT_EQ(scene.materials[0].metallic_roughness->clearcoat, 1.0F);
+    EXPECT_EQ(scene.materials[1].emission, glm::vec3(1, 0.5F, 0));
+    EXPECT_EQ(scene.materials[2].emission, glm::vec3(2, 1, 0.5F)) << "times the strength";
+    EXPECT_EQ(scene.materials[2].diffuse, glm::vec3(0.5F, 0.25F, 0.125F)) << "unlit";
+    ASSERT_EQ(scene.point_lights.size(), 2U);
+    for (const PointLight& light : scene.point_lights)
+        EXPECT_NEAR(light.intensity.r, 0.5F, 1e-6F) << "both nodes have this light";
+    EXPECT_EQ(scene.camera->vertical_fov, 1.0F);
+}
+
 TEST(LoadScene, HasTheTexturesOfMaterialExtensions) {
     const test::TemporaryDirectory folder;
     write_text(folder / "m.gltf", R"({"asset": {"version": "2.0"}, "images": [

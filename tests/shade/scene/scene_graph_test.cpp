@@ -223,6 +223,103 @@ TEST(Clips, PlayAloneIfTheyMoveTheSame) {
     EXPECT_THAT(clip_names(whole), testing::ElementsAre("run"));
 }
 
+KeyChannel pointing(std::string pointer, std::size_t index, std::vector<glm::vec4> values) {
+    KeyChannel channel =
+        keys(KeyChannel::Property::pointer, KeyInterpolation::linear, {0, 2}, std::move(values));
+    channel.node = index;
+    channel.pointer = std::move(pointer);
+    return channel;
+}
+
+/// Lights, cameras and materials with numbers that move for two seconds.
+SceneGraph with_moving_numbers() {
+    SceneGraph graph;
+    graph.scene.materials.resize(2);
+    graph.scene.materials[1].metallic_roughness.emplace();
+    graph.scene.directional_lights.resize(1);
+    graph.scene.point_lights.resize(1);
+    graph.scene.spot_lights.resize(1);
+    graph.cameras.resize(2);
+    graph.cameras[1].camera.orthographic_height = 1.0F;
+    choose_camera(graph, 1);
+    graph.animations = {KeyAnimation{
+        "",
+        {pointing("materials.emission", 0, {{0, 0, 0, 0}, {2, 4, 6, 8}}),
+         pointing("materials.metallic_roughness.roughness", 1, {{0, 0, 0, 0}, {3, 0, 0, 0}}),
+         pointing("materials.metallic_roughness.attenuation_distance", 1,
+                  {{4, 0, 0, 0}, {6, 0, 0, 0}}),
+         pointing("directional_lights.color", 0, {{0, 0, 0, 0}, {2, 2, 2, 0}}),
+         pointing("point_lights.range", 0, {{1, 0, 0, 0}, {3, 0, 0, 0}}),
+         pointing("spot_lights.color", 0, {{1, 1, 1, 0}, {3, 3, 3, 0}}),
+         pointing("spot_lights.outer_cone", 0, {{0.5F, 0, 0, 0}, {-1, 0, 0, 0}}),
+         pointing("cameras.fov", 0, {{0, 0, 0, 0}, {1, 0, 0, 0}}),
+         pointing("cameras.orthographic_height", 1, {{1, 0, 0, 0}, {5, 0, 0, 0}})}}};
+    graph.scene.spot_lights[0].inner_cone = 0.4F;
+    return graph;
+}
+
+TEST(Pose, SetsNumbersAndColorsWithinTheirRanges) {
+    SceneGraph graph = with_moving_numbers();
+    EXPECT_NO_THROW(validate(graph));
+    EXPECT_TRUE(moves_materials(graph));
+    EXPECT_EQ(duration(graph), 2.0);
+    pose(graph, 1.0);
+    const Scene& scene = graph.scene;
+    EXPECT_EQ(scene.materials[0].emission, glm::vec3(1, 2, 3));
+    EXPECT_EQ(scene.materials[1].metallic_roughness->roughness, 1.0F) << "1.5 is limited";
+    EXPECT_EQ(scene.materials[1].metallic_roughness->attenuation_distance, 5.0F);
+    EXPECT_EQ(scene.directional_lights[0].irradiance, glm::vec3(1.0F));
+    EXPECT_EQ(scene.point_lights[0].range, 2.0F);
+    EXPECT_EQ(scene.spot_lights[0].point.intensity, glm::vec3(2.0F));
+    EXPECT_EQ(scene.spot_lights[0].outer_cone, 1e-3F) << "-0.25 is limited";
+    EXPECT_LT(scene.spot_lights[0].inner_cone, 1e-3F) << "it stays within the outer cone";
+    EXPECT_EQ(graph.cameras[0].camera.vertical_fov, 0.5F);
+    EXPECT_EQ(scene.camera->orthographic_height, 3.0F) << "this camera is chosen";
+    EXPECT_NO_THROW(validate(graph));
+    pose(graph, 0.0);
+    EXPECT_EQ(scene.materials[0].emission, glm::vec3(0.0F));
+    EXPECT_GT(graph.cameras[0].camera.vertical_fov, 0.0F) << "0 is no field of view";
+
+    graph.scene.materials.pop_back();
+    EXPECT_NO_THROW(pose(graph, 1.0));
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { validate(graph); }),
+              "animation 0: an animation moves 'materials.metallic_roughness.roughness' of object "
+              "1, which does not exist");
+    graph.scene.materials.emplace_back().metallic_roughness.emplace();
+    auto& channels = std::get<KeyAnimation>(graph.animations[0]).channels;
+    for (const char* nothing :
+         {"", "materials", "materials.", "materials.name", "nodes.color",
+          "materials.metallic_roughness", "materials.metallic_roughness.red"}) {
+        channels[0].pointer = nothing;
+        EXPECT_THROW(validate(graph), InvalidInput) << nothing;
+    }
+    channels.erase(channels.begin(), channels.begin() + 3);
+    EXPECT_FALSE(moves_materials(graph));
+}
+
+TEST(Append, KeepsTheNumbersThatAnimationsMove) {
+    SceneGraph whole = with_moving_numbers();
+    whole.nodes.resize(1);
+    whole.animations.clear();
+    append(whole, with_moving_numbers(), 0);
+    EXPECT_NO_THROW(validate(whole));
+    pose(whole, 1.0);
+    EXPECT_EQ(whole.scene.materials[0].emission, glm::vec3(0.0F));
+    EXPECT_EQ(whole.scene.materials[2].emission, glm::vec3(1, 2, 3));
+    EXPECT_EQ(whole.scene.point_lights[1].range, 2.0F);
+    EXPECT_EQ(whole.scene.spot_lights[1].point.intensity, glm::vec3(2.0F));
+    EXPECT_EQ(whole.scene.directional_lights[1].irradiance, glm::vec3(1.0F));
+}
+
+TEST(Clips, ExcludeEachOtherIfTheyMoveTheSameNumber) {
+    SceneGraph graph = with_moving_numbers();
+    graph.animations.emplace_back(
+        KeyAnimation{"", {pointing("materials.emission", 1, {{0, 0, 0, 0}, {2, 4, 6, 8}})}});
+    EXPECT_FALSE(clips_exclude_each_other(graph));
+    std::get<KeyAnimation>(graph.animations[1]).channels[0].node = 0;
+    EXPECT_TRUE(clips_exclude_each_other(graph));
+}
+
 TEST(Pose, OrbitsOnSphericalCoordinates) {
     Orbit orbit;
     orbit.center = {1, 2, 3};

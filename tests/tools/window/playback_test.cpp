@@ -73,6 +73,33 @@ TEST(PlaybackTest, PlaysPausesAndStepsAtItsSpeed) {
     EXPECT_NEAR(playback.time_in_clip(), 0.5, 1e-6);
 }
 
+TEST(PlaybackTest, SetsNumbersOfTheSceneInTheWindow) {
+    SceneGraph graph = moving_scene();
+    graph.scene.materials.resize(1);
+    const auto pointing = [](const char* pointer) {
+        KeyAnimation animation = slide("", 0, 4.0F);
+        animation.channels[0].property = KeyChannel::Property::pointer;
+        animation.channels[0].pointer = pointer;
+        return animation;
+    };
+    graph.clip.reset();
+    graph.animations = {pointing("materials.emission"), pointing("point_lights.color")};
+    Playback playback;
+    playback.take(graph, false);
+    EXPECT_TRUE(playback.moves_materials());
+    Scene scene = graph.scene;
+    scene.materials[0].shininess = 7.0F;  // Edited in the window.
+    playback.pose(scene, {}, 1.0);
+    EXPECT_EQ(scene.materials[0].emission, glm::vec3(2, 0, 0));
+    EXPECT_EQ(scene.materials[0].shininess, 7.0F);
+    EXPECT_EQ(scene.point_lights[0].intensity, glm::vec3(2, 0, 0));
+    scene.point_lights.insert(scene.point_lights.begin(), PointLight{});
+    playback.pose(scene, {}, 0.5);
+    EXPECT_EQ(scene.point_lights[0].intensity, glm::vec3(1.0F)) << "another light";
+    EXPECT_EQ(scene.point_lights[1].intensity, glm::vec3(2, 0, 0));
+    EXPECT_EQ(scene.materials[0].emission, glm::vec3(1, 0, 0));
+}
+
 TEST(PlaybackTest, PlaysOneClipOrAll) {
     SceneGraph graph = moving_scene();
     Playback playback;

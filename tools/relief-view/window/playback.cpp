@@ -35,6 +35,10 @@ void copy_places(const std::vector<Light>& from, const std::vector<Carried>& car
     }
 }
 
+std::array<std::size_t, 3> counts_of(const Scene& scene) {
+    return {scene.directional_lights.size(), scene.point_lights.size(), scene.spot_lights.size()};
+}
+
 }  // namespace
 
 void Playback::take(const SceneGraph& graph, bool is_same) {
@@ -42,6 +46,7 @@ void Playback::take(const SceneGraph& graph, bool is_same) {
     const std::size_t clip_count = clips_.size();
     const std::size_t camera = graph_.chosen_camera;
     graph_ = graph;
+    light_counts_ = counts_of(graph_.scene);
     clips_ = clip_names(graph_);
     if (is_same && camera < graph_.cameras.size()) relief::choose_camera(graph_, camera);
     if (is_same && clips_.size() == clip_count) {
@@ -106,6 +111,8 @@ void Playback::step(double seconds) {
 
 void Playback::pose(Scene& scene, const LightCarriers& lights, double seconds) {
     Scene& moved = graph_.scene;
+    const bool has_same_lights = counts_of(scene) == light_counts_;
+    moved.materials = scene.materials;
     moved.directional_lights = scene.directional_lights;
     moved.point_lights = scene.point_lights;
     moved.spot_lights = scene.spot_lights;
@@ -113,6 +120,12 @@ void Playback::pose(Scene& scene, const LightCarriers& lights, double seconds) {
     graph_.point_lights = lights.point;
     graph_.spot_lights = lights.spot;
     relief::pose(graph_, seconds);
+    scene.materials = moved.materials;
+    if (has_same_lights) {
+        scene.directional_lights = moved.directional_lights;
+        scene.point_lights = moved.point_lights;
+        scene.spot_lights = moved.spot_lights;
+    }
     const std::size_t count = std::min(scene.instances.size(), moved.instances.size());
     for (std::size_t i = 0; i < count; ++i)
         scene.instances[i].world_from_object = moved.instances[i].world_from_object;

@@ -4,6 +4,7 @@
 /// Tests: tests/tools/window/playback_test.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,6 +29,9 @@ class Playback {
     /// Takes over the animation of a scene that was read. The same scene, read again, keeps the
     /// time, the speed and whether it plays; another one plays from the start.
     void take(const SceneGraph& graph, bool is_same);
+
+    /// Returns whether the clip moves numbers or colors of materials.
+    [[nodiscard]] bool moves_materials() const { return relief::moves_materials(graph_); }
 
     /// Returns whether the clip moves anything.
     [[nodiscard]] bool has_motion() const { return duration_ > 0.0; }
@@ -56,8 +60,9 @@ class Playback {
     /// Stops a playing animation, and moves it by some seconds, not before its start.
     void step(double seconds);
 
-    /// Moves instances and lights of the scene to their place at a time. Lights without a node stay
-    /// where they are.
+    /// Moves instances and lights of the scene to their place at a time, and sets the numbers and
+    /// colors that move. Lights without a node stay where they are. If lights were added or removed
+    /// since take(), their colors do not move.
     void pose(Scene& scene, const LightCarriers& lights, double seconds);
     void pose(Scene& scene, const LightCarriers& lights) { pose(scene, lights, time_); }
 
@@ -98,6 +103,7 @@ class Playback {
     float speed_ = 1.0F;
     bool is_playing_ = true;
     bool moves_camera_ = false;
+    std::array<std::size_t, 3> light_counts_{};  ///< Of the file, by kind.
     Bounds reach_;
 };
 

@@ -524,6 +524,7 @@ void ViewerState::move(const Change& change) {
 
 void ViewerState::move_to(double seconds) {
     move([&](Scene& scene) { playback_.pose(scene, light_rows_.carriers(), seconds); });
+    if (playback_.moves_materials()) ++revision_;  // The scene may need other effects.
     follow_camera();
 }
 

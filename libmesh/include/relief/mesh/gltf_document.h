@@ -80,6 +80,8 @@ struct GltfMaterial {
     float metallic = 1.0F;
     float roughness = 1.0F;
     glm::vec3 emission{0.0F};  ///< emissiveFactor times KHR_materials_emissive_strength.
+    glm::vec3 emission_factor{0.0F};
+    float emission_strength = 1.0F;
     std::optional<GltfTexture> base_color_texture;
     std::optional<GltfTexture> metallic_roughness_texture;  ///< Green roughness, blue metallic.
     std::optional<GltfTexture> normal_texture;
@@ -149,6 +151,7 @@ struct GltfLight {
     std::optional<float> range;  ///< In units of length; unlimited if absent.
     float inner_cone = 0.0F;     ///< Radians from the axis.
     float outer_cone = 0.785398163F;
+    std::size_t number = 0;  ///< In the document.
 };
 
 /// A camera; it looks along its node's -z.
@@ -159,6 +162,7 @@ struct GltfCamera {
     std::optional<float> far;  ///< Infinite if absent.
     /// The height of the picture in units of length, if the camera is orthographic.
     std::optional<float> orthographic_height{};
+    std::size_t number = 0;  ///< In the document.
 };
 
 /// A node at rest: its transform relative to its parent.
@@ -210,7 +214,7 @@ enum class KeyInterpolation {
 /// The keys of one property of a node. The first value holds before the first key, the last value
 /// after the last key.
 struct KeyChannel {
-    enum class Property { translation, rotation, scale, weights };
+    enum class Property { translation, rotation, scale, weights, pointer };
 
     std::size_t node = 0;
     Property property = Property::translation;
@@ -222,6 +226,9 @@ struct KeyChannel {
     /// The weights of all morph targets of the node's mesh, for each time, or three times for each;
     /// only for Property::weights, which has no `values`.
     std::vector<float> weights{};
+    /// The JSON pointer of the property; only for Property::pointer (KHR_animation_pointer), where
+    /// `node` is 0, and missing components of the values are 0.
+    std::string pointer{};
 };
 
 /// Key frames that repeat from the start.
@@ -467,12 +474,12 @@ class GltfDocument {
     /// \throws InvalidInput if instance attributes have a wrong type or differ in length
     [[nodiscard]] GltfView view() const;
 
-    /// Returns the animations of nodes, in the document's order.
+    /// Returns the animations of nodes, and of properties by KHR_animation_pointer, in the
+    /// document's order. A pointer to a property of a node becomes an animation of the node.
     ///
-    /// \param report  counts channels that are left out: those of extensions, and those of nodes
-    /// with
-    ///         a matrix, which glTF does not animate; also those with times or values that are not
-    ///         finite, of the wrong number, or of the wrong type
+    /// \param report  counts channels that are left out: those of other extensions, and those of
+    ///         nodes with a matrix, which glTF does not animate; also those with times or values
+    ///         that are not finite, of the wrong number, or of the wrong type
     [[nodiscard]] std::vector<KeyAnimation> animations(Report& report = IgnoredReport()) const;
 
     /// Returns the compression of the file, one entry for each extension; empty if there is none.

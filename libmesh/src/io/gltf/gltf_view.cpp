@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -310,10 +311,11 @@ GltfMaterial material_from(const Json& root, const Json& json) {
         material.occlusion_strength = float_in(*occlusion, "strength", 1.0F);
     }
     material.emission_texture = texture_in(root, json, "emissiveTexture");
-    material.emission = vector_in(json, "emissiveFactor", glm::vec3(0.0F));
+    material.emission_factor = vector_in(json, "emissiveFactor", glm::vec3(0.0F));
     if (const Json* strength = find(json, "extensions", "KHR_materials_emissive_strength")) {
-        material.emission *= float_in(*strength, "emissiveStrength", 1.0F);
+        material.emission_strength = float_in(*strength, "emissiveStrength", 1.0F);
     }
+    material.emission = material.emission_factor * material.emission_strength;
     const std::string mode = text_in(json, "alphaMode");
     material.alpha_mode = mode == "MASK"    ? AlphaMode::mask
                           : mode == "BLEND" ? AlphaMode::blend
@@ -355,8 +357,9 @@ GltfImage image_from(const GltfContents& contents, std::size_t index) {
     return image;
 }
 
-GltfLight light_from(const Json& json) {
+GltfLight light_from(const Json& json, std::size_t number) {
     GltfLight light;
+    light.number = number;
     light.name = text_in(json, "name");
     const std::string type = text_in(json, "type");
     light.type = type == "directional" ? LightType::directional
@@ -444,12 +447,14 @@ class SceneWalk {
         }
         if (const Json* light = find(node, "extensions", "KHR_lights_punctual")) {
             const Json& lights = contents_.root["extensions"]["KHR_lights_punctual"]["lights"];
+            const std::size_t index = size_in(*light, "light");
             view_.lights.push_back(
-                {light_from(lights[size_in(*light, "light")]), world_from_node, name, number});
+                {light_from(lights[index], index), world_from_node, name, number});
         }
         if (const auto index = index_in(node, "camera")) {
             const Json& json = contents_.root["cameras"][*index];
             GltfCamera camera;
+            camera.number = *index;
             camera.name = text_in(json, "name");
             const Json* lens = find(json, "perspective");
             if (lens != nullptr) {
@@ -578,6 +583,20 @@ std::vector<glm::vec4> values_of(const GltfContents& contents, std::size_t acces
     if (property == KeyChannel::Property::rotation)
         return float_elements<glm::vec4>(contents, accessor);
     std::vector<glm::vec4> values;
+    if (property == KeyChannel::Property::pointer) {
+        const std::string type = text_in(contents.root["accessors"][accessor], "type");
+        if (type == "VEC4") return float_elements<glm::vec4>(contents, accessor);
+        if (type == "SCALAR") {
+            for (const glm::vec1& value : float_elements<glm::vec1>(contents, accessor))
+                values.emplace_back(value.x, 0.0F, 0.0F, 0.0F);
+            return values;
+        }
+        if (type == "VEC2") {
+            for (const glm::vec2& value : float_elements<glm::vec2>(contents, accessor))
+                values.emplace_back(value, 0.0F, 0.0F);
+            return values;
+        }
+    }
     for (const glm::vec3& value : float_elements<glm::vec3>(contents, accessor))
         values.emplace_back(value, 0.0F);
     return values;
@@ -634,28 +653,59 @@ std::optional<KeyChannel> keys_from(const GltfContents& contents, const Json& sa
     return channel;
 }
 
+/// What a channel moves.
+struct ChannelTarget {
+    std::optional<std::size_t> node;
+    std::optional<KeyChannel::Property> property;
+    std::string pointer{};
+};
+
+/// Returns the target of a JSON pointer, which may be a property of a node: "/nodes/3/scale".
+ChannelTarget pointed_at(const GltfContents& contents, const std::string& pointer) {
+    constexpr std::string_view nodes = "/nodes/";
+    const std::size_t end = pointer.find('/', nodes.size());
+    if (!pointer.starts_with(nodes) || end == std::string::npos)
+        return {0, KeyChannel::Property::pointer, pointer};
+    std::size_t node = 0;
+    const char* const first = pointer.data() + nodes.size();
+    const auto [stop, error] = std::from_chars(first, pointer.data() + end, node);
+    const bool exists = error == std::errc() && stop == pointer.data() + end &&
+                        node < array_in(contents.root, "nodes").size();
+    const auto property = property_from(pointer.substr(end + 1));
+    if (!exists || !property) return {0, KeyChannel::Property::pointer, pointer};
+    return {node, property};
+}
+
+ChannelTarget target_of(const GltfContents& contents, const Json& target) {
+    const std::string path = text_in(target, "path");
+    if (path != "pointer") return {index_in(target, "node"), property_from(path)};
+    const Json* extension = find(target, "extensions", "KHR_animation_pointer");
+    const std::string pointer = extension == nullptr ? "" : text_in(*extension, "pointer");
+    return pointer.empty() ? ChannelTarget{} : pointed_at(contents, pointer);
+}
+
 void add_channel(const GltfContents& contents, const Json& animation, const Json& json,
                  std::size_t number, KeyAnimation& result, Report& report) {
-    const Json& target = json["target"];
-    const auto node = index_in(target, "node");
-    const std::string name = text_in(target, "path");
-    const auto property = property_from(name);
+    const ChannelTarget target = target_of(contents, json["target"]);
+    const std::optional<std::size_t> node = target.node;
+    const std::optional<KeyChannel::Property> property = target.property;
     if (!property) {
         report.add("animation of an extension", "channel", number, "left out");
         return;
     }
     if (!node) return;  // By the specification, channels without a node are ignored.
-    if (property != KeyChannel::Property::weights &&
+    if (property != KeyChannel::Property::weights && property != KeyChannel::Property::pointer &&
         contents.root["nodes"][*node].contains("matrix")) {
         report.add("animated node with a matrix", "channel", number, "left out");
         return;
     }
     const Json& sampler = animation["samplers"][size_in(json, "sampler")];
     if (auto channel = keys_from(contents, sampler, *node, *property)) {
+        channel->pointer = target.pointer;
         result.channels.push_back(std::move(*channel));
     } else {
         report.add("animation channel with unusable keys", "channel", number,
-                   "left out: its node stays at rest");
+                   "left out: what it moves stays at rest");
     }
 }
 

@@ -354,6 +354,11 @@ struct Turntable {
     float angle = 0.0F;                ///< At time 0.
 };
 
+/// A channel of Property::pointer moves a number or color of a material, light or camera. `pointer`
+/// is its list and its name in scene files ("materials.metallic_roughness.roughness",
+/// "spot_lights.color", "cameras.fov"), and `node` is the index in that list. Values outside of the
+/// range of the field count as the nearest allowed ones. validate() refuses a channel that names
+/// nothing; pose() ignores it.
 using Animation = std::variant<KeyAnimation, Orbit, Turntable>;
 
 /// A mesh that morph targets and joints deform. glTF 2.0, sections 3.7.2.2 and 3.7.3.3.
@@ -421,11 +426,17 @@ struct SceneGraph {
 /// Moves all objects that are attached to nodes to their transforms at this time, and deforms the
 /// meshes with joints or morph targets; no other mesh changes.
 ///
+/// Numbers and colors that animations move get their values, too. If moves_materials(), a Renderer
+/// must be made again, because other effects may be needed.
+///
 /// A light whose node is scaled to 0 shines along the world's -z; such a camera has the world's
 /// axes.
 /// \throws InvalidInput if an index of a node does not exist, nodes form a cycle, the time is not
 ///         finite, or keys are not as KeyChannel requires
 void pose(SceneGraph& graph, double seconds);
+
+/// Returns whether an animation that plays moves numbers or colors of materials.
+bool moves_materials(const SceneGraph& graph);
 
 /// Makes a camera of the file the scene's camera. The next pose() places it.
 /// \param index  into SceneGraph::cameras \throws InvalidInput if there is no such camera

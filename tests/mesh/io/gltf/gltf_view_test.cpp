@@ -387,13 +387,41 @@ TEST_F(Animated, ChannelsAreKeysOfNodes) {
     EXPECT_TRUE(report_.empty());
 }
 
+TEST_F(Animated, PointersAreKeysOfNodesOrOfWhatTheyName) {
+    const std::size_t two = times({0, 2});
+    const auto point_at = [](const char* pointer) {
+        return json{{"path", "pointer"},
+                    {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+    };
+    channel(point_at("/nodes/0/scale"), two, add({1, 2, 3, 4, 5, 6}, "VEC3", 3));
+    channel(point_at("/materials/7/alphaCutoff"), two, add({0.25F, 0.5F}, "SCALAR", 1), "STEP");
+    channel(point_at("/materials/0/pbrMetallicRoughness/baseColorFactor"), two,
+            add({1, 2, 3, 4, 5, 6, 7, 8}, "VEC4", 4));
+    channel(point_at("/nodes/0/color"), two, add({1, 2, 3, 4}, "VEC2", 2));
+    channel(point_at("/nodes/9/scale"), two, add({1, 2, 3, 4, 5, 6}, "VEC3", 3));
+    channel(point_at("/nodes/1/translation"), two, add({1, 2, 3, 4, 5, 6}, "VEC3", 3));
+    const std::vector<KeyChannel> channels = read()[0].channels;
+    ASSERT_EQ(channels.size(), 5U);
+    EXPECT_EQ(channels[0].property, KeyChannel::Property::scale);
+    EXPECT_TRUE(channels[0].pointer.empty());
+    EXPECT_EQ(channels[1].property, KeyChannel::Property::pointer);
+    EXPECT_EQ(channels[1].pointer, "/materials/7/alphaCutoff");
+    EXPECT_EQ(channels[1].interpolation, KeyInterpolation::step);
+    EXPECT_EQ(channels[1].values[1], glm::vec4(0.5F, 0, 0, 0));
+    EXPECT_EQ(channels[2].values[1], glm::vec4(5, 6, 7, 8));
+    EXPECT_EQ(channels[3].pointer, "/nodes/0/color");
+    EXPECT_EQ(channels[3].values[0], glm::vec4(1, 2, 0, 0));
+    EXPECT_EQ(channels[4].pointer, "/nodes/9/scale");
+    EXPECT_EQ(report_.count("animated node with a matrix"), 1U);
+}
+
 TEST_F(Animated, WhatCannotBeUsedIsLeftOutAndCounted) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::size_t two = times({0, 1});
     const std::size_t good = add({1, 2, 3, 4, 5, 6}, "VEC3", 3);
     const json place = {{"node", 0}, {"path", "translation"}};
     channel({{"node", 0}, {"path", "weights"}}, two, good);      // 0: vectors
-    channel({{"path", "pointer"}}, two, good);                   // 1
+    channel({{"path", "pointer"}}, two, good);                   // 1: to nothing
     channel({{"path", "translation"}}, two, good);               // 2: without node
     channel({{"node", 1}, {"path", "translation"}}, two, good);  // 3: the node has a matrix
     channel(place, times({1, 1}), good);                         // 4: not ascending
