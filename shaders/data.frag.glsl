@@ -4,6 +4,7 @@
 
 out vec4 color;
 
+#include <second_texcoord>
 #include <alpha>
 #include <view>
 

@@ -11,6 +11,12 @@ in vec3 position_world;
 
 in vec2 texcoord_surface;
 
+#part texcoord_2
+// The fragment's second texture coordinates. Lookups at texcoord_surface are changed to these for the
+// textures that need it.
+
+in vec2 texcoord_surface_2;
+
 #part eye
 // The vector to the camera, in homogeneous coordinates: (x,y,z,1) is the position of a perspective
 // camera, (x,y,z,0) the direction to an orthographic one.

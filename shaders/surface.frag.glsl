@@ -5,6 +5,7 @@
 invariant out vec4 color;
 
 #include "light.glsl#lighting"
+#include <second_texcoord>
 #include <alpha>
 #include <surface>
 #include <lights>

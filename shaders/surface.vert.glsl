@@ -11,6 +11,7 @@ uniform mat4 clip_from_object;
 #include <pass_position>
 #include <pass_normal>
 #include <pass_texcoord>
+#include <pass_texcoord_2>
 #include <pass_color>
 #include <pass_lights>
 
@@ -19,6 +20,7 @@ void main() {
     pass_position();
     pass_normal();
     pass_texcoord();
+    pass_texcoord_2();
     pass_color();
     pass_lights();
 }

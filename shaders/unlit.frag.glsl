@@ -5,6 +5,7 @@ out vec4 color;
 
 uniform vec3 diffuse_color;
 
+#include <second_texcoord>
 #include <alpha>
 #include <diffuse_texture>
 #include <vertex_color>

@@ -56,6 +56,14 @@ out vec2 texcoord_surface;
 
 void pass_texcoord() { texcoord_surface = texcoord; }
 
+#part texcoord_2
+// The second texture coordinates.
+
+in vec2 texcoord_2;
+out vec2 texcoord_surface_2;
+
+void pass_texcoord_2() { texcoord_surface_2 = texcoord_2; }
+
 #part color
 // The vertex color, linear, and its alpha, as their distance from white: a rasterizer interpolates
 // 0 exactly, but 1 as 1 - 6e-8, which would let a mask with cutoff 1 cut holes.

@@ -94,6 +94,7 @@ Mesh carried(const Mesh& mesh, const VertexSplit& split) {
     result.positions = carried<glm::vec3>(mesh.positions, split);
     result.normals = carried<glm::vec3>(mesh.normals, split);
     result.texcoords = carried<glm::vec2>(mesh.texcoords, split);
+    result.texcoords_2 = carried<glm::vec2>(mesh.texcoords_2, split);
     result.tangents = carried<glm::vec4>(mesh.tangents, split);
     result.colors = carried<glm::vec4>(mesh.colors, split);
     result.triangles = split.triangles;

@@ -107,6 +107,7 @@ Bounds bounds_of(const Mesh& mesh) {
 void validate(const Mesh& mesh) {
     check_length(mesh, mesh.normals.size(), "normals");
     check_length(mesh, mesh.texcoords.size(), "texture coordinates");
+    check_length(mesh, mesh.texcoords_2.size(), "second texture coordinates");
     check_length(mesh, mesh.tangents.size(), "tangents");
     check_length(mesh, mesh.colors.size(), "colors");
     check_triangles(mesh.triangles, mesh.positions.size());
@@ -174,6 +175,7 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
     part.positions = used(mesh.positions, numbers);
     part.normals = used(mesh.normals, numbers);
     part.texcoords = used(mesh.texcoords, numbers);
+    part.texcoords_2 = used(mesh.texcoords_2, numbers);
     part.tangents = used(mesh.tangents, numbers);
     part.colors = used(mesh.colors, numbers);
     part.triangles.reserve(triangles.size());

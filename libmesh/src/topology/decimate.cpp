@@ -127,6 +127,7 @@ struct AttributedMesh {
             if (order == 0 && !values.empty()) order = compare(values[a], values[b]);
         };
         refine(mesh.texcoords);
+        refine(mesh.texcoords_2);
         refine(mesh.colors);
         if (with_normals) refine(mesh.normals);
         refine(deformation.joints);

@@ -351,6 +351,7 @@ void subdivide_once(Level& level, Report& report) {
     level.classes = next_classes(level, cut);
     level.points = std::move(points);
     add_middles(level.mesh.texcoords, cut.edges);
+    add_middles(level.mesh.texcoords_2, cut.edges);
     add_middles(level.mesh.colors, cut.edges);
     cut_triangles(level.mesh, cut, vertex_count);
     // Before the last level, they only mark finite vertices.

@@ -28,6 +28,13 @@ void drop_tone(Features& f) {
     f.exposure = false;
 }
 
+void drop_second_texcoords(Features& f) {
+    std::uint32_t sampled = 0;
+    for (std::size_t i = 0; i < second_textures.size(); ++i)
+        sampled |= (f.*second_textures[i].effect ? 1U : 0U) << i;
+    f.second_texcoords &= sampled;
+}
+
 /// An unlit surface shows its tinted diffuse color and nothing else.
 Features unlit_only(const Features& f) {
     Features result;
@@ -36,11 +43,13 @@ Features unlit_only(const Features& f) {
     result.vertex_colors = f.vertex_colors;
     result.alpha = f.alpha;
     result.opacity_texture = f.opacity_texture;
+    result.second_texcoords = f.second_texcoords;
     result.output = f.output;
     result.tone_mapping = f.tone_mapping;
     result.exposure = f.exposure;
     drop_alpha(result);
     drop_tone(result);
+    drop_second_texcoords(result);
     return result;
 }
 
@@ -168,6 +177,7 @@ void keep_mask(const Features& f, Features& kept) {
     kept.opacity_texture = f.opacity_texture;
     kept.diffuse_texture = f.diffuse_texture;
     kept.vertex_colors = f.vertex_colors;
+    kept.second_texcoords = f.second_texcoords;
 }
 
 void keep_normal(const Features& f, Features& kept) {
@@ -212,6 +222,7 @@ Features data_features(const Features& f) {
         default:
             break;
     }
+    drop_second_texcoords(kept);
     return kept;
 }
 
@@ -253,6 +264,7 @@ Features canonical(Features f) {
     drop_colors(f);
     drop_alpha(f);
     drop_tone(f);
+    drop_second_texcoords(f);
     return f;
 }
 
@@ -269,6 +281,10 @@ std::string describe(const Features& f) {
         } else {
             parts.push_back(counted(light->second, light->first));
         }
+    }
+    for (std::size_t i = 0; i < second_textures.size(); ++i) {
+        if ((f.second_texcoords >> i & 1U) != 0)
+            parts.push_back(fmt::format("{} at second coordinates", second_textures[i].sampler));
     }
     if (f.view != DebugView::picture)
         parts.push_back(fmt::format("view of {}", debug_view_info(f.view).name));

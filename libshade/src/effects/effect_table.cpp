@@ -128,13 +128,13 @@ bool is_physical(Subject s) {
 Decision of_dielectric_reflectance(Subject s) {
     if (!is_physical(s)) return {false, s.name + " is Phong's model"};
     const MetallicRoughness& model = *s.material.metallic_roughness;
-    const bool shows_textures = !s.mesh.texcoords.empty();
-    const bool varies = (model.specular_texture || model.specular_color_texture) && shows_textures;
+    const bool varies =
+        shows(model.specular_texture, s.mesh) || shows(model.specular_color_texture, s.mesh);
     const bool differs =
         dielectric_reflectance(model) != dielectric_reflectance(MetallicRoughness{}) ||
         model.specular != 1.0F || varies;
     if (!differs) return {false, s.name + " reflects the 4% of the index 1.5"};
-    const bool textured = model.texture && shows_textures;
+    const bool textured = shows(model.texture, s.mesh);
     const bool is_metal = model.metallic == 1.0F && !textured;
     return of_material(s, !is_metal, "has an index, weight or color of its own",
                        "is a metal everywhere");
@@ -165,12 +165,25 @@ Decision of_texture(Subject s, bool has_texture) {
     return {true, s.name + " has one and the mesh has texture coordinates"};
 }
 
+/// The same for a texture that may be looked up at the second texture coordinates.
+Decision of_texture(Subject s, const std::optional<Texture>& texture) {
+    if (!texture || !texture->second_texcoords) return of_texture(s, texture.has_value());
+    if (s.mesh.texcoords_2.empty()) {
+        return {false, fmt::format("{} has one, but mesh '{}' has no second texture coordinates",
+                                   s.name, s.mesh.name)};
+    }
+    return {true, s.name + " has one and the mesh has second texture coordinates"};
+}
+Decision of_texture(Subject s, const std::optional<NormalMap>& map) {
+    return of_texture(s, map.has_value());
+}
+
 /// Returns the row of a texture of glTF's model, which shows only with another effect.
 template <auto Feature, auto Member>
 EffectRow model_texture(const char* name, const char* hidden) {
     return {.effect = one_switch<Feature>(name, hidden), .decide = [](Subject s) {
                 const auto& model = s.material.metallic_roughness;
-                return of_texture(s, model && ((*model).*Member).has_value());
+                return model ? of_texture(s, (*model).*Member) : of_texture(s, false);
             }};
 }
 
@@ -186,7 +199,7 @@ AlphaMode shown_alpha_mode(Subject s) {
     const Material& material = s.material;
     if (material.alpha_mode == AlphaMode::opaque) return AlphaMode::opaque;
     const bool textured =
-        (material.diffuse_texture || material.opacity_texture) && !s.mesh.texcoords.empty();
+        shows(material.diffuse_texture, s.mesh) || shows(material.opacity_texture, s.mesh);
     const bool varies = textured || s.tinted || material.opacity < 1.0F;
     if (material.alpha_mode == AlphaMode::blend) {
         return varies ? AlphaMode::blend : AlphaMode::opaque;
@@ -326,7 +339,7 @@ Decision of_transmission(Subject s) {
     if (!is_physical(s)) return {false, s.name + " is Phong's model"};
     const MetallicRoughness& model = *s.material.metallic_roughness;
     if (!(model.transmission > 0.0F)) return {false, s.name + " lets nothing through"};
-    const bool textured = model.texture && !s.mesh.texcoords.empty();
+    const bool textured = shows(model.texture, s.mesh);
     return of_material(s, model.metallic < 1.0F || textured, "shows what is behind it",
                        "is a metal everywhere");
 }
@@ -361,8 +374,8 @@ std::vector<EffectRow> model_rows() {
              "metallic-roughness texture", "the material is not metallic-roughness"),
          .decide =
              [](Subject s) {
-                 return of_texture(
-                     s, is_physical(s) && s.material.metallic_roughness->texture.has_value());
+                 return is_physical(s) ? of_texture(s, s.material.metallic_roughness->texture)
+                                       : of_texture(s, false);
              }},
         {.effect = one_switch<&F::dielectric_reflectance>("dielectric reflectance",
                                                           "the material is not metallic-roughness"),
@@ -444,7 +457,7 @@ std::vector<EffectRow> model_rows() {
 std::vector<EffectRow> color_rows() {
     return {
         {.effect = one_switch<&F::diffuse_texture>("diffuse texture", no_color),
-         .decide = [](Subject s) { return of_texture(s, s.material.diffuse_texture.has_value()); }},
+         .decide = [](Subject s) { return of_texture(s, s.material.diffuse_texture); }},
         {.effect = one_switch<&F::vertex_colors>("vertex colours", no_color),
          .decide = of_vertex_colors},
         {.effect = one_value<&F::alpha, AlphaMode::mask>("alpha mask", ""),
@@ -453,7 +466,7 @@ std::vector<EffectRow> color_rows() {
          .decide = [](Subject s) { return of_alpha(s, AlphaMode::blend); },
          .choice = "it hides nothing that is behind it, and is drawn after all else"},
         {.effect = one_switch<&F::opacity_texture>("opacity texture", "the material is opaque"),
-         .decide = [](Subject s) { return of_texture(s, s.material.opacity_texture.has_value()); }},
+         .decide = [](Subject s) { return of_texture(s, s.material.opacity_texture); }},
     };
 }
 
@@ -544,8 +557,9 @@ std::vector<EffectRow> lighting_rows() {
                                                      "no light comes from everywhere"),
          .decide =
              [](Subject s) {
-                 return of_texture(s, s.material.occlusion_texture.has_value() &&
-                                          s.material.occlusion_strength > 0.0F);
+                 return s.material.occlusion_strength > 0.0F
+                            ? of_texture(s, s.material.occlusion_texture)
+                            : of_texture(s, false);
              }},
         {.effect = one_value<&F::specular, SpecularTerm::phong>("Phong highlights", not_lit),
          .decide = [](Subject s) { return of_highlights(s, true); },
@@ -563,7 +577,7 @@ std::vector<EffectRow> lighting_rows() {
              },
          .phong_only = true},
         {.effect = one_switch<&F::specular_texture>("specular texture", no_highlights),
-         .decide = [](Subject s) { return of_texture(s, s.material.specular_texture.has_value()); },
+         .decide = [](Subject s) { return of_texture(s, s.material.specular_texture); },
          .phong_only = true},
         {.effect = one_switch<&F::emission>("emission", ""),
          .decide =
@@ -572,8 +586,7 @@ std::vector<EffectRow> lighting_rows() {
              }},
         {.effect = one_switch<&F::emission_texture>(
              "emission texture", "the material has no emission that it could tint"),
-         .decide =
-             [](Subject s) { return of_texture(s, s.material.emission_texture.has_value()); }},
+         .decide = [](Subject s) { return of_texture(s, s.material.emission_texture); }},
     };
 }
 
@@ -699,6 +712,19 @@ Features lights_of(const Scene& scene) {
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
                          const Mesh& mesh) {
     return {scene, material, mesh, name, has_tint(material, mesh), lights_of(scene)};
+}
+
+std::uint32_t second_texcoords_of(const Material& material) {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < second_textures.size(); ++i) {
+        const SecondTexture& row = second_textures[i];
+        const auto& model = material.metallic_roughness;
+        const std::optional<Texture>* texture = row.texture != nullptr ? &(material.*row.texture)
+                                                : model ? &((*model).*row.model_texture)
+                                                        : nullptr;
+        if (texture != nullptr && *texture && (*texture)->second_texcoords) bits |= 1U << i;
+    }
+    return bits;
 }
 
 const std::vector<EffectRow>& effect_rows() {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,6 +68,67 @@ struct EnvironmentNeeds {
 };
 
 EnvironmentNeeds environment_needs(const FramePlan& plan);
+
+// Textures at the second texture coordinates
+
+/// A texture that may be looked up at the second texture coordinates.
+struct SecondTexture {
+    std::string_view sampler;
+    bool Features::*effect;
+    std::optional<Texture> Material::*texture = nullptr;
+    std::optional<Texture> MetallicRoughness::*model_texture = nullptr;
+};
+
+/// Their order is that of the bits of Features::second_texcoords.
+inline constexpr std::array<SecondTexture, 15> second_textures{{
+    {"diffuse_texture", &Features::diffuse_texture, &Material::diffuse_texture},
+    {"specular_texture", &Features::specular_texture, &Material::specular_texture},
+    {"emission_texture", &Features::emission_texture, &Material::emission_texture},
+    {"occlusion_texture", &Features::occlusion_texture, &Material::occlusion_texture},
+    {"opacity_texture", &Features::opacity_texture, &Material::opacity_texture},
+    {"metallic_roughness_texture", &Features::metallic_roughness_texture, nullptr,
+     &MetallicRoughness::texture},
+    {"specular_weight_texture", &Features::specular_weight_texture, nullptr,
+     &MetallicRoughness::specular_texture},
+    {"specular_color_texture", &Features::specular_color_texture, nullptr,
+     &MetallicRoughness::specular_color_texture},
+    {"sheen_color_texture", &Features::sheen_color_texture, nullptr,
+     &MetallicRoughness::sheen_color_texture},
+    {"clearcoat_texture", &Features::clearcoat_texture, nullptr,
+     &MetallicRoughness::clearcoat_texture},
+    {"clearcoat_roughness_texture", &Features::clearcoat_roughness_texture, nullptr,
+     &MetallicRoughness::clearcoat_roughness_texture},
+    {"iridescence_texture", &Features::iridescence_texture, nullptr,
+     &MetallicRoughness::iridescence_texture},
+    {"film_thickness_texture", &Features::film_thickness_texture, nullptr,
+     &MetallicRoughness::iridescence_thickness_texture},
+    {"transmission_texture", &Features::transmission_texture, nullptr,
+     &MetallicRoughness::transmission_texture},
+    {"thickness_texture", &Features::thickness_texture, nullptr,
+     &MetallicRoughness::thickness_texture},
+}};
+
+/// Calls visit(texture, is_second) for each of them that these features sample.
+template <typename Visit>
+void for_each_sampled(const Features& f, const Visit& visit) {
+    for (std::size_t i = 0; i < second_textures.size(); ++i) {
+        if (f.*second_textures[i].effect)
+            visit(second_textures[i], (f.second_texcoords >> i & 1U) != 0);
+    }
+}
+
+/// Returns the bits of the textures that a material looks up at the second texture coordinates.
+std::uint32_t second_texcoords_of(const Material& material);
+
+/// Returns the texture coordinates at which a texture is looked up.
+inline const std::vector<glm::vec2>& texcoords_of(const Mesh& mesh, const Texture& texture) {
+    return texture.second_texcoords ? mesh.texcoords_2 : mesh.texcoords;
+}
+
+/// True if there is a texture, and the mesh has texture coordinates for it.
+inline bool shows(const std::optional<Texture>& texture, const Mesh& mesh) {
+    return texture && !texcoords_of(mesh, *texture).empty();
+}
 
 // The table of effects
 

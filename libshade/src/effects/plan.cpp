@@ -32,6 +32,7 @@ DrawDecisions decide(const Scene& scene, const Material& material, const std::st
         if (decision.on) row.effect.set(requested, true);
         decisions.reasons.push_back({row.effect.name, decision.on, std::move(decision.reason)});
     }
+    requested.second_texcoords = second_texcoords_of(material);
     decisions.features = canonical(requested);
     for (EffectReason& reason : decisions.reasons) {
         const EffectRow& row = *find_effect(reason.effect);

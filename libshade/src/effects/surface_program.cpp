@@ -2,8 +2,11 @@
 // The table of shader parts: one row per step, with the parts that implement it, and the programs
 // that are assembled from it. At most one part of a step is chosen for any Features value. Pure.
 // Tests: tests/shade/effects/shader_source_test.cpp.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "effects/features.h"
 #include "effects/light_rows.h"
@@ -127,18 +130,11 @@ bool passes_position(By f) {
 bool passes_normal(By f) {
     return has_frame(f) || vertex_needs(f).normal || (fragment_needs(f).normal && !is_flat(f));
 }
-/// True if a texture of an extension of glTF's model is sampled.
-bool has_model_texture(By f) {
-    return f.specular_weight_texture || f.specular_color_texture || f.sheen_color_texture ||
-           f.clearcoat_texture || f.clearcoat_roughness_texture || f.clearcoat_normal_map ||
-           f.anisotropy_texture || f.iridescence_texture || f.film_thickness_texture ||
-           f.transmission_texture || f.thickness_texture;
-}
 bool passes_texcoord(By f) {
-    return f.diffuse_texture || f.specular_texture || f.metallic_roughness_texture ||
-           f.occlusion_texture || f.opacity_texture || f.emission_texture ||
-           f.detail != NormalDetail::none || has_derived_frame(f) ||
-           f.view == DebugView::texcoords || has_model_texture(f);
+    bool is_looked_up = false;
+    for_each_sampled(f, [&](const SecondTexture&, bool is_second) { is_looked_up |= !is_second; });
+    return is_looked_up || f.detail != NormalDetail::none || has_derived_frame(f) ||
+           f.clearcoat_normal_map || f.anisotropy_texture || f.view == DebugView::texcoords;
 }
 
 constexpr std::string_view neutral_sharpness =
@@ -165,6 +161,9 @@ Steps passing_steps(By f) {
         {"pass_texcoord",
          "void pass_texcoord() {}",
          {{"vertex.glsl#texcoord", passes_texcoord(f), {.attributes = {"texcoord"}}}}},
+        {"pass_texcoord_2",
+         "void pass_texcoord_2() {}",
+         {{"vertex.glsl#texcoord_2", f.second_texcoords != 0, {.attributes = {"texcoord_2"}}}}},
         {"pass_color",
          "void pass_color() {}",
          {{"vertex.glsl#color", f.vertex_colors, {.attributes = {"color_linear"}}}}},
@@ -518,6 +517,13 @@ Steps color_steps(By f) {
     };
 }
 
+/// Returns the step of the second texture coordinates, at which at_second_texcoords() looks up.
+Step second_texcoord_step(By f) {
+    return {"second_texcoord",
+            "// Textures are looked up at one set of texture coordinates.",
+            {{"inputs.glsl#texcoord_2", f.second_texcoords != 0}}};
+}
+
 Steps alpha_steps(By f) {
     return {
         {"alpha",
@@ -671,6 +677,7 @@ Steps lit_steps(By f) {
     const bool lights_here = !is_gouraud(f) && has_lights(f);
     const bool both_sides = is_gouraud(f) && f.double_sided;
     return joined({{{"stage", "", {{"surface.frag.glsl", true}}},
+                    second_texcoord_step(f),
                     {"lights",
                      "void add_lights(Surface surface, inout Lighting lighting) {}",
                      {{"light.glsl#all", lights_here},
@@ -694,13 +701,15 @@ Steps lit_steps(By f) {
 
 Steps fragment_steps(By f) {
     if (is_data(f.view)) {
-        return joined({{{"stage", "", {{"data.frag.glsl", true}}}, view_step(f)},
-                       normal_steps(f),
-                       color_steps(f),
-                       alpha_steps(f)});
+        return joined(
+            {{{"stage", "", {{"data.frag.glsl", true}}}, second_texcoord_step(f), view_step(f)},
+             normal_steps(f),
+             color_steps(f),
+             alpha_steps(f)});
     }
     if (!f.unlit) return lit_steps(f);
-    return joined({{{"stage", "", {{"unlit.frag.glsl", true, {.uniforms = {"diffuse_color"}}}}}},
+    return joined({{{"stage", "", {{"unlit.frag.glsl", true, {.uniforms = {"diffuse_color"}}}}},
+                    second_texcoord_step(f)},
                    color_steps(f),
                    alpha_steps(f),
                    coding_steps(f)});
@@ -742,6 +751,18 @@ void append(std::vector<std::string>& names, const std::vector<std::string_view>
 void sort_and_unite(std::vector<std::string>& names) {
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
+}
+
+/// Changes the lookups of the textures that use the second texture coordinates.
+std::string at_second_texcoords(std::string text, By f) {
+    for_each_sampled(f, [&](const SecondTexture& texture, bool is_second) {
+        if (!is_second) return;
+        const std::string lookup = fmt::format("texture({}, texcoord_surface", texture.sampler);
+        const std::size_t place = text.find(lookup);
+        assert(place != std::string::npos && text.find(lookup, place + 1) == std::string::npos);
+        text.insert(place + lookup.size(), "_2");
+    });
+    return text;
 }
 
 ShaderListing listing_of(const Features& features) {
@@ -788,10 +809,12 @@ SurfaceProgram surface_program(const Features& features) {
         light_count(features) > 0 ? light_constants(features) : ShaderConstants{};
     // The stage that computes the lights.
     const bool at_vertices = features.interpolation == Interpolation::gouraud;
-    return {assemble(steps.vertex.at("stage").part, steps.vertex,
-                     at_vertices ? constants : ShaderConstants{}),
-            assemble(steps.fragment.at("stage").part, steps.fragment,
-                     at_vertices ? ShaderConstants{} : constants)};
+    SurfaceProgram program{assemble(steps.vertex.at("stage").part, steps.vertex,
+                                    at_vertices ? constants : ShaderConstants{}),
+                           assemble(steps.fragment.at("stage").part, steps.fragment,
+                                    at_vertices ? ShaderConstants{} : constants)};
+    program.fragment.text = at_second_texcoords(std::move(program.fragment.text), features);
+    return program;
 }
 
 PlannedInterface planned_interface(const Features& features) {

@@ -107,9 +107,8 @@ class Tracer {
         return material.double_sided || !reference::is_back(prepared_, hit);
     }
     [[nodiscard]] bool is_covering(const Hit& hit, const Material& material) const {
-        const bool has_texcoords = !prepared_.instances[hit.instance].mesh->texcoords.empty();
         return material.alpha_mode != AlphaMode::blend &&
-               !reference::is_transmissive(material, has_texcoords);
+               !reference::is_transmissive(material, *prepared_.instances[hit.instance].mesh);
     }
     [[nodiscard]] bool is_same_surface(const Hit& a, const Hit& b) const;
     [[nodiscard]] bool is_too_close(const Hit& front, const Hit& behind) const;
@@ -286,8 +285,9 @@ ReferenceHit first_shown(const PreparedScene& prepared, const Sample& sample) {
 }
 
 bool has_transmission(const PreparedScene& prepared) {
-    return std::any_of(prepared.materials.begin(), prepared.materials.end(),
-                       [](const Material& m) { return reference::is_transmissive(m, true); });
+    return std::any_of(prepared.materials.begin(), prepared.materials.end(), [](const Material& m) {
+        return m.metallic_roughness && m.metallic_roughness->transmission > 0.0F;
+    });
 }
 
 /// Returns the picture behind transmissive surfaces.

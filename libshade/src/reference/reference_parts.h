@@ -284,16 +284,17 @@ struct Surface {
     glm::dvec3 view_world{0.0, 0.0,
                           1.0};  ///< Unit, to the eye; the normal if the eye is at the surface.
     glm::dvec2 texcoord{0.0};
+    glm::dvec2 texcoord_2{0.0};
     glm::dvec4 color{1.0};      ///< Interpolated vertex color.
     bool has_texcoord = false;  ///< Without them, no texture is looked up.
+    bool has_texcoord_2 = false;
     /// The tangent frame of an anisotropic material, as interpolated; otherwise zero.
     glm::dvec3 tangent_world{0.0};
     glm::dvec3 bitangent_world{0.0};
 };
 
-/// Tells whether a material shows what is behind it by transmission, on a mesh with or without
-/// texture coordinates.
-bool is_transmissive(const Material& material, bool has_texcoords);
+/// Tells whether a material shows what is behind it by transmission, on this mesh.
+bool is_transmissive(const Material& material, const Mesh& mesh);
 
 /// Tells whether the hit shows the back of its triangle.
 bool is_back(const PreparedScene& prepared, const Hit& hit);

@@ -204,8 +204,11 @@ struct Context {
     Trace& trace;
 
     [[nodiscard]] glm::dvec4 look_up(const std::optional<Texture>& texture, ImageUse use) const {
-        if (!texture || !surface.has_texcoord) return glm::dvec4(1.0);
-        return prepared.texels.look_up(*texture, use, surface.texcoord, trace);
+        if (!texture) return glm::dvec4(1.0);
+        const bool second = texture->second_texcoords;
+        if (!(second ? surface.has_texcoord_2 : surface.has_texcoord)) return glm::dvec4(1.0);
+        return prepared.texels.look_up(*texture, use,
+                                       second ? surface.texcoord_2 : surface.texcoord, trace);
     }
 };
 
@@ -372,7 +375,8 @@ Anisotropy anisotropy_at(const Context& context) {
     glm::dvec2 direction(1.0, 0.0);  // Before the rotation.
     double strength = static_cast<double>(model.anisotropy);
     if (model.anisotropy_texture && at.has_texcoord) {
-        const glm::dvec4 texel = context.look_up(model.anisotropy_texture, ImageUse::data);
+        const glm::dvec4 texel = context.prepared.texels.look_up(
+            *model.anisotropy_texture, ImageUse::data, at.texcoord, context.trace);
         const glm::dvec2 stored = 2.0 * glm::dvec2(texel) - 1.0;
         if (glm::length(stored) > 1e-15) direction = glm::normalize(stored);
         strength *= texel.b;
@@ -550,7 +554,8 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
 /// Returns the light from behind the surface.
 glm::dvec3 passing_light(const Context& context, const Microfacets& facets, const Hit& hit) {
     const Surface& at = context.surface;
-    if (!is_transmissive(context.material, at.has_texcoord)) return glm::dvec3(0.0);
+    if (!is_transmissive(context.material, *context.prepared.instances[hit.instance].mesh))
+        return glm::dvec3(0.0);
     const MetallicRoughness& model = *context.material.metallic_roughness;
     const double index = static_cast<double>(model.refractive_index);
     const double ratio = index > 0.0 ? 1.0 / index : 0.0;
@@ -662,10 +667,12 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const Hit& hit,
 
 }  // namespace
 
-bool is_transmissive(const Material& material, bool has_texcoords) {
+bool is_transmissive(const Material& material, const Mesh& mesh) {
     const std::optional<MetallicRoughness>& model = material.metallic_roughness;
     return model && !material.unlit && model->transmission > 0.0F &&
-           (model->metallic < 1.0F || (model->texture && has_texcoords));
+           (model->metallic < 1.0F ||
+            (model->texture &&
+             !(model->texture->second_texcoords ? mesh.texcoords_2 : mesh.texcoords).empty()));
 }
 
 Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material,

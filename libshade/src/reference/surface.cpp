@@ -436,6 +436,9 @@ Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
     if (surface.has_texcoord) {
         surface.texcoord = triangle.interpolated_as<glm::dvec2>(mesh.texcoords);
     }
+    surface.has_texcoord_2 = !mesh.texcoords_2.empty();
+    if (surface.has_texcoord_2)
+        surface.texcoord_2 = triangle.interpolated_as<glm::dvec2>(mesh.texcoords_2);
     if (!mesh.colors.empty()) surface.color = triangle.interpolated_as<glm::dvec4>(mesh.colors);
     return surface;
 }

@@ -20,6 +20,7 @@ void PlannedStreams::add(const PlannedInterface& planned) {
     };
     normals |= uses("normal_object");
     texcoords |= uses("texcoord");
+    texcoords_2 |= uses("texcoord_2");
     tangents |= uses("tangent_object");
     colors |= uses("color_linear");
 }
@@ -47,6 +48,7 @@ GpuMesh::GpuMesh(const gl::Api& api, const Mesh& mesh, const PlannedStreams& str
     add_stream(Attribute::position_object, mesh.positions, 3);
     if (streams.normals) add_stream(Attribute::normal_object, mesh.normals, 3);
     if (streams.texcoords) add_stream(Attribute::texcoord, mesh.texcoords, 2);
+    if (streams.texcoords_2) add_stream(Attribute::texcoord_2, mesh.texcoords_2, 2);
     if (streams.tangents) add_stream(Attribute::tangent_object, mesh.tangents, 4);
     if (streams.colors) add_stream(Attribute::color_linear, mesh.colors, 4);
     buffers_.push_back(
@@ -81,6 +83,7 @@ void set_attribute_constants(const gl::Api& api) {
     };
     set(Attribute::normal_object, {0.0F, 0.0F, 1.0F, 0.0F});
     set(Attribute::texcoord, glm::vec4(0.0F));
+    set(Attribute::texcoord_2, glm::vec4(0.0F));
     set(Attribute::tangent_object, {1.0F, 0.0F, 0.0F, 1.0F});
     set(Attribute::color_linear, glm::vec4(1.0F));
 }

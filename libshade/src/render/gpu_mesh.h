@@ -22,6 +22,7 @@ namespace relief {
 struct PlannedStreams {
     bool normals = false;
     bool texcoords = false;
+    bool texcoords_2 = false;
     bool tangents = false;
     bool colors = false;
 

@@ -31,6 +31,8 @@ const std::vector<AttributeRow>& attribute_rows() {
         {"tangent_object", [](const Mesh& m) { return !m.tangents.empty(); },
          "a map or anisotropy lies in the mesh's tangent frame"},
         {"texcoord", [](const Mesh& m) { return !m.texcoords.empty(); }, "textures are sampled"},
+        {"texcoord_2", [](const Mesh& m) { return !m.texcoords_2.empty(); },
+         "textures are sampled at the second texture coordinates"},
         {"color_linear", [](const Mesh& m) { return !m.colors.empty(); },
          "vertex colors tint the surface"},
     };

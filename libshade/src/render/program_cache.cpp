@@ -24,9 +24,11 @@ std::vector<gl::Location> attribute_locations() {
         return gl::Location{name, static_cast<GLuint>(attribute)};
     };
     return {at("position_object", Attribute::position_object),
-            at("normal_object", Attribute::normal_object), at("texcoord", Attribute::texcoord),
+            at("normal_object", Attribute::normal_object),
+            at("texcoord", Attribute::texcoord),
             at("tangent_object", Attribute::tangent_object),
-            at("color_linear", Attribute::color_linear)};
+            at("color_linear", Attribute::color_linear),
+            at("texcoord_2", Attribute::texcoord_2)};
 }
 
 constexpr std::array<std::pair<const char*, TextureUnit>, 25> texture_units{{

@@ -23,7 +23,8 @@ enum class Attribute : GLuint {
     normal_object,
     texcoord,
     tangent_object,
-    color_linear
+    color_linear,
+    texcoord_2
 };
 
 /// Texture units, by the GLSL names of samplers. Those of materials come first.

@@ -204,7 +204,14 @@ std::vector<UsedTexture> used_textures(const Features& features, const Material&
     std::vector<UsedTexture> used;
     for (const TextureRow& row : texture_rows()) {
         if (sampling_effect(row, features) == nullptr) continue;
-        const Texture* texture = mesh.texcoords.empty() ? nullptr : row.texture(material);
+        const Texture* texture = row.texture(material);
+        const bool is_map = row.unit == TextureUnit::normal_texture ||
+                            row.unit == TextureUnit::bump_texture ||
+                            row.unit == TextureUnit::clearcoat_normal_texture ||
+                            row.unit == TextureUnit::anisotropy_texture;
+        const bool has_texcoords =
+            texture != nullptr && !(is_map ? mesh.texcoords : texcoords_of(mesh, *texture)).empty();
+        if (!has_texcoords) texture = nullptr;
         used.push_back({row.unit, texture, row.use});
     }
     return used;

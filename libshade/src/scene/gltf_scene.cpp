@@ -174,43 +174,67 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
 
 namespace {
 
-/// The texture coordinates at which a material looks up its images. A mesh of the scene carries one
-/// set, so they are those of the material's first texture, in the order base color, normal,
-/// metallic-roughness, occlusion, emission, and then those of extensions.
+/// The texture coordinates at which a texture is looked up.
 struct TexcoordSource {
     int set = 0;
     GltfTextureTransform transform;
+
+    friend bool operator==(const TexcoordSource&, const TexcoordSource&) = default;
 };
 
-TexcoordSource texcoord_source(const GltfMaterial& material) {
+TexcoordSource source_of(const GltfTexture& texture) {
+    return {texture.texcoord_set, texture.transform};
+}
+
+/// The two sets of texture coordinates that a mesh of the scene carries for a material. The first
+/// are those of the maps in the tangent frame, or else of the material's first texture, in the
+/// order base color, metallic-roughness, occlusion, emission, and then those of extensions. The
+/// second are the next ones that differ.
+struct TexcoordSources {
+    TexcoordSource first;
+    std::optional<TexcoordSource> second = std::nullopt;
+};
+
+TexcoordSources texcoord_sources(const GltfMaterial& material) {
+    std::optional<TexcoordSource> first;
+    std::optional<TexcoordSource> second;
     for (const std::optional<GltfTexture>* texture :
-         {&material.base_color_texture, &material.normal_texture,
+         {&material.normal_texture, &material.clearcoat_normal_texture,
+          &material.anisotropy_texture, &material.base_color_texture,
           &material.metallic_roughness_texture, &material.occlusion_texture,
-          &material.emission_texture, &material.clearcoat_normal_texture,
-          &material.anisotropy_texture, &material.specular_texture,
-          &material.specular_color_texture, &material.clearcoat_texture,
-          &material.clearcoat_roughness_texture, &material.sheen_color_texture,
-          &material.iridescence_texture, &material.iridescence_thickness_texture,
-          &material.transmission_texture, &material.thickness_texture}) {
-        if (*texture) return {(*texture)->texcoord_set, (*texture)->transform};
+          &material.emission_texture, &material.specular_texture, &material.specular_color_texture,
+          &material.clearcoat_texture, &material.clearcoat_roughness_texture,
+          &material.sheen_color_texture, &material.iridescence_texture,
+          &material.iridescence_thickness_texture, &material.transmission_texture,
+          &material.thickness_texture}) {
+        if (!*texture) continue;
+        const TexcoordSource source = source_of(**texture);
+        if (!first) first = source;
+        if (!second && source != *first) second = source;
     }
-    return {};
+    return {first.value_or(TexcoordSource{}), second};
 }
 
 /// Returns the texture of the scene, or none if its mesh has no coordinates for it.
+/// \param is_map  it lies in the tangent frame, which belongs to the first coordinates
 std::optional<Texture> texture_from(const std::optional<GltfTexture>& texture,
-                                    const TexcoordSource& source, std::size_t material,
-                                    Report& report) {
+                                    const TexcoordSources& sources, bool is_map,
+                                    std::size_t material, Report& report) {
     if (!texture) return std::nullopt;
-    if (texture->texcoord_set != source.set) {
+    Texture result{texture->image, texture->wrap_u, texture->wrap_v, texture->filter};
+    const TexcoordSource source = source_of(*texture);
+    if (source == sources.first) return result;
+    if (source == sources.second && !is_map) {
+        result.second_texcoords = true;
+        return result;
+    }
+    if (source.set != sources.first.set) {
         report.add("texture on a further texture coordinate set", "material", material, "left out");
         return std::nullopt;
     }
-    if (texture->transform != source.transform) {
-        report.add("texture transform of its own", "material", material,
-                   "drawn with that of the material's first texture");
-    }
-    return Texture{texture->image, texture->wrap_u, texture->wrap_v, texture->filter};
+    report.add("texture transform of its own", "material", material,
+               "drawn with that of the material's first texture");
+    return result;
 }
 
 /// The mean of an image's texels, or the error of decoding it.
@@ -342,12 +366,12 @@ void add_textures(MetallicRoughness& model, const GltfMaterial& material,
     model.specular_color_texture = texture(material.specular_color_texture);
     model.clearcoat_texture = texture(material.clearcoat_texture);
     model.clearcoat_roughness_texture = texture(material.clearcoat_roughness_texture);
-    if (const auto normal = texture(material.clearcoat_normal_texture)) {
+    if (const auto normal = texture(material.clearcoat_normal_texture, true)) {
         model.clearcoat_normal_map =
             NormalMap{*normal, material.clearcoat_normal_scale, Green::up, std::nullopt};
     }
     model.sheen_color_texture = texture(material.sheen_color_texture);
-    model.anisotropy_texture = texture(material.anisotropy_texture);
+    model.anisotropy_texture = texture(material.anisotropy_texture, true);
     model.iridescence_texture = texture(material.iridescence_texture);
     model.iridescence_thickness_texture = texture(material.iridescence_thickness_texture);
     model.transmission_texture = texture(material.transmission_texture);
@@ -357,9 +381,9 @@ void add_textures(MetallicRoughness& model, const GltfMaterial& material,
 /// Sets textures and alpha, which are the same in both material models.
 void add_textures(Material& result, const GltfMaterial& material, std::size_t index,
                   Report& report) {
-    const TexcoordSource source = texcoord_source(material);
-    const auto texture = [&](const std::optional<GltfTexture>& given) {
-        return texture_from(given, source, index, report);
+    const TexcoordSources sources = texcoord_sources(material);
+    const auto texture = [&](const std::optional<GltfTexture>& given, bool is_map = false) {
+        return texture_from(given, sources, is_map, index, report);
     };
     result.diffuse_texture = texture(material.base_color_texture);
     if (result.metallic_roughness) {
@@ -367,9 +391,11 @@ void add_textures(Material& result, const GltfMaterial& material, std::size_t in
         add_textures(*result.metallic_roughness, material, texture);
     }
     result.emission_texture = texture(material.emission_texture);
+    // As for a texture that cannot be read: most texels are black.
+    if (material.emission_texture && !result.emission_texture) result.emission = glm::vec3(0.0F);
     result.occlusion_texture = texture(material.occlusion_texture);
     result.occlusion_strength = usable(material.occlusion_strength, 1.0F);
-    if (const auto normal = texture(material.normal_texture)) {
+    if (const auto normal = texture(material.normal_texture, true)) {
         result.normal_map = NormalMap{*normal, material.normal_scale, Green::up, std::nullopt};
     }
     result.alpha_mode = material.alpha_mode;
@@ -469,9 +495,15 @@ struct ReadDocument {
 Mesh mesh_from(const ReadDocument& read, GltfPrimitiveId id) {
     Mesh mesh = read.mesh(id);
     if (mesh.material_ranges.empty() || !mesh.material_ranges.front().material) return mesh;
-    const TexcoordSource source =
-        texcoord_source(read.view.materials[*mesh.material_ranges.front().material]);
+    const auto [source, second] =
+        texcoord_sources(read.view.materials[*mesh.material_ranges.front().material]);
     if (source.set != 0) mesh = read.mesh(id, source.set);
+    if (second) {
+        mesh.texcoords_2 =
+            second->set == source.set ? mesh.texcoords : read.mesh(id, second->set).texcoords;
+        for (glm::vec2& texcoord : mesh.texcoords_2)
+            texcoord = transformed(second->transform, texcoord);
+    }
     if (source.transform == GltfTextureTransform{}) return mesh;
     for (glm::vec2& texcoord : mesh.texcoords)
         texcoord = transformed(source.transform, texcoord);
@@ -516,6 +548,7 @@ std::vector<std::uint32_t> separate_triangles(Mesh& mesh) {
     copy(mesh.normals);
     copy(mesh.tangents);
     copy(mesh.texcoords);
+    copy(mesh.texcoords_2);
     copy(mesh.colors);
     return source;
 }

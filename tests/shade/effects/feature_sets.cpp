@@ -18,6 +18,15 @@ FeatureField field(const char* name) {
             [](Features& f, unsigned value) { f.*Member = static_cast<Value>(value); }};
 }
 
+/// A bit of Features::second_texcoords.
+template <unsigned Bit>
+FeatureField second(const char* name) {
+    return {name, 2, [](const Features& f) { return f.second_texcoords >> Bit & 1U; },
+            [](Features& f, unsigned value) {
+                f.second_texcoords = (f.second_texcoords & ~(1U << Bit)) | value << Bit;
+            }};
+}
+
 constexpr unsigned max_values = 4;
 
 /// A set and an upper bound of the pairs that it adds. The bound is its last count, since the
@@ -85,6 +94,9 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::transmission_texture>("transmission texture"),
         field<&F::volume>("volume"),
         field<&F::thickness_texture>("thickness texture"),
+        second<0>("diffuse texture at second coordinates"),
+        second<3>("occlusion texture at second coordinates"),
+        second<14>("thickness texture at second coordinates"),
         field<&F::interpolation, 3>("interpolation"),
         field<&F::diffuse_texture>("diffuse texture"),
         field<&F::specular_texture>("specular texture"),
@@ -212,6 +224,9 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
         if (f.detail == NormalDetail::object_normal_map) m.normal_map->space = NormalSpace::object;
     }
     if (f.detail == NormalDetail::bump_map) m.bump_map = BumpMap{data("bump", 8, 0), 2.0F};
+    if (m.diffuse_texture) m.diffuse_texture->second_texcoords = (f.second_texcoords & 1U) != 0;
+    if (m.occlusion_texture)
+        m.occlusion_texture->second_texcoords = (f.second_texcoords >> 3U & 1U) != 0;
     if (!f.metallic_roughness) return;
     MetallicRoughness& model = *m.metallic_roughness;
     if (f.specular_weight_texture) {
@@ -228,7 +243,10 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
     if (f.film_thickness_texture)
         model.iridescence_thickness_texture = data("film thickness", 17, 0);
     if (f.transmission_texture) model.transmission_texture = data("transmission", 18, 40);
-    if (f.thickness_texture) model.thickness_texture = data("thickness", 19, 40);
+    if (f.thickness_texture) {
+        model.thickness_texture = data("thickness", 19, 40);
+        model.thickness_texture->second_texcoords = (f.second_texcoords >> 14U & 1U) != 0;
+    }
 }
 
 Material material_calling_for(const Features& f) {
@@ -346,6 +364,8 @@ CallingScene scene_calling_for(const Features& features) {
     Scene& scene = result.scene;
     Mesh mesh = sphere(24, 12);
     mesh.name = "sphere";
+    for (const glm::vec2& texcoord : mesh.texcoords)
+        mesh.texcoords_2.emplace_back(texcoord.y, texcoord.x);
     if (features.vertex_colors) {
         for (const glm::vec3& p : mesh.positions) {
             mesh.colors.emplace_back(0.5F + 0.5F * p.x, 0.9F, 0.5F - 0.5F * p.y, 0.9F);

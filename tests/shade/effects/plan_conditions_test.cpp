@@ -136,6 +136,7 @@ const Change object_map = [](Frame& f) {
 };
 const Change bump_map = with(&Material::bump_map, BumpMap{});
 
+const Change second_texcoords = [](Frame& f) { f.mesh().texcoords_2.resize(4); };
 const Change no_texcoords = [](Frame& f) { f.mesh().texcoords.clear(); };
 const Change stored_tangents = [](Frame& f) { f.mesh().tangents.assign(4, {1, 0, 0, 1}); };
 
@@ -276,6 +277,16 @@ const std::vector<Boundary> color_boundaries = {
     {"volume", "transmission", {thick}, {}, {clear}},
     {"thickness texture", "has one", {clear, thick}, {}, {volume_texture}},
     {"thickness texture", "a volume", {clear, volume_texture}, {}, {thick}},
+    {"diffuse texture",
+     "second texture coordinates",
+     {with(&Material::diffuse_texture, Texture{.second_texcoords = true})},
+     {},
+     {second_texcoords}},
+    {"transmission",
+     "a texture of metal at second texture coordinates",
+     {clear, metal, with(&MetallicRoughness::texture, Texture{.second_texcoords = true})},
+     {},
+     {second_texcoords}},
     {"metallic-roughness", "what is behind", {no_suns}, {no_metal}, {clear}},
     {"diffuse texture", "what is behind", {no_suns, diffuse_texture, no_metal}, {}, {clear}},
     {"normal map", "what is behind", {no_suns, normal_map, no_metal}, {}, {clear}},

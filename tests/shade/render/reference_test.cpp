@@ -285,6 +285,39 @@ std::vector<AddedThing> texture_effects() {
              s.materials[0].metallic_roughness->anisotropy_texture =
                  image(s, test::random_normals(d));
          }},
+        {"second texture coordinates",
+         [](Scene& s, test::Dice& d) {
+             Mesh& mesh = s.meshes[0].edit();
+             for (const glm::vec2& texcoord : mesh.texcoords)
+                 mesh.texcoords_2.emplace_back(0.7F * texcoord.y, 0.3F + 0.6F * texcoord.x);
+             Material& material = s.materials[0];
+             material.normal_map = NormalMap{image(s, test::random_normals(d))};
+             material.normal_map->flat = FlatCode::middle;
+             material.diffuse_texture = image(s, test::random_image(d, 3, ColorSpace::linear));
+             material.occlusion_texture = image(s, test::random_image(d, 1, ColorSpace::data));
+             material.occlusion_texture->second_texcoords = true;
+             MetallicRoughness& model = material.metallic_roughness.emplace();
+             model.texture = image(s, test::random_image(d, 3, ColorSpace::data));
+             model.texture->second_texcoords = true;
+         }},
+        {"second texture coordinates that the mesh does not have",
+         [](Scene& s, test::Dice& d) {
+             Texture& texture = s.materials[0].diffuse_texture.emplace();
+             texture = image(s, test::random_image(d, 3, ColorSpace::linear));
+             texture.second_texcoords = true;
+         }},
+        {"mask at second texture coordinates",
+         [](Scene& s, test::Dice& d) {
+             Mesh& mesh = s.meshes[0].edit();
+             for (const glm::vec2& texcoord : mesh.texcoords)
+                 mesh.texcoords_2.push_back(0.5F * texcoord);
+             mesh.texcoords.clear();
+             s.materials[0].alpha_mode = AlphaMode::mask;
+             s.materials[0].unlit = true;
+             s.materials[0].diffuse_texture =
+                 image(s, test::random_image(d, 4, ColorSpace::linear));
+             s.materials[0].diffuse_texture->second_texcoords = true;
+         }},
         {"diffuse texture",
          [](Scene& s, test::Dice& d) {
              s.materials[0].diffuse_texture =

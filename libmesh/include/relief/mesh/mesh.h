@@ -53,6 +53,9 @@ struct Mesh {
     /// different groups are hard, and so are all edges of group 0. They affect the computation of
     /// normals, not stored normals.
     std::vector<std::uint32_t> smoothing_groups;
+    /// A second set of texture coordinates, at which materials of a scene may look up textures.
+    /// Mesh files are read and written without it.
+    std::vector<glm::vec2> texcoords_2;
 };
 
 /// An axis-aligned box; empty (min > max) by default.

@@ -69,6 +69,9 @@ struct Features {
     bool transmission_texture = false;
     bool volume = false;  ///< KHR_materials_volume
     bool thickness_texture = false;
+    /// The textures that are looked up at the second texture coordinates; a bit for each, in the
+    /// order of the table in effects/features.h.
+    std::uint32_t second_texcoords = 0;
     Interpolation interpolation = Interpolation::per_pixel;
     // Factors of the colors.
     bool diffuse_texture = false;

@@ -25,6 +25,9 @@ struct Texture {
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
     TextureFilter filter = TextureFilter::linear;
+    /// It is looked up at Mesh::texcoords_2. Maps in the tangent frame (normal and bump maps,
+    /// anisotropy) ignore this.
+    bool second_texcoords = false;
 };
 
 /// The place where light is computed.

@@ -146,7 +146,8 @@ constexpr void for_each_field(const Visit& visit) {
 template <>
 inline constexpr auto fields_of<Texture> =
     std::tuple{SceneField{"wrap_u", &Texture::wrap_u}, SceneField{"wrap_v", &Texture::wrap_v},
-               SceneField{"filter", &Texture::filter}};
+               SceneField{"filter", &Texture::filter},
+               SceneField{"second_texcoords", &Texture::second_texcoords}};
 
 template <>
 inline constexpr auto fields_of<NormalMap> =
