@@ -8,9 +8,12 @@ in vec3 position_object;
 uniform mat4 clip_from_object;
 
 #include <overlay_color>
+#include <morphing>
+#include <skinning>
 
 void main() {
-    gl_Position = clip_from_object * vec4(position_object, 1.0);
+    vec3 position = skinned_point(morphed(position_object, gl_VertexID, 0), gl_VertexID);
+    gl_Position = clip_from_object * vec4(position, 1.0);
     pass_overlay_color();
 }
 

@@ -8,7 +8,7 @@ out vec3 position_world;
 
 uniform mat4 world_from_object;
 
-void pass_position() { position_world = vec3(world_from_object * vec4(position_object, 1.0)); }
+void pass_position() { position_world = vec3(world_from_object * vec4(position_deformed, 1.0)); }
 
 #part normal
 // The normal in world space, unit length at the vertex. The matrix is the inverse transpose of the
@@ -22,8 +22,10 @@ out vec3 normal_world;
 
 uniform mat3 world_from_object_normal;
 
+#include <deformed_normal>
+
 void pass_normal() {
-    normal_world = normalized_or(world_from_object_normal * normal_object, vec3(0.0));
+    normal_world = normalized_or(world_from_object_normal * deformed_normal(), vec3(0.0));
 }
 
 #part normal_and_tangent
@@ -42,9 +44,12 @@ uniform mat3 world_from_object_normal;
 uniform mat3 world_from_object_tangent;
 uniform float handedness;
 
+#include <deformed_normal>
+#include <deformed_tangent>
+
 void pass_normal() {
-    normal_world = normalized_or(world_from_object_normal * normal_object, vec3(0.0));
-    tangent_world.xyz = normalized_or(world_from_object_tangent * tangent_object.xyz, vec3(0.0));
+    normal_world = normalized_or(world_from_object_normal * deformed_normal(), vec3(0.0));
+    tangent_world.xyz = normalized_or(world_from_object_tangent * deformed_tangent(), vec3(0.0));
     tangent_world.w = tangent_object.w * handedness;
 }
 
@@ -72,3 +77,122 @@ in vec4 color_linear;
 out vec4 color_from_white;
 
 void pass_color() { color_from_white = color_linear - vec4(1.0); }
+
+#part morphing
+// Adds the displacements of the morph targets whose weight is not 0. Texels of morph_weights:
+// (weight, number of the target). Texels of morph_displacements: for each target and vertex the
+// components 0: position, 1: normal, 2: tangent, as far as any target has them.
+
+uniform samplerBuffer morph_weights;
+uniform samplerBuffer morph_displacements;
+uniform ivec3 morph_layout;  // Targets with a weight, texels of a target, texels of a vertex.
+
+vec3 morphed(vec3 at_rest, int vertex, int component) {
+    if (component >= morph_layout.z) return at_rest;
+    for (int i = 0; i < morph_layout.x; ++i) {
+        vec2 target = texelFetch(morph_weights, i).xy;
+        int texel = int(target.y) * morph_layout.y + vertex * morph_layout.z + component;
+        at_rest += target.x * texelFetch(morph_displacements, texel).xyz;
+    }
+    return at_rest;
+}
+
+#part skinning
+// Moves a vertex by the weighted mean of the matrices of its joints (linear blend skinning). Texels
+// of joint_matrices: three rows for each joint. Texels of joint_weights: (joint, weight, joint,
+// weight), joint_pairs of them for each vertex; the weights of a vertex add up to 1 exactly, so that
+// joints at rest change no bit. Source: glTF 2.0, section 3.7.3.3.
+
+uniform samplerBuffer joint_matrices;
+uniform samplerBuffer joint_weights;
+uniform int joint_pairs;
+
+void add_joint(float joint, float weight, inout mat3x4 sum) {
+    int row = 3 * int(joint);
+    sum[0] += weight * texelFetch(joint_matrices, row);
+    sum[1] += weight * texelFetch(joint_matrices, row + 1);
+    sum[2] += weight * texelFetch(joint_matrices, row + 2);
+}
+
+mat3x4 skin_of(int vertex) {
+    if (joint_pairs == 0) return mat3x4(1.0);
+    mat3x4 sum = mat3x4(0.0);
+    for (int i = 0; i < joint_pairs; ++i) {
+        vec4 pair = texelFetch(joint_weights, vertex * joint_pairs + i);
+        add_joint(pair.x, pair.y, sum);
+        add_joint(pair.z, pair.w, sum);
+    }
+    return sum;
+}
+
+mat3x4 skin = skin_of(gl_VertexID);  // The rows of the matrix of this vertex.
+
+vec3 skinned_point(vec3 point, int vertex) {
+    mat3x4 rows = vertex == gl_VertexID ? skin : skin_of(vertex);
+    return vec4(point, 1.0) * rows;
+}
+
+#part skinned_directions
+// The axes of the skin, scaled to a largest element of 1, so that their products fit a float.
+
+mat3 skin_axes() {
+    mat3 rows = mat3(skin);
+    vec3 of_columns = max(max(abs(rows[0]), abs(rows[1])), abs(rows[2]));
+    float largest = max(max(of_columns.x, of_columns.y), of_columns.z);
+    return transpose(largest > 0.0 ? rows / largest : rows);
+}
+
+vec3 skinned_tangent(vec3 tangent) { return skin_axes() * tangent; }
+
+// Cofactors keep normals perpendicular; a mirroring matrix would turn them inside out.
+vec3 skinned_normal(vec3 normal) {
+    mat3 axes = skin_axes();
+    mat3 cofactors = mat3(cross(axes[1], axes[2]), cross(axes[2], axes[0]), cross(axes[0], axes[1]));
+    return (dot(axes[0], cofactors[0]) < 0.0 ? -1.0 : 1.0) * (cofactors * normal);
+}
+
+#part deformed_normal
+// The deformed normal; that at rest if it loses its length.
+
+#include "vector.glsl#normalized_or"
+#include <skinned_directions>
+
+vec3 deformed_normal() {
+    vec3 normal = skinned_normal(morphed(normal_object, gl_VertexID, 1));
+    return has_direction(normal) ? normal : normal_object;
+}
+
+#part facet_normal
+// The normal of the deformed triangle, for meshes with flat normals, in which no two triangles share
+// a vertex. Texels of facet_corners: for each vertex the two next corners of its triangle at rest,
+// and their numbers.
+
+#include "vector.glsl#normalized_or"
+#include "vector.glsl#rescaled"
+#include <skinned_directions>
+
+uniform samplerBuffer facet_corners;
+
+vec3 edge_to(vec4 corner) {
+    int vertex = int(corner.w);
+    return rescaled(skinned_point(morphed(corner.xyz, vertex, 0), vertex) - position_deformed);
+}
+
+vec3 deformed_normal() {
+    vec3 across = cross(edge_to(texelFetch(facet_corners, 2 * gl_VertexID)),
+                        edge_to(texelFetch(facet_corners, 2 * gl_VertexID + 1)));
+    if (has_direction(across)) return across;
+    vec3 normal = skinned_normal(morphed(normal_object, gl_VertexID, 1));
+    return has_direction(normal) ? normal : normal_object;
+}
+
+#part deformed_tangent
+// The deformed tangent; that at rest if it loses its length.
+
+#include "vector.glsl#normalized_or"
+#include <skinned_directions>
+
+vec3 deformed_tangent() {
+    vec3 tangent = skinned_tangent(morphed(tangent_object.xyz, gl_VertexID, 2));
+    return has_direction(tangent) ? tangent : tangent_object.xyz;
+}

@@ -4,6 +4,10 @@
 // A sphere of 99,856 triangles, 1280 x 720, one sample per pixel; wall-clock milliseconds.
 //
 //   relief-frame-bench [REPEATS]
+//   relief-frame-bench REPEATS MODEL...
+//
+// The second form compares two ways of drawing an animated model: deformed in the vertex stage, and
+// deformed on the CPU and uploaded in each frame; from the pose to the finished picture.
 //
 // The hand-written and the branching shaders replace shaders/surface.* through $RELIEF_SHADER_DIR,
 // so that all three programs draw the same meshes with the same state.
@@ -11,14 +15,18 @@
 
 #include <array>
 #include <cstdlib>
+#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "gl/api.h"
+#include "relief/mesh/statistics.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/image_compare.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_file.h"
 #include "shade/typical_scenes.h"
 
 namespace relief::bench {
@@ -95,6 +103,67 @@ void measure(const Context& context, const TypicalScene& typical, const Repeats&
                compare(all.pictures[0], all.pictures[2]).max);
 }
 
+/// Returns the scene with the deformed meshes in place of the poses.
+Scene deformed_on_cpu(Scene scene) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        if (!scene.instances[i].pose) continue;
+        scene.meshes.push_back(deformed_mesh(scene, i));
+        scene.instances[i].mesh = scene.meshes.size() - 1;
+        scene.instances[i].pose.reset();
+    }
+    return scene;
+}
+
+void measure_poses(const Context& context, const char* model, const Repeats& repeats) {
+    SceneGraph graph = load_scene_graph(model, {});
+    const double length = duration(graph);
+    pose(graph, 0.0);
+    graph.camera = {};
+    graph.camera_sees_all = false;
+    Scene& scene = graph.scene;
+    scene.camera = framed(scene, default_azimuth, default_elevation, default_vertical_fov,
+                          static_cast<float>(settings.width) / static_cast<float>(settings.height));
+    add_default_lights(scene, *scene.camera);
+    Renderer on_gpu(context, scene, settings);
+    Renderer on_cpu(context, deformed_on_cpu(scene), settings);
+    std::array<std::vector<double>, 2> pose_times;
+    std::array<std::vector<double>, 2> frame_times;
+    std::size_t frame = 0;
+    interleave(2, repeats, [&](std::size_t i, bool counted) {
+        const Stopwatch stopwatch;
+        pose(graph, length * static_cast<double>(frame++ / 2 % 24) / 24.0);
+        if (i == 0)
+            on_gpu.move(scene);
+        else
+            on_cpu.move(deformed_on_cpu(scene));
+        const double posed = 1e3 * stopwatch.seconds();
+        (i == 0 ? on_gpu : on_cpu).draw_only(*scene.camera);
+        if (!counted) return;
+        pose_times[i].push_back(posed);
+        frame_times[i].push_back(1e3 * stopwatch.seconds());
+    });
+    const auto median = [](const std::vector<double>& times) {
+        return time_statistics(times).median;
+    };
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < frame_times[0].size(); ++i)
+        ratios.push_back(frame_times[0][i] / frame_times[1][i]);
+    fmt::print("{:<24} {:8.3f} {:8.3f}   {:8.2f} {:8.2f}   {:5.2f}\n",
+               std::filesystem::path(model).filename().string(), median(pose_times[0]),
+               median(pose_times[1]), median(frame_times[0]), median(frame_times[1]),
+               median(ratios));
+}
+
+int run_poses(const Repeats& repeats, std::span<char*> models) {
+    const Context context(Backend::osmesa);
+    fmt::print("{}, median of {} frames in turns, ms: vertex stage, CPU\n", context.renderer_name(),
+               repeats.counted);
+    fmt::print("{:<24} {:>17}   {:>17}   {}\n", "model", "pose and upload", "whole frame", "ratio");
+    for (const char* model : models)
+        measure_poses(context, model, repeats);
+    return 0;
+}
+
 int run(const Repeats& repeats) {
     const Context context(Backend::osmesa);
     fmt::print("{}, median of {} frames in turns, ms of drawing\n", context.renderer_name(),
@@ -112,5 +181,8 @@ int run(const Repeats& repeats) {
 int main(int argc, char** argv) {
     relief::Repeats repeats{.counted = 31, .warm_up = 3};
     if (argc > 1) repeats.counted = static_cast<std::size_t>(std::atoi(argv[1]));
+    const std::span<char*> models = std::span(argv, static_cast<std::size_t>(argc))
+                                        .subspan(argc > 2 ? 2 : static_cast<std::size_t>(argc));
+    if (!models.empty()) return relief::bench::run_poses(repeats, models);
     return relief::bench::run(repeats);
 }

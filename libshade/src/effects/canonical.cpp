@@ -35,10 +35,17 @@ void drop_second_texcoords(Features& f) {
     f.second_texcoords &= sampled;
 }
 
+/// The deformation of the mesh is part of the surface's shape.
+void keep_deformation(const Features& f, Features& kept) {
+    kept.morphing = f.morphing;
+    kept.skinning = f.skinning;
+}
+
 /// An unlit surface shows its tinted diffuse color and nothing else.
 Features unlit_only(const Features& f) {
     Features result;
     result.unlit = true;
+    keep_deformation(f, result);
     result.diffuse_texture = f.diffuse_texture;
     result.vertex_colors = f.vertex_colors;
     result.alpha = f.alpha;
@@ -137,6 +144,10 @@ void drop_normal(Features& f) {
         f.double_sided = false;
     }
     if (!lies_in_frame(f)) f.frame = TangentFrame::stored;
+    // Facets need a normal at the vertices; flat shading computes its own.
+    const bool passed =
+        (plain_seen || light_count(f) > 0) && f.interpolation != Interpolation::flat;
+    f.deformed_facets &= is_deformed(f) && (passed || lies_in_frame(f));
     const bool mapped =
         f.detail == NormalDetail::normal_map || f.detail == NormalDetail::object_normal_map;
     const bool sharp =
@@ -184,6 +195,7 @@ void keep_normal(const Features& f, Features& kept) {
     const bool is_flat = f.interpolation == Interpolation::flat;
     if (is_flat) kept.interpolation = f.interpolation;
     kept.double_sided = f.double_sided && !is_flat;
+    kept.deformed_facets = f.deformed_facets && is_deformed(f) && !is_flat;
     if (f.interpolation != Interpolation::per_pixel) return;
     kept.detail = f.detail;
     if (f.detail == NormalDetail::normal_map || f.detail == NormalDetail::bump_map)
@@ -195,6 +207,7 @@ Features data_features(const Features& f) {
     Features kept;
     kept.view = f.view;
     kept.output = OutputCoding::linear;
+    keep_deformation(f, kept);
     keep_mask(f, kept);
     switch (f.view) {
         case DebugView::geometric_normal:
@@ -207,6 +220,7 @@ Features data_features(const Features& f) {
         case DebugView::bitangent:
         case DebugView::handedness:
             kept.frame = f.frame;
+            kept.deformed_facets = f.deformed_facets && is_deformed(f);
             break;
         case DebugView::normal_map:
             kept.detail = f.detail;

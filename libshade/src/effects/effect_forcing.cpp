@@ -66,6 +66,15 @@ class Requests {
     [[nodiscard]] bool on(std::string_view name) const { return find(name) == true; }
     [[nodiscard]] bool off(std::string_view name) const { return find(name) == false; }
 
+    /// True if an effect that follows from the pose is forced on or off.
+    [[nodiscard]] bool forces_pose() const {
+        const auto& rows = effect_rows();
+        return base_ != EffectBase::planned ||
+               std::any_of(rows.begin(), rows.end(), [&](const EffectRow& row) {
+                   return row.follows_pose && find(row.effect.name).has_value();
+               });
+    }
+
   private:
     [[nodiscard]] std::optional<bool> find(std::string_view name) const {
         const auto entry = by_name_.find(name);
@@ -212,6 +221,7 @@ void force_draws(const Scene& scene, const Requests& requests, FramePlan& plan) 
         }
         rewrite_reasons(draw, forced, requests);
         draw.features = forced.features;
+        draw.follows_pose &= !requests.forces_pose();
         update_tangents(scene, draw);
     }
     for (const auto& [effect, first] : refused) {

@@ -69,6 +69,8 @@ const char* const not_lit = "no light source reaches the surface";
 const char* const not_reflecting = "nothing is reflected";
 const char* const not_srgb = "the picture is not coded in sRGB";
 
+const char* const not_deformed = "nothing deforms the mesh, or its normals do not show";
+
 const char* map_hidden_by(const Features& requested, const Features& shown) {
     if (requested.detail == shown.detail) return "";
     switch (requested.interpolation) {
@@ -454,6 +456,47 @@ std::vector<EffectRow> model_rows() {
     };
 }
 
+Decision of_morphing(Subject s) {
+    if (s.pose == nullptr || s.pose->deformation->targets.empty())
+        return {false, "the mesh has no morph targets"};
+    const auto targets = static_cast<std::ptrdiff_t>(
+        std::min(s.pose->deformation->targets.size(), s.pose->weights.size()));
+    const auto at_rest =
+        std::count(s.pose->weights.begin(), s.pose->weights.begin() + targets, 0.0F);
+    if (at_rest == targets) return {false, "the weights of all morph targets are 0"};
+    return {true, fmt::format("morph targets with a weight: {} of {}", targets - at_rest,
+                              s.pose->deformation->targets.size())};
+}
+
+Decision of_skinning(Subject s) {
+    if (s.pose == nullptr || s.pose->joint_matrices.empty())
+        return {false, "the mesh has no joints"};
+    const bool moves = is_skinned(*s.pose);
+    return {moves, moves ? "joints move the vertices" : "all joints are at rest"};
+}
+
+Decision of_facets(Subject s) {
+    if (s.pose == nullptr || !s.pose->has_flat_normals)
+        return {false, "the mesh has no flat normals that are deformed"};
+    if (!is_morphed(*s.pose) && !is_skinned(*s.pose)) return {false, "nothing deforms the mesh"};
+    return {true, "the normals are those of the deformed triangles"};
+}
+
+std::vector<EffectRow> deformation_rows() {
+    return {
+        {.effect = one_switch<&F::morphing>("morphing", ""),
+         .decide = of_morphing,
+         .follows_pose = true},
+        {.effect = one_switch<&F::skinning>("skinning", ""),
+         .decide = of_skinning,
+         .follows_pose = true},
+        {.effect = one_switch<&F::deformed_facets>("deformed facets", not_deformed),
+         .decide = of_facets,
+         .choice = "the mesh stores its normals",
+         .follows_pose = true},
+    };
+}
+
 std::vector<EffectRow> color_rows() {
     return {
         {.effect = one_switch<&F::diffuse_texture>("diffuse texture", no_color),
@@ -710,8 +753,8 @@ Features lights_of(const Scene& scene) {
 }  // namespace
 
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
-                         const Mesh& mesh) {
-    return {scene, material, mesh, name, has_tint(material, mesh), lights_of(scene)};
+                         const Mesh& mesh, const MeshPose* pose) {
+    return {scene, material, mesh, name, has_tint(material, mesh), lights_of(scene), pose};
 }
 
 std::uint32_t second_texcoords_of(const Material& material) {
@@ -730,7 +773,8 @@ std::uint32_t second_texcoords_of(const Material& material) {
 const std::vector<EffectRow>& effect_rows() {
     static const std::vector<EffectRow> all = [] {
         std::vector<EffectRow> rows = model_rows();
-        for (const auto& more : {color_rows(), normal_rows(), lighting_rows(), picture_rows()})
+        for (const auto& more :
+             {deformation_rows(), color_rows(), normal_rows(), lighting_rows(), picture_rows()})
             rows.insert(rows.end(), more.begin(), more.end());
         return rows;
     }();

@@ -29,6 +29,11 @@ inline bool lies_in_frame(const Features& f) {
            f.anisotropy || f.clearcoat_normal_map;
 }
 
+/// True if morph targets or joints deform the mesh.
+inline bool is_deformed(const Features& f) {
+    return f.morphing || f.skinning;
+}
+
 /// True if the view is a term that reflections only dim: no mirror image is looked up.
 inline bool has_black_mirror(const Features& f) {
     return is_term(f.view) && f.view != DebugView::reflection;
@@ -132,6 +137,12 @@ inline bool shows(const std::optional<Texture>& texture, const Mesh& mesh) {
 
 // The table of effects
 
+/// The decision whether the scene calls for an effect, with its reason.
+struct Decision {
+    bool on = false;
+    std::string reason;
+};
+
 /// The input of the decisions for one draw.
 struct DrawSubject {
     const Scene& scene;
@@ -140,16 +151,12 @@ struct DrawSubject {
     std::string name;     ///< "material 'body'", for the reasons.
     bool tinted = false;  ///< The mesh's vertex colors change the picture, or its alpha does.
     Features lights;      ///< The scene's lights: counts, falloff, ranges, highlight colors.
+    const MeshPose* pose = nullptr;  ///< Null if nothing can deform the mesh.
 };
 
+/// \param pose  null if nothing can deform the mesh
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
-                         const Mesh& mesh);
-
-/// The decision whether the scene calls for an effect, with its reason.
-struct Decision {
-    bool on = false;
-    std::string reason;
-};
+                         const Mesh& mesh, const MeshPose* pose);
 
 /// A draw on which effects are forced.
 struct ForcingSubject {
@@ -167,7 +174,8 @@ struct EffectRow {
     bool (*neutral)(const ForcingSubject& subject) = nullptr;
     /// A more specific reason than effect.hidden; "" if it does not apply.
     const char* (*hidden_by)(const Features& requested, const Features& shown) = nullptr;
-    bool phong_only = false;  ///< glTF's model has its own form of it, or none.
+    bool phong_only = false;    ///< glTF's model has its own form of it, or none.
+    bool follows_pose = false;  ///< The decision depends on DrawSubject::pose alone.
 };
 
 /// A frame-wide effect. All but the skybox follow from the draws and the settings.

@@ -22,8 +22,8 @@ struct DrawDecisions {
 
 /// \param name  the material's, for the reasons
 DrawDecisions decide(const Scene& scene, const Material& material, const std::string& name,
-                     const Mesh& mesh, OutputCoding output) {
-    const DrawSubject subject = draw_subject(scene, material, name, mesh);
+                     const Mesh& mesh, const MeshPose* pose, OutputCoding output) {
+    const DrawSubject subject = draw_subject(scene, material, name, mesh, pose);
     DrawDecisions decisions;
     Features requested = subject.lights;
     requested.output = output;
@@ -43,14 +43,19 @@ DrawDecisions decide(const Scene& scene, const Material& material, const std::st
     return decisions;
 }
 
+/// Returns the pose of an instance; null if nothing can deform its mesh.
+const MeshPose* pose_of(const Instance& instance) {
+    return instance.pose ? &*instance.pose : nullptr;
+}
+
 DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange& range,
                    OutputCoding output) {
     const std::size_t mesh_index = scene.instances[instance].mesh;
     const Mesh& mesh = scene.meshes[mesh_index];
     const Material& material =
         range.material ? scene.materials[*range.material] : default_material();
-    DrawDecisions decisions =
-        decide(scene, material, material_label(scene, range.material), mesh, output);
+    DrawDecisions decisions = decide(scene, material, material_label(scene, range.material), mesh,
+                                     pose_of(scene.instances[instance]), output);
     const Features& f = decisions.features;
     const bool uses_tangents = lies_in_frame(f) && f.frame == TangentFrame::stored;
     DrawPlan draw{instance, range, f, std::move(decisions.reasons),
@@ -135,7 +140,7 @@ const Material& default_material() {
 
 Features features_of(const Scene& scene, const Material& material, const Mesh& mesh,
                      OutputCoding output) {
-    return decide(scene, material, "the material", mesh, output).features;
+    return decide(scene, material, "the material", mesh, nullptr, output).features;
 }
 
 EnvironmentNeeds environment_needs(const FramePlan& plan) {
@@ -151,6 +156,26 @@ EnvironmentNeeds environment_needs(const FramePlan& plan) {
         needs.brdf |= f.metallic_roughness && (blurs || f.environment_diffuse);
     }
     return needs;
+}
+
+void plan_pose(const Scene& scene, FramePlan& plan) {
+    for (DrawPlan& draw : plan.draws) {
+        const Instance& instance = scene.instances.at(draw.instance);
+        if (!draw.follows_pose || !instance.pose) continue;
+        const DrawSubject subject{scene, default_material(), scene.meshes[instance.mesh], "", false,
+                                  {},    &*instance.pose};
+        Features requested = draw.features;
+        for (const EffectRow& row : effect_rows()) {
+            if (!row.follows_pose) continue;
+            Decision decision = row.decide(subject);
+            row.effect.set(requested, decision.on);
+            for (EffectReason& reason : draw.reasons) {
+                if (reason.effect == row.effect.name)
+                    reason = {reason.effect, decision.on, std::move(decision.reason)};
+            }
+        }
+        draw.features = canonical(requested);
+    }
 }
 
 void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan) {

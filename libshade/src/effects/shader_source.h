@@ -85,6 +85,9 @@ struct ChosenSteps {
 };
 ChosenSteps chosen_steps(const Features& features);
 
+/// Returns the steps that deform positions (vertex.glsl), for passes that shade no surface.
+ShaderSteps pose_steps(bool morphing, bool skinning);
+
 /// Returns the steps that code a picture, with the scene's exposure and tone curve if this coding
 /// has them: for passes that draw no surface.
 ShaderSteps output_steps(OutputCoding coding, const Scene& scene);

@@ -142,6 +142,36 @@ constexpr std::string_view neutral_sharpness =
     "float dimmed(float exponent) { return 1.0; } "
     "float widened(float roughness) { return roughness; }";
 
+/// Returns the steps of the deformation of the mesh, in the vertex stage.
+Steps deformation_steps(By f) {
+    const bool normal = passes_normal(f) && is_deformed(f);
+    return {
+        {"morphing",
+         "vec3 morphed(vec3 at_rest, int vertex, int component) { return at_rest; }",
+         {{"vertex.glsl#morphing",
+           f.morphing,
+           {.uniforms = {"morph_layout"}, .samplers = {"morph_displacements", "morph_weights"}}}}},
+        {"skinning",
+         "vec3 skinned_point(vec3 point, int vertex) { return point; }",
+         {{"vertex.glsl#skinning",
+           f.skinning,
+           {.uniforms = {"joint_pairs"}, .samplers = {"joint_matrices", "joint_weights"}}}}},
+        {"skinned_directions",
+         "vec3 skinned_normal(vec3 normal) { return normal; } "
+         "vec3 skinned_tangent(vec3 tangent) { return tangent; }",
+         {{"vertex.glsl#skinned_directions", f.skinning && normal}}},
+        {"deformed_normal",
+         "vec3 deformed_normal() { return normal_object; }",
+         {{"vertex.glsl#deformed_normal", normal && !f.deformed_facets},
+          {"vertex.glsl#facet_normal",
+           normal && f.deformed_facets,
+           {.samplers = {"facet_corners"}}}}},
+        {"deformed_tangent",
+         "vec3 deformed_tangent() { return tangent_object.xyz; }",
+         {{"vertex.glsl#deformed_tangent", has_stored_frame(f) && is_deformed(f)}}},
+    };
+}
+
 /// Returns the steps of the vertex attributes that pass to the fragment stage.
 Steps passing_steps(By f) {
     const bool framed = has_stored_frame(f);
@@ -661,6 +691,7 @@ Steps vertex_steps(By f) {
                   "void pass_lights() {}",
                   {{"gouraud.glsl#lights", needs.lights && !f.double_sided},
                    {"gouraud.glsl#lights_both_sides", needs.lights && f.double_sided}}}},
+                deformation_steps(f),
                 passing_steps(f)});
     if (!needs.lights) return always;
     return joined({always,
@@ -782,6 +813,13 @@ ShaderListing listing_of(const Features& features) {
 
 ChosenSteps chosen_steps(const Features& features) {
     return {chosen_of(vertex_steps(features)), chosen_of(fragment_steps(features))};
+}
+
+ShaderSteps pose_steps(bool morphing, bool skinning) {
+    Features features;
+    features.morphing = morphing;
+    features.skinning = skinning;
+    return chosen_of(deformation_steps(features));
 }
 
 ShaderSteps output_steps(OutputCoding coding, const Scene& scene) {

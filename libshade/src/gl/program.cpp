@@ -213,6 +213,13 @@ bool LinkedProgram::set(std::string_view name, int value) const {
     return true;
 }
 
+bool LinkedProgram::set(std::string_view name, const glm::ivec3& value) const {
+    const ActiveVariable* found = uniform(name, GL_INT_VEC3);
+    if (found == nullptr) return false;
+    (*api_)->Uniform3iv(found->location, 1, glm::value_ptr(value));
+    return true;
+}
+
 bool LinkedProgram::set(std::string_view name, float value) const {
     const ActiveVariable* found = uniform(name, GL_FLOAT);
     if (found == nullptr) return false;

@@ -62,6 +62,7 @@ class LinkedProgram {
     /// such uniform, because an effect is left out or the driver removed an unused variable.
     /// \throws GpuError if the uniform's type differs
     bool set(std::string_view name, int value) const;  ///< int, or the unit of a sampler.
+    bool set(std::string_view name, const glm::ivec3& value) const;
     bool set(std::string_view name, float value) const;
     bool set(std::string_view name, const glm::vec2& value) const;
     bool set(std::string_view name, const glm::vec3& value) const;

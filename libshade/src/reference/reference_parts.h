@@ -21,6 +21,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
@@ -32,6 +33,7 @@
 
 #include "environment/convolution.h"
 #include "relief/export.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
@@ -265,7 +267,8 @@ struct PreparedScene {
     std::vector<Material> materials;  ///< Without the textures that cannot be read.
     glm::dvec4
         eye_world;  ///< Homogeneous: the position, or the direction to an orthographic camera.
-    std::vector<Mesh> meshes;
+    std::vector<FramedMesh> meshes;    ///< At rest.
+    std::deque<Mesh> deformed_meshes;  ///< Of the instances that a pose deforms.
     std::vector<PreparedInstance> instances;
     SceneTexels texels;
     std::map<std::size_t, FlatCode> detected_flat_codes;  ///< By image.

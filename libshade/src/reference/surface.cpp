@@ -133,11 +133,15 @@ bool needs_tangents(const std::vector<Material>& materials, const Mesh& mesh) {
                        });
 }
 
-Mesh framed_mesh(const std::vector<Material>& materials, const Mesh& mesh, Report& report) {
+/// Returns the mesh at rest with the frames that materials need.
+FramedMesh framed_mesh(const std::vector<Material>& materials, const Mesh& mesh, Report& report) {
     FrameOptions options;
     if (needs_tangents(materials, mesh)) options.tangents = TangentMethod::mikktspace;
     const bool complete = !mesh.normals.empty() && options.tangents == TangentMethod::keep;
-    return complete ? mesh : with_frames(mesh, options, report).mesh;
+    if (!complete) return with_frames(mesh, options, report);
+    FramedMesh framed;
+    framed.mesh = mesh;
+    return framed;
 }
 
 /// The matrix of normals, up to a positive factor, and whether the instance is mirrored.
@@ -191,7 +195,8 @@ void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report
     std::set<std::uint32_t> textured;
     for (const Mesh& mesh : scene.meshes) {
         for (const MaterialRange& range : mesh.material_ranges) {
-            if (!mesh.texcoords.empty() && range.material) textured.insert(*range.material);
+            const bool has_texcoords = !mesh.texcoords.empty() || !mesh.texcoords_2.empty();
+            if (has_texcoords && range.material) textured.insert(*range.material);
         }
     }
     for (const std::uint32_t number : textured)
@@ -230,8 +235,15 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
         report_non_finite(mesh, report);
     }
     for (const Instance& instance : scene.instances) {
-        instances.push_back(
-            prepared(instance, meshes[instance.mesh], glm::inverse(world_from_view)));
+        const FramedMesh& at_rest = meshes[instance.mesh];
+        const Mesh* mesh = &at_rest.mesh;
+        if (is_deformed(instance)) {
+            Mesh& deformed = deformed_meshes.emplace_back(at_rest.mesh);
+            deform(*instance.pose, at_rest.source_vertex, deformed);
+            report_non_finite(deformed, report);
+            mesh = &deformed;
+        }
+        instances.push_back(prepared(instance, *mesh, glm::inverse(world_from_view)));
     }
     if (scene.environment) environment.emplace(*scene.environment, report);
     for (const Material& material : materials) {

@@ -32,6 +32,8 @@ const std::map<std::string_view, Setter>& setters() {
         {"world_from_object_tangent", set_member<&DrawValues::world_from_object_tangent>},
         {"handedness", set_member<&DrawValues::handedness>},
         {"eye_world", set_member<&DrawValues::eye_world>},
+        {"joint_pairs", set_member<&DrawValues::joint_pairs>},
+        {"morph_layout", set_member<&DrawValues::morph_layout>},
         {"ambient_scattered", set_member<&DrawValues::ambient_scattered>},
         {"diffuse_color", set_member<&DrawValues::diffuse_color>},
         {"specular_color", set_member<&DrawValues::specular_color>},

@@ -25,6 +25,8 @@ struct DrawValues {
     glm::mat3 world_from_object_tangent{1.0F};  ///< The matrix itself, times a positive number.
     float handedness = 1.0F;                    ///< -1 if the matrix mirrors, else 1.
     glm::vec4 eye_world{0.0F};                  ///< Homogeneous: see inputs.glsl#eye.
+    int joint_pairs = 0;                        ///< As in GpuPose; see vertex.glsl#skinning.
+    glm::ivec3 morph_layout{0};                 ///< As in GpuPose; see vertex.glsl#morphing.
 
     glm::vec3 ambient_scattered{0.0F};  ///< For metallic-roughness, the ambient light itself.
     glm::vec3 diffuse_color{0.0F};

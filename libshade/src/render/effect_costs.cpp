@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "effects/features.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/renderer.h"
 
@@ -177,8 +178,12 @@ BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& pla
     }
     constexpr double noise_share = 0.01;  // Of the frame time; smaller savings are noise.
     const EffectCosts costs = measure_effects(frame, plan);
-    const std::vector<std::string> order =
-        drop_order(costs.effects, noise_share * costs.frame.median);
+    std::vector<std::string> order = drop_order(costs.effects, noise_share * costs.frame.median);
+    // A mesh keeps its pose, also where the measured pose is close to rest.
+    std::erase_if(order, [](const std::string& effect) {
+        const EffectRow* const row = find_effect(effect);
+        return row != nullptr && row->follows_pose;
+    });
     result.choice = fit_to_budget(budget, order, frame_time);
     result.plan = without(frame, plan, result.choice.dropped);
     const std::unique_ptr<Renderer> less = renderer_of(frame, result.plan);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Meshes on the GPU: the vertex streams that the plan names and no others, a cache of them, and
-/// blended triangles in painter's order.
+/// Meshes on the GPU: the vertex streams that the plan names and no others, what deforms them, a
+/// cache of both, and blended triangles in painter's order.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gl/resources.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
@@ -33,13 +34,15 @@ struct PlannedStreams {
 
 /// Returns the mesh with the missing normals and tangents that the streams need: angle-weighted
 /// normals, and MikkTSpace tangents if it has texture coordinates.
-Mesh with_planned_frames(const Mesh& mesh, const PlannedStreams& streams, Report& report);
+FramedMesh with_planned_frames(const Mesh& mesh, const PlannedStreams& streams, Report& report);
 
 /// Vertex array and buffers. An attribute whose stream is missing keeps its constant.
 class GpuMesh {
   public:
+    /// \param source_vertex  the vertex of the scene's mesh of which each was made; empty: the same
     /// \throws GpuError if memory runs out
-    GpuMesh(const gl::Api& api, const Mesh& mesh, const PlannedStreams& streams);
+    GpuMesh(const gl::Api& api, const Mesh& mesh, const PlannedStreams& streams,
+            std::vector<std::uint32_t> source_vertex = {});
 
     /// Draws a run of triangles with the current program.
     void draw(const gl::Api& api, const MaterialRange& range) const;
@@ -47,8 +50,11 @@ class GpuMesh {
     /// Draws these triangles in this order instead of those of the mesh.
     void draw(const gl::Api& api, std::span<const glm::uvec3> triangles);
 
+    [[nodiscard]] std::span<const std::uint32_t> source_vertex() const { return source_vertex_; }
+
   private:
     gl::VertexArray vertices_;
+    std::vector<std::uint32_t> source_vertex_;
     std::vector<gl::Buffer> buffers_;  ///< The last holds the triangles.
     gl::Buffer ordered_;               ///< Only if triangles were drawn in another order.
 };
@@ -57,7 +63,59 @@ class GpuMesh {
 /// surface facing +z, and white.
 void set_attribute_constants(const gl::Api& api);
 
-/// Meshes on the GPU by the identity of the mesh and its streams.
+/// The data that all draws of an instance need together to deform it.
+struct PlannedDeformation {
+    bool joints = false;
+    bool targets = false;
+    bool target_normals = false;
+    bool target_tangents = false;
+    bool facets = false;
+
+    friend bool operator==(const PlannedDeformation&, const PlannedDeformation&) = default;
+
+    void add(const PlannedInterface& planned);
+};
+
+/// What deforms the vertices of a mesh, as buffer textures (vertex.glsl). All poses share it.
+struct GpuDeformation {
+    /// \throws GpuError if memory runs out, or a texture would be larger than the driver allows
+    GpuDeformation(const gl::Api& api, const Mesh& mesh, const GpuMesh& uploaded,
+                   const MeshPose& pose, const PlannedDeformation& planned);
+
+    std::vector<gl::Buffer> buffers;
+    gl::Texture joint_weights;
+    gl::Texture morph_displacements;
+    gl::Texture facet_corners;
+    int joint_pairs = 0;          ///< Texels of joint_weights for each vertex.
+    glm::ivec2 target_texels{0};  ///< Texels of morph_displacements for a target and a vertex.
+};
+
+/// The pose of an instance on the GPU: joint matrices, and the morph weights that are not 0.
+class GpuPose {
+  public:
+    /// Uploads a pose. \param vertices  what it deforms; null if it stays at rest
+    void update(const gl::Api& api, std::shared_ptr<const GpuDeformation> vertices,
+                const MeshPose* pose);
+
+    /// Binds the textures.
+    void bind(const gl::Api& api) const;
+
+    [[nodiscard]] int joint_pairs() const { return vertices_ ? vertices_->joint_pairs : 0; }
+    /// Targets with a weight, texels of a target, texels of a vertex.
+    [[nodiscard]] glm::ivec3 morph_layout() const;
+
+  private:
+    std::shared_ptr<const GpuDeformation> vertices_;
+    gl::Buffer matrices_;
+    gl::Texture joint_matrices_;
+    gl::Buffer weights_;
+    gl::Texture morph_weights_;
+    int weight_count_ = 0;
+    std::size_t matrix_count_ = 0;
+    std::size_t max_weights_ = 0;
+};
+
+/// Meshes on the GPU by the identity of the mesh and its streams, and what deforms them.
 class MeshCache {
   public:
     explicit MeshCache(const gl::Api& api) : api_(&api) {}
@@ -67,10 +125,23 @@ class MeshCache {
     std::shared_ptr<GpuMesh> get(const Shared<Mesh>& mesh, const PlannedStreams& streams,
                                  Report& report);
 
+    /// Returns what deforms a mesh, uploaded on first use.
+    std::shared_ptr<const GpuDeformation> get(const Shared<Mesh>& mesh,
+                                              const std::shared_ptr<GpuMesh>& uploaded,
+                                              const MeshPose& pose,
+                                              const PlannedDeformation& planned);
+
     void drop_unused();
     [[nodiscard]] std::size_t size() const { return meshes_.size(); }
 
   private:
+    struct DeformationEntry {
+        Shared<GltfDeformation>::Identity identity;
+        std::size_t joints;
+        PlannedDeformation planned;
+        std::weak_ptr<GpuMesh> mesh;
+        std::shared_ptr<const GpuDeformation> deformation;
+    };
     struct Entry {
         Shared<Mesh>::Identity identity;
         PlannedStreams streams;
@@ -80,6 +151,7 @@ class MeshCache {
 
     const gl::Api* api_;
     std::vector<Entry> meshes_;
+    std::vector<DeformationEntry> deformations_;
 };
 
 /// Blended triangles, sorted by their centers along the line of sight, farthest first. That is the

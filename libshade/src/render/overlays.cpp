@@ -41,6 +41,13 @@ void check_frame_length(const std::optional<float>& share) {
         "vertex frames of {} times the scene's size; from above 0 to 1000 can be drawn", *share));
 }
 
+ShaderSteps overlay_steps(const char* color, const StepCode& shape, bool morphing, bool skinning) {
+    ShaderSteps steps = pose_steps(morphing, skinning);
+    steps["overlay_color"].part = color;
+    steps["shape"] = shape;
+    return steps;
+}
+
 }  // namespace
 
 Grid grid_below(const Bounds& world) {
@@ -105,17 +112,15 @@ void add_vertex_frames(const Mesh& mesh, const glm::mat4& world_from_object,
 
 OverlayDrawing::OverlayDrawing(const gl::Api& api, ProgramCache& programs, const Scene& scene,
                                const FramePlan& plan, const FrameSettings& settings, Report& report)
-    : api_(&api), overlays_(settings.overlays), output_(settings.output) {
+    : api_(&api), overlays_(settings.overlays), output_(settings.output), programs_(&programs) {
     check_frame_length(overlays_.vertex_frames);
     if (overlays_.markers) check_markers(scene, *overlays_.markers);
     for (const DrawPlan& draw : plan.draws)
         instances_.insert(draw.instance);
-    lines_program_ = programs.get("overlay", {{"overlay_color", {.part = "overlay.glsl#one_color"}},
-                                              {"shape", {.neutral = "void cut() {}"}}});
     if (overlays_.markers)
         discs_program_ =
-            programs.get("overlay", {{"overlay_color", {.part = "overlay.glsl#vertex_color"}},
-                                     {"shape", {.part = "overlay.glsl#disc"}}});
+            programs.get("overlay", overlay_steps("overlay.glsl#vertex_color",
+                                                  {.part = "overlay.glsl#disc"}, false, false));
     if (overlays_.vertex_frames) {
         for (const std::size_t instance : instances_) {
             const std::size_t mesh = scene.instances[instance].mesh;
@@ -162,8 +167,14 @@ void OverlayDrawing::make_frames(const Scene& scene) {
     VertexFrameLines lines;
     for (const std::size_t i : instances_) {
         const Instance& instance = scene.instances[i];
-        add_vertex_frames(framed_.at(instance.mesh), instance.world_from_object, center_, length,
-                          lines);
+        const FramedMesh& framed = framed_.at(instance.mesh);
+        if (!is_deformed(instance)) {
+            add_vertex_frames(framed.mesh, instance.world_from_object, center_, length, lines);
+            continue;
+        }
+        Mesh deformed = framed.mesh;
+        deform(*instance.pose, framed.source_vertex, deformed);
+        add_vertex_frames(deformed, instance.world_from_object, center_, length, lines);
     }
     frames_ = {upload(lines.tangents, {}), upload(lines.bitangents, {}), upload(lines.normals, {})};
 }
@@ -195,7 +206,7 @@ void OverlayDrawing::move(const Scene& scene) {
     for (const Instance& instance : scene.instances)
         world_from_object_.push_back(instance.world_from_object);
     if (!overlays_.vertex_frames) return;
-    for (auto& [mesh, identity] : framed_of_) {  // Deformed meshes are new ones.
+    for (auto& [mesh, identity] : framed_of_) {
         if (identity.is(scene.meshes[mesh])) continue;
         Report unused;
         const PlannedStreams streams{.normals = true, .tangents = true};
@@ -210,11 +221,28 @@ glm::vec3 OverlayDrawing::coded(const glm::vec3& srgb) const {
     return {linear_from_srgb(srgb.r), linear_from_srgb(srgb.g), linear_from_srgb(srgb.b)};
 }
 
+std::shared_ptr<const gl::LinkedProgram> OverlayDrawing::use_lines(const glm::vec3& color,
+                                                                   bool morphing,
+                                                                   bool skinning) const {
+    std::shared_ptr<const gl::LinkedProgram> program = programs_->get(
+        "overlay",
+        overlay_steps("overlay.glsl#one_color", {.neutral = "void cut() {}"}, morphing, skinning));
+    program->use();
+    program->set("all_color", coded(color));
+    return program;
+}
+
 void OverlayDrawing::draw_triangles(const glm::dmat4& clip_from_world,
-                                    const OverlaySurface& surface) const {
+                                    const OverlaySurface& surface, const glm::vec3& color) const {
     const gl::Api& gl = *api_;
-    lines_program_->set("clip_from_object",
-                        glm::mat4(clip_from_world * glm::dmat4(surface.world_from_object)));
+    const auto program = use_lines(color, surface.morphing, surface.skinning);
+    program->set("clip_from_object",
+                 glm::mat4(clip_from_world * glm::dmat4(surface.world_from_object)));
+    if (surface.pose != nullptr) {
+        surface.pose->bind(gl);
+        program->set("joint_pairs", surface.pose->joint_pairs());
+        program->set("morph_layout", surface.pose->morph_layout());
+    }
     if (surface.both_sides) {
         gl->Disable(GL_CULL_FACE);
     } else {
@@ -231,7 +259,7 @@ void OverlayDrawing::draw_depth(const glm::dmat4& clip_from_world,
     gl->Enable(GL_POLYGON_OFFSET_FILL);
     gl->PolygonOffset(1.0F, 1.0F);
     for (const OverlaySurface& surface : surfaces) {
-        if (surface.hides) draw_triangles(clip_from_world, surface);
+        if (surface.hides) draw_triangles(clip_from_world, surface, glm::vec3(0.0F));
     }
     gl->Disable(GL_POLYGON_OFFSET_FILL);
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -240,34 +268,34 @@ void OverlayDrawing::draw_depth(const glm::dmat4& clip_from_world,
 void OverlayDrawing::draw_wires(const glm::dmat4& clip_from_world,
                                 std::span<const OverlaySurface> surfaces) const {
     const gl::Api& gl = *api_;
-    lines_program_->set("all_color", coded(wireframe_color));
     gl->PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     for (const OverlaySurface& surface : surfaces)
-        draw_triangles(clip_from_world, surface);
+        draw_triangles(clip_from_world, surface, wireframe_color);
     gl->PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
-void OverlayDrawing::draw_lines(const Points& lines, const glm::vec3& color) const {
+void OverlayDrawing::draw_lines(const Points& lines, const glm::vec3& color,
+                                const glm::mat4& clip_from_lines) const {
     if (lines.count == 0) return;
-    lines_program_->set("all_color", coded(color));
+    use_lines(color)->set("clip_from_object", clip_from_lines);
     (*api_)->BindVertexArray(lines.vertices.name());
     (*api_)->DrawArrays(GL_LINES, 0, lines.count);
 }
 
 void OverlayDrawing::draw_grid(const glm::dmat4& clip_from_world) const {
-    lines_program_->set("clip_from_object",
-                        glm::mat4(glm::translate(clip_from_world, overlays_.grid->middle)));
-    draw_lines(cells_, grid_color);
-    draw_lines(axes_[0], tangent_color);  // At equal depth, the last line is in front.
-    draw_lines(axes_[1], bitangent_color);
-    draw_lines(axes_[2], normal_color);
+    const glm::mat4 clip_from_grid(glm::translate(clip_from_world, overlays_.grid->middle));
+    draw_lines(cells_, grid_color, clip_from_grid);
+    // At equal depth, the last line is in front.
+    draw_lines(axes_[0], tangent_color, clip_from_grid);
+    draw_lines(axes_[1], bitangent_color, clip_from_grid);
+    draw_lines(axes_[2], normal_color, clip_from_grid);
 }
 
 void OverlayDrawing::draw_frames(const glm::dmat4& clip_from_world) const {
-    lines_program_->set("clip_from_object", glm::mat4(glm::translate(clip_from_world, center_)));
+    const glm::mat4 clip_from_frames(glm::translate(clip_from_world, center_));
     const std::array<glm::vec3, 3> colors = {tangent_color, bitangent_color, normal_color};
     for (std::size_t i = 0; i < frames_.size(); ++i)
-        draw_lines(frames_[i], colors[i]);
+        draw_lines(frames_[i], colors[i], clip_from_frames);
 }
 
 void OverlayDrawing::draw_markers(const glm::dmat4& clip_from_world) const {
@@ -294,7 +322,6 @@ void OverlayDrawing::draw(const glm::dmat4& clip_from_world,
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthFunc(GL_LEQUAL);
     gl->CullFace(GL_BACK);
-    lines_program_->use();
     if (overlays_.wireframe || overlays_.vertex_frames || overlays_.grid)
         draw_depth(clip_from_world, surfaces);
     if (overlays_.grid) draw_grid(clip_from_world);

@@ -51,6 +51,9 @@ struct OverlaySurface {
     bool both_sides = false;
     bool mirrored = false;
     bool hides = true;  ///< It is opaque everywhere.
+    bool morphing = false;
+    bool skinning = false;
+    const GpuPose* pose = nullptr;  ///< Only with one of the two.
 };
 
 /// Draws the overlays. The finished picture has no depth buffer, so the depth of the surfaces is
@@ -81,13 +84,19 @@ class OverlayDrawing {
     void make_grid();
     void make_markers(const Scene& scene);
     [[nodiscard]] glm::vec3 coded(const glm::vec3& srgb) const;
-    /// Draws a surface with the line program in the current polygon mode.
-    void draw_triangles(const glm::dmat4& clip_from_world, const OverlaySurface& surface) const;
+    /// Returns the program of lines and surfaces, current, with this color.
+    [[nodiscard]] std::shared_ptr<const gl::LinkedProgram> use_lines(const glm::vec3& color,
+                                                                     bool morphing = false,
+                                                                     bool skinning = false) const;
+    /// Draws a surface in one color in the current polygon mode.
+    void draw_triangles(const glm::dmat4& clip_from_world, const OverlaySurface& surface,
+                        const glm::vec3& color) const;
     void draw_depth(const glm::dmat4& clip_from_world,
                     std::span<const OverlaySurface> surfaces) const;
     void draw_wires(const glm::dmat4& clip_from_world,
                     std::span<const OverlaySurface> surfaces) const;
-    void draw_lines(const Points& lines, const glm::vec3& color) const;
+    void draw_lines(const Points& lines, const glm::vec3& color,
+                    const glm::mat4& clip_from_lines) const;
     void draw_frames(const glm::dmat4& clip_from_world) const;
     void draw_grid(const glm::dmat4& clip_from_world) const;
     void draw_markers(const glm::dmat4& clip_from_world) const;
@@ -95,10 +104,10 @@ class OverlayDrawing {
     const gl::Api* api_;
     Overlays overlays_;
     OutputCoding output_;
-    std::shared_ptr<const gl::LinkedProgram> lines_program_;
+    ProgramCache* programs_;
     std::shared_ptr<const gl::LinkedProgram> discs_program_;
-    std::set<std::size_t> instances_;     ///< The drawn instances.
-    std::map<std::size_t, Mesh> framed_;  ///< Meshes with computed frames, by index.
+    std::set<std::size_t> instances_;           ///< The drawn instances.
+    std::map<std::size_t, FramedMesh> framed_;  ///< Meshes at rest with computed frames, by index.
     std::map<std::size_t, Shared<Mesh>::Identity> framed_of_;  ///< Of these meshes.
     glm::dvec3 center_{0.0};                                   ///< The origin of the frame lines.
     std::array<Points, 3> frames_;                             ///< Tangents, bitangents, normals.

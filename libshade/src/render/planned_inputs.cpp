@@ -52,6 +52,11 @@ const std::map<std::string_view, SharedSampler>& shared_samplers() {
         {"environment_brdf", {false, "how much a rough surface mirrors, by angle and roughness"}},
         {"behind", {true, "the surface shows what is behind it; levels for roughness"}},
         {"light_buffer", {false, "the lights are in a buffer"}},
+        {"joint_matrices", {false, "joints move the vertices"}},
+        {"joint_weights", {false, "each vertex follows some of the joints"}},
+        {"morph_weights", {false, "morph targets have weights"}},
+        {"morph_displacements", {false, "morph targets displace the vertices"}},
+        {"facet_corners", {false, "the normals are those of the deformed triangles"}},
     };
     return all;
 }

@@ -31,7 +31,7 @@ std::vector<gl::Location> attribute_locations() {
             at("texcoord_2", Attribute::texcoord_2)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 25> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 30> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
     {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
@@ -56,6 +56,11 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 25> texture_units{{
     {"environment_brdf", TextureUnit::environment_brdf},
     {"light_buffer", TextureUnit::light_buffer},
     {"behind", TextureUnit::behind},
+    {"joint_matrices", TextureUnit::joint_matrices},
+    {"joint_weights", TextureUnit::joint_weights},
+    {"morph_weights", TextureUnit::morph_weights},
+    {"morph_displacements", TextureUnit::morph_displacements},
+    {"facet_corners", TextureUnit::facet_corners},
     {"drawn", TextureUnit::drawn},
 }};
 
@@ -87,12 +92,18 @@ gl::LinkedProgram link(const gl::Api& api, const std::string& name, const Shader
 }
 
 void check_texture_units(const PlannedInterface& planned, int available) {
-    const std::size_t needed = planned.samplers.size();
+    std::vector<std::string> samplers = planned.samplers;
+    std::erase_if(samplers, [](const std::string& name) {
+        return std::any_of(texture_units.begin(), texture_units.end(), [&](const auto& row) {
+            return row.first == name && is_vertex_texture(row.second);
+        });
+    });
+    const std::size_t needed = samplers.size();
     if (needed <= static_cast<std::size_t>(available)) return;
     throw GpuError(
         fmt::format("a surface needs {} textures at once, and a shader of this OpenGL driver can "
                     "sample {}: {}",
-                    needed, available, fmt::join(planned.samplers, ", ")));
+                    needed, available, fmt::join(samplers, ", ")));
 }
 
 std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {

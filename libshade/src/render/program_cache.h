@@ -53,6 +53,11 @@ enum class TextureUnit : GLint {
     environment_brdf,
     light_buffer,
     behind,
+    joint_matrices,
+    joint_weights,
+    morph_weights,
+    morph_displacements,
+    facet_corners,
     drawn,
 };
 
@@ -75,6 +80,11 @@ struct DrawProgram {
 /// \throws GpuError with the driver's log, in which lines name shader files
 gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
                        const ShaderSource& fragment);
+
+/// True if the vertex stage samples the texture of a unit: the data of deformations.
+constexpr bool is_vertex_texture(TextureUnit unit) {
+    return unit >= TextureUnit::joint_matrices && unit <= TextureUnit::facet_corners;
+}
 
 /// Checks that a program does not sample more textures than a fragment shader can. OpenGL 3.3
 /// guarantees 16; surfaces with nearly all textures of glTF's extensions need more.

@@ -36,6 +36,7 @@
 #include "render/overlays.h"
 #include "render/program_cache.h"
 #include "render/textures.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 
@@ -268,6 +269,7 @@ namespace {
 struct Draw {
     std::shared_ptr<const DrawProgram> program;
     Features features;
+    std::size_t planned = 0;  ///< Index into the draws of the plan.
     std::size_t instance = 0;
     std::size_t mesh = 0;
     MaterialRange range;
@@ -276,6 +278,13 @@ struct Draw {
     std::array<BoundTexture, material_unit_count> textures;  ///< By TextureUnit.
     std::unique_ptr<SortedTriangles> sorted;                 ///< Only for blended draws.
 };
+
+/// Returns the triangles of a blended draw at their deformed positions.
+std::unique_ptr<SortedTriangles> sorted_triangles(const Scene& scene, const Draw& draw) {
+    const Shared<Mesh> mesh =
+        is_deformed(draw.features) ? deformed_mesh(scene, draw.instance) : scene.meshes[draw.mesh];
+    return std::make_unique<SortedTriangles>(mesh, draw.range);
+}
 
 bool is_blended(const Draw& draw) {
     return draw.features.alpha == AlphaMode::blend;
@@ -362,7 +371,9 @@ struct Renderer::Implementation {
     void check_meshes(const Scene& scene) const;
     void replace_meshes(const Scene& scene);
     void prepare_draws(const Scene& scene);
-    Draw prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw);
+    Draw prepare_draw(const Scene& scene, std::size_t planned_draw);
+    void follow_poses(const Scene& scene);
+    void upload_poses(const Scene& scene);
     void bind_planned_textures(Draw& draw, const Planned& p);
     void set_environment_values(Draw& draw) const;
     void move(const Scene& scene);
@@ -388,6 +399,7 @@ struct Renderer::Implementation {
     std::map<std::size_t, PlannedStreams> streams;           ///< What they hold.
     std::map<std::size_t, Shared<Mesh>::Identity> drawn;     ///< The meshes that they were made of.
     std::vector<Draw> draws;                                 ///< Opaque ones first.
+    std::map<std::size_t, GpuPose> poses;                    ///< Of deformed instances.
     std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
     std::unique_ptr<OverlayDrawing> overlays;  ///< If any is requested.
@@ -474,19 +486,18 @@ void Renderer::Implementation::replace_meshes(const Scene& scene) {
         identity = mesh.identity();
         has_changed = true;
         for (Draw& draw : draws) {
-            if (draw.mesh == index && draw.sorted)
-                draw.sorted = std::make_unique<SortedTriangles>(*mesh, draw.range);
+            if (draw.mesh == index && draw.sorted) draw.sorted = sorted_triangles(scene, draw);
         }
     }
     if (has_changed) cache.meshes.drop_unused();
 }
 
 void Renderer::Implementation::prepare_draws(const Scene& scene) {
-    for (const DrawPlan& draw : plan.draws) {
-        if (draw.range.triangle_count == 0) continue;
+    for (std::size_t i = 0; i < plan.draws.size(); ++i) {
+        if (plan.draws[i].range.triangle_count == 0) continue;
         check_cancelled();
-        lights.add(api, scene, draw.features);
-        draws.push_back(prepare_draw(scene, draw));
+        lights.add(api, scene, plan.draws[i].features);
+        draws.push_back(prepare_draw(scene, i));
     }
     // Adjacent draws with the same program need no program change. The depth buffer hides the
     // order.
@@ -494,15 +505,18 @@ void Renderer::Implementation::prepare_draws(const Scene& scene) {
         if (is_blended(a) != is_blended(b)) return is_blended(b);
         return a.features < b.features;
     });
+    upload_poses(scene);
 }
 
-Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& plan_of_draw) {
+Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t planned_draw) {
+    const DrawPlan& plan_of_draw = plan.draws[planned_draw];
     const Planned p = planned(scene, plan_of_draw);
     const Instance& instance = scene.instances[plan_of_draw.instance];
     Draw draw;
     draw.program = cache.programs.get(p.features);
     programs.insert(p.features);
     draw.features = p.features;
+    draw.planned = planned_draw;
     draw.instance = plan_of_draw.instance;
     draw.mesh = instance.mesh;
     draw.range = plan_of_draw.range;
@@ -511,8 +525,45 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, const DrawPlan& 
     set_environment_values(draw);
     set_place(draw.values, instance.world_from_object);
     bind_planned_textures(draw, p);
-    if (is_blended(draw)) draw.sorted = std::make_unique<SortedTriangles>(p.mesh, draw.range);
+    if (is_blended(draw)) draw.sorted = sorted_triangles(scene, draw);
     return draw;
+}
+
+/// Switches draws to the programs for the poses of the scene: a mesh that returns to rest is drawn
+/// without deformation again.
+void Renderer::Implementation::follow_poses(const Scene& scene) {
+    plan_pose(scene, plan);
+    for (Draw& draw : draws) {
+        const Features& features = plan.draws[draw.planned].features;
+        const bool was_deformed = is_deformed(draw.features);
+        if (draw.features != features) {
+            draw.program = cache.programs.get(features);
+            programs.insert(features);
+            draw.features = features;
+        }
+        if (draw.sorted && (was_deformed || is_deformed(features)))
+            draw.sorted = sorted_triangles(scene, draw);
+    }
+    upload_poses(scene);
+}
+
+/// Uploads joint matrices and morph weights, and on first use what they deform.
+void Renderer::Implementation::upload_poses(const Scene& scene) {
+    std::map<std::size_t, PlannedDeformation> planned;
+    for (const Draw& draw : draws) {
+        if (is_deformed(draw.features)) planned[draw.instance].add(draw.program->planned);
+    }
+    std::erase_if(poses, [&](const auto& entry) { return !planned.contains(entry.first); });
+    for (const auto& [index, needs] : planned) {
+        const Instance& instance = scene.instances[index];
+        const MeshPose* const pose = instance.pose ? &*instance.pose : nullptr;
+        std::shared_ptr<const GpuDeformation> vertices;
+        if (pose != nullptr) {
+            vertices = cache.meshes.get(scene.meshes[instance.mesh], meshes.at(instance.mesh),
+                                        *pose, needs);
+        }
+        poses[index].update(api, std::move(vertices), pose);
+    }
 }
 
 void Renderer::Implementation::bind_planned_textures(Draw& draw, const Planned& p) {
@@ -541,6 +592,7 @@ void Renderer::Implementation::move(const Scene& scene) {
     lights.update(api, scene);
     for (Draw& draw : draws)
         set_place(draw.values, scene.instances[draw.instance].world_from_object);
+    follow_poses(scene);
     if (overlays) overlays->move(scene);
 }
 
@@ -552,6 +604,7 @@ void Renderer::Implementation::bind_textures(const Draw& draw) const {
         api->BindSampler(static_cast<GLuint>(i), draw.textures[i].sampler);
     }
     lights.bind(api, draw.features);
+    if (const auto pose = poses.find(draw.instance); pose != poses.end()) pose->second.bind(api);
 }
 
 void Renderer::Implementation::set_state(const Draw& draw) const {
@@ -569,6 +622,10 @@ void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, cons
     values.clip_from_object = glm::mat4(to_clip * glm::dmat4(values.world_from_object));
     values.clip_from_world = glm::mat4(to_clip);
     values.eye_world = homogeneous_eye(camera);
+    if (const auto pose = poses.find(draw.instance); pose != poses.end()) {
+        values.joint_pairs = pose->second.joint_pairs();
+        values.morph_layout = pose->second.morph_layout();
+    }
     draw.program->linked.use();
     for (const std::string& name : draw.program->planned.uniforms) {
         set_uniform(draw.program->linked, name, values);
@@ -622,9 +679,11 @@ void Renderer::Implementation::count_fragments() const {
 void Renderer::Implementation::draw_overlays(const glm::dmat4& to_clip) const {
     std::vector<OverlaySurface> surfaces;
     for (const Draw& draw : draws) {
+        const auto pose = poses.find(draw.instance);
         surfaces.push_back({meshes.at(draw.mesh).get(), draw.range, draw.values.world_from_object,
                             draw.both_sides, draw.values.handedness < 0.0F,
-                            draw.features.alpha == AlphaMode::opaque});
+                            draw.features.alpha == AlphaMode::opaque, draw.features.morphing,
+                            draw.features.skinning, pose == poses.end() ? nullptr : &pose->second});
     }
     picture.bind_finished();
     overlays->draw(to_clip, surfaces);

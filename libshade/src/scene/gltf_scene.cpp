@@ -18,6 +18,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -527,70 +528,36 @@ Mesh drawable_mesh(const ReadDocument& read, GltfPrimitiveId id, Report& report)
     return with_frames(std::move(mesh), frames, report).mesh;
 }
 
-/// Gives each triangle vertices of its own. \return the vertex that each new one copies
-std::vector<std::uint32_t> separate_triangles(Mesh& mesh) {
-    std::vector<std::uint32_t> source;
-    for (glm::uvec3& triangle : mesh.triangles) {
-        for (int k = 0; k < 3; ++k) {
-            source.push_back(triangle[k]);
-            triangle[k] = static_cast<std::uint32_t>(source.size() - 1);
-        }
-    }
-    const auto copy = [&](auto& values) {
-        if (values.empty()) return;
-        auto copies = values;
-        copies.clear();
-        for (const std::uint32_t vertex : source)
-            copies.push_back(values[vertex]);
-        values = std::move(copies);
-    };
-    copy(mesh.positions);
-    copy(mesh.normals);
-    copy(mesh.tangents);
-    copy(mesh.texcoords);
-    copy(mesh.texcoords_2);
-    copy(mesh.colors);
-    return source;
+/// A mesh at rest and what deforms it.
+struct DeformableMesh {
+    Mesh rest;
+    MeshPose pose;
+};
+
+bool has_skin(const GltfView& view, const GltfNode& node) {
+    return node.skin && !view.skins[*node.skin].joints.empty();
 }
 
-template <typename Value>
-void take_vertices(const std::vector<std::uint32_t>& source, std::vector<Value>& values) {
-    if (values.empty()) return;
-    std::vector<Value> taken;
-    for (const std::uint32_t vertex : source)
-        taken.push_back(values[vertex]);
-    values = std::move(taken);
-}
-
-/// Returns what deforms a primitive, or none. The mesh at rest has the tangents that its normal
-/// maps or its anisotropy need, because they are deformed with it.
-std::optional<DeformedMesh> deformed_mesh(const ReadDocument& read,
-                                          const GltfInstance<GltfPrimitiveId>& item,
-                                          Report& report) {
+/// Returns a primitive as a node deforms it, or none. The mesh at rest has the tangents that its
+/// normal maps or its anisotropy need, because they are deformed with it.
+std::optional<DeformableMesh> deformable_mesh(const ReadDocument& read,
+                                              const GltfInstance<GltfPrimitiveId>& item,
+                                              Report& report) {
     const GltfView& view = read.view;
     const SceneOptions& options = read.options;
     const GltfNode& node = view.nodes[item.node];
     if (!node.skin && !node.has_morph_targets) return std::nullopt;
     GltfDeformation deformation = read.document.deformation(item.what);
-    DeformedMesh result;
-    result.node = item.node;
-    result.weights = node.morph_weights;
-    if (node.skin && !deformation.joints.empty() && !view.skins[*node.skin].joints.empty()) {
-        result.joints = view.skins[*node.skin].joints;
-        result.joint_from_mesh = view.skins[*node.skin].joint_from_mesh;
-    } else {
-        deformation.joints.clear();
-    }
+    DeformableMesh result;
+    if (!has_skin(view, node)) deformation.joints.clear();
     if (deformation.targets.empty() && deformation.joints.empty()) return std::nullopt;
     FrameOptions frames = frame_options("", options);
     frames.if_missing = options.crease_angle ? NormalMode(NormalWeight::angle) : NormalMode::flat;
     Mesh mesh = mesh_from(read, item.what);
     const bool keeps = options.normals == NormalMode::keep && !mesh.normals.empty();
-    result.has_flat_normals =
+    result.pose.has_flat_normals =
         !keeps && (options.normals == NormalMode::flat ||
                    (options.normals == NormalMode::keep && !options.crease_angle));
-    std::vector<std::uint32_t> source;
-    if (result.has_flat_normals) source = separate_triangles(mesh);
     const std::vector<MaterialRange>& ranges = mesh.material_ranges;
     const auto uses_frame = [](const GltfMaterial& material) {
         return material.normal_texture || material.clearcoat_normal_texture ||
@@ -603,43 +570,52 @@ std::optional<DeformedMesh> deformed_mesh(const ReadDocument& read,
     frames.tangents = has_tangents ? TangentMethod::keep
                       : is_framed  ? TangentMethod::mikktspace
                                    : TangentMethod::none;
-    FramedMesh framed = with_frames(std::move(mesh), frames, report);
-    std::vector<std::uint32_t> vertices = std::move(framed.source_vertex);
-    if (!source.empty()) take_vertices(vertices, source);
-    const std::vector<std::uint32_t>& taken = source.empty() ? vertices : source;
-    for (GltfMorphTarget& target : deformation.targets) {
-        take_vertices(taken, target.positions);
-        take_vertices(taken, target.normals);
-        take_vertices(taken, target.tangents);
-    }
-    for (GltfJoints& joints : deformation.joints) {
-        take_vertices(taken, joints.joints);
-        take_vertices(taken, joints.weights);
-    }
+    FramedMesh framed = result.pose.has_flat_normals
+                            ? with_separate_frames(std::move(mesh), frames, report)
+                            : with_frames(std::move(mesh), frames, report);
     result.rest = std::move(framed.mesh);
-    result.deformation = std::move(deformation);
+    result.pose.deformation = of_vertices(std::move(deformation), framed.source_vertex);
     return result;
+}
+
+/// Returns the nodes that deform an instance.
+DeformedInstance deforming_nodes(const GltfView& view, std::size_t instance, std::size_t node,
+                                 const MeshPose& pose) {
+    DeformedInstance deformed{instance, node, view.nodes[node].morph_weights, {}, {}};
+    if (pose.deformation->joints.empty()) return deformed;
+    const GltfSkin& skin = view.skins[*view.nodes[node].skin];
+    deformed.joints = skin.joints;
+    deformed.joint_from_mesh = skin.joint_from_mesh;
+    return deformed;
 }
 
 /// Adds meshes and instances. A primitive with several instances is read once.
 void add_instances(const ReadDocument& read, SceneGraph& graph, Report& report) {
     Scene& scene = graph.scene;
     const GltfView& view = read.view;
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of;
+    struct ReadMesh {
+        std::size_t mesh = 0;
+        std::optional<MeshPose> pose;
+    };
+    std::map<std::tuple<std::size_t, std::size_t, bool>, ReadMesh> meshes;
     ProgressStage stage("meshes", view.primitives.size());
     for (const auto& item : view.primitives) {
-        if (auto deformed = deformed_mesh(read, item, report)) {
-            deformed->mesh = scene.meshes.size();
-            if (!deformed->joints.empty()) deformed->skinned_instance = scene.instances.size();
-            scene.meshes.push_back(deformed->rest);
-            scene.instances.push_back({deformed->mesh, item.world_from_object, item.name});
-            graph.deformed.push_back(std::move(*deformed));
-        } else {
-            const auto key = std::pair(item.what.mesh, item.what.primitive);
-            const auto [entry, is_new] = mesh_of.try_emplace(key, scene.meshes.size());
-            if (is_new) scene.meshes.push_back(drawable_mesh(read, item.what, report));
-            scene.instances.push_back({entry->second, item.world_from_object, item.name});
+        const std::tuple key(item.what.mesh, item.what.primitive,
+                             has_skin(view, view.nodes[item.node]));
+        const auto [entry, is_new] = meshes.try_emplace(key, ReadMesh{scene.meshes.size(), {}});
+        if (is_new) {
+            if (auto deformable = deformable_mesh(read, item, report)) {
+                entry->second.pose = std::move(deformable->pose);
+                scene.meshes.emplace_back(std::move(deformable->rest));
+            } else {
+                scene.meshes.push_back(drawable_mesh(read, item.what, report));
+            }
         }
+        const auto& [mesh, pose] = entry->second;
+        if (pose)
+            graph.deformed.push_back(
+                deforming_nodes(view, scene.instances.size(), item.node, *pose));
+        scene.instances.push_back({mesh, item.world_from_object, item.name, pose});
         graph.instances.push_back({item.node, item.node_from_object});
         stage.advance(1);
     }

@@ -146,7 +146,7 @@ HealthMarkers health_markers(const Scene& scene, std::optional<Severity> severit
         if (severity && info.severity != *severity) continue;
         MarkedCondition marked{info.condition, 0, 0, marker_color(info.condition)};
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-            const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+            const Shared<Mesh> mesh = deformed_mesh(scene, i);
             for (const MeshConditionCount& found : diagnoses.at(scene.instances[i].mesh).found) {
                 if (found.condition != info.condition) continue;
                 marked.count += found.count;

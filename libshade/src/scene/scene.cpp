@@ -50,9 +50,11 @@ bool has_bare_triangles(const Mesh& mesh) {
 
 Bounds world_bounds(const Scene& scene) {
     Bounds bounds;
-    for (const Instance& instance : scene.instances) {
-        for (const glm::vec3& position : scene.meshes.at(instance.mesh)->positions) {
-            const glm::vec3 world(instance.world_from_object * glm::vec4(position, 1.0F));
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const glm::mat4& world_from_object = scene.instances[i].world_from_object;
+        const Shared<Mesh> mesh = deformed_mesh(scene, i);
+        for (const glm::vec3& position : mesh->positions) {
+            const glm::vec3 world(world_from_object * glm::vec4(position, 1.0F));
             if (!is_finite(world)) continue;
             bounds.min = glm::min(bounds.min, world);
             bounds.max = glm::max(bounds.max, world);
@@ -151,11 +153,12 @@ template <typename Visit>
 void for_each_point(const Scene& scene, const Camera& camera, const glm::vec3& place,
                     const Visit& visit) {
     const glm::mat3 view_from_world = glm::transpose(glm::mat3(camera.world_from_view));
-    for (const Instance& instance : scene.instances) {
-        glm::mat4 from_place = instance.world_from_object;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        glm::mat4 from_place = scene.instances[i].world_from_object;
         from_place[3] -= glm::vec4(place, 0.0F);
         const glm::mat4 view_from_object = glm::mat4(view_from_world) * from_place;
-        for (const glm::vec3& position : scene.meshes[instance.mesh]->positions)
+        const Shared<Mesh> mesh = deformed_mesh(scene, i);
+        for (const glm::vec3& position : mesh->positions)
             visit(glm::vec3(view_from_object * glm::vec4(position, 1.0F)));
     }
 }

@@ -522,12 +522,15 @@ glm::mat4 camera_matrix(const glm::mat4& world_from_object) {
 
 /// Returns a far distance behind the farthest corner of the boxes of all meshes.
 float far_behind_all(SceneGraph& graph, const Camera& camera) {
-    for (std::size_t i = graph.mesh_bounds.size(); i < graph.scene.meshes.size(); ++i)
-        graph.mesh_bounds.push_back(bounds_of(graph.scene.meshes[i]));
+    const Scene& scene = graph.scene;
+    for (std::size_t i = graph.mesh_bounds.size(); i < scene.meshes.size(); ++i)
+        graph.mesh_bounds.push_back(bounds_of(scene.meshes[i]));
     const glm::vec3 eye(camera.world_from_view[3]);
     float reach = 0.0F;
-    for (const Instance& instance : graph.scene.instances) {
-        const Bounds& box = graph.mesh_bounds.at(instance.mesh);
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Bounds box = is_deformed(instance) ? bounds_of(deformed_mesh(scene, i))
+                                                 : graph.mesh_bounds.at(instance.mesh);
         if (box.empty()) continue;
         for (int corner = 0; corner < 8; ++corner) {
             const glm::vec4 at((corner & 1) != 0 ? box.max.x : box.min.x,
@@ -598,7 +601,7 @@ void pose(SceneGraph& graph, double seconds) {
                  light.point.position_world = glm::vec3(matrix[3]);
                  light.direction_world = direction_of(matrix);
              });
-    deform(graph, world_from_node, weights);
+    set_poses(graph, world_from_node, weights);
     set_numbers(graph, seconds);
     pose_camera(graph, nodes);
 }
@@ -831,12 +834,11 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     }
     for (Instance& instance : part.scene.instances)
         instance.mesh += first_mesh;
-    for (DeformedMesh& deformed : part.deformed) {
-        deformed.mesh += first_mesh;
+    for (DeformedInstance& deformed : part.deformed) {
+        deformed.instance += first_instance;
         deformed.node += first_node;
         for (std::size_t& joint : deformed.joints)
             joint += first_node;
-        if (deformed.skinned_instance) *deformed.skinned_instance += first_instance;
     }
     std::size_t clip = 0;
     std::erase_if(part.animations, [&](const Animation& animation) {  // What does not play.

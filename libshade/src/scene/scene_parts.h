@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <span>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "portable_math.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
@@ -93,10 +95,28 @@ struct NodeWeights {
 /// Returns the weights of a channel at a time. \throws InvalidInput as pose() does for keys
 std::vector<float> weights_at(const KeyChannel& channel, double seconds);
 
-/// Deforms the meshes of a graph.
+/// Sets the poses of the instances that joints and morph targets of a graph deform.
 /// \param weights  those that animations change
-void deform(SceneGraph& graph, std::span<const glm::mat4> world_from_node,
-            std::span<const NodeWeights> weights);
+void set_poses(SceneGraph& graph, std::span<const glm::mat4> world_from_node,
+               std::span<const NodeWeights> weights);
+
+/// Returns true if the pose deforms the mesh, so that it is not drawn as it is at rest.
+inline bool is_deformed(const Instance& instance) {
+    return instance.pose && (is_morphed(*instance.pose) || is_skinned(*instance.pose));
+}
+
+/// Deforms a mesh at rest as deformed_mesh() does.
+/// \param source_vertex  the vertex of the deformation for each vertex of the mesh; empty: the same
+void deform(const MeshPose& pose, std::span<const std::uint32_t> source_vertex, Mesh& mesh);
+
+/// Computes frames after giving each triangle vertices of its own, for flat normals that follow
+/// deformed triangles (MeshPose::has_flat_normals).
+FramedMesh with_separate_frames(Mesh mesh, const FrameOptions& options, Report& report);
+
+/// Returns the deformation for vertices that were made of those of the given one.
+/// \param source_vertex  for each new vertex, the old one
+GltfDeformation of_vertices(GltfDeformation deformation,
+                            std::span<const std::uint32_t> source_vertex);
 
 // Scenes from files
 

@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <span>
 
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/shade/scene_file.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 namespace {
@@ -140,15 +142,33 @@ class Preparation {
     void change(NormalMode mode) {
         FrameOptions frames;
         frames.normals = mode;
+        result_.has_flat_normals = mode == NormalMode::flat;
         change_meshes(frames);
     }
 
     void change_meshes(const FrameOptions& frames) {
         for (const Shared<Mesh>& mesh : scene_.meshes) {
-            const bool can = !computes_tangents(frames.tangents) || !mesh->texcoords.empty();
-            result_.meshes.push_back(can ? Shared<Mesh>(with_frames(*mesh, frames, report_).mesh)
-                                         : mesh);
+            std::optional<Shared<GltfDeformation>> deformation =
+                deformation_of(result_.meshes.size());
+            if (computes_tangents(frames.tangents) && mesh->texcoords.empty()) {
+                result_.meshes.push_back(mesh);
+            } else {
+                const bool separates = deformation && result_.has_flat_normals == true;
+                FramedMesh framed = separates ? with_separate_frames(*mesh, frames, report_)
+                                              : with_frames(*mesh, frames, report_);
+                if (deformation) deformation = of_vertices(*deformation, framed.source_vertex);
+                result_.meshes.emplace_back(std::move(framed.mesh));
+            }
+            result_.deformations.push_back(std::move(deformation));
         }
+    }
+
+    /// Returns what deforms a mesh, or none. The instances of a mesh share it.
+    [[nodiscard]] std::optional<Shared<GltfDeformation>> deformation_of(std::size_t mesh) const {
+        for (const Instance& instance : scene_.instances) {
+            if (instance.mesh == mesh && instance.pose) return instance.pose->deformation;
+        }
+        return std::nullopt;
     }
 
     /// Runs the work for a material. If an optional image cannot be read, the picture is drawn
@@ -289,7 +309,16 @@ Scene with_variant(const Scene& scene, const PreparedVariant& prepared) {
         material.tangent_frame = prepared.tangent_frame.value_or(material.tangent_frame);
         if (prepared.interpolation == Interpolation::gouraud) material.metallic_roughness.reset();
     }
-    if (!prepared.meshes.empty()) changed.meshes = prepared.meshes;
+    if (!prepared.meshes.empty()) {
+        changed.meshes = prepared.meshes;
+        for (Instance& instance : changed.instances) {
+            const auto& deformation = prepared.deformations.at(instance.mesh);
+            if (!instance.pose || !deformation) continue;
+            instance.pose->deformation = *deformation;
+            instance.pose->has_flat_normals =
+                prepared.has_flat_normals.value_or(instance.pose->has_flat_normals);
+        }
+    }
     if (prepared.maps.empty()) return changed;
     const std::size_t moved = changed.images.size() - prepared.first_image;
     changed.images.insert(changed.images.end(), prepared.images.begin(), prepared.images.end());

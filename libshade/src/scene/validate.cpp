@@ -161,11 +161,35 @@ void validate_lights(const char* kind, const std::vector<Light>& lights) {
     }
 }
 
+void check_count(const std::string& thing, std::size_t count, std::size_t allowed,
+                 const char* what) {
+    if (count == allowed) return;
+    throw InvalidInput(fmt::format("{} has {} {}, but needs {}", thing, count, what, allowed));
+}
+
+/// Checks that the vertices of a mesh have all displacements and weights of its deformation.
+void validate_deformation(const std::string& thing, const GltfDeformation& deformation,
+                          std::size_t vertices) {
+    for (const GltfMorphTarget& target : deformation.targets) {
+        for (const auto* values : {&target.positions, &target.normals, &target.tangents}) {
+            if (!values->empty()) check_count(thing, values->size(), vertices, "displacements");
+        }
+    }
+    for (const GltfJoints& joints : deformation.joints) {
+        check_count(thing, joints.joints.size(), vertices, "groups of joints");
+        check_count(thing, joints.weights.size(), vertices, "groups of weights");
+    }
+}
+
 void validate_instance(const Scene& scene, std::size_t index) {
     const Instance& instance = scene.instances[index];
     const std::string thing = instance_label(scene, index);
     check_index(thing, "mesh", instance.mesh, scene.meshes.size());
     check_finite(thing + " matrix", instance.world_from_object);
+    if (instance.pose) {
+        validate_deformation(thing, instance.pose->deformation,
+                             scene.meshes[instance.mesh]->positions.size());
+    }
     for (const MaterialRange& range : scene.meshes[instance.mesh]->material_ranges) {
         if (range.material) {
             check_index(thing, "material", *range.material, scene.materials.size());
@@ -326,31 +350,17 @@ void validate_motion(const SceneGraph& graph, const std::string& thing,
 
 namespace {
 
-/// Checks that vertices have all displacements and weights, and that joints are nodes.
-void validate_deformed(const SceneGraph& graph, const DeformedMesh& deformed, std::size_t number) {
-    const std::string thing = fmt::format("deformed mesh {}", number);
-    const auto check = [&](std::size_t count, std::size_t allowed, const char* what) {
-        if (count == allowed) return;
-        throw InvalidInput(fmt::format("{} has {} {}, but needs {}", thing, count, what, allowed));
-    };
-    const std::size_t vertices = deformed.rest->positions.size();
-    for (const GltfMorphTarget& target : deformed.deformation->targets) {
-        for (const auto* values : {&target.positions, &target.normals, &target.tangents}) {
-            if (!values->empty()) check(values->size(), vertices, "displacements");
-        }
-    }
-    for (const GltfJoints& joints : deformed.deformation->joints) {
-        check(joints.joints.size(), vertices, "groups of joints");
-        check(joints.weights.size(), vertices, "groups of weights");
-    }
-    check(deformed.joint_from_mesh.size(), deformed.joints.size(), "joint matrices");
+/// Checks that the instance can be deformed, and that joints are nodes.
+void validate_deformed(const SceneGraph& graph, const DeformedInstance& deformed,
+                       std::size_t number) {
+    const std::string thing = fmt::format("deformed instance {}", number);
+    const std::vector<Instance>& instances = graph.scene.instances;
+    if (deformed.instance >= instances.size() || !instances[deformed.instance].pose)
+        throw InvalidInput(thing + " has no instance with a pose in the scene");
+    check_count(thing, deformed.joint_from_mesh.size(), deformed.joints.size(), "joint matrices");
     check_node(graph, thing, deformed.node);
     for (const std::size_t joint : deformed.joints)
         check_node(graph, thing, joint);
-    if (deformed.mesh >= graph.scene.meshes.size() ||
-        deformed.skinned_instance.value_or(0) >= graph.scene.instances.size()) {
-        throw InvalidInput(thing + " has no mesh or instance in the scene");
-    }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "relief/mesh/frames.h"
 #include "relief/shade/scene.h"
 #include "support/shapes.h"
 
@@ -98,6 +99,9 @@ const std::vector<FeatureField>& feature_fields() {
         second<3>("occlusion texture at second coordinates"),
         second<14>("thickness texture at second coordinates"),
         field<&F::interpolation, 3>("interpolation"),
+        field<&F::morphing>("morphing"),
+        field<&F::skinning>("skinning"),
+        field<&F::deformed_facets>("deformed facets"),
         field<&F::diffuse_texture>("diffuse texture"),
         field<&F::specular_texture>("specular texture"),
         field<&F::metallic_roughness_texture>("metallic-roughness texture"),
@@ -359,10 +363,54 @@ Features attainable(Features f) {
 
 }  // namespace
 
+MeshPose pose_calling_for(const Mesh& mesh, const Features& f) {
+    MeshPose pose;
+    GltfDeformation deformation;
+    deformation.targets.resize(2);
+    deformation.joints.emplace_back();
+    for (const glm::vec3& p : mesh.positions) {
+        deformation.targets[0].positions.push_back(0.4F * p.x * glm::vec3(p.y, 1.0F, 0.3F));
+        deformation.targets[0].normals.push_back(0.3F * glm::vec3(p.z, 0.0F, p.x));
+        deformation.targets[0].tangents.push_back(0.3F * glm::vec3(0.0F, p.x, p.z));
+        deformation.targets[1].positions.emplace_back(9.0F, 9.0F, 9.0F);
+        deformation.joints[0].joints.emplace_back(0, 1, 0, 7);
+        deformation.joints[0].weights.emplace_back(1.0F - p.y, 1.0F + p.y, 0.2F, 5.0F);
+    }
+    pose.deformation = std::move(deformation);
+    if (f.morphing) pose.weights = {0.7F, 0.0F};
+    if (f.skinning) {
+        pose.joint_matrices.assign(2, glm::mat4(1.0F));
+        pose.joint_matrices[1] = glm::mat4(0.9F, 0.3F, 0.0F, 0.0F, -0.3F, 0.9F, 0.2F, 0.0F, 0.0F,
+                                           -0.2F, 1.1F, 0.0F, 0.1F, 0.2F, 0.0F, 1.0F);
+    }
+    pose.has_flat_normals = f.deformed_facets;
+    return pose;
+}
+
+Mesh faceted(const Mesh& mesh) {
+    FrameOptions options;
+    options.normals = NormalMode::flat;
+    Mesh apart = mesh;
+    apart.positions.clear();
+    apart.normals.clear();
+    apart.texcoords.clear();
+    apart.tangents.clear();
+    apart.triangles.clear();
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const auto first = static_cast<std::uint32_t>(apart.positions.size());
+        for (int k = 0; k < 3; ++k) {
+            apart.positions.push_back(mesh.positions[triangle[k]]);
+            apart.texcoords.push_back(mesh.texcoords[triangle[k]]);
+        }
+        apart.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return with_frames(apart, options).mesh;
+}
+
 CallingScene scene_calling_for(const Features& features) {
     CallingScene result;
     Scene& scene = result.scene;
-    Mesh mesh = sphere(24, 12);
+    Mesh mesh = features.deformed_facets ? faceted(sphere(24, 12)) : sphere(24, 12);
     mesh.name = "sphere";
     for (const glm::vec2& texcoord : mesh.texcoords)
         mesh.texcoords_2.emplace_back(texcoord.y, texcoord.x);
@@ -372,8 +420,10 @@ CallingScene scene_calling_for(const Features& features) {
         }
     }
     mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
+    std::optional<MeshPose> pose;
+    if (features.morphing || features.skinning) pose = pose_calling_for(mesh, features);
     scene.meshes = {std::move(mesh)};
-    scene.instances = {{0, glm::mat4(1.3F), "i"}};
+    scene.instances = {{0, glm::mat4(1.3F), "i", pose}};
     scene.instances[0].world_from_object[1] = glm::vec4(0.3F, 1.0F, 0.1F, 0.0F);
     scene.instances[0].world_from_object[3] = glm::vec4(0.1F, 0.2F, 0.0F, 1.0F);
     scene.materials = {material_calling_for(features)};

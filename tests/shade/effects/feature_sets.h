@@ -43,6 +43,13 @@ struct CallingScene {
     Features expected;
 };
 
+/// Returns a pose with two morph targets, of which the second has no weight, and two joints, which
+/// bend a mesh of about unit size. Features without morphing or skinning leave it at rest.
+MeshPose pose_calling_for(const Mesh& mesh, const Features& features);
+
+/// Returns the mesh with vertices of its own for every triangle, and the normals of their planes.
+Mesh faceted(const Mesh& mesh);
+
 /// \param features  canonical
 CallingScene scene_calling_for(const Features& features);
 

@@ -157,6 +157,25 @@ const Change skybox = [](Frame& f) { f.scene.environment->skybox = true; };
 const Change hazy = [](Frame& f) { f.scene.environment->skybox_blur = 0.001F; };
 const Change scattered = [](Frame& f) { f.scene.environment->lights = true; };
 
+const Change morph_target = [](Frame& f) {
+    MeshPose& pose = f.scene.instances[0].pose.emplace();
+    pose.deformation.edit().targets.resize(1);
+    pose.deformation.edit().targets[0].positions.assign(4, {0, 0, 1});
+    pose.weights = {0.0F};
+};
+const Change morphed = [](Frame& f) {
+    if (!f.scene.instances[0].pose) f.scene.instances[0].pose.emplace();
+    f.scene.instances[0].pose->weights = {0.001F};
+};
+const Change joints = [](Frame& f) {
+    MeshPose& pose = f.scene.instances[0].pose.emplace();
+    pose.joint_matrices.assign(2, glm::mat4(1.0F));
+};
+const Change moved_joint = [](Frame& f) {
+    f.scene.instances[0].pose->joint_matrices[1][3].x = 0.001F;
+};
+const Change flat_normals = [](Frame& f) { f.scene.instances[0].pose->has_flat_normals = true; };
+
 const Change exposed = with(&Scene::exposure, 0.999F);
 const Change reinhard = with(&Scene::tone_mapping, ToneMapping::reinhard);
 const Change aces = with(&Scene::tone_mapping, ToneMapping::aces);
@@ -612,6 +631,18 @@ const std::vector<Boundary> highlight_boundaries = {
     {"refraction", "not metallic-roughness", {environment, transmitting}, {physical}, {}},
 };
 
+const std::vector<Boundary> deformation_boundaries = {
+    {"morphing", "a weight", {morph_target}, {}, {morphed}},
+    {"morphing", "a target", {}, {morphed}, {morph_target, morphed}},
+    {"skinning", "a joint that moves", {joints}, {}, {moved_joint}},
+    {"deformed facets", "flat normals", {joints, moved_joint}, {}, {flat_normals}},
+    {"deformed facets", "joints that move", {joints, flat_normals}, {}, {moved_joint}},
+    {"deformed facets", "a morph target", {morph_target, flat_normals}, {}, {morphed}},
+    {"deformed facets", "normals that show", {joints, moved_joint, flat_normals}, {no_suns}, {}},
+    {"deformed facets", "normals of vertices", {joints, moved_joint, flat_normals}, {flat}, {}},
+    {"deformed facets", "lit", {joints, moved_joint, flat_normals}, {unlit}, {}},
+};
+
 const std::vector<Boundary> frame_boundaries = {
     {"exposure", "not 1", {}, {}, {exposed}},
     {"exposure", "sRGB codes", {exposed}, {linear_output}, {}},
@@ -686,7 +717,7 @@ TEST(EffectPlan, HasEachEffectOnOneSideOfEachPartOfItsCondition) {
     using namespace boundaries;
     std::set<std::string> tested;
     for (const auto* table : {&color_boundaries, &normal_boundaries, &light_boundaries,
-                              &highlight_boundaries, &frame_boundaries}) {
+                              &highlight_boundaries, &deformation_boundaries, &frame_boundaries}) {
         for (const Boundary& boundary : *table) {
             SCOPED_TRACE(std::string(boundary.effect) + ": " + boundary.condition);
             EXPECT_FALSE(is_planned(boundary, boundary.off));
@@ -699,6 +730,28 @@ TEST(EffectPlan, HasEachEffectOnOneSideOfEachPartOfItsCondition) {
         for (const EffectReason& entry : reasons)
             EXPECT_TRUE(tested.count(entry.effect)) << entry.effect;
     }
+}
+
+TEST(EffectPlan, FollowsPosesUnlessTheirEffectsAreForced) {
+    Scene scene = lit_scene(gray());
+    scene.instances[0].pose.emplace().joint_matrices.assign(1, glm::mat4(1.0F));
+    const FrameSettings settings{.samples = 1};
+    FramePlan plan = plan_effects(scene, settings);
+    const FramePlan at_rest = plan;
+    FramePlan without = force_effects(scene, settings, plan, {{}, {{"skinning", false}}});
+    FramePlan with = force_effects(scene, settings, plan, {{}, {{"skinning", true}}});
+    scene.instances[0].pose->joint_matrices[0][3].x = 1.0F;
+    for (FramePlan* each : {&plan, &without, &with})
+        plan_pose(scene, *each);
+    EXPECT_TRUE(plan.draws[0].features.skinning);
+    EXPECT_EQ(plan.draws[0].features, plan_effects(scene, settings).draws[0].features);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "skinning").reason, "joints move the vertices");
+    EXPECT_FALSE(without.draws[0].features.skinning);
+    scene.instances[0].pose->joint_matrices[0] = glm::mat4(1.0F);
+    for (FramePlan* each : {&plan, &with})
+        plan_pose(scene, *each);
+    EXPECT_EQ(plan.draws[0].features, at_rest.draws[0].features);
+    EXPECT_TRUE(with.draws[0].features.skinning);
 }
 
 TEST(EffectPlan, NamesWhatDecided) {
@@ -726,6 +779,12 @@ TEST(EffectPlan, NamesWhatDecided) {
         {"mixed falloff",
          {point_light, constant_light},
          "some lights fall off with distance and some do not"},
+        {"morphing", {}, "the mesh has no morph targets"},
+        {"morphing", {morph_target}, "the weights of all morph targets are 0"},
+        {"morphing", {morph_target, morphed}, "morph targets with a weight: 1 of 1"},
+        {"skinning", {morph_target}, "the mesh has no joints"},
+        {"skinning", {joints}, "all joints are at rest"},
+        {"skinning", {joints, moved_joint}, "joints move the vertices"},
         {"ambient", {}, "the scene has no ambient light"},
         {"ambient", {ambient}, "material 'body' scatters ambient light"},
         {"ambient", {ambient, black_surface}, "material 'body' scatters none"},

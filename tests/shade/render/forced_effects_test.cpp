@@ -85,6 +85,12 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     bare.materials[0].diffuse_texture = Texture{0};
     all.emplace_back("without texture coordinates", bare);
 
+    Scene at_rest = textured;  // With joints and morph targets that do not deform it.
+    at_rest.instances[0].pose = test::pose_calling_for(at_rest.meshes[0], {});
+    at_rest.instances[0].pose->joint_matrices.assign(2, glm::mat4(1.0F));
+    at_rest.instances[0].pose->weights.assign(2, 0.0F);
+    all.emplace_back("deformable, at rest", at_rest);
+
     Scene dark = base_scene();
     dark.directional_lights.clear();
     dark.ambient = {0.2F, 0.3F, 0.4F};
@@ -165,6 +171,8 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
     for (const char* effect : {"diffuse texture",
                                "vertex colours",
                                "alpha mask",
+                               "morphing",
+                               "skinning",
                                "normal map",
                                "bump map",
                                "double-sided normals",

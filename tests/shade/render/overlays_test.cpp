@@ -10,7 +10,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
+#include "shade/effects/feature_sets.h"
 #include "shade/render/draw_support.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
@@ -190,6 +192,32 @@ TEST_F(Overlay, MarkersAreDiscsOnTopInTheirColour) {
     const Image moved = renderer.draw(*scene.camera).image;
     EXPECT_EQ(pixel(moved, 32, 32), code(color));
     EXPECT_NE(pixel(moved, 40, 32), code(color));
+}
+
+TEST_F(Overlay, FollowsDeformedMeshes) {
+    FrameOptions frames;
+    frames.tangents = TangentMethod::mikktspace;
+    Scene scene =
+        test::scene_of(with_frames(test::sphere(12, 8), frames).mesh, test::black_material());
+    Features bent;
+    bent.morphing = bent.skinning = true;
+    scene.instances[0].pose = test::pose_calling_for(scene.meshes[0], bent);
+    FrameSettings settings = picture();
+    settings.overlays.wireframe = true;
+    settings.overlays.vertex_frames = 0.1F;
+    Scene baked = scene;  // The deformed mesh as a mesh at rest.
+    baked.meshes[0] = deformed_mesh(scene, 0);
+    baked.instances[0].pose.reset();
+    const Image drawn = render(scene, settings).image;
+    const Image expected = render(baked, settings).image;
+    int differing = 0;  // Rounding may move a line by a pixel.
+    for (int y = 0; y < drawn.height; ++y) {
+        for (int x = 0; x < drawn.width; ++x)
+            differing += pixel(drawn, x, y) != pixel(expected, x, y) ? 1 : 0;
+    }
+    EXPECT_LE(differing, drawn.width * drawn.height / 200);
+    scene.instances[0].pose.reset();
+    EXPECT_FALSE(test::same_bits(drawn, render(scene, settings).image));
 }
 
 TEST_F(Overlay, ColoursAreLinearInALinearPicture) {

@@ -8,6 +8,7 @@
 
 #include "relief/mesh/report.h"
 #include "relief/shade/reference.h"
+#include "shade/effects/feature_sets.h"
 #include "shade/render/draw_support.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
@@ -434,6 +435,44 @@ TEST_F(FinishedPicture, FollowsWhatMoves) {
     EXPECT_TRUE(test::same_bits(moved, render(scene, {8, 8, 1, OutputCoding::srgb}).image));
     scene.instances.pop_back();
     EXPECT_THROW(renderer.move(scene), InvalidInput);
+}
+
+TEST_F(FinishedPicture, FollowsPosesWithoutUploadingMeshes) {
+    Material material = test::black_material();
+    material.diffuse = glm::vec3(0.8F);
+    for (const bool blends : {false, true}) {
+        if (blends) {
+            material.alpha_mode = AlphaMode::blend;
+            material.opacity = 0.5F;
+        }
+        Scene scene = test::scene_of(test::sphere(24, 12), material);
+        scene.directional_lights = {{{0, 0, -1}, glm::vec3(1.0F)}};
+        Features bent;
+        bent.morphing = bent.skinning = true;
+        const MeshPose at_rest = test::pose_calling_for(scene.meshes[0], {});
+        const MeshPose deformed = test::pose_calling_for(scene.meshes[0], bent);
+        MeshPose skinned = deformed;
+        skinned.weights.clear();
+        scene.instances[0].pose = at_rest;
+        FrameSettings settings{48, 48, 1, OutputCoding::srgb};
+        settings.overlays.wireframe = true;
+        settings.overlays.vertex_frames = 0.1F;
+        RenderCache cache(context());
+        Renderer renderer(cache, context(), scene, plan_effects(scene, settings), settings);
+        const Image rest = renderer.draw(*scene.camera).image;
+        for (const MeshPose& pose : {deformed, skinned, at_rest, deformed}) {
+            scene.instances[0].pose = pose;
+            renderer.move(scene);
+            const Image moved = renderer.draw(*scene.camera).image;
+            EXPECT_TRUE(test::same_bits(moved, render(scene, settings).image));
+            EXPECT_EQ(test::same_bits(moved, rest), pose.joint_matrices.empty());
+            EXPECT_EQ(renderer.plan().draws[0].features.skinning, !pose.joint_matrices.empty());
+            EXPECT_EQ(renderer.plan().draws[0].features.morphing, !pose.weights.empty());
+            EXPECT_EQ(cache.contents().meshes, 1U);
+        }
+        scene.instances[0].pose->deformation.edit().targets[0].positions.pop_back();
+        EXPECT_THROW(renderer.move(scene), InvalidInput);
+    }
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_variant.h"
 #include "scene/scene_parts.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
@@ -480,19 +481,16 @@ SceneGraph bar_with_joints() {
     bar.normals.assign(6, {0, 0, 1});
     bar.triangles = {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}};
     graph.scene.meshes.emplace_back(bar);
-    graph.scene.instances.emplace_back();
     graph.instances.push_back({0});
-    DeformedMesh deformed;
-    deformed.rest = bar;
+    DeformedInstance deformed;
     GltfDeformation how;
     how.joints.push_back({std::vector<glm::uvec4>(6, {0, 1, 9, 0}), {}});
     how.joints[0].weights = {{1, 0, 0, 0}, {1, 0, 0, 0}, {2, 2, 0, 0},
                              {1, 1, 7, 0}, {0, 1, 0, 0}, {0, 1, 0, 0}};
-    deformed.deformation = how;
+    graph.scene.instances.emplace_back().pose.emplace().deformation = how;
     deformed.joints = {1, 2};
     deformed.joint_from_mesh.assign(2, glm::mat4(1.0F));
     deformed.joint_from_mesh[1][3] = {0, -1, 0, 1};
-    deformed.skinned_instance = 0;
     graph.deformed.push_back(std::move(deformed));
     return graph;
 }
@@ -504,11 +502,12 @@ TEST(Deformation, JointsMoveVerticesByTheirWeights) {
     EXPECT_EQ(graph.scene.instances[0].world_from_object, glm::mat4(1.0F))
         << "joints place the mesh, not its node";
     for (std::size_t i = 0; i < 6; ++i)
-        expect_place(graph.scene.meshes[0]->positions[i], graph.deformed[0].rest->positions[i]);
+        expect_place(deformed_mesh(graph.scene, 0)->positions[i],
+                     graph.scene.meshes[0]->positions[i]);
     // The upper joint leans to the viewer by 90 degrees: y becomes z.
     graph.nodes[2].rotation = glm::angleAxis(pi / 2, glm::vec3(1, 0, 0));
     pose(graph, 0.0);
-    const Mesh& bent = graph.scene.meshes[0];
+    const Mesh bent = deformed_mesh(graph.scene, 0);
     expect_place(bent.positions[0], {0, 0, 0});
     expect_place(bent.positions[2], {0, 1, 0});  // On the axis of the joint.
     expect_place(bent.positions[5], {1, 1, 1});
@@ -516,24 +515,23 @@ TEST(Deformation, JointsMoveVerticesByTheirWeights) {
     expect_place(bent.normals[0], {0, 0, 1});
     // Half of each rotation; the joint that does not exist has no weight.
     expect_place(bent.normals[3], {0, -std::sqrt(0.5F), std::sqrt(0.5F)});
-    EXPECT_EQ(graph.deformed[0].rest->positions[5], glm::vec3(1, 2, 0));
+    EXPECT_EQ(graph.scene.meshes[0]->positions[5], glm::vec3(1, 2, 0)) << "the mesh is at rest";
 }
 
 TEST(Deformation, MorphTargetsAddTheirDisplacements) {
     SceneGraph graph = bar_with_joints();
-    DeformedMesh& deformed = graph.deformed[0];
+    DeformedInstance& deformed = graph.deformed[0];
     deformed.joints.clear();
     deformed.joint_from_mesh.clear();
-    deformed.skinned_instance.reset();
     GltfDeformation how;
     how.targets.resize(2);
     how.targets[0].positions.assign(6, {0, 0, 4});
     how.targets[1].positions.assign(6, {8, 0, 0});
     how.targets[1].normals.assign(6, {0, 0, -2});
-    deformed.deformation = how;
+    graph.scene.instances[0].pose->deformation = how;
     deformed.weights = {0.5F, 0.0F};
     pose(graph, 0.0);
-    expect_place(graph.scene.meshes[0]->positions[1], {1, 0, 2});
+    expect_place(deformed_mesh(graph.scene, 0)->positions[1], {1, 0, 2});
     expect_place(graph.scene.instances[0].world_from_object[3], {50, 0, 0});
     KeyChannel channel;
     channel.property = KeyChannel::Property::weights;
@@ -542,16 +540,41 @@ TEST(Deformation, MorphTargetsAddTheirDisplacements) {
     graph.animations.emplace_back(KeyAnimation{"", {channel}});
     validate(graph);
     pose(graph, 1.0);
-    expect_place(graph.scene.meshes[0]->positions[1], {5, 0, 0});
-    expect_place(graph.scene.meshes[0]->normals[1], {0, 0, 1});  // Without a length: at rest.
+    expect_place(deformed_mesh(graph.scene, 0)->positions[1], {5, 0, 0});
+    expect_place(deformed_mesh(graph.scene, 0)->normals[1],
+                 {0, 0, 1});  // Without a length: at rest.
     pose(graph, 1.5);
-    expect_place(graph.scene.meshes[0]->normals[1], {0, 0, -1});
+    expect_place(deformed_mesh(graph.scene, 0)->normals[1], {0, 0, -1});
     channel.interpolation = KeyInterpolation::cubic_spline;
     // In-tangents, values and out-tangents of both keys: the slope is 1 at the start.
     channel.weights = {0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
     EXPECT_FLOAT_EQ(weights_at(channel, 1.0)[1], 0.5F + 2.0F * 0.125F);
     channel.weights.pop_back();
     EXPECT_THROW(check_keys(channel), InvalidInput);
+}
+
+TEST(Deformation, FollowsTheVerticesOfVariants) {
+    SceneGraph graph = bar_with_joints();
+    graph.nodes[2].rotation = glm::angleAxis(pi / 2, glm::vec3(1, 0, 0));
+    pose(graph, 0.0);
+    const Mesh bent = deformed_mesh(graph.scene, 0);
+    Report report;
+    const Scene variant =
+        with_variant(graph.scene, prepare_variant(NormalMode::flat, graph.scene, {}, report));
+    EXPECT_NO_THROW(validate(variant));
+    const Mesh faceted = deformed_mesh(variant, 0);
+    ASSERT_EQ(faceted.positions.size(), 12U) << "each triangle has vertices of its own";
+    for (std::size_t i = 0; i < bent.triangles.size(); ++i) {
+        const glm::uvec3 corners = bent.triangles[i];
+        const glm::vec3 a = bent.positions[corners.x];
+        const glm::vec3 plane_normal = glm::normalize(
+            glm::cross(bent.positions[corners.y] - a, bent.positions[corners.z] - a));
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = faceted.triangles[i][k];
+            expect_place(faceted.positions[vertex], bent.positions[corners[k]]);
+            expect_place(faceted.normals[vertex], plane_normal);
+        }
+    }
 }
 
 TEST(Deformation, RealModelsAreSkinnedAndMorphed) {
@@ -563,12 +586,14 @@ TEST(Deformation, RealModelsAreSkinnedAndMorphed) {
         SceneGraph graph = load_scene_graph(file, {}, report);
         EXPECT_TRUE(report.empty());
         ASSERT_EQ(graph.deformed.size(), 1U);
-        const Mesh before = graph.scene.meshes[0];
+        const Mesh before = deformed_mesh(graph.scene, 0);
+        const auto at_rest = graph.scene.meshes[0].identity();
         pose(graph, 0.4);
-        EXPECT_NE(graph.scene.meshes[0]->positions, before.positions);
+        EXPECT_NE(deformed_mesh(graph.scene, 0)->positions, before.positions);
+        EXPECT_TRUE(at_rest.is(graph.scene.meshes[0])) << "a pose changes no mesh";
         EXPECT_NO_THROW(validate(graph.scene));
         pose(graph, 0.0);
-        EXPECT_EQ(graph.scene.meshes[0]->positions, before.positions);
+        EXPECT_EQ(deformed_mesh(graph.scene, 0)->positions, before.positions);
     }
     EXPECT_EQ(clip_names(load_scene_graph(fox, {})).size(), 3U);
 }

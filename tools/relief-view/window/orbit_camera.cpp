@@ -199,12 +199,13 @@ Ray ray_through(const Camera& camera, const glm::vec2& pointer) {
 
 std::optional<glm::vec3> surface_hit(const Scene& scene, const Ray& ray) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Instance& instance : scene.instances) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         // An affine map keeps the ray parameter.
-        const glm::dmat4 object_from_world = glm::inverse(glm::dmat4(instance.world_from_object));
+        const glm::dmat4 object_from_world =
+            glm::inverse(glm::dmat4(scene.instances[i].world_from_object));
         const dvec3 origin(object_from_world * glm::dvec4(ray.origin, 1.0));
         const dvec3 direction(object_from_world * glm::dvec4(ray.direction, 0.0));
-        nearest = std::min(nearest, nearest_in(*scene.meshes[instance.mesh], origin, direction));
+        nearest = std::min(nearest, nearest_in(*deformed_mesh(scene, i), origin, direction));
     }
     if (!std::isfinite(nearest)) return std::nullopt;
     return glm::vec3(dvec3(ray.origin) + nearest * dvec3(ray.direction));

@@ -82,10 +82,13 @@ void Playback::measure() {
     std::optional<Camera> first;
     for (int i = 0; i < reach_samples; ++i) {
         relief::pose(graph_, duration_ * i / reach_samples);
-        for (const DeformedMesh& deformed : graph_.deformed)
-            boxes[deformed.mesh] = bounds_of(*graph_.scene.meshes[deformed.mesh]);
-        for (const Instance& instance : graph_.scene.instances)
-            add_corners(reach_, boxes[instance.mesh], instance.world_from_object);
+        const Scene& posed = graph_.scene;
+        for (std::size_t k = 0; k < posed.instances.size(); ++k) {
+            const Instance& instance = posed.instances[k];
+            const Bounds box =
+                instance.pose ? bounds_of(*deformed_mesh(posed, k)) : boxes[instance.mesh];
+            add_corners(reach_, box, instance.world_from_object);
+        }
         if (!graph_.scene.camera) continue;
         if (!first) first = graph_.scene.camera;
         moves_camera_ |= graph_.scene.camera->world_from_view != first->world_from_view;
@@ -127,15 +130,9 @@ void Playback::pose(Scene& scene, const LightCarriers& lights, double seconds) {
         scene.spot_lights = moved.spot_lights;
     }
     const std::size_t count = std::min(scene.instances.size(), moved.instances.size());
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
         scene.instances[i].world_from_object = moved.instances[i].world_from_object;
-    for (const DeformedMesh& deformed : graph_.deformed) {
-        if (deformed.mesh >= scene.meshes.size()) continue;
-        // Materials may have been assigned in the window.
-        std::vector<MaterialRange> ranges = scene.meshes[deformed.mesh]->material_ranges;
-        Shared<Mesh>& mesh = moved.meshes[deformed.mesh];
-        if (mesh->material_ranges != ranges) mesh.edit().material_ranges = std::move(ranges);
-        scene.meshes[deformed.mesh] = mesh;
+        scene.instances[i].pose = moved.instances[i].pose;
     }
     copy_places(moved.directional_lights, lights.directional, scene.directional_lights,
                 [](const DirectionalLight& from, DirectionalLight& to) {

@@ -112,7 +112,8 @@ struct BudgetedPlan {
 
 /// Measures all effects of a plan and drops them in drop_order() until the median frame takes at
 /// most `budget` milliseconds; measures again after each one. Also returns the difference of the
-/// pictures. The result does not fit if no further effect can be dropped. \throws as Renderer does
+/// pictures. Effects that deform meshes are never dropped. The result does not fit if no further
+/// effect can be dropped. \throws as Renderer does
 BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& plan, double budget);
 
 }  // namespace relief

@@ -73,6 +73,10 @@ struct Features {
     /// order of the table in effects/features.h.
     std::uint32_t second_texcoords = 0;
     Interpolation interpolation = Interpolation::per_pixel;
+    // The deformation of the mesh, in the vertex stage.
+    bool morphing = false;         ///< Displacements of morph targets are added.
+    bool skinning = false;         ///< Joints move the vertices.
+    bool deformed_facets = false;  ///< Flat normals, those of the deformed triangles.
     // Factors of the colors.
     bool diffuse_texture = false;
     bool specular_texture = false;
@@ -134,6 +138,8 @@ struct DrawPlan {
     Features features;
     std::vector<EffectReason> reasons;
     bool needs_tangents = false;  ///< The draw needs them and the mesh has none.
+    /// plan_pose() decides how the mesh is deformed. False if that was forced.
+    bool follows_pose = true;
 };
 
 /// The whole frame.
@@ -151,12 +157,16 @@ struct FramePlan {
     std::vector<EffectReason> reasons;     ///< Those of the frame-wide effects.
 };
 
-/// Returns the canonical effects of a draw of this material and mesh in this scene.
+/// Returns the canonical effects of a draw of this material and mesh in this scene, at rest.
 Features features_of(const Scene& scene, const Material& material, const Mesh& mesh,
                      OutputCoding output = OutputCoding::srgb);
 
 /// Plans the whole scene, which must be valid.
 FramePlan plan_effects(const Scene& scene, const FrameSettings& settings);
+
+/// Decides again how meshes are deformed, and why, after the poses of the scene's instances
+/// changed. All else stays unchanged. Renderer::move() calls this itself.
+void plan_pose(const Scene& scene, FramePlan& plan);
 
 /// Updates the frame-wide effects after the features of draws were changed.
 void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& plan);
@@ -211,10 +221,10 @@ const Material& default_material();
 // texture is white, its lights are black, and the picture does not change by a bit. Effects
 // without a neutral form are properties of the scene and are refused: the reflection model and
 // interpolation (unlit, metallic-roughness, Gouraud, flat), the meaning of maps (object-space
-// normal maps, derivative frames, antialiasing of an existing map), blending, transmission, the
-// falloff of existing lights, the exact Fresnel term of an existing reflection, tone curves, and
-// whether the environment is visible or lights surfaces. Any effect can be forced off, which
-// changes the picture.
+// normal maps, derivative frames, antialiasing of an existing map), facets that are deformed,
+// blending, transmission, the falloff of existing lights, the exact Fresnel term of an existing
+// reflection, tone curves, and whether the environment is visible or lights surfaces. Any effect
+// can be forced off, which changes the picture.
 
 /// The effects before single ones are forced.
 enum class EffectBase {

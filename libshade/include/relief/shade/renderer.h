@@ -190,9 +190,10 @@ class Renderer {
 
     [[nodiscard]] const FramePlan& plan() const;
 
-    /// Updates instances, lights and deformed meshes from the same scene at another time (scene.h);
-    /// all else stays unchanged. Only meshes that are other objects are uploaded. \throws
-    /// InvalidInput if the number of instances or lights differs, or something is not valid
+    /// Updates instances, their poses, and lights from the same scene at another time (scene.h);
+    /// all else stays unchanged. plan() then follows the poses. Only meshes that are other objects
+    /// are uploaded. \throws InvalidInput if the number of instances or lights differs, or
+    /// something is not valid
     void move(const Scene& scene);
 
     /// Draws the scene as the camera sees it. \throws InvalidInput if the camera is not valid

@@ -195,11 +195,25 @@ enum class ToneMapping {
     aces,      ///< A fit to the film curve of the ACES reference rendering.
 };
 
+/// The pose of a mesh that morph targets and joints deform. glTF 2.0, sections 3.7.2.2 and 3.7.3.3.
+/// The mesh itself stays at rest: renderers deform it in the vertex stage, deformed_mesh() on the
+/// CPU.
+struct MeshPose {
+    Shared<GltfDeformation> deformation;  ///< For the vertices of the mesh; poses share it.
+    std::vector<float> weights;           ///< Of the morph targets; missing ones are 0.
+    /// For each joint, from the mesh at rest to object space; without any, only morph targets
+    /// deform the mesh.
+    std::vector<glm::mat4> joint_matrices;
+    /// The normals are those of the deformed triangles, of which no two share a vertex.
+    bool has_flat_normals = false;
+};
+
 /// A mesh in the world. Its material ranges refer to Scene::materials, or to the default material.
 struct Instance {
     std::size_t mesh = 0;
     glm::mat4 world_from_object{1.0F};
     std::string name;
+    std::optional<MeshPose> pose = std::nullopt;  ///< Only for meshes that can be deformed.
 };
 
 struct Scene {
@@ -219,7 +233,21 @@ struct Scene {
     ToneMapping tone_mapping = ToneMapping::none;  ///< For pictures with sRGB codes only.
 };
 
-/// Returns the bounding box of all instances in world space.
+/// Returns true if the pose adds displacements of a morph target, because its weight is not 0.
+bool is_morphed(const MeshPose& pose);
+
+/// Returns true if a joint moves vertices: its matrix is not the identity.
+bool is_skinned(const MeshPose& pose);
+
+/// Returns the mesh of an instance as its pose deforms it: the displacements of morph targets are
+/// added, and each vertex is then moved by the weighted mean of the matrices of its joints. Normals
+/// and tangents become unit; one that loses its length is that at rest. A vertex without weights
+/// follows the first joint.
+///
+/// \return the scene's own mesh, without a copy, if the pose does not deform it
+Shared<Mesh> deformed_mesh(const Scene& scene, std::size_t instance);
+
+/// Returns the bounding box of all instances in world space, as their poses deform them.
 Bounds world_bounds(const Scene& scene);
 
 /// Computes a camera that sees a whole box, for any aspect ratio.
@@ -361,21 +389,15 @@ struct Turntable {
 /// nothing; pose() ignores it.
 using Animation = std::variant<KeyAnimation, Orbit, Turntable>;
 
-/// A mesh that morph targets and joints deform. glTF 2.0, sections 3.7.2.2 and 3.7.3.3.
-struct DeformedMesh {
-    /// Index into Scene::meshes. pose() replaces the mesh.
-    std::size_t mesh = 0;
-    Shared<Mesh> rest;
-    Shared<GltfDeformation> deformation;  ///< For the vertices of `rest`.
-    /// The node with the morph weights.
-    std::size_t node = 0;
+/// The nodes that deform the mesh of an instance (Instance::pose).
+struct DeformedInstance {
+    std::size_t instance = 0;    ///< Index into Scene::instances.
+    std::size_t node = 0;        ///< The node with the morph weights.
     std::vector<float> weights;  ///< At rest.
-    /// The joints; without any, only morph targets deform the mesh.
+    /// The joints, which place the instance in the world; without any, only morph targets deform
+    /// it.
     std::vector<std::size_t> joints;
     std::vector<glm::mat4> joint_from_mesh;  ///< One for each joint.
-    /// The instance whose mesh is in world space, because joints place it; none without joints.
-    std::optional<std::size_t> skinned_instance;
-    bool has_flat_normals = false;  ///< The normals of the deformed triangles.
 };
 
 /// A camera of a file.
@@ -417,14 +439,15 @@ struct SceneGraph {
     std::vector<Animation> animations;
     /// The key animation that plays, counted among the key animations; if absent, all of them.
     std::optional<std::size_t> clip;
-    /// Meshes that pose() deforms.
-    std::vector<DeformedMesh> deformed;
-    /// The bounds of every mesh, for camera_sees_all; pose() fills them on first use.
+    /// Instances whose meshes pose() deforms.
+    std::vector<DeformedInstance> deformed;
+    /// The bounds of every mesh at rest, for camera_sees_all; pose() fills them on first use.
     std::vector<Bounds> mesh_bounds;
 };
 
-/// Moves all objects that are attached to nodes to their transforms at this time, and deforms the
-/// meshes with joints or morph targets; no other mesh changes.
+/// Moves all objects that are attached to nodes to their transforms at this time, and sets the
+/// joint matrices and morph weights of instances that are deformed (Instance::pose). No mesh
+/// changes.
 ///
 /// Numbers and colors that animations move get their values, too. If moves_materials(), a Renderer
 /// must be made again, because other effects may be needed.

@@ -71,8 +71,12 @@ struct PreparedVariant {
     std::optional<Interpolation> interpolation;
     std::optional<TangentFrame> tangent_frame;
     std::vector<Shared<Mesh>> meshes;  ///< Replaces the meshes of the scene, unless empty.
-    std::vector<MaterialMaps> maps;    ///< Replaces the maps of each material, unless empty.
-    std::size_t first_image = 0;       ///< Texture indices from here on refer to `images`.
+    /// For the vertices of each of `meshes`, if an instance deforms it.
+    std::vector<std::optional<Shared<GltfDeformation>>> deformations;
+    /// Replaces MeshPose::has_flat_normals of deformed instances, if the normals change.
+    std::optional<bool> has_flat_normals;
+    std::vector<MaterialMaps> maps;  ///< Replaces the maps of each material, unless empty.
+    std::size_t first_image = 0;     ///< Texture indices from here on refer to `images`.
     std::vector<ImageSource> images;
 };
 
