@@ -11,6 +11,7 @@
 #include <random>
 
 #include "geometry/tangent_contributions.h"
+#include "geometry/tangent_groups.h"
 #include "geometry/tangent_signs.h"
 #include "geometry/texture_gradient.h"
 #include "support/hard_meshes.h"
@@ -467,6 +468,29 @@ TEST(TangentContributions, SumsAreExactInAnyOrder) {
     }
     EXPECT_EQ(nothing, TangentSum{});
     EXPECT_TRUE(nothing.cancels(1e-6));
+}
+
+TEST(TangentGroups, LeaveOutTermsThatAreExactlyOpposite) {
+    // b is opposite to a in u and v; c is at a right angle to both.
+    const TangentSum a{1, 0, 0, 1};
+    const TangentSum b{-10, 0, 0, 10};
+    const TangentSum c{0, 100, 0, 100};
+    for (const std::int64_t copies : {1, 60}) {  // Pair by pair, and by steps of directions.
+        SCOPED_TRACE(copies);
+        std::vector<SidedTerm> members;
+        for (std::int64_t i = 0; i < copies; ++i) {
+            members.push_back({a, {1, 0, 0}, {0, 1, 0}});
+            members.push_back({b, {-1, 0, 0}, {0, -1, 0}});
+            members.push_back({c, {0, 1, 0}, {-1, 0, 0}});
+        }
+        const std::vector<TangentSum> sums = sums_without_opposites(members, {0, 0, 1});
+        const auto sum_of = [&](std::int64_t x, std::int64_t y, std::int64_t longest) {
+            return TangentSum{copies * x, copies * y, 0, copies * longest};
+        };
+        EXPECT_EQ(sums[0], sum_of(1, 100, 101));
+        EXPECT_EQ(sums[1], sum_of(-10, 100, 110));
+        EXPECT_EQ(sums[2], sum_of(-9, 100, 111));
+    }
 }
 
 TEST(TangentContributions, AMillionOfTheLongestDoNotOverflow) {
