@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "portable_math.h"
+#include "relief/export.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
@@ -23,7 +24,7 @@
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
 
-namespace relief {
+namespace RELIEF_API relief {
 
 // Numbers
 
