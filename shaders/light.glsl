@@ -45,14 +45,16 @@ vec4 light_row(int index) { return texelFetch(light_buffer, index); }
 
 #include <light_rows>
 #include <highlight_row>
+#include <shadow>
 #include <receive>
 
 void add_directional_lights(Surface surface, inout Lighting lighting) {
     for (int i = 0; i < directional_light_count; ++i) {
         int row = directional_light_rows * i;
         vec3 irradiance = light_row(row + 1).rgb;
-        receive(surface, light_row(row).xyz, irradiance, highlight_power(row + 2, irradiance),
-                lighting);
+        float share = visible_share(surface, row);
+        receive(surface, light_row(row).xyz, irradiance * share,
+                highlight_power(row + 2, irradiance) * share, lighting);
     }
 }
 
@@ -62,6 +64,7 @@ void add_directional_lights(Surface surface, inout Lighting lighting) {
 #include <light_rows>
 #include <highlight_row>
 #include "falloff.glsl#irradiance"
+#include <shadow>
 #include <receive>
 
 void add_point_lights(Surface surface, inout Lighting lighting) {
@@ -71,8 +74,9 @@ void add_point_lights(Surface surface, inout Lighting lighting) {
         vec4 power = light_row(row + 1);
         vec3 to_light_world = place.xyz - surface.position_world;
         float reach = reach_of(to_light_world, place.w, power.w);
-        receive(surface, direction_to(to_light_world), irradiance_of(power.rgb, reach),
-                irradiance_of(highlight_power(row + 2, power.rgb), reach), lighting);
+        float share = visible_share(surface, row);
+        receive(surface, direction_to(to_light_world), irradiance_of(power.rgb, reach) * share,
+                irradiance_of(highlight_power(row + 2, power.rgb), reach) * share, lighting);
     }
 }
 
@@ -84,6 +88,7 @@ void add_point_lights(Surface surface, inout Lighting lighting) {
 #include <light_rows>
 #include <highlight_row>
 #include "falloff.glsl#irradiance"
+#include <shadow>
 #include <receive>
 
 void add_spot_lights(Surface surface, inout Lighting lighting) {
@@ -94,11 +99,12 @@ void add_spot_lights(Surface surface, inout Lighting lighting) {
         vec4 cone = light_row(row + 2);
         vec3 to_light_world = place.xyz - surface.position_world;
         vec3 light_world = direction_to(to_light_world);
-        float share = clamp(dot(-light_world, cone.xyz) + cone.w, 0.0, 1.0);
+        float inside = clamp(dot(-light_world, cone.xyz) + cone.w, 0.0, 1.0);
         float reach = reach_of(to_light_world, place.w, power.w);
         vec3 highlights = highlight_power(row + 3, power.rgb);
-        receive(surface, light_world, irradiance_of(power.rgb * (share * share), reach),
-                irradiance_of(highlights * (share * share), reach), lighting);
+        float share = visible_share(surface, row);
+        receive(surface, light_world, irradiance_of(power.rgb * (inside * inside), reach) * share,
+                irradiance_of(highlights * (inside * inside), reach) * share, lighting);
     }
 }
 

@@ -849,6 +849,12 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
             "the model and --light contain no light, so a key light and a fill light were added");
     }
     if (options.ambient) scene.ambient = glm::vec3(*options.ambient);
+    if (!options.shadow_size) return;
+    if (light_count(scene) == 0) {
+        throw UsageError("--shadow: there is no light that could cast one",
+                         "add one with --light, or leave it out");
+    }
+    scene.shadow = Shadow{glm::radians(*options.shadow_size)};
 }
 
 /// Only scene files have a background.

@@ -218,6 +218,11 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
     add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
                "Set the ambient light. Default: 0, or 0.08 with the key light and fill light.")
         .group(group);
+    add_number(app, "--shadow", "DEG", options.shadow_size, {0, 30, "degrees"},
+               "Show the shadow of the first directional light, else of the first spot or point "
+               "light. DEG is the size of the light as an angle: 0 gives hard edges, 2 soft ones. "
+               "Default: that of the scene file, else no shadow.")
+        .group(group);
     add_number(
         app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
         "Show point lights and spotlights as spheres with a radius of R times the scene's size.")

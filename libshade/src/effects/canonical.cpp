@@ -89,6 +89,11 @@ void drop_lights(Features& f) {
     }
     if (f.specular == SpecularTerm::none)
         f.specular_texture = f.highlight_colors = f.highlight_fresnel = false;
+    const std::uint32_t casting = f.shadow == ShadowTerm::directional_light ? f.directional_lights
+                                  : f.shadow == ShadowTerm::spot_light      ? f.spot_lights
+                                  : f.shadow == ShadowTerm::point_light     ? f.point_lights
+                                                                            : 0;
+    if (casting == 0) f.shadow = ShadowTerm::none;
     if (light_count(f) == 0) f.lights_in_buffer = false;
     if (light_row_layout(f).count > max_block_rows) f.lights_in_buffer = true;
     if (light_count(f) == 0 && f.interpolation == Interpolation::gouraud) {

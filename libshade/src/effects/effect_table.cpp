@@ -255,6 +255,37 @@ Decision of_light_buffer(Subject s) {
         fmt::format("the lights take {} of the {} rows of a uniform block", rows, max_block_rows)};
 }
 
+Decision of_shadow(Subject s) {
+    if (!s.scene.shadow) return {false, "the scene asks for none"};
+    switch (s.lights.shadow) {
+        case ShadowTerm::directional_light:
+            return {true, "the first directional light that shines casts one"};
+        case ShadowTerm::spot_light:
+            return {true, "the first spot light that shines casts one"};
+        case ShadowTerm::point_light:
+            return {true, "the first point light that shines casts one"};
+        default:
+            return {false,
+                    "no light shines from outside of the scene, or no surface casts a shadow"};
+    }
+}
+
+/// Returns the effect of the shadow; switched on without the kind of its light, it is that of the
+/// first kind of which there are lights.
+Effect shadow_effect() {
+    return {"shadow", [](const Features& f) { return f.shadow != ShadowTerm::none; },
+            [](Features& f, bool on) {
+                if (!on) {
+                    f.shadow = ShadowTerm::none;
+                } else if (f.shadow == ShadowTerm::none) {
+                    f.shadow = f.directional_lights > 0 ? ShadowTerm::directional_light
+                               : f.spot_lights > 0      ? ShadowTerm::spot_light
+                                                        : ShadowTerm::point_light;
+                }
+            },
+            not_lit};
+}
+
 Decision of_ambient(Subject s) {
     if (!is_not_black(s.scene.ambient)) return {false, "the scene has no ambient light"};
     const glm::vec3 scattered = s.scene.ambient * s.material.ambient;
@@ -586,6 +617,9 @@ std::vector<EffectRow> lighting_rows() {
          .phong_only = true},
         {.effect = one_switch<&F::lights_in_buffer>("light buffer", no_light),
          .decide = of_light_buffer},
+        {.effect = shadow_effect(),
+         .decide = of_shadow,
+         .choice = "whether lights cast shadows is the scene's choice"},
         {.effect = one_switch<&F::ambient>("ambient", ""), .decide = of_ambient},
         {.effect = one_switch<&F::diffuse>("diffuse", not_lit),
          .decide =
@@ -753,8 +787,10 @@ Features lights_of(const Scene& scene) {
 }  // namespace
 
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
-                         const Mesh& mesh, const MeshPose* pose) {
-    return {scene, material, mesh, name, has_tint(material, mesh), lights_of(scene), pose};
+                         const Mesh& mesh, const MeshPose* pose, ShadowTerm shadow) {
+    Features lights = lights_of(scene);
+    lights.shadow = shadow;
+    return {scene, material, mesh, name, has_tint(material, mesh), lights, pose};
 }
 
 std::uint32_t second_texcoords_of(const Material& material) {

@@ -150,13 +150,14 @@ struct DrawSubject {
     const Mesh& mesh;
     std::string name;     ///< "material 'body'", for the reasons.
     bool tinted = false;  ///< The mesh's vertex colors change the picture, or its alpha does.
-    Features lights;      ///< The scene's lights: counts, falloff, ranges, highlight colors.
+    Features lights;  ///< The scene's lights: counts, falloff, ranges, highlight colors, shadow.
     const MeshPose* pose = nullptr;  ///< Null if nothing can deform the mesh.
 };
 
-/// \param pose  null if nothing can deform the mesh
+/// \param pose    null if nothing can deform the mesh
+/// \param shadow  shadow_term() of the scene
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
-                         const Mesh& mesh, const MeshPose* pose);
+                         const Mesh& mesh, const MeshPose* pose, ShadowTerm shadow);
 
 /// A draw on which effects are forced.
 struct ForcingSubject {
@@ -190,6 +191,7 @@ inline constexpr std::array frame_effects = {
     FrameEffect{"prefiltered environment", &FramePlan::prefiltered_map},
     FrameEffect{"environment BRDF table", &FramePlan::environment_brdf},
     FrameEffect{"environment irradiance", &FramePlan::environment_irradiance},
+    FrameEffect{"shadow maps", &FramePlan::shadow_maps},
     FrameEffect{"transmission background", &FramePlan::transmission_background},
     FrameEffect{"sorted blending", &FramePlan::sorted_blending},
     FrameEffect{"finishing pass", &FramePlan::finishing_pass},

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "effects/features.h"
+#include "effects/light_rows.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 
@@ -22,8 +23,9 @@ struct DrawDecisions {
 
 /// \param name  the material's, for the reasons
 DrawDecisions decide(const Scene& scene, const Material& material, const std::string& name,
-                     const Mesh& mesh, const MeshPose* pose, OutputCoding output) {
-    const DrawSubject subject = draw_subject(scene, material, name, mesh, pose);
+                     const Mesh& mesh, const MeshPose* pose, OutputCoding output,
+                     ShadowTerm shadow) {
+    const DrawSubject subject = draw_subject(scene, material, name, mesh, pose, shadow);
     DrawDecisions decisions;
     Features requested = subject.lights;
     requested.output = output;
@@ -49,13 +51,13 @@ const MeshPose* pose_of(const Instance& instance) {
 }
 
 DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange& range,
-                   OutputCoding output) {
+                   OutputCoding output, ShadowTerm shadow) {
     const std::size_t mesh_index = scene.instances[instance].mesh;
     const Mesh& mesh = scene.meshes[mesh_index];
     const Material& material =
         range.material ? scene.materials[*range.material] : default_material();
     DrawDecisions decisions = decide(scene, material, material_label(scene, range.material), mesh,
-                                     pose_of(scene.instances[instance]), output);
+                                     pose_of(scene.instances[instance]), output, shadow);
     const Features& f = decisions.features;
     const bool uses_tangents = lies_in_frame(f) && f.frame == TangentFrame::stored;
     DrawPlan draw{instance, range, f, std::move(decisions.reasons),
@@ -112,6 +114,12 @@ void plan_finishing(const FrameSettings& settings, FramePlan& plan) {
     set_frame_effect(plan, &FramePlan::sorted_blending, blends,
                      blends ? "a material lets through what is behind it"
                             : "every material is opaque or has holes only");
+    const bool shadows =
+        std::any_of(plan.draws.begin(), plan.draws.end(),
+                    [](const DrawPlan& draw) { return draw.features.shadow != ShadowTerm::none; });
+    set_frame_effect(
+        plan, &FramePlan::shadow_maps, shadows,
+        shadows ? "a surface shows the shadow of the main light" : "no surface shows a shadow");
     const bool transmits =
         std::any_of(plan.draws.begin(), plan.draws.end(),
                     [](const DrawPlan& draw) { return relief::transmits(draw.features); });
@@ -140,7 +148,8 @@ const Material& default_material() {
 
 Features features_of(const Scene& scene, const Material& material, const Mesh& mesh,
                      OutputCoding output) {
-    return decide(scene, material, "the material", mesh, nullptr, output).features;
+    return decide(scene, material, "the material", mesh, nullptr, output, shadow_term(scene))
+        .features;
 }
 
 EnvironmentNeeds environment_needs(const FramePlan& plan) {
@@ -192,14 +201,16 @@ void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& pl
 
 FramePlan plan_effects(const Scene& scene, const FrameSettings& settings) {
     FramePlan plan;
+    const ShadowTerm shadow = shadow_term(scene);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
         const MaterialRange whole{0, static_cast<std::uint32_t>(mesh.triangles.size()),
                                   std::nullopt};
         const std::vector<MaterialRange>& ranges = mesh.material_ranges;
-        if (ranges.empty()) plan.draws.push_back(plan_draw(scene, i, whole, settings.output));
+        if (ranges.empty())
+            plan.draws.push_back(plan_draw(scene, i, whole, settings.output, shadow));
         for (const MaterialRange& range : ranges)
-            plan.draws.push_back(plan_draw(scene, i, range, settings.output));
+            plan.draws.push_back(plan_draw(scene, i, range, settings.output, shadow));
     }
     plan_frame(scene, settings, plan);
     return plan;

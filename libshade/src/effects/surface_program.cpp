@@ -51,6 +51,9 @@ bool has_lights(By f) {
 bool has_positional_lights(By f) {
     return f.point_lights + f.spot_lights > 0;
 }
+bool has_shadow(By f) {
+    return f.shadow != ShadowTerm::none;
+}
 bool is_gouraud(By f) {
     return f.interpolation == Interpolation::gouraud;
 }
@@ -197,6 +200,9 @@ Steps passing_steps(By f) {
         {"pass_color",
          "void pass_color() {}",
          {{"vertex.glsl#color", f.vertex_colors, {.attributes = {"color_linear"}}}}},
+        {"pass_shadow",
+         "void pass_shadow() {}",
+         {{"shadow.glsl#pass", has_shadow(f), {.uniforms = {"shadow_from_object"}}}}},
     };
 }
 
@@ -446,6 +452,12 @@ Steps light_steps(By f, bool in_this_stage) {
          {{"falloff.glsl#inverse_square", positional && f.falloff == FalloffTerm::inverse_square},
           {"falloff.glsl#none", positional && f.falloff == FalloffTerm::none},
           {"falloff.glsl#mixed", positional && f.falloff == FalloffTerm::mixed}}},
+        {"shadow",
+         "float visible_share(Surface surface, int row) { return 1.0; }",
+         {{"shadow.glsl#visible_share",
+           any && has_shadow(f),
+           {.uniforms = {"shadow_lift", "shadow_shift", "shadow_samples", "shadow_points"},
+            .samplers = {"shadow_maps"}}}}},
         {"range",
          "float within_range(float distance_squared, float inverse_range) { return 1.0; }",
          {{"falloff.glsl#range", positional && f.light_ranges}}},
@@ -696,6 +708,7 @@ Steps vertex_steps(By f) {
     if (!needs.lights) return always;
     return joined({always,
                    {{"position", "// pass_position() has written position_world.", {}},
+                    {"shadow_place", "// pass_shadow() has written shadow_place.", {}},
                     {"normal", "", {{"gouraud.glsl#normal", true}}},
                     {"sharpness", neutral_sharpness, {}},
                     surface_step(f, needs)},
@@ -714,6 +727,7 @@ Steps lit_steps(By f) {
                      {{"light.glsl#all", lights_here},
                       {"gouraud.glsl#interpolated", is_gouraud(f) && !both_sides},
                       {"gouraud.glsl#interpolated_both_sides", both_sides}}},
+                    {"shadow_place", "", {{"shadow.glsl#place", lights_here && has_shadow(f)}}},
                     surface_step(f, fragment_needs(f))},
                    dielectric_steps(f),
                    film_steps(f),
@@ -764,15 +778,22 @@ ShaderSteps chosen_of(const Steps& steps) {
 ShaderConstants light_constants(const Features& f) {
     const LightRowLayout layout = light_row_layout(f);
     const auto number = [](std::uint32_t value) { return static_cast<int>(value); };
-    return {{"directional_light_count", number(f.directional_lights)},
-            {"point_light_count", number(f.point_lights)},
-            {"spot_light_count", number(f.spot_lights)},
-            {"directional_light_rows", number(layout.directional_rows)},
-            {"point_light_rows", number(layout.point_rows)},
-            {"spot_light_rows", number(layout.spot_rows)},
-            {"first_point_row", number(layout.first_point)},
-            {"first_spot_row", number(layout.first_spot)},
-            {"light_row_count", number(layout.count)}};
+    ShaderConstants constants = {{"directional_light_count", number(f.directional_lights)},
+                                 {"point_light_count", number(f.point_lights)},
+                                 {"spot_light_count", number(f.spot_lights)},
+                                 {"directional_light_rows", number(layout.directional_rows)},
+                                 {"point_light_rows", number(layout.point_rows)},
+                                 {"spot_light_rows", number(layout.spot_rows)},
+                                 {"first_point_row", number(layout.first_point)},
+                                 {"first_spot_row", number(layout.first_spot)},
+                                 {"light_row_count", number(layout.count)}};
+    if (has_shadow(f)) {
+        constants.emplace_back("shadow_row",
+                               number(f.shadow == ShadowTerm::directional_light ? 0
+                                      : f.shadow == ShadowTerm::point_light     ? layout.first_point
+                                                                            : layout.first_spot));
+    }
+    return constants;
 }
 
 void append(std::vector<std::string>& names, const std::vector<std::string_view>& more) {

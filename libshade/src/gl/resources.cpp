@@ -403,6 +403,39 @@ Image RenderTarget::read(ColorSpace color_space) const {
     return image;
 }
 
+DepthLayers::DepthLayers(const Api& api, int width, int layers)
+    : api_(&api), width_(width), layers_(layers), texture_(api), target_(api) {
+    constexpr GLenum target = GL_TEXTURE_2D_ARRAY;
+    api->BindTexture(target, texture_.name());
+    api->TexImage3D(target, 0, GL_DEPTH_COMPONENT16, width, width, layers, 0, GL_DEPTH_COMPONENT,
+                    GL_UNSIGNED_SHORT, nullptr);
+    api->TexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
+    api->TexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    api->TexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    api->TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+    api->TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+    const std::array<GLfloat, 4> border{1.0F, 1.0F, 1.0F, 1.0F};
+    api->TexParameterfv(target, GL_TEXTURE_BORDER_COLOR, border.data());
+    api->TexParameteri(target, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    api->TexParameteri(target, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    api->BindTexture(target, 0);
+    api->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
+    api->DrawBuffer(GL_NONE);
+    api->ReadBuffer(GL_NONE);
+    api->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, texture_.name(), 0, 0);
+    check_complete(api, width, width);
+}
+
+void DepthLayers::begin(int layer) const {
+    const Api& api = *api_;
+    api->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
+    api->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, texture_.name(), 0, layer);
+    api->Viewport(0, 0, width_, width_);
+    api->DepthMask(GL_TRUE);
+    api->ClearDepth(1.0);
+    api->Clear(GL_DEPTH_BUFFER_BIT);
+}
+
 MippedCopy::MippedCopy(const Api& api, const RenderTarget& like)
     : api_(&api), width_(like.width()), height_(like.height()), color_(api) {
     api->BindTexture(GL_TEXTURE_2D, color_.name());

@@ -172,6 +172,28 @@ class RenderTarget {
     Framebuffer draw_;
 };
 
+/// Square depth buffers of 16 bits in one GL_TEXTURE_2D_ARRAY, for lookups that compare: bilinear,
+/// and as if there were nothing beyond the edge.
+class DepthLayers {
+  public:
+    /// \throws GpuError if they are larger than the context's limits, or memory runs out
+    DepthLayers(const Api& api, int width, int layers);
+
+    /// Makes a cleared layer the target of draw calls, with a viewport of its whole size.
+    void begin(int layer) const;
+
+    [[nodiscard]] const Texture& texture() const { return texture_; }
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int layers() const { return layers_; }
+
+  private:
+    const Api* api_;
+    int width_;
+    int layers_;
+    Texture texture_;
+    Framebuffer target_;
+};
+
 /// A copy of a target's color with all mip levels, for lookups by texelFetch.
 class MippedCopy {
   public:

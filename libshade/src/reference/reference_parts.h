@@ -31,6 +31,7 @@
 #include <utility>
 #include <vector>
 
+#include "effects/light_rows.h"
 #include "environment/convolution.h"
 #include "relief/export.h"
 #include "relief/mesh/frames.h"
@@ -241,6 +242,24 @@ class Visibility {
     std::unique_ptr<EmbreeScene> embree_;
 };
 
+/// Triangles of all instances in world space, for the shadow of the main light.
+class ShadowCasters {
+  public:
+    /// \param meshes  their positions are in world space
+    ShadowCasters(ShadowView view, std::vector<ViewMesh> meshes);
+    ~ShadowCasters();
+
+    /// Returns the triangles between a position and a point of the light, with their weights.
+    [[nodiscard]] std::vector<Hit> between(const glm::dvec3& position_world,
+                                           const glm::dvec2& point) const;
+
+    [[nodiscard]] const ShadowView& view() const { return view_; }
+
+  private:
+    ShadowView view_;
+    std::unique_ptr<EmbreeScene> embree_;
+};
+
 // Prepared scenes and surfaces
 
 /// One instance of a mesh, by vertex.
@@ -276,6 +295,7 @@ struct PreparedScene {
     std::optional<EnvironmentLookup> environment;
     std::map<float, SheenAlbedo> sheen_albedos;  ///< By sheen roughness.
     std::optional<PictureBehind> behind;         ///< If a surface is transmissive.
+    std::unique_ptr<ShadowCasters> shadow;       ///< If a light casts one.
 };
 
 /// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -127,6 +128,7 @@ struct Incoming {
     glm::dvec3 light_world;  ///< Unit, to the light.
     glm::dvec3 irradiance;
     glm::dvec3 highlight_irradiance;
+    bool casts_shadow = false;
 };
 
 /// A light closer than this touches the point: a float can square this distance.
@@ -147,7 +149,7 @@ glm::dvec3 limited_light(const glm::dvec3& irradiance) {
 
 /// \param share  the share of the light that its cone transmits, by the direction to the light
 template <typename Share>
-void add(const PointLight& light, const glm::dvec3& position, Share share,
+void add(const PointLight& light, const glm::dvec3& position, Share share, bool casts_shadow,
          std::vector<Incoming>& incoming) {
     const glm::dvec3 offset = glm::dvec3(light.position_world) - position;
     const double distance = glm::length(offset);
@@ -156,7 +158,7 @@ void add(const PointLight& light, const glm::dvec3& position, Share share,
     const double factor = fall_off(light, distance) * share(to_light);
     const glm::vec3 highlights = light.highlight_intensity.value_or(light.intensity);
     incoming.push_back({to_light, limited_light(glm::dvec3(light.intensity) * factor),
-                        limited_light(glm::dvec3(highlights) * factor)});
+                        limited_light(glm::dvec3(highlights) * factor), casts_shadow});
 }
 
 double cone_share(const SpotLight& spot, const glm::dvec3& light_world) {
@@ -170,22 +172,33 @@ double cone_share(const SpotLight& spot, const glm::dvec3& light_world) {
     return share * share;
 }
 
-/// Returns the light of all sources but those that touch the point.
-std::vector<Incoming> incoming_light(const Scene& scene, const glm::dvec3& position_world) {
+/// Returns the light of all sources but those that touch the point, without shadows.
+/// \param casting  the kind of the light that casts a shadow
+std::vector<Incoming> all_light(const Scene& scene, ShadowTerm casting,
+                                const glm::dvec3& position_world) {
     std::vector<Incoming> incoming;
+    bool is_found = false;
+    const auto casts = [&](ShadowTerm kind, const auto& light) {
+        const bool is_first = kind == casting && !is_found && shines(light);
+        is_found |= is_first;
+        return is_first;
+    };
     for (const DirectionalLight& light : scene.directional_lights) {
         incoming.push_back({-glm::normalize(glm::dvec3(light.direction_world)),
                             glm::dvec3(light.irradiance),
-                            glm::dvec3(light.highlight_irradiance.value_or(light.irradiance))});
+                            glm::dvec3(light.highlight_irradiance.value_or(light.irradiance)),
+                            casts(ShadowTerm::directional_light, light)});
     }
     for (const PointLight& light : scene.point_lights) {
         add(
-            light, position_world, [](const glm::dvec3&) { return 1.0; }, incoming);
+            light, position_world, [](const glm::dvec3&) { return 1.0; },
+            casts(ShadowTerm::point_light, light), incoming);
     }
     for (const SpotLight& spot : scene.spot_lights) {
         add(
             spot.point, position_world,
-            [&](const glm::dvec3& to_light) { return cone_share(spot, to_light); }, incoming);
+            [&](const glm::dvec3& to_light) { return cone_share(spot, to_light); },
+            casts(ShadowTerm::spot_light, spot), incoming);
     }
     return incoming;
 }
@@ -211,6 +224,55 @@ struct Context {
                                        second ? surface.texcoord_2 : surface.texcoord, trace);
     }
 };
+
+/// Returns the opacity of a surface, whatever its alpha mode.
+double alpha_at(const Context& context) {
+    return static_cast<double>(context.material.opacity) *
+           context.look_up(context.material.diffuse_texture, ImageUse::color).a *
+           context.surface.color.a *
+           context.look_up(context.material.opacity_texture, ImageUse::data).r;
+}
+
+/// Tells whether a surface between a point and the light blocks it.
+bool blocks(const PreparedScene& prepared, const Hit& hit, Trace& trace) {
+    const Material& material = prepared.material_of(hit.instance, hit.triangle);
+    if (!casts_shadow(material)) return false;
+    if (material.alpha_mode == AlphaMode::opaque) return true;
+    const Surface surface = surface_at(prepared, hit, material, trace);
+    return alpha_at({prepared, material, surface, trace}) >=
+           static_cast<double>(material.alpha_cutoff);
+}
+
+/// Returns the share of the main light that reaches a surface.
+double visible_share(const Context& context, const Surface& at) {
+    const ShadowCasters& shadow = *context.prepared.shadow;
+    const ShadowView& view = shadow.view();
+    const glm::dvec3 lifted = at.position_world + view.lift * at.normal_world;
+    double visible = 0.0;
+    for (const glm::dvec2& point : view.points) {
+        const std::vector<Hit> hits = shadow.between(lifted, point);
+        const bool blocked = std::any_of(hits.begin(), hits.end(), [&](const Hit& hit) {
+            return blocks(context.prepared, hit, context.trace);
+        });
+        context.trace.decide(blocked ? 1 : 0);
+        if (!blocked) visible += 1.0;
+    }
+    return visible / static_cast<double>(view.points.size());
+}
+
+/// Returns the light of all sources but those that touch the point.
+std::vector<Incoming> incoming_light(const Context& context, const Surface& at) {
+    const std::unique_ptr<ShadowCasters>& shadow = context.prepared.shadow;
+    std::vector<Incoming> incoming = all_light(
+        context.prepared.scene, shadow ? shadow->view().kind : ShadowTerm::none, at.position_world);
+    for (Incoming& light : incoming) {
+        if (!light.casts_shadow) continue;
+        const double share = visible_share(context, at);
+        light.irradiance *= share;
+        light.highlight_irradiance *= share;
+    }
+    return incoming;
+}
 
 /// Returns the power of a cosine; 1 for the exponent 0, for every cosine.
 double power(double cosine, double exponent) {
@@ -257,7 +319,7 @@ struct LightSums {
 
 LightSums light_sums(const Context& context, const Surface& at) {
     LightSums sums;
-    for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
+    for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
@@ -589,7 +651,7 @@ template <typename Lobe>
 glm::dvec3 received(const Context& context, const glm::dvec3& normal, Lobe lobe) {
     const Surface& at = context.surface;
     glm::dvec3 sum(0.0);
-    for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
+    for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(normal, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
@@ -655,7 +717,7 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const Hit& hit,
     const Microfacets facets = microfacets_at(context, tint);
     glm::dvec3 radiance =
         occlusion(context) * indirect_light(context, facets) + passing_light(context, facets, hit);
-    for (const Incoming& light : incoming_light(context.prepared.scene, at.position_world)) {
+    for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
@@ -681,8 +743,7 @@ Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& mate
     const Context context{prepared, material, surface, trace};
     const glm::dvec4 texel = context.look_up(material.diffuse_texture, ImageUse::color);
     const glm::dvec3 tint = glm::dvec3(texel) * glm::dvec3(surface.color);
-    const double alpha = static_cast<double>(material.opacity) * texel.a * surface.color.a *
-                         context.look_up(material.opacity_texture, ImageUse::data).r;
+    const double alpha = alpha_at(context);
     if (material.unlit) {
         const glm::vec3 color = material.metallic_roughness
                                     ? material.metallic_roughness->base_color

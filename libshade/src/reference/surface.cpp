@@ -100,6 +100,40 @@ std::vector<Hit> Visibility::hits(double x, double y) const {
     return once;
 }
 
+// Shadows
+
+ShadowCasters::ShadowCasters(ShadowView view, std::vector<ViewMesh> meshes)
+    : view_(std::move(view)),
+      embree_(std::make_unique<EmbreeScene>(EmbreeSpace{view_.center_world, view_.radius},
+                                            SceneBuild::thorough)) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (!meshes[i].triangles.empty())
+            embree_->add(static_cast<std::uint32_t>(i), meshes[i].positions_view,
+                         meshes[i].triangles);
+    }
+    embree_->build();
+}
+
+ShadowCasters::~ShadowCasters() = default;
+
+std::vector<Hit> ShadowCasters::between(const glm::dvec3& position_world,
+                                        const glm::dvec2& point) const {
+    const glm::dvec3 to_light = view_.to_light(position_world, point);
+    std::vector<MetTriangle> met;
+    embree_->find_all({position_world, to_light, 0.0, 1.0}, met);
+    const RayFrame ray = frame_of(position_world, to_light);
+    std::vector<Hit> hits;
+    for (const MetTriangle& triangle : met) {
+        ExactHit exact;
+        if (!intersect(ray, embree_->corners(triangle), exact)) continue;
+        Hit hit{triangle.mesh, triangle.triangle};
+        hit.barycentric = exact.weights;
+        hit.counter_clockwise = exact.faces_origin;
+        hits.push_back(hit);
+    }
+    return hits;
+}
+
 // Prepared scenes
 
 namespace {
@@ -246,6 +280,12 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
         instances.push_back(prepared(instance, *mesh, glm::inverse(world_from_view)));
     }
     if (scene.environment) environment.emplace(*scene.environment, report);
+    if (shadow_term(scene) != ShadowTerm::none) {
+        std::vector<ViewMesh> casters;
+        for (const PreparedInstance& instance : instances)
+            casters.push_back({instance.positions_world, instance.mesh->triangles});
+        shadow = std::make_unique<ShadowCasters>(*shadow_view(scene), std::move(casters));
+    }
     for (const Material& material : materials) {
         if (!material.metallic_roughness) continue;
         const float roughness = material.metallic_roughness->sheen_roughness;

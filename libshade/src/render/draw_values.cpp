@@ -86,6 +86,11 @@ const std::map<std::string_view, Setter>& setters() {
         {"normal_map_rounding", set_member<&DrawValues::normal_map_rounding>},
         {"bump_strength", set_member<&DrawValues::bump_strength>},
         {"exposure", set_member<&DrawValues::exposure>},
+        {"shadow_from_object", set_member<&DrawValues::shadow_from_object>},
+        {"shadow_lift", set_member<&DrawValues::shadow_lift>},
+        {"shadow_shift", set_member<&DrawValues::shadow_shift>},
+        {"shadow_samples", set_member<&DrawValues::shadow_samples>},
+        {"shadow_points", set_member<&DrawValues::shadow_points>},
     };
     return all;
 }
@@ -225,6 +230,22 @@ void set_place(DrawValues& values, const glm::mat4& world_from_object) {
     values.world_from_object_tangent = scaled_to_one(m);
     values.handedness = mirrors ? -1.0F : 1.0F;
     values.object_scale = static_cast<float>(cube_root_of_determinant(glm::dmat3(m)));
+}
+
+void set_shadow(DrawValues& values, const std::optional<ShadowView>& view,
+                const glm::mat4& world_from_object) {
+    values.shadow_samples = 0;
+    if (!view) return;
+    values.shadow_from_object = glm::mat4(view->place_from_world * glm::dmat4(world_from_object));
+    values.shadow_lift = glm::mat4(view->lift * view->place_from_world);
+    values.shadow_shift = glm::vec2(view->shift);
+    values.shadow_samples = static_cast<int>(view->points.size());
+    for (std::size_t i = 0; i < view->points.size(); ++i) {
+        const glm::vec2 point(view->points[i]);
+        glm::vec4& pair = values.shadow_points[i / 2];
+        (i % 2 == 0 ? pair.x : pair.z) = point.x;
+        (i % 2 == 0 ? pair.y : pair.w) = point.y;
+    }
 }
 
 void set_normal_map(DrawValues& values, const NormalMap& map, int bits, FlatCode flat) {

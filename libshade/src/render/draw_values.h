@@ -7,9 +7,11 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <tuple>
 
+#include "effects/light_rows.h"
 #include "gl/program.h"
 #include "gl/resources.h"
 #include "relief/shade/effects.h"
@@ -83,6 +85,13 @@ struct DrawValues {
     float bump_strength = 0.0F;
 
     float exposure = 1.0F;
+
+    // Of the shadow maps (ShadowView); without a sample, nothing is in shadow.
+    glm::mat4 shadow_from_object{1.0F};  ///< To places in the maps.
+    glm::mat4 shadow_lift{0.0F};         ///< From the normal to the lift of a place.
+    glm::vec2 shadow_shift{0.0F};
+    int shadow_samples = 0;
+    std::array<glm::vec4, shadow_point_count / 2> shadow_points{};
 };
 
 /// Sets the uniform `name` of the current program. \return false if there is no such value
@@ -95,6 +104,10 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
 
 /// Returns the cosine and the sine of the rotation of an environment.
 glm::vec2 environment_turn(const Environment& environment);
+
+/// Sets the values of the shadow maps for an instance; nothing is in shadow without a view.
+void set_shadow(DrawValues& values, const std::optional<ShadowView>& view,
+                const glm::mat4& world_from_object);
 
 /// Sets the values of an instance's matrix, except for clip_from_object and clip_from_world.
 ///

@@ -52,6 +52,7 @@ const std::map<std::string_view, SharedSampler>& shared_samplers() {
         {"environment_brdf", {false, "how much a rough surface mirrors, by angle and roughness"}},
         {"behind", {true, "the surface shows what is behind it; levels for roughness"}},
         {"light_buffer", {false, "the lights are in a buffer"}},
+        {"shadow_maps", {false, "surfaces hide the main light; a layer for a place on it"}},
         {"joint_matrices", {false, "joints move the vertices"}},
         {"joint_weights", {false, "each vertex follows some of the joints"}},
         {"morph_weights", {false, "morph targets have weights"}},
@@ -106,6 +107,10 @@ std::vector<PlannedPass> planned_passes(const FramePlan& plan) {
         });
     };
     std::vector<PlannedPass> passes;
+    if (plan.shadow_maps)
+        passes.push_back({"shadow maps",
+                          "the surfaces as the main light sees them; once while "
+                          "neither moves"});
     if (any(Kind::covering)) passes.push_back({"surfaces", "nearest first by the depth buffer"});
     if (plan.skybox)
         passes.push_back({"skybox", "the environment is seen where nothing is nearer"});

@@ -31,7 +31,7 @@ std::vector<gl::Location> attribute_locations() {
             at("texcoord_2", Attribute::texcoord_2)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 30> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 31> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
     {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
@@ -55,6 +55,7 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 30> texture_units{{
     {"blurred_environment", TextureUnit::blurred_environment},
     {"environment_brdf", TextureUnit::environment_brdf},
     {"light_buffer", TextureUnit::light_buffer},
+    {"shadow_maps", TextureUnit::shadow_maps},
     {"behind", TextureUnit::behind},
     {"joint_matrices", TextureUnit::joint_matrices},
     {"joint_weights", TextureUnit::joint_weights},

@@ -52,6 +52,7 @@ enum class TextureUnit : GLint {
     blurred_environment,
     environment_brdf,
     light_buffer,
+    shadow_maps,
     behind,
     joint_matrices,
     joint_weights,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws a scene by its effect plan. The constructor decodes and uploads only what the plan names. A
-// frame draws the opaque surfaces, the skybox, the transmissive surfaces over a copy of these, the
-// blended surfaces in painter's order, the finishing pass with sRGB codes by [IEC 61966-2-1], and
-// the overlays. Finished pictures are exchanged between threads. Tests:
-// tests/shade/render/renderer_test.cpp, shading_test.cpp, forced_effects_test.cpp,
-// picture_exchange_test.cpp.
+// frame draws the shadow maps if something has moved, the opaque surfaces, the skybox, the
+// transmissive surfaces over a copy of these, the blended surfaces in painter's order, the
+// finishing pass with sRGB codes by [IEC 61966-2-1], and the overlays. Finished pictures are
+// exchanged between threads. Tests: tests/shade/render/renderer_test.cpp, shading_test.cpp,
+// forced_effects_test.cpp, picture_exchange_test.cpp.
 #include "relief/shade/renderer.h"
 
 #include <fmt/format.h>
@@ -277,6 +277,7 @@ struct Draw {
     bool both_sides = false;
     std::array<BoundTexture, material_unit_count> textures;  ///< By TextureUnit.
     std::unique_ptr<SortedTriangles> sorted;                 ///< Only for blended draws.
+    bool casts_shadow = false;
 };
 
 /// Returns the triangles of a blended draw at their deformed positions.
@@ -379,10 +380,14 @@ struct Renderer::Implementation {
     void move(const Scene& scene);
     void bind_textures(const Draw& draw) const;
     void set_state(const Draw& draw) const;
+    void use_program(const DrawProgram& program, const Draw& draw, const glm::dmat4& to_clip,
+                     const Camera* camera) const;
     void issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera);
     void issue_blended(const glm::dmat4& to_clip, const Camera& camera);
     void count_fragments() const;
     void draw_overlays(const glm::dmat4& to_clip) const;
+    void prepare_shadow(const Scene& scene);
+    void draw_shadow_maps();
     void draw_frame(const Camera& camera);
 
     const gl::Api& api;
@@ -404,6 +409,9 @@ struct Renderer::Implementation {
     std::optional<Skybox> skybox;
     std::unique_ptr<OverlayDrawing> overlays;  ///< If any is requested.
     bool counts_fragments;                     ///< For the overdraw view.
+    std::optional<ShadowView> shadow;          ///< If the plan has shadow maps.
+    std::optional<gl::DepthLayers> shadow_maps;
+    bool has_old_shadow = false;  ///< The maps show an earlier scene, or none.
 };
 
 Renderer::Implementation::Implementation(const Context& context, const Scene& scene,
@@ -436,6 +444,7 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     }
     {
         const ProgressStage stage("programs");
+        prepare_shadow(scene);
         prepare_draws(scene);
     }
     if (settings.overlays.any()) {
@@ -524,6 +533,8 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t plan
     set_material(draw.values, p.material, scene, picture.last_level());
     set_environment_values(draw);
     set_place(draw.values, instance.world_from_object);
+    set_shadow(draw.values, shadow, instance.world_from_object);
+    draw.casts_shadow = casts_shadow(p.material);
     bind_planned_textures(draw, p);
     if (is_blended(draw)) draw.sorted = sorted_triangles(scene, draw);
     return draw;
@@ -590,8 +601,12 @@ void Renderer::Implementation::set_environment_values(Draw& draw) const {
 void Renderer::Implementation::move(const Scene& scene) {
     replace_meshes(scene);
     lights.update(api, scene);
-    for (Draw& draw : draws)
-        set_place(draw.values, scene.instances[draw.instance].world_from_object);
+    prepare_shadow(scene);
+    for (Draw& draw : draws) {
+        const glm::mat4& world_from_object = scene.instances[draw.instance].world_from_object;
+        set_place(draw.values, world_from_object);
+        set_shadow(draw.values, shadow, world_from_object);
+    }
     follow_poses(scene);
     if (overlays) overlays->move(scene);
 }
@@ -617,19 +632,24 @@ void Renderer::Implementation::set_state(const Draw& draw) const {
     api->FrontFace(draw.values.handedness < 0.0F ? GL_CW : GL_CCW);
 }
 
-void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
+/// Sets the uniforms of a draw, except for that of the eye if there is no camera.
+void Renderer::Implementation::use_program(const DrawProgram& program, const Draw& draw,
+                                           const glm::dmat4& to_clip, const Camera* camera) const {
     DrawValues values = draw.values;
     values.clip_from_object = glm::mat4(to_clip * glm::dmat4(values.world_from_object));
     values.clip_from_world = glm::mat4(to_clip);
-    values.eye_world = homogeneous_eye(camera);
+    if (camera != nullptr) values.eye_world = homogeneous_eye(*camera);
     if (const auto pose = poses.find(draw.instance); pose != poses.end()) {
         values.joint_pairs = pose->second.joint_pairs();
         values.morph_layout = pose->second.morph_layout();
     }
-    draw.program->linked.use();
-    for (const std::string& name : draw.program->planned.uniforms) {
-        set_uniform(draw.program->linked, name, values);
-    }
+    program.linked.use();
+    for (const std::string& name : program.planned.uniforms)
+        set_uniform(program.linked, name, values);
+}
+
+void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
+    use_program(*draw.program, draw, to_clip, &camera);
     bind_textures(draw);
     set_state(draw);
     if (!draw.sorted) {
@@ -638,7 +658,7 @@ void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, cons
     }
     const glm::vec3 farther_world(-camera.world_from_view[2]);
     const glm::vec3 farther_object =
-        glm::transpose(glm::mat3(values.world_from_object)) * farther_world;
+        glm::transpose(glm::mat3(draw.values.world_from_object)) * farther_world;
     meshes.at(draw.mesh)->draw(api, draw.sorted->sort(farther_object));
 }
 
@@ -689,14 +709,52 @@ void Renderer::Implementation::draw_overlays(const glm::dmat4& to_clip) const {
     overlays->draw(to_clip, surfaces);
 }
 
+void Renderer::Implementation::prepare_shadow(const Scene& scene) {
+    if (!plan.shadow_maps) return;
+    shadow = shadow_view(scene);
+    has_old_shadow = shadow.has_value();
+    if (!shadow) return;
+    const int layers = static_cast<int>(shadow->points.size());
+    if (!shadow_maps || shadow_maps->layers() != layers || shadow_maps->width() != shadow->texels)
+        shadow_maps.emplace(api, shadow->texels, layers);
+}
+
+/// Draws both sides of all surfaces that cast shadows into the maps. Their programs compute
+/// positions and the holes of masks only.
+void Renderer::Implementation::draw_shadow_maps() {
+    has_old_shadow = false;
+    api->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    api->Disable(GL_CULL_FACE);
+    for (std::size_t i = 0; i < shadow->points.size(); ++i) {
+        shadow_maps->begin(static_cast<int>(i));
+        const glm::dmat4 to_clip = shadow->clip_from_world(shadow->points[i]);
+        for (const Draw& draw : draws) {
+            if (!draw.casts_shadow) continue;
+            Features depth_only = draw.features;
+            depth_only.view = DebugView::overdraw;
+            const auto program = cache.programs.get(canonical(depth_only));
+            use_program(*program, draw, to_clip, nullptr);
+            bind_textures(draw);
+            meshes.at(draw.mesh)->draw(api, draw.range);
+        }
+    }
+    api->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 void Renderer::Implementation::draw_frame(const Camera& camera) {
-    picture.begin();
     api->Disable(GL_BLEND);
     api->Enable(GL_DEPTH_TEST);
     api->DepthFunc(GL_LEQUAL);
     api->CullFace(GL_BACK);
-    environment->bind(api);
     set_attribute_constants(api);
+    if (has_old_shadow) draw_shadow_maps();
+    picture.begin();
+    environment->bind(api);
+    if (shadow) {
+        api->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(TextureUnit::shadow_maps));
+        api->BindTexture(GL_TEXTURE_2D_ARRAY, shadow_maps->texture().name());
+        api->BindSampler(static_cast<GLuint>(TextureUnit::shadow_maps), 0);
+    }
     if (counts_fragments) count_fragments();
     const glm::dmat4 to_clip = clip_from_world(camera, static_cast<double>(picture.aspect()));
     for (Draw& draw : draws) {
@@ -761,6 +819,7 @@ FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& 
         draw.features = canonical(draw.features);
         plan.sorted_blending |= draw.features.alpha == AlphaMode::blend;
         plan.transmission_background |= transmits(draw.features);
+        plan.shadow_maps |= draw.features.shadow != ShadowTerm::none;
     }
     plan.finishing_pass |=
         plan.sorted_blending || plan.transmission_background || settings.samples > 1;

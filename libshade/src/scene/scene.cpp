@@ -48,18 +48,21 @@ bool has_bare_triangles(const Mesh& mesh) {
 
 }  // namespace
 
+void add_instance(const Scene& scene, std::size_t instance, Bounds& world) {
+    const glm::mat4& world_from_object = scene.instances[instance].world_from_object;
+    const Shared<Mesh> mesh = deformed_mesh(scene, instance);
+    for (const glm::vec3& position_object : mesh->positions) {
+        const glm::vec3 position(world_from_object * glm::vec4(position_object, 1.0F));
+        if (!is_finite(position)) continue;
+        world.min = glm::min(world.min, position);
+        world.max = glm::max(world.max, position);
+    }
+}
+
 Bounds world_bounds(const Scene& scene) {
     Bounds bounds;
-    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-        const glm::mat4& world_from_object = scene.instances[i].world_from_object;
-        const Shared<Mesh> mesh = deformed_mesh(scene, i);
-        for (const glm::vec3& position : mesh->positions) {
-            const glm::vec3 world(world_from_object * glm::vec4(position, 1.0F));
-            if (!is_finite(world)) continue;
-            bounds.min = glm::min(bounds.min, world);
-            bounds.max = glm::max(bounds.max, world);
-        }
-    }
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        add_instance(scene, i, bounds);
     return bounds;
 }
 

@@ -106,6 +106,9 @@ inline bool is_deformed(const Instance& instance) {
     return instance.pose && (is_morphed(*instance.pose) || is_skinned(*instance.pose));
 }
 
+/// Extends the bounds in world space by an instance as its pose deforms it.
+void add_instance(const Scene& scene, std::size_t instance, Bounds& world);
+
 /// Deforms a mesh at rest as deformed_mesh() does.
 /// \param source_vertex  the vertex of the deformation for each vertex of the mesh; empty: the same
 void deform(const MeshPose& pose, std::span<const std::uint32_t> source_vertex, Mesh& mesh);

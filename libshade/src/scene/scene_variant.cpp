@@ -336,6 +336,7 @@ Scene with_lighting_of(const Scene& scene, Scene other) {
     other.background = scene.background;
     other.exposure = scene.exposure;
     other.tone_mapping = scene.tone_mapping;
+    other.shadow = scene.shadow;
     return other;
 }
 

@@ -121,6 +121,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::light_ranges>("light ranges"),
         field<&F::highlight_colors>("highlight colours"),
         field<&F::lights_in_buffer>("light buffer"),
+        field<&F::shadow, 4>("shadow"),
         field<&F::environment_diffuse>("environment light"),
         field<&F::diffuse>("diffuse"),
         field<&F::specular, 3>("specular"),
@@ -317,6 +318,8 @@ void add_lights(Scene& scene, const Features& f) {
     }
     const auto point = [&](std::uint32_t i) {
         PointLight light{{1.0F + shift(i), 1, 2}, glm::vec3(1.5F)};
+        // Lights next to the sphere cast no shadow.
+        if (f.shadow != ShadowTerm::none) light.position_world *= 2.0F;
         const bool falls = f.falloff == FalloffTerm::inverse_square ||
                            (f.falloff == FalloffTerm::mixed && i % 2 == 0);
         light.falloff = falls ? Falloff::inverse_square : Falloff::none;
@@ -355,6 +358,13 @@ Features attainable(Features f) {
     if (f.metallic_roughness && environment) f.reflection = ReflectionTerm::glossy;
     if (lights && f.environment_diffuse) f.diffuse = true;
     if (f.output == OutputCoding::half) f.output = OutputCoding::srgb;
+    const bool casts = f.alpha != AlphaMode::blend && !f.transmission && !f.unlit;
+    if (f.shadow != ShadowTerm::none) {
+        f.shadow = !casts                     ? ShadowTerm::none
+                   : f.directional_lights > 0 ? ShadowTerm::directional_light
+                   : f.spot_lights > 0        ? ShadowTerm::spot_light
+                                              : ShadowTerm::point_light;
+    }
     if ((f.alpha == AlphaMode::blend || f.transmission) && f.output != OutputCoding::linear) {
         f.output = OutputCoding::half;
     }
@@ -430,6 +440,7 @@ CallingScene scene_calling_for(const Features& features) {
     add_textures(scene, scene.materials[0], features);
     add_lights(scene, features);
     add_surroundings(scene, features);
+    if (features.shadow != ShadowTerm::none) scene.shadow = Shadow{};
     if (features.exposure) scene.exposure = 1.5F;
     scene.tone_mapping = features.tone_mapping;
     scene.background = {0.1F, 0.2F, 0.3F, 1.0F};

@@ -176,6 +176,17 @@ const Change moved_joint = [](Frame& f) {
 };
 const Change flat_normals = [](Frame& f) { f.scene.instances[0].pose->has_flat_normals = true; };
 
+const Change shadowed = with(&Scene::shadow, Shadow{});
+/// A point light at this share of the radius of the mesh from its middle.
+Change with_light_at(float share) {
+    return [=](Frame& f) {
+        const Bounds bounds = world_bounds(f.scene);
+        const glm::vec3 middle = 0.5F * (bounds.min + bounds.max);
+        const float radius = 0.5F * glm::distance(bounds.min, bounds.max);
+        f.scene.point_lights.push_back({middle + glm::vec3(0, 0, share * radius), faint});
+    };
+}
+
 const Change exposed = with(&Scene::exposure, 0.999F);
 const Change reinhard = with(&Scene::tone_mapping, ToneMapping::reinhard);
 const Change aces = with(&Scene::tone_mapping, ToneMapping::aces);
@@ -527,6 +538,20 @@ const std::vector<Boundary> light_boundaries = {
      {with_spot(&PointLight::highlight_intensity, faint)},
      {with_spot(&PointLight::highlight_intensity, glm::vec3(0, 0.001F, 0.001F))}},
     {"highlight colours", "highlights", {with_sun(&Sun::highlight_irradiance, faint)}, {}, {shiny}},
+    {"shadow", "asked for", {}, {}, {shadowed}},
+    {"shadow", "a light", {shadowed, ambient}, {no_suns}, {}},
+    {"shadow",
+     "not black",
+     {shadowed, no_suns, ambient, with_light_at(2.0F)},
+     {black_point_light},
+     {}},
+    {"shadow", "far", {shadowed, no_suns}, {with_light_at(1.09F)}, {with_light_at(1.11F)}},
+    {"shadow", "a surface that scatters", {shadowed}, {black_surface}, {}},
+    {"shadow", "lit", {shadowed}, {unlit}, {}},
+    {"shadow", "not blended", {shadowed, translucent}, {blended}, {masked}},
+    {"shadow", "no transmission", {shadowed, no_metal}, {clear}, {}},
+    {"shadow maps", "asked for", {}, {}, {shadowed}},
+    {"shadow maps", "a surface that scatters", {shadowed}, {black_surface}, {}},
     {"light buffer", "more than a block holds", {}, {with_suns(512)}, {with_suns(513)}},
     {"light buffer",
      "rows of highlights",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <string>
 
@@ -623,6 +624,140 @@ TEST_F(AgainstReference, AgreesWithEightBitTexturesAlmostAsWell) {
         }
         expect_agreement(scene, coarse_tolerance);
     }
+}
+
+/// A ball above a square, seen from the side, without other light than one that casts a shadow.
+Scene ball_above_square(ShadowTerm light, float degrees) {
+    Scene scene = test::scene_of(test::sphere(48, 32), Material{});
+    scene.meshes.push_back(test::square_scene(Material{}).meshes[0]);
+    scene.instances[0].world_from_object =
+        glm::scale(glm::translate(glm::mat4(1.0F), {0.0F, 0.0F, 1.5F}), glm::vec3(0.8F));
+    scene.instances.push_back({1, glm::mat4(1.0F), "square"});
+    scene.materials[0].diffuse = {0.8F, 0.6F, 0.4F};
+    scene.materials[0].specular = glm::vec3(0.3F);
+    scene.shadow = Shadow{glm::radians(degrees)};
+    const glm::vec3 place{-3.0F, 4.0F, 7.0F};
+    if (light == ShadowTerm::directional_light)
+        scene.directional_lights = {{-place, glm::vec3(0.9F)}};
+    if (light == ShadowTerm::point_light) scene.point_lights = {{place, glm::vec3(60.0F)}};
+    if (light == ShadowTerm::spot_light)
+        scene.spot_lights = {{{place, glm::vec3(60.0F)}, -place, 0.2F, 0.5F}};
+    scene.camera = framed(scene, 0.5F, 0.3F, 0.6F, 1.0F);
+    return scene;
+}
+
+/// The difference between a picture and its reference.
+struct ShadowErrors {
+    double mean = 0.0;   ///< In codes, over all pixels.
+    double large = 0.0;  ///< The share of pixels with a difference above 10 codes.
+    double dark = 0.0;   ///< The share of pixels that are darker than without a shadow.
+};
+
+class Shadows : public AgainstReference {
+  protected:
+    [[nodiscard]] ShadowErrors errors_of(const Scene& scene) const {
+        constexpr int size = 128;
+        Report report;
+        const relief::Reference reference = render_reference(scene, {size, size}, report);
+        const Image expected = reference_picture(reference.radiance, scene, OutputCoding::srgb);
+        const FrameSettings settings{size, size, 1, OutputCoding::srgb};
+        const Image drawn = render(scene, settings).image;
+        Scene without = scene;
+        without.shadow.reset();
+        const Image lit = render(without, settings).image;
+        ShadowErrors errors;
+        for (int y = 0; y < size; ++y) {
+            for (int x = 0; x < size; ++x) {
+                const double is = pixel(drawn, x, y)[0];
+                const double apart = std::abs(is - 255.0 * pixel(expected, x, y)[0]);
+                errors.mean += apart / (size * size);
+                if (apart > 10.0) errors.large += 1.0 / (size * size);
+                if (is < pixel(lit, x, y)[0]) errors.dark += 1.0 / (size * size);
+            }
+        }
+        return errors;
+    }
+
+    void expect_agreement_of_shadow(const Scene& scene) const {
+        const ShadowErrors errors = errors_of(scene);
+        // Without shadows, the mean is 0.11 codes. Shadows differ at edges only, by a fraction of a
+        // texel of their maps, which are about as fine as these pictures.
+        EXPECT_LT(errors.mean, 0.22);
+        EXPECT_LT(errors.large, 0.003);
+        EXPECT_GT(errors.dark, 0.03);
+        EXPECT_LT(errors.dark, 0.5);
+    }
+};
+
+TEST_F(Shadows, OfAllLightsAreThoseOfTheReference) {
+    for (const ShadowTerm light :
+         {ShadowTerm::directional_light, ShadowTerm::point_light, ShadowTerm::spot_light}) {
+        for (const float degrees : {0.0F, 2.0F, 12.0F, 30.0F}) {
+            SCOPED_TRACE(testing::Message()
+                         << "light " << static_cast<int>(light) << ", " << degrees << " degrees");
+            const Scene scene = ball_above_square(light, degrees);
+            EXPECT_EQ(plan_effects(scene, {}).draws[0].features.shadow, light);
+            expect_agreement_of_shadow(scene);
+        }
+    }
+}
+
+TEST_F(Shadows, OnAllKindsOfSurfacesAreThoseOfTheReference) {
+    const auto expect_with = [&](const char* name, const std::function<void(Scene&)>& change) {
+        SCOPED_TRACE(name);
+        Scene scene = ball_above_square(ShadowTerm::directional_light, 6.0F);
+        change(scene);
+        expect_agreement_of_shadow(scene);
+    };
+    expect_with("Gouraud", [](Scene& scene) {
+        scene.meshes[1] = test::grid(24);
+        scene.instances[1].world_from_object =
+            glm::scale(glm::translate(glm::mat4(1.0F), {-2.0F, -2.0F, 0.0F}), glm::vec3(4.0F));
+        scene.meshes[1].edit().material_ranges = {
+            {0, static_cast<std::uint32_t>(scene.meshes[1]->triangles.size()), 0}};
+        scene.materials[0].interpolation = Interpolation::gouraud;
+    });
+    expect_with("metallic-roughness with layers", [](Scene& scene) {
+        scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.0F);
+    });
+    expect_with("a mask", [](Scene& scene) {
+        Image holes = make_image(4, 4, 4, 8, ColorSpace::srgb);
+        for (std::size_t i = 0; i < 64; ++i)
+            holes.as<std::uint8_t>()[i] = i % 4 != 3 || i / 4 % 2 == 0 ? 255 : 0;
+        scene.materials[0].diffuse_texture = image(scene, holes);
+        scene.materials[0].diffuse_texture->filter = TextureFilter::nearest;
+        scene.materials[0].alpha_mode = AlphaMode::mask;
+        scene.materials[0].double_sided = true;
+    });
+    expect_with("a mirrored instance",
+                [](Scene& scene) { scene.instances[0].world_from_object[0] *= -1.0F; });
+    expect_with("a pose", [](Scene& scene) {
+        Features f;
+        f.morphing = f.skinning = true;
+        scene.instances[0].pose = test::pose_calling_for(scene.meshes[0], f);
+    });
+    expect_with("far from the origin", [](Scene& scene) {
+        for (Instance& instance : scene.instances)
+            instance.world_from_object[3] += glm::vec4(65536.0F, 0.0F, 0.0F, 0.0F);
+        scene.camera = framed(scene, 0.5F, 0.3F, 0.6F, 1.0F);
+    });
+}
+
+TEST_F(Shadows, FollowMovedLightsAndSurfaces) {
+    const FrameSettings settings{64, 64, 1, OutputCoding::srgb};
+    Scene scene = ball_above_square(ShadowTerm::point_light, 4.0F);
+    Renderer renderer(context(), scene, settings);
+    const Image before = renderer.draw(*scene.camera).image;
+    scene.point_lights[0].position_world = {3.0F, 4.0F, 7.0F};
+    scene.instances[0].world_from_object[3].y += 0.3F;
+    renderer.move(scene);
+    const Image moved = renderer.draw(*scene.camera).image;
+    EXPECT_FALSE(test::same_bits(moved, before));
+    EXPECT_TRUE(test::same_bits(moved, render(scene, settings).image));
+    // A light inside of the scene casts no shadow.
+    scene.point_lights[0].position_world = {0.5F, 0.5F, 0.5F};
+    renderer.move(scene);
+    EXPECT_TRUE(test::same_bits(renderer.draw(*scene.camera).image, render(scene, settings).image));
 }
 
 /// A ball that reflects a blurred environment, with Phong's model or, with a metallic share, with

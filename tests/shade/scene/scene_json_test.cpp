@@ -234,6 +234,16 @@ TEST_F(SceneFile, LampsHaveTheThreeColoursOfCourses) {
     EXPECT_EQ(scene.spot_lights[0].point.range, 9.0F);
 }
 
+TEST_F(SceneFile, ShadowsHaveASizeInDegrees) {
+    EXPECT_FALSE(load(R"("ambient": 0)").scene.shadow);
+    EXPECT_FALSE(load(R"("shadow": null)").scene.shadow);
+    EXPECT_EQ(load(R"("shadow": {})").scene.shadow->size, Shadow{}.size);
+    EXPECT_FLOAT_EQ(load(R"("shadow": {"size": 18})").scene.shadow->size,
+                    0.1F * std::numbers::pi_v<float>);
+    EXPECT_THROW(load(R"("shadow": {"size": 31})"), FileError);
+    EXPECT_THROW(load(R"("shadow": {"sizes": 1})"), FileError);
+}
+
 TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
     const SceneGraph graph = load(R"("nodes": [{"translation": [10, 0, 0], "scale": 2, "children": [
         {"translation": [1, 0, 0], "model": "cube.ply", "material": "emerald"},

@@ -364,6 +364,18 @@ void draw_light_panel(const PanelInput& input) {
     if (pick_color("Ambient", ambient, false)) {
         state.edit([&](Scene& scene) { scene.ambient = glm::max(ambient, glm::vec3(0.0F)); });
     }
+    std::optional<Shadow> shadow = state.scene().shadow;
+    bool casts = shadow.has_value();
+    if (check("Shadow", casts)) {
+        shadow = casts ? std::optional(Shadow()) : std::nullopt;
+        state.edit([&](Scene& scene) { scene.shadow = shadow; });
+    }
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "The first directional light casts it, else the first spot or point light.");
+    if (shadow &&
+        slide_angle("Shadow size", shadow->size, {.min = 0.0F, .max = 30.0F, .format = "%.1f deg"}))
+        state.edit([&](Scene& scene) { scene.shadow = shadow; });
     const bool has_changed = edit_rows(rows, state.sphere());
     const bool has_more = add_rows(rows, state.sphere());
     if (has_changed || has_more) state.set_light_rows(std::move(rows));

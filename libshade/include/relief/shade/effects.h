@@ -45,6 +45,9 @@ enum class FalloffTerm : std::uint8_t {
     mixed,  ///< Some lights have a falloff and some do not.
 };
 
+/// The kind of the light that casts a shadow: the first one of its kind that shines.
+enum class ShadowTerm : std::uint8_t { none, directional_light, spot_light, point_light };
+
 /// The effects of one draw. Two draws with equal Features share one program.
 struct Features {
     // The reflection model and its interpolation.
@@ -117,6 +120,7 @@ struct Features {
     ToneMapping tone_mapping = ToneMapping::none;
     bool exposure = false;
     DebugView view = DebugView::picture;
+    ShadowTerm shadow = ShadowTerm::none;  ///< Surfaces hide one of the lights.
 
     friend auto operator<=>(const Features&, const Features&) = default;
 };
@@ -155,6 +159,7 @@ struct FramePlan {
     bool sorted_blending = false;          ///< Blended draws last, farthest triangle first.
     bool finishing_pass = false;           ///< Averages and codes the drawn samples.
     std::vector<EffectReason> reasons;     ///< Those of the frame-wide effects.
+    bool shadow_maps = false;              ///< The surfaces as the main light sees them.
 };
 
 /// Returns the canonical effects of a draw of this material and mesh in this scene, at rest.

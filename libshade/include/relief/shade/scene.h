@@ -195,6 +195,23 @@ enum class ToneMapping {
     aces,      ///< A fit to the film curve of the ACES reference rendering.
 };
 
+/// The shadow of the main light: of the first directional light that shines, or if there is none,
+/// of the first spot light, or else of the first point light.
+///
+/// The light is a disc that faces the middle of the scene. The shadow at a point is the share of
+/// `shadow_point_count` places on the disc that a surface hides, for all light of the main light.
+/// Rays begin above the point, by 2.5 texels of the shadow maps along its normal, so that a surface
+/// does not shade itself. Unlit materials and those with transmission or alpha blending cast no
+/// shadow. Middle and radius are those of the sphere around the bounding box of all that casts one.
+/// A point or spot light closer to the middle than 1.1 times the radius casts none.
+struct Shadow {
+    /// The diameter of the disc, as an angle seen from the middle; 0 is a hard edge.
+    float size = 0.0349065850F;  // 2 degrees
+};
+
+/// The places on a light that casts a soft shadow.
+inline constexpr std::size_t shadow_point_count = 16;
+
 /// The pose of a mesh that morph targets and joints deform. glTF 2.0, sections 3.7.2.2 and 3.7.3.3.
 /// The mesh itself stays at rest: renderers deform it in the vertex stage, deformed_mesh() on the
 /// CPU.
@@ -231,6 +248,7 @@ struct Scene {
                                    ///< Neither exposed nor tone-mapped.
     float exposure = 1.0F;         ///< Multiplies radiance before tone mapping.
     ToneMapping tone_mapping = ToneMapping::none;  ///< For pictures with sRGB codes only.
+    std::optional<Shadow> shadow = std::nullopt;   ///< If absent, no light casts a shadow.
 };
 
 /// Returns true if the pose adds displacements of a morph target, because its weight is not 0.

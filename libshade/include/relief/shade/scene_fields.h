@@ -303,16 +303,22 @@ inline constexpr auto fields_of<Camera> =
                SceneField{"orthographic_height", &Camera::orthographic_height, positive_range,
                           FieldUnit::world_length}};
 
+template <>
+inline constexpr auto fields_of<Shadow> = std::tuple{SceneField{
+    "size", &Shadow::size, {0, std::numbers::pi_v<float> / 6}, FieldUnit::radians, "shadow size"}};
+
 inline constexpr SceneField ambient_field{
     "ambient", &Scene::ambient, {0, max_light}, FieldUnit::color, "ambient light"};
 
 /// The fields of the scene as a whole.
 template <>
 inline constexpr auto fields_of<Scene> =
-    std::tuple{ambient_field, SceneField{"environment", &Scene::environment},
+    std::tuple{ambient_field,
+               SceneField{"environment", &Scene::environment},
                SceneField{"background", &Scene::background, {0, max_light}, FieldUnit::color},
                SceneField{"exposure", &Scene::exposure, {0, max_reflectance}},
-               SceneField{"tone_mapping", &Scene::tone_mapping}};
+               SceneField{"tone_mapping", &Scene::tone_mapping},
+               SceneField{"shadow", &Scene::shadow}};
 
 template <>
 inline constexpr auto fields_of<Orbit> = std::tuple{

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Soft shadows of the main light, from shadow maps: one for each place on the light.
+// libshade/src/effects/light_rows.h describes them. Source: [Williams 1978].
+
+#part pass
+// Vertex stage: the place in the map of the middle of the light, homogeneous. The matrix is multiplied
+// in double precision, so that models far from the origin have sharp shadows.
+
+uniform mat4 shadow_from_object;
+
+out vec4 shadow_place;
+
+void pass_shadow() { shadow_place = shadow_from_object * vec4(position_deformed, 1.0); }
+
+#part place
+// Fragment stage: the same place, interpolated.
+
+in vec4 shadow_place;
+
+#part visible_share
+// The share of the main light that reaches the surface; 1 for all other lights. The surface is lifted
+// along its normal, so that it does not shade itself. Each lookup compares with the four nearest
+// texels.
+
+#include <shadow_place>
+
+uniform mat4 shadow_lift;
+uniform vec2 shadow_shift;
+uniform int shadow_samples;
+uniform vec4 shadow_points[8];  // Two places on the light in each.
+uniform sampler2DArrayShadow shadow_maps;
+
+float visible_share(Surface surface, int row) {
+    if (row != shadow_row || shadow_samples == 0) return 1.0;
+    vec4 place = shadow_place + shadow_lift * vec4(surface.normal_world, 0.0);
+    if (!(place.w > 0.0)) return 1.0;
+    vec3 middle = place.xyz / place.w;
+    float shift = dot(shadow_shift, place.zw) / place.w;
+    float share = 0.0;
+    for (int i = 0; i < shadow_samples; ++i) {
+        vec4 points = shadow_points[i / 2];
+        vec2 point = i % 2 == 0 ? points.xy : points.zw;
+        share += texture(shadow_maps, vec4(middle.xy + point * shift, float(i), middle.z));
+    }
+    return share / float(shadow_samples);
+}
