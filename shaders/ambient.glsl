@@ -26,13 +26,39 @@ void add_ambient(Surface surface, inout Lighting lighting) {
 
 #part occlusion
 // The share of ambient and environment light that arrives: the texture's red, weighted by the
-// material's strength.
+// material's strength, times that of the vertices.
 
 #include "inputs.glsl#texcoord"
+#include <open_share>
 
 uniform sampler2D occlusion_texture;
 uniform float occlusion_strength;
 
 float occlusion() {
-    return 1.0 + occlusion_strength * (texture(occlusion_texture, texcoord_surface).r - 1.0);
+    float share = 1.0 + occlusion_strength * (texture(occlusion_texture, texcoord_surface).r - 1.0);
+    return share * open_share();
 }
+
+#part occlusion_by_vertex
+// The share of the vertices alone.
+
+#include <open_share>
+
+float occlusion() { return open_share(); }
+
+#part open_share
+// The share of ambient and environment light that arrives, interpolated between vertices: 1 minus the
+// hidden share, because interpolation of zeros is exact.
+
+in float hidden_share;
+
+float open_share() { return 1.0 - hidden_share; }
+
+#part pass_occlusion
+// Vertex stage: the hidden share of the vertex.
+
+uniform samplerBuffer hidden_shares;
+
+out float hidden_share;
+
+void pass_occlusion() { hidden_share = texelFetch(hidden_shares, gl_VertexID).r; }

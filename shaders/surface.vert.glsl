@@ -20,6 +20,7 @@ vec3 position_deformed = skinned_point(morphed(position_object, gl_VertexID, 0),
 #include <pass_texcoord>
 #include <pass_texcoord_2>
 #include <pass_color>
+#include <pass_occlusion>
 #include <pass_shadow>
 #include <pass_lights>
 
@@ -30,6 +31,7 @@ void main() {
     pass_texcoord();
     pass_texcoord_2();
     pass_color();
+    pass_occlusion();
     pass_shadow();
     pass_lights();
 }

@@ -235,6 +235,34 @@ TEST(ViewCommand, TheEnvironmentStandsBehindTheModelHoweverItIsNamed) {
     EXPECT_GT(blurred[1], 60) << "it contains light of faces with green";
 }
 
+TEST(ViewCommand, ShadowsAndOcclusionDarkenWhatIsBehindASurface) {
+    const Workplace workplace;
+    workplace.write("box.json", R"({"relief_scene": 1, "ambient": 0.5, "background": 0,
+        "camera": {"eye": [0, 0, 8]},
+        "materials": {"gray": {"ambient": 1, "diffuse": 0.5, "specular": 0}},
+        "nodes": [{"shape": {"quad": {"cells": 8}}, "scale": 2, "material": "gray"},
+                  {"shape": "cube", "scale": 0.3, "translation": [1, 0, 0.6], "material": "gray"}],
+        "lights": [{"type": "directional", "direction": [-1, 0, -0.6]}]})");
+    const auto middle = [&](const std::string& options) {
+        const ProgramResult result =
+            workplace.run("relief-view --quiet --size 33x33 --output out/p.png " + options);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return pixel(picture_in(workplace / "out/p.png"), 16, 16);
+    };
+    // The middle is in the shadow of the cube, which also hides light from the side.
+    const Pixel open = middle("box.json");
+    const Pixel shaded = middle("box.json --shadow 2");
+    const Pixel occluded = middle("box.json --shadow 2 --ambient-occlusion 0.5");
+    EXPECT_LT(shaded[0] + 20, open[0]);
+    EXPECT_LT(occluded[0] + 1, shaded[0]);
+    const ProgramResult saved = workplace.run(
+        "relief-view --quiet box.json --shadow 2 --ambient-occlusion 0.5 --save-scene "
+        "saved.json");
+    EXPECT_EQ(saved.exit_code, 0) << saved.error;
+    EXPECT_EQ(middle("saved.json"), occluded);
+    EXPECT_EQ(middle("saved.json --ambient-occlusion 0"), shaded);
+}
+
 TEST(ViewCommand, AMirrorShowsWhatIsBehindTheCamera) {
     const Workplace workplace;
     write_sky(workplace);
@@ -504,6 +532,10 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
           "--environment-rotation: there is no --environment"},
          {"square.obj --output out/old.png --background-blur 0.5", 2,
           "--background-blur: there is no --environment"},
+         {"square.obj --output out/old.png --light none --shadow 2", 2,
+          "--shadow: there is no light that could cast one"},
+         {"square.obj --output out/old.png --shadow 31", 2, "--shadow"},
+         {"square.obj --output out/old.png --ambient-occlusion -1", 2, "--ambient-occlusion"},
          {"square.obj --output out/old.png --environment sky --no-skybox --background-blur 0.5", 2,
           "--background-blur: the environment is not visible behind the model"},
          {"square.obj --output out/old.png --left-handed", 2,

@@ -22,6 +22,7 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
+#include "relief/shade/reference.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
 #include "window/orbit_camera.h"
@@ -857,6 +858,17 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
     scene.shadow = Shadow{glm::radians(*options.shadow_size)};
 }
 
+/// Computes ambient occlusion if the options or the scene request it.
+void occlude(Scene& scene, const ViewOptions& options, Stages& stages) {
+    if (options.ambient_occlusion) {
+        scene.ambient_occlusion.reset();
+        if (*options.ambient_occlusion > 0.0F)
+            scene.ambient_occlusion = AmbientOcclusion{*options.ambient_occlusion};
+    }
+    if (scene.ambient_occlusion)
+        stages.run("ambient occlusion", [&] { add_ambient_occlusion(scene); });
+}
+
 /// Only scene files have a background.
 bool has_background(const ViewOptions& options) {
     return extension_of(options.model) == ".json";
@@ -932,6 +944,7 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
     composed.camera_follows_scene = scene.camera && !options.camera;
     composed.camera = default_camera(scene, options);
     set_lights(composed, options);
+    occlude(scene, options, stages);
     const Bounds bounds = world_bounds(scene);
     if (!bounds.empty()) composed.middle = 0.5F * (bounds.min + bounds.max);
     for (const Instance& instance : scene.instances)

@@ -223,6 +223,11 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
                "light. DEG is the size of the light as an angle: 0 gives hard edges, 2 soft ones. "
                "Default: that of the scene file, else no shadow.")
         .group(group);
+    add_number(app, "--ambient-occlusion", "D", options.ambient_occlusion, {0, 100, ""},
+               "Dim ambient light and the environment's light where surfaces within D times the "
+               "scene's size hide it: 0.5 is usual, 0 is none. It is computed once for every "
+               "vertex. Default: that of the scene file, else 0.")
+        .group(group);
     add_number(
         app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
         "Show point lights and spotlights as spheres with a radius of R times the scene's size.")

@@ -202,7 +202,8 @@ struct ViewOptions {
     std::optional<float> transmission;
 
     std::vector<LightOption> lights;
-    std::optional<float> shadow_size;  ///< Degrees; 0 is a hard edge.
+    std::optional<float> ambient_occlusion;  ///< Share of the scene's size; 0 is none.
+    std::optional<float> shadow_size;        ///< Degrees; 0 is a hard edge.
     std::optional<float> ambient;
     std::optional<float> light_markers;  ///< Radius relative to the size of the scene.
     std::optional<CameraOption> camera;

@@ -243,7 +243,6 @@ constexpr std::size_t strip_bytes = 60'000'000;
 constexpr int strip_row_step = 64;  // The rows of a dither tile and of a coverage band.
 
 constexpr int max_padding = 1024;
-constexpr int max_occlusion_rays = 65536;
 
 int samples_across(int samples) {
     for (const int side : {1, 2, 4, 8, 16, 32}) {
@@ -255,15 +254,6 @@ int samples_across(int samples) {
 void check_distance(const std::optional<double>& distance, const char* what) {
     if (distance && !(*distance >= 0.0 && std::isfinite(*distance)))
         throw InvalidInput(fmt::format("{} of {} is negative or not finite", what, *distance));
-}
-
-void check_occlusion(const BakeLayers& layers) {
-    if (!layers.occlusion) return;
-    check_distance(layers.occlusion->distance, "a distance of occlusion");
-    if (const int rays = layers.occlusion->rays; rays < 1 || rays > max_occlusion_rays) {
-        throw InvalidInput(
-            fmt::format("{} rays of occlusion are not within 1 to {}", rays, max_occlusion_rays));
-    }
 }
 
 void check_surfaces(const BakeOptions& options) {
@@ -328,7 +318,7 @@ void check_layers(const BakeLayers& requested, const BakeLayers& prepared) {
     if ((requested.normals && !prepared.normals) || (requested.curvature && !prepared.curvature) ||
         (requested.colors && !prepared.colors))
         throw InvalidInput("a map wants a layer that its baker was not made for");
-    check_occlusion(requested);
+    if (requested.occlusion) check(*requested.occlusion);
 }
 
 CoverageOptions coverage_options(const BakeMapOptions& map, int side) {

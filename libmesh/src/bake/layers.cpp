@@ -3,12 +3,17 @@
 // Tests: tests/mesh/bake/bake_layers_test.cpp.
 #include "bake/layers.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "geometry/direction.h"
+#include "parallel.h"
 #include "portable_math.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/normals.h"
 
 namespace relief {
 namespace {
@@ -92,6 +97,18 @@ void store_mean(const glm::dvec3& sum, std::uint32_t hits, std::span<float> valu
 
 }  // namespace
 
+void check(const OcclusionOptions& options) {
+    constexpr int max_rays = 65536;
+    if (options.distance && !(*options.distance >= 0.0 && std::isfinite(*options.distance))) {
+        throw InvalidInput(fmt::format("a distance of occlusion of {} is negative or not finite",
+                                       *options.distance));
+    }
+    if (options.rays < 1 || options.rays > max_rays) {
+        throw InvalidInput(
+            fmt::format("{} rays of occlusion are not within 1 to {}", options.rays, max_rays));
+    }
+}
+
 Occlusion::Occlusion(const OcclusionOptions& options, std::uint32_t samples)
     : distance_(options.distance),
       rays_((static_cast<std::uint32_t>(options.rays) + samples - 1) / samples) {}
@@ -135,6 +152,43 @@ std::vector<double> Occlusion::open_shares(const RayScene& scene,
         if (cast[i] > 0) open[i] = 1.0 - static_cast<double>(blocked[i]) / cast[i];
     }
     return open;
+}
+
+std::vector<std::vector<float>> vertex_occlusion(std::span<const Mesh> receivers,
+                                                 std::span<const Mesh> occluders,
+                                                 const OcclusionOptions& options,
+                                                 const ExecutionOptions& execution) {
+    check(options);
+    const ExecutionScope scope(execution);
+    std::vector<RayMesh> rays;
+    for (const Mesh& mesh : occluders) {
+        validate(mesh);
+        rays.push_back({mesh.positions, mesh.triangles});
+    }
+    const RayScene scene(std::move(rays));
+    const Occlusion occlusion(options, 1);
+    std::vector<std::vector<float>> shares;
+    for (const Mesh& mesh : receivers) {
+        validate(mesh);
+        const std::vector<glm::vec3> normals =
+            mesh.normals.empty() ? vertex_normals(mesh.positions, mesh.triangles, NormalOptions{})
+                                 : mesh.normals;
+        std::vector<float>& by_vertex = shares.emplace_back(mesh.positions.size(), 1.0F);
+        constexpr std::size_t grain = 512;
+        parallel_for(by_vertex.size(), grain, [&](std::size_t begin, std::size_t end) {
+            std::vector<OcclusionPlace> places;
+            for (std::size_t i = begin; i < end; ++i) {
+                const glm::dvec3 normal = direction_or_zero(glm::dvec3(normals[i]));
+                if (normal != glm::dvec3(0.0) && is_finite(mesh.positions[i]))
+                    places.push_back({glm::dvec3(mesh.positions[i]), normal, normal, i, 0});
+            }
+            Report unused;  // The normal is its own plane, so that nothing is reported.
+            const std::vector<double> open = occlusion.open_shares(scene, places, unused);
+            for (std::size_t i = 0; i < places.size(); ++i)
+                by_vertex[places[i].texel] = static_cast<float>(open[i]);
+        });
+    }
+    return shares;
 }
 
 LayerBake::LayerBake(const BakeLayers& layers, std::size_t first_texel, std::size_t texels,

@@ -34,6 +34,9 @@ inline constexpr std::array baked_layers = {
     BakedLayer{&BakedRows::colors, 3, false, [](const BakeLayers& l) { return l.colors; }},
 };
 
+/// \throws InvalidInput if the number of rays or the distance is out of range
+void check(const OcclusionOptions& options);
+
 /// A point for which occlusion is computed.
 struct OcclusionPlace {
     glm::dvec3 position{0.0};

@@ -164,7 +164,7 @@ void drop_normal(Features& f) {
 void drop_colors(Features& f) {
     const bool from_everywhere = f.ambient || f.environment_diffuse ||
                                  (f.metallic_roughness && f.reflection != ReflectionTerm::none);
-    if (!from_everywhere) f.occlusion_texture = false;
+    if (!from_everywhere) f.occlusion_texture = f.vertex_occlusion = false;
     if (!from_everywhere && !f.diffuse && !transmits(f)) {
         f.metallic_roughness &= f.clearcoat;
         f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;

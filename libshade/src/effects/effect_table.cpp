@@ -638,6 +638,13 @@ std::vector<EffectRow> lighting_rows() {
                             ? of_texture(s, s.material.occlusion_texture)
                             : of_texture(s, false);
              }},
+        {.effect =
+             one_switch<&F::vertex_occlusion>("vertex occlusion", "no light comes from everywhere"),
+         .decide = [](Subject s) -> Decision {
+             if (s.is_occluded) return {true, "surfaces hide some of the light from all around"};
+             return {false, s.scene.ambient_occlusion ? "no surface hides light of another one"
+                                                      : "the scene does not ask for it"};
+         }},
         {.effect = one_value<&F::specular, SpecularTerm::phong>("Phong highlights", not_lit),
          .decide = [](Subject s) { return of_highlights(s, true); },
          .phong_only = true},
@@ -787,10 +794,16 @@ Features lights_of(const Scene& scene) {
 }  // namespace
 
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
-                         const Mesh& mesh, const MeshPose* pose, ShadowTerm shadow) {
+                         const Mesh& mesh, const Instance* instance, ShadowTerm shadow) {
     Features lights = lights_of(scene);
     lights.shadow = shadow;
-    return {scene, material, mesh, name, has_tint(material, mesh), lights, pose};
+    DrawSubject subject{scene, material, mesh, name, has_tint(material, mesh), lights};
+    if (instance == nullptr) return subject;
+    if (instance->pose) subject.pose = &*instance->pose;
+    const std::vector<float>& shares = instance->open_shares;
+    subject.is_occluded =
+        std::any_of(shares.begin(), shares.end(), [](float share) { return share != 1.0F; });
+    return subject;
 }
 
 std::uint32_t second_texcoords_of(const Material& material) {

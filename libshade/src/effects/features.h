@@ -152,12 +152,13 @@ struct DrawSubject {
     bool tinted = false;  ///< The mesh's vertex colors change the picture, or its alpha does.
     Features lights;  ///< The scene's lights: counts, falloff, ranges, highlight colors, shadow.
     const MeshPose* pose = nullptr;  ///< Null if nothing can deform the mesh.
+    bool is_occluded = false;        ///< Some open share of the instance is not 1.
 };
 
-/// \param pose    null if nothing can deform the mesh
-/// \param shadow  shadow_term() of the scene
+/// \param instance  null: a mesh at rest without open shares
+/// \param shadow    shadow_term() of the scene
 DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
-                         const Mesh& mesh, const MeshPose* pose, ShadowTerm shadow);
+                         const Mesh& mesh, const Instance* instance, ShadowTerm shadow);
 
 /// A draw on which effects are forced.
 struct ForcingSubject {

@@ -23,9 +23,9 @@ struct DrawDecisions {
 
 /// \param name  the material's, for the reasons
 DrawDecisions decide(const Scene& scene, const Material& material, const std::string& name,
-                     const Mesh& mesh, const MeshPose* pose, OutputCoding output,
+                     const Mesh& mesh, const Instance* instance, OutputCoding output,
                      ShadowTerm shadow) {
-    const DrawSubject subject = draw_subject(scene, material, name, mesh, pose, shadow);
+    const DrawSubject subject = draw_subject(scene, material, name, mesh, instance, shadow);
     DrawDecisions decisions;
     Features requested = subject.lights;
     requested.output = output;
@@ -45,11 +45,6 @@ DrawDecisions decide(const Scene& scene, const Material& material, const std::st
     return decisions;
 }
 
-/// Returns the pose of an instance; null if nothing can deform its mesh.
-const MeshPose* pose_of(const Instance& instance) {
-    return instance.pose ? &*instance.pose : nullptr;
-}
-
 DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange& range,
                    OutputCoding output, ShadowTerm shadow) {
     const std::size_t mesh_index = scene.instances[instance].mesh;
@@ -57,7 +52,7 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
     const Material& material =
         range.material ? scene.materials[*range.material] : default_material();
     DrawDecisions decisions = decide(scene, material, material_label(scene, range.material), mesh,
-                                     pose_of(scene.instances[instance]), output, shadow);
+                                     &scene.instances[instance], output, shadow);
     const Features& f = decisions.features;
     const bool uses_tangents = lies_in_frame(f) && f.frame == TangentFrame::stored;
     DrawPlan draw{instance, range, f, std::move(decisions.reasons),

@@ -200,6 +200,9 @@ Steps passing_steps(By f) {
         {"pass_color",
          "void pass_color() {}",
          {{"vertex.glsl#color", f.vertex_colors, {.attributes = {"color_linear"}}}}},
+        {"pass_occlusion",
+         "void pass_occlusion() {}",
+         {{"ambient.glsl#pass_occlusion", f.vertex_occlusion, {.samplers = {"hidden_shares"}}}}},
         {"pass_shadow",
          "void pass_shadow() {}",
          {{"shadow.glsl#pass", has_shadow(f), {.uniforms = {"shadow_from_object"}}}}},
@@ -515,7 +518,11 @@ Steps ambient_steps(By f) {
          "float occlusion() { return 1.0; }",
          {{"ambient.glsl#occlusion",
            f.occlusion_texture,
-           {.uniforms = {"occlusion_strength"}, .samplers = {"occlusion_texture"}}}}},
+           {.uniforms = {"occlusion_strength"}, .samplers = {"occlusion_texture"}}},
+          {"ambient.glsl#occlusion_by_vertex", f.vertex_occlusion && !f.occlusion_texture}}},
+        {"open_share",
+         "float open_share() { return 1.0; }",
+         {{"ambient.glsl#open_share", f.vertex_occlusion}}},
     };
 }
 

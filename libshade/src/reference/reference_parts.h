@@ -271,6 +271,7 @@ struct PreparedInstance {
     std::vector<glm::dvec4> tangents_world;    ///< Empty if the mesh has none.
     glm::dmat3 world_from_object_normal{1.0};  ///< Up to a positive factor.
     bool mirrors = false;                      ///< The matrix reverses the winding of triangles.
+    std::vector<float> open_shares{};          ///< Empty if all light arrives.
 };
 
 struct PreparedScene {
@@ -309,6 +310,7 @@ struct Surface {
     glm::dvec2 texcoord{0.0};
     glm::dvec2 texcoord_2{0.0};
     glm::dvec4 color{1.0};      ///< Interpolated vertex color.
+    double open_share = 1.0;    ///< Interpolated from the vertices.
     bool has_texcoord = false;  ///< Without them, no texture is looked up.
     bool has_texcoord_2 = false;
     /// The tangent frame of an anisotropic material, as interpolated; otherwise zero.

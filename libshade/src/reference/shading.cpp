@@ -349,7 +349,7 @@ LightSums interpolated_light_sums(const Context& context, const Hit& hit) {
 double occlusion(const Context& context) {
     const double strength = static_cast<double>(context.material.occlusion_strength);
     const double share = context.look_up(context.material.occlusion_texture, ImageUse::data).r;
-    return 1.0 + strength * (share - 1.0);
+    return (1.0 + strength * (share - 1.0)) * context.surface.open_share;
 }
 
 /// Returns the term E(n) of the formula.

@@ -14,10 +14,14 @@
 #include <tuple>
 
 #include "bake/embree_scene.h"
+#include "effects/light_rows.h"
 #include "geometry/direction.h"
+#include "relief/mesh/bake.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/reference.h"
 #include "relief/shade/scene_file.h"
 #include "render/textures.h"
 #include "scene/scene_parts.h"
@@ -278,6 +282,7 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
             mesh = &deformed;
         }
         instances.push_back(prepared(instance, *mesh, glm::inverse(world_from_view)));
+        instances.back().open_shares = of_vertices(instance.open_shares, at_rest.source_vertex);
     }
     if (scene.environment) environment.emplace(*scene.environment, report);
     if (shadow_term(scene) != ShadowTerm::none) {
@@ -491,6 +496,8 @@ Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
     surface.has_texcoord_2 = !mesh.texcoords_2.empty();
     if (surface.has_texcoord_2)
         surface.texcoord_2 = triangle.interpolated_as<glm::dvec2>(mesh.texcoords_2);
+    if (!triangle.instance.open_shares.empty())
+        surface.open_share = triangle.interpolated_as<double>(triangle.instance.open_shares);
     if (!mesh.colors.empty()) surface.color = triangle.interpolated_as<glm::dvec4>(mesh.colors);
     return surface;
 }
@@ -543,3 +550,74 @@ Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int cor
 }
 
 }  // namespace relief::reference
+
+namespace relief {
+
+// Ambient occlusion
+
+namespace {
+
+/// Returns the mesh of an instance in world space as its pose deforms it, with normals.
+Mesh in_world(const Scene& scene, std::size_t instance) {
+    const glm::mat4& world_from_object = scene.instances[instance].world_from_object;
+    const Shared<Mesh> mesh = deformed_mesh(scene, instance);
+    const glm::dmat3 m(world_from_object);
+    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
+                               glm::cross(m[0], m[1]));
+    const double side = glm::dot(m[0], cofactors[0]) < 0.0 ? -1.0 : 1.0;
+    Mesh world;
+    world.triangles = mesh->triangles;
+    for (const glm::vec3& position : mesh->positions)
+        world.positions.emplace_back(world_from_object * glm::vec4(position, 1.0F));
+    const std::vector<glm::vec3> normals =
+        mesh->normals.empty() ? vertex_normals(mesh->positions, mesh->triangles, NormalOptions{})
+                              : mesh->normals;
+    for (const glm::vec3& normal : normals)
+        world.normals.emplace_back(direction_or_zero(side * (cofactors * glm::dvec3(normal))));
+    return world;
+}
+
+/// Returns the triangles of the mesh whose materials cast shadows.
+std::vector<glm::uvec3> casting_triangles(const Scene& scene, const Mesh& mesh) {
+    if (mesh.material_ranges.empty()) return mesh.triangles;
+    std::vector<glm::uvec3> triangles;
+    for (const MaterialRange& range : mesh.material_ranges) {
+        if (range.material && !casts_shadow(scene.materials[*range.material])) continue;
+        const auto first = mesh.triangles.begin() + range.first_triangle;
+        triangles.insert(triangles.end(), first, first + range.triangle_count);
+    }
+    return triangles;
+}
+
+}  // namespace
+
+void add_ambient_occlusion(Scene& scene, int rays) {
+    validate(scene);
+    if (!scene.ambient_occlusion) return;
+    std::vector<Mesh> receivers;
+    std::vector<Mesh> occluders;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        Mesh& receiver = receivers.emplace_back(in_world(scene, i));
+        Mesh& occluder = occluders.emplace_back();
+        occluder.positions = receiver.positions;
+        occluder.triangles = casting_triangles(scene, scene.meshes[scene.instances[i].mesh]);
+    }
+    const Bounds bounds = world_bounds(scene);
+    OcclusionOptions options;
+    options.rays = rays;
+    options.distance = 0.0;
+    if (!bounds.empty()) {
+        const glm::dvec3 extent = glm::dvec3(bounds.max) - glm::dvec3(bounds.min);
+        options.distance = static_cast<double>(scene.ambient_occlusion->distance) *
+                           std::max({extent.x, extent.y, extent.z});
+    }
+    std::vector<std::vector<float>> shares = vertex_occlusion(receivers, occluders, options);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        const bool is_open = std::all_of(shares[i].begin(), shares[i].end(),
+                                         [](float share) { return share == 1.0F; });
+        if (is_open) shares[i].clear();
+        scene.instances[i].open_shares = std::move(shares[i]);
+    }
+}
+
+}  // namespace relief

@@ -15,6 +15,7 @@
 
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 
@@ -274,6 +275,24 @@ GpuDeformation::GpuDeformation(const gl::Api& api, const Mesh& mesh, const GpuMe
             "morph targets");
     }
     if (planned.facets) add(facet_corners, facet_texels(mesh, vertices, source), "facets");
+}
+
+GpuOpenShares::GpuOpenShares(const gl::Api& api, const Mesh& mesh, const GpuMesh& uploaded,
+                             const std::vector<float>& shares) {
+    std::vector<float> hidden = of_vertices(shares, uploaded.source_vertex());
+    for (float& share : hidden)
+        share = 1.0F - share;
+    // An effect that is forced on without shares is neutral.
+    const std::size_t vertices =
+        uploaded.source_vertex().empty() ? mesh.positions.size() : uploaded.source_vertex().size();
+    hidden.resize(vertices, 0.0F);
+    const std::string name = fmt::format("open shares of mesh '{}'", mesh.name);
+    buffer_ = gl::make_buffer(api, hidden, name);
+    texture_ = gl::make_buffer_texture(api, buffer_, GL_R32F, hidden.size(), name);
+}
+
+void GpuOpenShares::bind(const gl::Api& api) const {
+    bind_texels(api, TextureUnit::hidden_shares, texture_);
 }
 
 void GpuPose::update(const gl::Api& api, std::shared_ptr<const GpuDeformation> vertices,

@@ -115,6 +115,22 @@ class GpuPose {
     std::size_t max_weights_ = 0;
 };
 
+/// The open shares of an instance by vertex, as a buffer texture.
+class GpuOpenShares {
+  public:
+    /// \param shares    of the vertices of the scene's mesh; empty: 1 for all
+    /// \param uploaded  the mesh with the vertices of draws
+    /// \throws GpuError if memory runs out, or the texture would be larger than the driver allows
+    GpuOpenShares(const gl::Api& api, const Mesh& mesh, const GpuMesh& uploaded,
+                  const std::vector<float>& shares);
+
+    void bind(const gl::Api& api) const;
+
+  private:
+    gl::Buffer buffer_;
+    gl::Texture texture_;
+};
+
 /// Meshes on the GPU by the identity of the mesh and its streams, and what deforms them.
 class MeshCache {
   public:

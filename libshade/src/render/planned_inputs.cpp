@@ -57,6 +57,7 @@ const std::map<std::string_view, SharedSampler>& shared_samplers() {
         {"joint_weights", {false, "each vertex follows some of the joints"}},
         {"morph_weights", {false, "morph targets have weights"}},
         {"morph_displacements", {false, "morph targets displace the vertices"}},
+        {"hidden_shares", {false, "surfaces hide light from all around, by vertex"}},
         {"facet_corners", {false, "the normals are those of the deformed triangles"}},
     };
     return all;

@@ -31,7 +31,7 @@ std::vector<gl::Location> attribute_locations() {
             at("texcoord_2", Attribute::texcoord_2)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 31> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 32> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
     {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
@@ -62,6 +62,7 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 31> texture_units{{
     {"morph_weights", TextureUnit::morph_weights},
     {"morph_displacements", TextureUnit::morph_displacements},
     {"facet_corners", TextureUnit::facet_corners},
+    {"hidden_shares", TextureUnit::hidden_shares},
     {"drawn", TextureUnit::drawn},
 }};
 

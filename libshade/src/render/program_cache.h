@@ -59,6 +59,7 @@ enum class TextureUnit : GLint {
     morph_weights,
     morph_displacements,
     facet_corners,
+    hidden_shares,
     drawn,
 };
 
@@ -82,9 +83,9 @@ struct DrawProgram {
 gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
                        const ShaderSource& fragment);
 
-/// True if the vertex stage samples the texture of a unit: the data of deformations.
+/// True if the vertex stage samples the texture of a unit: data by vertex or joint.
 constexpr bool is_vertex_texture(TextureUnit unit) {
-    return unit >= TextureUnit::joint_matrices && unit <= TextureUnit::facet_corners;
+    return unit >= TextureUnit::joint_matrices && unit <= TextureUnit::hidden_shares;
 }
 
 /// Checks that a program does not sample more textures than a fragment shader can. OpenGL 3.3

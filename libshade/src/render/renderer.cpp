@@ -405,6 +405,7 @@ struct Renderer::Implementation {
     std::map<std::size_t, Shared<Mesh>::Identity> drawn;     ///< The meshes that they were made of.
     std::vector<Draw> draws;                                 ///< Opaque ones first.
     std::map<std::size_t, GpuPose> poses;                    ///< Of deformed instances.
+    std::map<std::size_t, GpuOpenShares> open_shares;        ///< Of instances that need them.
     std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
     std::unique_ptr<OverlayDrawing> overlays;  ///< If any is requested.
@@ -535,6 +536,10 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t plan
     set_place(draw.values, instance.world_from_object);
     set_shadow(draw.values, shadow, instance.world_from_object);
     draw.casts_shadow = casts_shadow(p.material);
+    if (p.features.vertex_occlusion && !open_shares.contains(draw.instance)) {
+        open_shares.emplace(
+            draw.instance, GpuOpenShares(api, p.mesh, *meshes.at(draw.mesh), instance.open_shares));
+    }
     bind_planned_textures(draw, p);
     if (is_blended(draw)) draw.sorted = sorted_triangles(scene, draw);
     return draw;
@@ -620,6 +625,7 @@ void Renderer::Implementation::bind_textures(const Draw& draw) const {
     }
     lights.bind(api, draw.features);
     if (const auto pose = poses.find(draw.instance); pose != poses.end()) pose->second.bind(api);
+    if (draw.features.vertex_occlusion) open_shares.at(draw.instance).bind(api);
 }
 
 void Renderer::Implementation::set_state(const Draw& draw) const {

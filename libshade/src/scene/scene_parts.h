@@ -106,6 +106,17 @@ inline bool is_deformed(const Instance& instance) {
     return instance.pose && (is_morphed(*instance.pose) || is_skinned(*instance.pose));
 }
 
+/// Returns the values for vertices that were made of those of the given ones.
+/// \param source_vertex  for each new vertex, the old one; empty: the same
+inline std::vector<float> of_vertices(const std::vector<float>& values,
+                                      std::span<const std::uint32_t> source_vertex) {
+    if (source_vertex.empty() || values.empty()) return values;
+    std::vector<float> result;
+    for (const std::uint32_t vertex : source_vertex)
+        result.push_back(values[vertex]);
+    return result;
+}
+
 /// Extends the bounds in world space by an instance as its pose deforms it.
 void add_instance(const Scene& scene, std::size_t instance, Bounds& world);
 

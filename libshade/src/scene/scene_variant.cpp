@@ -157,6 +157,8 @@ class Preparation {
                 FramedMesh framed = separates ? with_separate_frames(*mesh, frames, report_)
                                               : with_frames(*mesh, frames, report_);
                 if (deformation) deformation = of_vertices(*deformation, framed.source_vertex);
+                result_.source_vertices.resize(result_.meshes.size());
+                result_.source_vertices.push_back(framed.source_vertex);
                 result_.meshes.emplace_back(std::move(framed.mesh));
             }
             result_.deformations.push_back(std::move(deformation));
@@ -312,6 +314,9 @@ Scene with_variant(const Scene& scene, const PreparedVariant& prepared) {
     if (!prepared.meshes.empty()) {
         changed.meshes = prepared.meshes;
         for (Instance& instance : changed.instances) {
+            if (instance.mesh < prepared.source_vertices.size())
+                instance.open_shares =
+                    of_vertices(instance.open_shares, prepared.source_vertices[instance.mesh]);
             const auto& deformation = prepared.deformations.at(instance.mesh);
             if (!instance.pose || !deformation) continue;
             instance.pose->deformation = *deformation;

@@ -155,12 +155,16 @@ class SceneWriter {
         for_each_field<Scene>([&](const auto& field) {
             const auto& value = scene_.*field.member;
             // The environment follows below, and the ambient light belongs to the lights.
-            if constexpr (!is_optional_value<std::decay_t<decltype(value)>>) {
-                if (std::string_view(field.name) != ambient_field.name)
-                    json_[field.name] = value_json(field, value, {});
+            using Value = std::decay_t<decltype(value)>;
+            if constexpr (std::is_same_v<Value, std::optional<Environment>>) {
+                json_.erase(field.name);
+            } else if constexpr (is_optional_value<Value>) {
+                json_.erase(field.name);
+                if (value) json_[field.name] = value_json(field, value, {});
+            } else if (std::string_view(field.name) != ambient_field.name) {
+                json_[field.name] = value_json(field, value, {});
             }
         });
-        json_.erase("environment");
         if (!scene_.environment) return;
         json_["environment"] =
             environment_json(*scene_.environment, [&](const ImageSource& source) -> Json {

@@ -190,6 +190,11 @@ void validate_instance(const Scene& scene, std::size_t index) {
         validate_deformation(thing, instance.pose->deformation,
                              scene.meshes[instance.mesh]->positions.size());
     }
+    const std::vector<float>& shares = instance.open_shares;
+    if (!shares.empty()) {
+        check_count(thing, shares.size(), scene.meshes[instance.mesh]->positions.size(),
+                    "open shares");
+    }
     for (const MaterialRange& range : scene.meshes[instance.mesh]->material_ranges) {
         if (range.material) {
             check_index(thing, "material", *range.material, scene.materials.size());

@@ -3,9 +3,12 @@
 // values; no layer changes another.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <numbers>
+#include <span>
 
 #include "bake/layers.h"
 #include "mesh/bake/bake_support.h"
@@ -398,6 +401,78 @@ TEST(Occlusion, AboutATriangleWhereTheNormalIsOfNoUse) {
     const auto shares = Occlusion(rays(64), 1).open_shares(scene, places, report);
     EXPECT_EQ(report.count("normal along its triangle or behind it"), 300U);
     EXPECT_NEAR(error_of(shares, 0.5).mean, 0.0, 0.01);
+}
+
+/// Returns a disc at z = height about the z axis, facing down.
+Mesh disc_above(float radius, float height) {
+    constexpr std::uint32_t sides = 256;
+    Mesh disc;
+    disc.positions.emplace_back(0.0F, 0.0F, height);
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / sides;
+        disc.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
+        disc.triangles.emplace_back(0, 1 + (i + 1) % sides, 1 + i);
+    }
+    return disc;
+}
+
+TEST(VertexOcclusion, OfADiscIsItsFormFactor) {
+    Mesh floor = make_quad();
+    floor.positions[0] = glm::vec3(0.0F);
+    floor.normals.assign(floor.positions.size(), glm::vec3(0.0F, 0.0F, 1.0F));
+    for (const float radius : {0.2F, 1.0F, 5.0F}) {
+        const std::vector<Mesh> occluders = {disc_above(radius, 0.7F)};
+        const double expected = 1.0 - 1.0 / (1.0 + std::pow(0.7 / radius, 2.0));
+        for (const auto& [rays, tolerance] : {std::pair(4096, 0.002), std::pair(64, 0.03)}) {
+            const std::vector<std::vector<float>> shares = vertex_occlusion(
+                std::span(&floor, 1), occluders, {.rays = rays, .distance = 100.0});
+            EXPECT_NEAR(shares.at(0).at(0), expected, tolerance) << radius << ", " << rays;
+        }
+    }
+}
+
+TEST(VertexOcclusion, IsNoneOnConvexSurfacesAndCompleteInAClosedOne) {
+    const std::vector<Mesh> ball = {make_sphere(40, 20)};
+    std::vector<Mesh> inside = ball;
+    for (glm::vec3& normal : inside[0].normals)
+        normal = -normal;
+    const std::vector<float> open(ball[0].positions.size(), 1.0F);
+    const std::vector<float> hidden(ball[0].positions.size(), 0.0F);
+    const OcclusionOptions far{.rays = 32, .distance = 10.0};
+    EXPECT_EQ(vertex_occlusion(ball, ball, far).at(0), open);
+    EXPECT_EQ(vertex_occlusion(inside, ball, far).at(0), hidden);
+    // Rays without a length reach nothing.
+    EXPECT_EQ(vertex_occlusion(inside, ball, {.rays = 32, .distance = 0.0}).at(0), open);
+}
+
+TEST(VertexOcclusion, HasTheSameBitsForAnyNumberOfThreads) {
+    const std::vector<Mesh> torus = {make_torus(0.45F, 120, 60)};
+    const OcclusionOptions options{.rays = 16, .distance = {}};
+    const auto one = vertex_occlusion(torus, torus, options, {.threads = 1});
+    EXPECT_EQ(one, vertex_occlusion(torus, torus, options, {.threads = 2}));
+    EXPECT_LT(*std::min_element(one[0].begin(), one[0].end()), 0.8F);
+    Mesh bare = torus[0];
+    bare.normals.clear();
+    const auto computed = vertex_occlusion(std::span(&bare, 1), torus, options);
+    for (std::size_t i = 0; i < computed[0].size(); ++i)
+        EXPECT_NEAR(computed[0][i], one[0][i], 0.13);
+}
+
+TEST(VertexOcclusion, IsDefinedForEveryVertex) {
+    const std::vector<Mesh> ball = {make_sphere(12, 6)};
+    Mesh broken = ball[0];
+    for (glm::vec3& normal : broken.normals)
+        normal = -normal;
+    broken.positions[3].x = std::numeric_limits<float>::quiet_NaN();
+    broken.normals[5] = glm::vec3(0.0F);
+    const auto shares = vertex_occlusion(std::span(&broken, 1), ball, {.rays = 8, .distance = {}});
+    EXPECT_EQ(shares[0][3], 1.0F);
+    EXPECT_EQ(shares[0][5], 1.0F);
+    EXPECT_TRUE(vertex_occlusion({}, ball, {}).empty());
+    const auto alone = vertex_occlusion(ball, {}, {});
+    EXPECT_EQ(alone[0], std::vector<float>(ball[0].positions.size(), 1.0F));
+    EXPECT_THROW(vertex_occlusion(ball, ball, {.rays = 0, .distance = {}}), InvalidInput);
+    EXPECT_THROW(vertex_occlusion(ball, ball, {.rays = 1, .distance = -1.0}), InvalidInput);
 }
 
 }  // namespace

@@ -106,6 +106,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::specular_texture>("specular texture"),
         field<&F::metallic_roughness_texture>("metallic-roughness texture"),
         field<&F::occlusion_texture>("occlusion texture"),
+        field<&F::vertex_occlusion>("vertex occlusion"),
         field<&F::vertex_colors>("vertex colours"),
         field<&F::alpha, 3>("alpha"),
         field<&F::opacity_texture>("opacity texture"),
@@ -417,6 +418,13 @@ Mesh faceted(const Mesh& mesh) {
     return with_frames(apart, options).mesh;
 }
 
+std::vector<float> shares_of(const Mesh& mesh) {
+    std::vector<float> shares;
+    for (const glm::vec3& p : mesh.positions)
+        shares.push_back(std::clamp(0.5F + 0.4F * p.x + 0.3F * p.y * p.z, 0.0F, 1.0F));
+    return shares;
+}
+
 CallingScene scene_calling_for(const Features& features) {
     CallingScene result;
     Scene& scene = result.scene;
@@ -441,6 +449,7 @@ CallingScene scene_calling_for(const Features& features) {
     add_lights(scene, features);
     add_surroundings(scene, features);
     if (features.shadow != ShadowTerm::none) scene.shadow = Shadow{};
+    if (features.vertex_occlusion) scene.instances[0].open_shares = shares_of(scene.meshes[0]);
     if (features.exposure) scene.exposure = 1.5F;
     scene.tone_mapping = features.tone_mapping;
     scene.background = {0.1F, 0.2F, 0.3F, 1.0F};

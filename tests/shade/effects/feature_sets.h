@@ -50,6 +50,9 @@ MeshPose pose_calling_for(const Mesh& mesh, const Features& features);
 /// Returns the mesh with vertices of its own for every triangle, and the normals of their planes.
 Mesh faceted(const Mesh& mesh);
 
+/// Returns shares of light from all around that differ between the vertices.
+std::vector<float> shares_of(const Mesh& mesh);
+
 /// \param features  canonical
 CallingScene scene_calling_for(const Features& features);
 

@@ -187,6 +187,12 @@ Change with_light_at(float share) {
     };
 }
 
+Change with_last_share(float share) {
+    return [=](Frame& f) {
+        f.scene.instances[0].open_shares = std::vector{1.0F, 1.0F, 1.0F, share};
+    };
+}
+
 const Change exposed = with(&Scene::exposure, 0.999F);
 const Change reinhard = with(&Scene::tone_mapping, ToneMapping::reinhard);
 const Change aces = with(&Scene::tone_mapping, ToneMapping::aces);
@@ -538,6 +544,14 @@ const std::vector<Boundary> light_boundaries = {
      {with_spot(&PointLight::highlight_intensity, faint)},
      {with_spot(&PointLight::highlight_intensity, glm::vec3(0, 0.001F, 0.001F))}},
     {"highlight colours", "highlights", {with_sun(&Sun::highlight_irradiance, faint)}, {}, {shiny}},
+    {"vertex occlusion", "a share", {ambient}, {with_last_share(1.0F)}, {with_last_share(0.999F)}},
+    {"vertex occlusion", "light from everywhere", {with_last_share(0.0F)}, {}, {ambient}},
+    {"vertex occlusion", "lit", {with_last_share(0.0F), ambient}, {unlit}, {}},
+    {"vertex occlusion",
+     "a scattered environment",
+     {with_last_share(0.0F), environment},
+     {},
+     {scattered}},
     {"shadow", "asked for", {}, {}, {shadowed}},
     {"shadow", "a light", {shadowed, ambient}, {no_suns}, {}},
     {"shadow",

@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <vector>
 
 #include "reference/reference_parts.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/reference.h"
 #include "shade/reference/traced.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
@@ -149,6 +153,59 @@ TEST(Visibility, MeetsNothingWithoutAreaOrPlace) {
     const Camera camera = depth_range(0.1F, 10.0F);
     EXPECT_TRUE(Visibility({mesh.view()}, camera).hits(0.01, 0.01).empty());
     EXPECT_TRUE(Visibility({}, camera).hits(0.0, 0.0).empty());
+}
+
+/// A ball in a hollow ball with the same center.
+Scene nested_balls() {
+    Scene scene;
+    scene.meshes = {test::sphere(16, 8)};
+    scene.materials.resize(2);
+    scene.meshes[0].edit().material_ranges = {
+        {0, static_cast<std::uint32_t>(scene.meshes[0]->triangles.size()), 0}};
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].edit().material_ranges[0].material = 1;
+    scene.instances = {{0, glm::mat4(1.0F), "inner"}, {1, glm::mat4(1.0F), "outer"}};
+    scene.instances[1].world_from_object = glm::scale(glm::mat4(1.0F), glm::vec3(2.0F));
+    scene.ambient_occlusion = AmbientOcclusion{1.0F};
+    return scene;
+}
+
+TEST(AmbientOcclusion, IsBySurfacesThatCastShadowsWithinItsDistance) {
+    Scene scene = nested_balls();
+    add_ambient_occlusion(scene, 8);
+    EXPECT_EQ(*scene.instances[0].open_shares,
+              std::vector<float>(scene.meshes[0]->positions.size(), 0.0F));
+    EXPECT_TRUE(scene.instances[1].open_shares->empty()) << "all light arrives";
+
+    scene.ambient_occlusion->distance = 0.2F;  // 0.8, which is less than the gap of 1.
+    add_ambient_occlusion(scene, 8);
+    EXPECT_TRUE(scene.instances[0].open_shares->empty());
+
+    scene.ambient_occlusion->distance = 1.0F;
+    scene.materials[1].alpha_mode = AlphaMode::blend;
+    add_ambient_occlusion(scene, 8);
+    EXPECT_TRUE(scene.instances[0].open_shares->empty());
+}
+
+TEST(AmbientOcclusion, IsNotComputedWithoutARequest) {
+    Scene scene = nested_balls();
+    scene.ambient_occlusion.reset();
+    add_ambient_occlusion(scene, 8);
+    EXPECT_TRUE(scene.instances[0].open_shares->empty());
+    scene.ambient_occlusion = AmbientOcclusion{};
+    EXPECT_THROW(add_ambient_occlusion(scene, 0), InvalidInput);
+    scene.instances[0].open_shares = std::vector{1.0F};
+    EXPECT_THROW(validate(scene), InvalidInput);
+}
+
+TEST(AmbientOcclusion, FollowsMirroredInstances) {
+    Scene scene = nested_balls();
+    scene.instances[1].world_from_object[0] *= -1.0F;
+    scene.instances[0].world_from_object[2] *= -1.0F;
+    add_ambient_occlusion(scene, 8);
+    EXPECT_EQ(*scene.instances[0].open_shares,
+              std::vector<float>(scene.meshes[0]->positions.size(), 0.0F));
+    EXPECT_TRUE(scene.instances[1].open_shares->empty());
 }
 
 }  // namespace

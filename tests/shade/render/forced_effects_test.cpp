@@ -194,6 +194,7 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "glossy reflection",
                                "refraction",
                                "environment rotation",
+                               "vertex occlusion",
                                "dielectric reflectance",
                                "sheen",
                                "clearcoat",

@@ -106,6 +106,10 @@ Texture image(Scene& scene, Image texels) {
 
 std::vector<AddedThing> light_effects() {
     return {
+        {"vertex occlusion",
+         [](Scene& scene, test::Dice&) {
+             scene.instances[0].open_shares = test::shares_of(scene.meshes[0]);
+         }},
         {"spot light",
          [](Scene& scene, test::Dice&) {
              scene.spot_lights = {{{{0, 1, 3}, {4, 3, 2}}, {0, -1, -3}, 0.1F, 0.35F}};
@@ -273,6 +277,14 @@ AddedThing model_texture(const char* name, int channels, ColorSpace space) {
 std::vector<AddedThing> texture_effects() {
     using M = MetallicRoughness;
     return {
+        {"vertex occlusion of glTF's model",
+         [](Scene& scene, test::Dice&) {
+             scene.instances[0].open_shares = test::shares_of(scene.meshes[0]);
+             scene.materials[0].metallic_roughness = with_layers({0.9F, 0.5F, 0.2F}, 0.5F);
+             scene.materials[0].occlusion_texture =
+                 image(scene, test::constant_image(glm::vec4(0.5F), 3, 16, ColorSpace::data));
+             scene.ambient = glm::vec3(0.5F);
+         }},
         model_texture<&M::specular_texture>("specular weight texture", 4, ColorSpace::data),
         model_texture<&M::specular_color_texture>("specular color texture", 3, ColorSpace::linear),
         model_texture<&M::sheen_color_texture>("sheen color texture", 3, ColorSpace::linear),

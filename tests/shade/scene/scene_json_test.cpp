@@ -244,6 +244,14 @@ TEST_F(SceneFile, ShadowsHaveASizeInDegrees) {
     EXPECT_THROW(load(R"("shadow": {"sizes": 1})"), FileError);
 }
 
+TEST_F(SceneFile, AmbientOcclusionHasADistance) {
+    EXPECT_FALSE(load(R"("ambient_occlusion": null)").scene.ambient_occlusion);
+    EXPECT_EQ(load(R"("ambient_occlusion": {})").scene.ambient_occlusion->distance, 0.5F);
+    EXPECT_EQ(load(R"("ambient_occlusion": {"distance": 0.25})").scene.ambient_occlusion->distance,
+              0.25F);
+    EXPECT_THROW(load(R"("ambient_occlusion": {"distance": -1})"), FileError);
+}
+
 TEST_F(SceneFile, NodesCarryModelsShapesLightsAndCameras) {
     const SceneGraph graph = load(R"("nodes": [{"translation": [10, 0, 0], "scale": 2, "children": [
         {"translation": [1, 0, 0], "model": "cube.ply", "material": "emerald"},

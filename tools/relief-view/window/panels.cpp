@@ -547,6 +547,11 @@ void draw_scene_panel(const PanelInput& input, PanelRequests& requests) {
     draw_tree(state);
     draw_findings(input);
     choose_variant(state, requests);
+    bool is_occluded = state.scene().ambient_occlusion.has_value();
+    if (check("Ambient occlusion", is_occluded))
+        requests.ambient_occlusion = is_occluded ? AmbientOcclusion{}.distance : 0.0F;
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("Computes how much light from all around reaches every vertex.");
     if (const std::vector<std::string> cameras = state.playback().cameras(); cameras.size() > 1) {
         std::size_t index = state.playback().chosen_camera();
         if (choose_index("Camera", index, cameras)) state.choose_camera(index);

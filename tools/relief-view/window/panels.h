@@ -185,6 +185,7 @@ struct PanelRequests {
     std::vector<Action> actions;                  ///< Of buttons and menus.
     std::optional<std::filesystem::path> open;    ///< A file that was selected.
     std::optional<std::string> material_variant;  ///< Empty: the materials without a variant.
+    std::optional<float> ambient_occlusion;       ///< Its distance; 0 is none.
     bool cancel_loading = false;
     bool save_picture = false;
     bool save_turn = false;

@@ -718,6 +718,7 @@ class WindowLoop {
             system_.grow(*view - state_.view());
         measure(drawn, events.panels);
         use_variant(events.panels.material_variant);
+        use_occlusion(events.panels.ambient_occlusion);
         handle_accuracy_requests(events.panels);
         if (events.panels.save_picture) save(0);
         if (events.panels.save_scene) saving_.save_scene(state_);
@@ -824,6 +825,15 @@ class WindowLoop {
         if (!variant) return;
         read_with([&](ViewOptions options) {
             options.material_variant = variant->empty() ? std::nullopt : variant;
+            return options;
+        });
+    }
+
+    /// Reads the model with another distance of ambient occlusion.
+    void use_occlusion(const std::optional<float>& distance) {
+        if (!distance) return;
+        read_with([&](ViewOptions options) {
+            options.ambient_occlusion = distance;
             return options;
         });
     }

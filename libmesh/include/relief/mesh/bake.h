@@ -46,6 +46,21 @@ struct OcclusionOptions {
     std::optional<double> distance{};
 };
 
+/// Computes ambient occlusion at the vertices of meshes that share a space.
+///
+/// \param receivers  the meshes with the vertices; of those without normals, vertex_normals() are
+///                   used. Rays are distributed about the normal of the vertex, from a point
+///                   slightly above it
+/// \param occluders  what rays hit, front or back; usually the same meshes
+/// \param options    rays of a vertex instead of a texel
+/// \return for each receiver and vertex, from 0 (hidden) to 1 (open); 1 for vertices without a
+///         direction or with a position that is not finite. The same bits for any number of threads
+/// \throws InvalidInput if a mesh is not valid, or the options are not; Cancelled
+std::vector<std::vector<float>> vertex_occlusion(std::span<const Mesh> receivers,
+                                                 std::span<const Mesh> occluders,
+                                                 const OcclusionOptions& options,
+                                                 const ExecutionOptions& execution = {});
+
 /// The layers to bake. Each value is the mean over those samples of a texel that hit; all layers
 /// are padded in the same way.
 struct BakeLayers {

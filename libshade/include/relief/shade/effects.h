@@ -121,6 +121,7 @@ struct Features {
     bool exposure = false;
     DebugView view = DebugView::picture;
     ShadowTerm shadow = ShadowTerm::none;  ///< Surfaces hide one of the lights.
+    bool vertex_occlusion = false;         ///< Light from all around is dimmed by vertex.
 
     friend auto operator<=>(const Features&, const Features&) = default;
 };

@@ -64,6 +64,15 @@ struct Reference {
 Reference render_reference(const Scene& scene, const ReferenceSettings& settings,
                            Report& report = IgnoredReport());
 
+/// Computes Instance::open_shares of all instances, if the scene requests ambient occlusion.
+///
+/// Meshes are as their poses deform them now; a later pose does not change the shares. Surfaces
+/// that cast no shadow (scene.h) do not occlude. An instance where all light arrives has no shares.
+///
+/// \param rays  for each vertex, 1 to 65536
+/// \throws InvalidInput if the scene is not valid; Cancelled
+void add_ambient_occlusion(Scene& scene, int rays = 64);
+
 /// Converts radiance to a picture over the scene's background.
 ///
 /// \param radiance  as in Reference

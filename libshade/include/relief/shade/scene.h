@@ -212,6 +212,15 @@ struct Shadow {
 /// The places on a light that casts a soft shadow.
 inline constexpr std::size_t shadow_point_count = 16;
 
+/// A request for ambient occlusion: light from all around, of ambient light and the environment, is
+/// multiplied by the share that arrives at the vertices (Instance::open_shares). Nothing computes
+/// them on its own: see add_ambient_occlusion() in reference.h.
+struct AmbientOcclusion {
+    /// Surfaces within this distance occlude, as a share of the longest side of the box of the
+    /// scene.
+    float distance = 0.5F;
+};
+
 /// The pose of a mesh that morph targets and joints deform. glTF 2.0, sections 3.7.2.2 and 3.7.3.3.
 /// The mesh itself stays at rest: renderers deform it in the vertex stage, deformed_mesh() on the
 /// CPU.
@@ -231,6 +240,9 @@ struct Instance {
     glm::mat4 world_from_object{1.0F};
     std::string name;
     std::optional<MeshPose> pose = std::nullopt;  ///< Only for meshes that can be deformed.
+    /// For each vertex of the mesh, the share of the light from all around that arrives, from 0 to
+    /// 1; empty: all of it.
+    Shared<std::vector<float>> open_shares{};
 };
 
 struct Scene {
@@ -249,6 +261,7 @@ struct Scene {
     float exposure = 1.0F;         ///< Multiplies radiance before tone mapping.
     ToneMapping tone_mapping = ToneMapping::none;  ///< For pictures with sRGB codes only.
     std::optional<Shadow> shadow = std::nullopt;   ///< If absent, no light casts a shadow.
+    std::optional<AmbientOcclusion> ambient_occlusion = std::nullopt;
 };
 
 /// Returns true if the pose adds displacements of a morph target, because its weight is not 0.

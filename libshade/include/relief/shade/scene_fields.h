@@ -307,6 +307,10 @@ template <>
 inline constexpr auto fields_of<Shadow> = std::tuple{SceneField{
     "size", &Shadow::size, {0, std::numbers::pi_v<float> / 6}, FieldUnit::radians, "shadow size"}};
 
+template <>
+inline constexpr auto fields_of<AmbientOcclusion> = std::tuple{SceneField{
+    "distance", &AmbientOcclusion::distance, {0, 100}, {}, "ambient occlusion distance"}};
+
 inline constexpr SceneField ambient_field{
     "ambient", &Scene::ambient, {0, max_light}, FieldUnit::color, "ambient light"};
 
@@ -318,7 +322,8 @@ inline constexpr auto fields_of<Scene> =
                SceneField{"background", &Scene::background, {0, max_light}, FieldUnit::color},
                SceneField{"exposure", &Scene::exposure, {0, max_reflectance}},
                SceneField{"tone_mapping", &Scene::tone_mapping},
-               SceneField{"shadow", &Scene::shadow}};
+               SceneField{"shadow", &Scene::shadow},
+               SceneField{"ambient_occlusion", &Scene::ambient_occlusion}};
 
 template <>
 inline constexpr auto fields_of<Orbit> = std::tuple{

@@ -78,6 +78,8 @@ struct PreparedVariant {
     std::vector<MaterialMaps> maps;  ///< Replaces the maps of each material, unless empty.
     std::size_t first_image = 0;     ///< Texture indices from here on refer to `images`.
     std::vector<ImageSource> images;
+    /// For each of `meshes`, the former vertex of each vertex; empty: the same.
+    std::vector<std::vector<std::uint32_t>> source_vertices;
 };
 
 /// A variant would not change the scene.
