@@ -843,11 +843,11 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
         replace_lights(scene, options.lights, composed.notes);
     } else if (light_count(scene) == 0 && scene.environment && scene.environment->lights) {
         composed.notes.emplace_back(
-            "the model and --light contain no light, so only the environment lights the scene");
+            "the model has no light, so only the environment lights the scene");
     } else if (light_count(scene) == 0) {
         add_default_lights(scene, composed.camera);
         composed.notes.emplace_back(
-            "the model and --light contain no light, so a key light and a fill light were added");
+            "the model has no light, so a key light and a fill light were added");
     }
     if (options.ambient) scene.ambient = glm::vec3(*options.ambient);
     if (!options.shadow_size) return;

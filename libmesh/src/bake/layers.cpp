@@ -12,6 +12,7 @@
 #include "geometry/direction.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "progress_stage.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
 
@@ -167,6 +168,10 @@ std::vector<std::vector<float>> vertex_occlusion(std::span<const Mesh> receivers
     }
     const RayScene scene(std::move(rays));
     const Occlusion occlusion(options, 1);
+    std::size_t vertices = 0;
+    for (const Mesh& mesh : receivers)
+        vertices += mesh.positions.size();
+    ProgressStage stage("ambient occlusion", vertices);
     std::vector<std::vector<float>> shares;
     for (const Mesh& mesh : receivers) {
         validate(mesh);
@@ -186,6 +191,7 @@ std::vector<std::vector<float>> vertex_occlusion(std::span<const Mesh> receivers
             const std::vector<double> open = occlusion.open_shares(scene, places, unused);
             for (std::size_t i = 0; i < places.size(); ++i)
                 by_vertex[places[i].texel] = static_cast<float>(open[i]);
+            stage.advance(end - begin);
         });
     }
     return shares;

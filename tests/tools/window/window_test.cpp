@@ -172,7 +172,7 @@ TEST_F(MovedWindow, MouseKeysAndTextMoveTheViewAndIdleCostsNothing) {
     // Keys take effect in order, so the view is copied when the help page is seen.
     window().key("h");
     window().wait_for("help", [](const json& now) { return now["help"] == true; });
-    window().key("h");
+    window().key("Escape");
     window().wait_for("no help", [](const json& now) { return now["help"] == false; });
     double_click_aims_at_surface();
     window().key("1");

@@ -955,6 +955,7 @@ void draw_help(bool& is_open) {
         ImGui::EndTable();
     }
     ImGui::End();
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) is_open = false;
 }
 
 // The file dialog.
