@@ -116,6 +116,7 @@ void drop_layers(Features& f) {
     if (!f.metallic_roughness || !is_lit_anyhow(f)) f.sheen = false;
     if (!f.metallic_roughness || !(is_lit_anyhow(f) || f.emission)) f.clearcoat = false;
     f.sheen_color_texture &= f.sheen;
+    f.sheen_roughness_texture &= f.sheen;
     f.anisotropy_texture &= f.anisotropy;
     f.clearcoat_texture &= f.clearcoat;
     f.clearcoat_roughness_texture &=

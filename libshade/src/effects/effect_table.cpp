@@ -455,6 +455,8 @@ std::vector<EffectRow> model_rows() {
             "specular color texture", no_reflectance),
         model_texture<&F::sheen_color_texture, &M::sheen_color_texture>("sheen color texture",
                                                                         "there is no sheen"),
+        model_texture<&F::sheen_roughness_texture, &M::sheen_roughness_texture>(
+            "sheen roughness texture", "there is no sheen"),
         model_texture<&F::clearcoat_texture, &M::clearcoat_texture>("clearcoat texture", no_coat),
         model_texture<&F::clearcoat_roughness_texture, &M::clearcoat_roughness_texture>(
             "clearcoat roughness texture", "there is no coat, or it mirrors nothing"),

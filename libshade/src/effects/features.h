@@ -85,7 +85,7 @@ struct SecondTexture {
 };
 
 /// Their order is that of the bits of Features::second_texcoords.
-inline constexpr std::array<SecondTexture, 15> second_textures{{
+inline constexpr std::array<SecondTexture, 16> second_textures{{
     {"diffuse_texture", &Features::diffuse_texture, &Material::diffuse_texture},
     {"specular_texture", &Features::specular_texture, &Material::specular_texture},
     {"emission_texture", &Features::emission_texture, &Material::emission_texture},
@@ -111,6 +111,8 @@ inline constexpr std::array<SecondTexture, 15> second_textures{{
      &MetallicRoughness::transmission_texture},
     {"thickness_texture", &Features::thickness_texture, nullptr,
      &MetallicRoughness::thickness_texture},
+    {"sheen_roughness_texture", &Features::sheen_roughness_texture, nullptr,
+     &MetallicRoughness::sheen_roughness_texture},
 }};
 
 /// Calls visit(texture, is_second) for each of them that these features sample.

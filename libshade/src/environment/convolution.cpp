@@ -221,7 +221,10 @@ double sheen_visibility(double n_l, double n_v, double alpha) {
     return 1.0 / (4.0 * seen * (1.0 + sheen_lambda(seen, alpha) + sheen_lambda(n_l, alpha)));
 }
 
-SheenAlbedo sheen_albedo_table(double roughness) {
+namespace {
+
+/// Returns the integrals, which are not limited to 1.
+SheenAlbedo sheen_integrals(double roughness) {
     // Midpoints over the light's angle phi and the root of n.l, since Lambda changes fastest at
     // grazing angles.
     constexpr int steps = 32;
@@ -246,8 +249,17 @@ SheenAlbedo sheen_albedo_table(double roughness) {
             // d n.l = 2 root d root, and both halves of the circle are alike.
             sum += distribution * sheen_visibility(n_l, n_v, alpha) * root_l;
         }
-        table[i] = std::min(sum * 4.0 * std::numbers::pi / (steps * steps), 1.0);
+        table[i] = sum * 4.0 * std::numbers::pi / (steps * steps);
     }
+    return table;
+}
+
+}  // namespace
+
+SheenAlbedo sheen_albedo_table(double roughness) {
+    SheenAlbedo table = sheen_integrals(roughness);
+    for (double& albedo : table)
+        albedo = std::min(albedo, 1.0);
     return table;
 }
 
@@ -256,6 +268,29 @@ double sheen_albedo(const SheenAlbedo& table, double n_v) {
         std::sqrt(std::clamp(n_v, 0.0, 1.0)) * static_cast<double>(table.size() - 1);
     const std::size_t first = std::min(static_cast<std::size_t>(place), table.size() - 2);
     return glm::mix(table[first], table[first + 1], place - static_cast<double>(first));
+}
+
+SheenAlbedos sheen_albedo_tables(double roughness) {
+    SheenAlbedos tables{};
+    tables.back() = sheen_albedo_table(roughness);
+    parallel_for(tables.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j) {
+            const double root = static_cast<double>(j) / static_cast<double>(tables.size() - 1);
+            tables[j] = sheen_integrals(roughness * root * root);
+        }
+    });
+    return tables;
+}
+
+double sheen_albedo(const SheenAlbedos& tables, double n_v, double texel) {
+    const double place =
+        std::sqrt(std::clamp(texel, 0.0, 1.0)) * static_cast<double>(tables.size() - 1);
+    const std::size_t first = std::min(static_cast<std::size_t>(place), tables.size() - 2);
+    const double share = place - static_cast<double>(first);
+    SheenAlbedo between{};
+    for (std::size_t i = 0; i < between.size(); ++i)
+        between[i] = std::min(glm::mix(tables[first][i], tables[first + 1][i], share), 1.0);
+    return sheen_albedo(between, n_v);
 }
 
 // Blurred radiance

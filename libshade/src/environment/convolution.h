@@ -83,6 +83,22 @@ SheenAlbedo sheen_albedo_table(double roughness);
 /// Returns the linear interpolation of a table at n.v, which is clamped to [0,1].
 double sheen_albedo(const SheenAlbedo& table, double n_v);
 
+/// The albedos of a sheen whose roughness a texture multiplies: row j for the texel (j / 19)^2.
+using SheenAlbedos = std::array<SheenAlbedo, 20>;
+
+/// Returns the albedos for the roughness of a material and of smoother fibers.
+///
+/// \return the last row is sheen_albedo_table(roughness). The other rows are not limited to 1,
+/// since
+///         rows with a bend would be interpolated worse: for a roughness of at least 0.1 and n.v of
+///         at least 0.026, the table of the roughness at a pixel and lookups (sheen_albedo())
+///         differ by at most 1e-2
+SheenAlbedos sheen_albedo_tables(double roughness);
+
+/// Returns the interpolation of the tables at n.v and at the root of the texel, which are clamped
+/// to [0,1]; at most 1.
+double sheen_albedo(const SheenAlbedos& tables, double n_v, double texel);
+
 // Blurred radiance
 
 /// Six faces, and their means over 2 x 2, 4 x 4, ... texels, weighted by solid angle.

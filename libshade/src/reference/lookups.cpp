@@ -35,7 +35,8 @@ void for_each_texture(const Material& material, Each each) {
              {&model->texture, &model->specular_texture, &model->clearcoat_texture,
               &model->clearcoat_roughness_texture, &model->anisotropy_texture,
               &model->iridescence_texture, &model->iridescence_thickness_texture,
-              &model->transmission_texture, &model->thickness_texture})
+              &model->transmission_texture, &model->thickness_texture,
+              &model->sheen_roughness_texture})
             each(*data, ImageUse::data);
         each(model->specular_color_texture, ImageUse::color);
         each(model->sheen_color_texture, ImageUse::color);

@@ -297,6 +297,7 @@ struct PreparedScene {
     std::map<float, SheenAlbedo> sheen_albedos;  ///< By sheen roughness.
     std::optional<PictureBehind> behind;         ///< If a surface is transmissive.
     std::unique_ptr<ShadowCasters> shadow;       ///< If a light casts one.
+    std::map<float, SheenAlbedos> sheen_tables;  ///< The same, if a texture multiplies it.
 };
 
 /// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal

@@ -670,10 +670,15 @@ glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
         glm::dvec3(context.look_up(model.sheen_color_texture, ImageUse::color));
     const Surface& at = context.surface;
     const glm::dvec3& n = at.normal_world;
-    const double alpha = sheen_alpha(static_cast<double>(model.sheen_roughness));
+    const double texel =
+        std::clamp(context.look_up(model.sheen_roughness_texture, ImageUse::data).a, 0.0, 1.0);
+    const double alpha = sheen_alpha(static_cast<double>(model.sheen_roughness) * texel);
     const double n_dot_v = std::clamp(glm::dot(n, at.view_world), 0.0, 1.0);
+    const PreparedScene& prepared = context.prepared;
     const double albedo =
-        sheen_albedo(context.prepared.sheen_albedos.at(model.sheen_roughness), n_dot_v);
+        model.sheen_roughness_texture
+            ? sheen_albedo(prepared.sheen_tables.at(model.sheen_roughness), n_dot_v, texel)
+            : sheen_albedo(prepared.sheen_albedos.at(model.sheen_roughness), n_dot_v);
     const glm::dvec3 lights = received(context, n, [&](double n_dot_l, const glm::dvec3& half) {
         const double n_dot_h = std::clamp(glm::dot(n, half), 0.0, 1.0);
         return std::numbers::pi * sheen_distribution(n_dot_h, alpha) *

@@ -292,11 +292,14 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
         shadow = std::make_unique<ShadowCasters>(*shadow_view(scene), std::move(casters));
     }
     for (const Material& material : materials) {
-        if (!material.metallic_roughness) continue;
-        const float roughness = material.metallic_roughness->sheen_roughness;
-        if (material.metallic_roughness->sheen_color != glm::vec3(0.0F))
-            sheen_albedos.try_emplace(roughness,
-                                      sheen_albedo_table(static_cast<double>(roughness)));
+        const auto& model = material.metallic_roughness;
+        if (!model || model->sheen_color == glm::vec3(0.0F)) continue;
+        const double roughness = static_cast<double>(model->sheen_roughness);
+        if (!model->sheen_roughness_texture) {
+            sheen_albedos.try_emplace(model->sheen_roughness, sheen_albedo_table(roughness));
+        } else if (!sheen_tables.contains(model->sheen_roughness)) {
+            sheen_tables.emplace(model->sheen_roughness, sheen_albedo_tables(roughness));
+        }
     }
 }
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <utility>
 
 #include "effects/light_rows.h"
 #include "environment/convolution.h"
@@ -22,6 +24,12 @@ using Setter = bool (*)(const gl::LinkedProgram&, std::string_view, const DrawVa
 template <auto Member>
 bool set_member(const gl::LinkedProgram& program, std::string_view name, const DrawValues& values) {
     return program.set(name, values.*Member);
+}
+
+/// A forced lookup without a texture has the weight 0 for these rows, whatever they are.
+bool set_sheen_rows(const gl::LinkedProgram& program, std::string_view name,
+                    const DrawValues& values) {
+    return values.sheen_albedo_rows == nullptr || program.set(name, *values.sheen_albedo_rows);
 }
 
 const std::map<std::string_view, Setter>& setters() {
@@ -91,6 +99,8 @@ const std::map<std::string_view, Setter>& setters() {
         {"shadow_shift", set_member<&DrawValues::shadow_shift>},
         {"shadow_samples", set_member<&DrawValues::shadow_samples>},
         {"shadow_points", set_member<&DrawValues::shadow_points>},
+        {"sheen_roughness", set_member<&DrawValues::sheen_roughness>},
+        {"sheen_albedo_rows", set_sheen_rows},
     };
     return all;
 }
@@ -145,19 +155,40 @@ void set_transmission(DrawValues& values, const MetallicRoughness& model, int la
     }
 }
 
+/// Writes a table from the vector `first` on.
+template <std::size_t Size>
+void write_table(const SheenAlbedo& table, std::size_t first, std::array<glm::vec4, Size>& rows) {
+    for (std::size_t i = 0; i < table.size(); ++i)
+        rows.at(first + i / 4)[static_cast<int>(i % 4)] = static_cast<float>(table[i]);
+}
+
 /// Without a color, the table stays zero: nothing reads it.
 void set_sheen(DrawValues& values, const MetallicRoughness& model) {
     if (!is_not_black(model.sheen_color)) return;
     const double roughness = static_cast<double>(model.sheen_roughness);
     values.sheen_color = model.sheen_color;
     values.sheen_alpha = static_cast<float>(sheen_alpha(roughness));
-    const SheenAlbedo table = sheen_albedo_table(roughness);
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        values.sheen_albedo[i / 4][static_cast<int>(i % 4)] = static_cast<float>(table[i]);
-    }
+    values.sheen_roughness = model.sheen_roughness;
+    write_table(sheen_albedo_table(roughness), 0, values.sheen_albedo);
 }
 
 }  // namespace
+
+std::shared_ptr<const SheenRows> SheenCache::get(float roughness) {
+    std::shared_ptr<const SheenRows>& entry = rows_[roughness];
+    if (!entry) {
+        const SheenAlbedos tables = sheen_albedo_tables(static_cast<double>(roughness));
+        auto rows = std::make_shared<SheenRows>();
+        for (std::size_t j = 0; j + 1 < tables.size(); ++j)
+            write_table(tables[j], 8 * j, *rows);
+        entry = std::move(rows);
+    }
+    return entry;
+}
+
+void SheenCache::drop_unused() {
+    std::erase_if(rows_, [](const auto& entry) { return entry.second.use_count() == 1; });
+}
 
 bool set_uniform(const gl::LinkedProgram& program, std::string_view name,
                  const DrawValues& values) {

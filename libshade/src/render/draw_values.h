@@ -7,6 +7,7 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <tuple>
@@ -18,6 +19,20 @@
 #include "relief/shade/scene.h"
 
 namespace relief {
+
+/// 19 rows of 8 vectors.
+using SheenRows = std::array<glm::vec4, 152>;
+
+/// The rows of sheens whose roughness a texture multiplies, by that roughness: a table costs as
+/// much as 20 of one roughness.
+class SheenCache {
+  public:
+    std::shared_ptr<const SheenRows> get(float roughness);
+    void drop_unused();
+
+  private:
+    std::map<float, std::shared_ptr<const SheenRows>> rows_;
+};
 
 /// The uniforms of the surface shaders; each member has the name of its uniform.
 struct DrawValues {
@@ -92,6 +107,9 @@ struct DrawValues {
     glm::vec2 shadow_shift{0.0F};
     int shadow_samples = 0;
     std::array<glm::vec4, shadow_point_count / 2> shadow_points{};
+    float sheen_roughness = 1.0F;
+    /// sheen_albedo_tables() without the last; null unless a texture has the roughness.
+    std::shared_ptr<const SheenRows> sheen_albedo_rows;
 };
 
 /// Sets the uniform `name` of the current program. \return false if there is no such value

@@ -31,7 +31,7 @@ std::vector<gl::Location> attribute_locations() {
             at("texcoord_2", Attribute::texcoord_2)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 32> texture_units{{
+constexpr std::array<std::pair<const char*, TextureUnit>, 33> texture_units{{
     {"diffuse_texture", TextureUnit::diffuse_texture},
     {"specular_texture", TextureUnit::specular_texture},
     {"emission_texture", TextureUnit::emission_texture},
@@ -43,6 +43,7 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 32> texture_units{{
     {"specular_weight_texture", TextureUnit::specular_weight_texture},
     {"specular_color_texture", TextureUnit::specular_color_texture},
     {"sheen_color_texture", TextureUnit::sheen_color_texture},
+    {"sheen_roughness_texture", TextureUnit::sheen_roughness_texture},
     {"clearcoat_texture", TextureUnit::clearcoat_texture},
     {"clearcoat_roughness_texture", TextureUnit::clearcoat_roughness_texture},
     {"clearcoat_normal_texture", TextureUnit::clearcoat_normal_texture},

@@ -40,6 +40,7 @@ enum class TextureUnit : GLint {
     specular_weight_texture,
     specular_color_texture,
     sheen_color_texture,
+    sheen_roughness_texture,
     clearcoat_texture,
     clearcoat_roughness_texture,
     clearcoat_normal_texture,
@@ -67,7 +68,7 @@ enum class TextureUnit : GLint {
 std::string_view sampler_name(TextureUnit unit);
 
 /// The number of units of materials.
-inline constexpr std::size_t material_unit_count = 19;
+inline constexpr std::size_t material_unit_count = 20;
 
 /// The binding point of the uniform block Lights.
 inline constexpr GLuint lights_binding = 0;

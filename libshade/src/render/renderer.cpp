@@ -261,6 +261,7 @@ struct RenderCache::Implementation {
     TextureCache textures;
     EnvironmentCache environments;
     TargetPool targets;
+    SheenCache sheens;
 };
 
 namespace {
@@ -532,6 +533,10 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t plan
     draw.range = plan_of_draw.range;
     draw.both_sides = p.material.double_sided;
     set_material(draw.values, p.material, scene, picture.last_level());
+    if (p.features.sheen_roughness_texture &&
+        p.material.metallic_roughness->sheen_roughness_texture)
+        draw.values.sheen_albedo_rows =
+            cache.sheens.get(p.material.metallic_roughness->sheen_roughness);
     set_environment_values(draw);
     set_place(draw.values, instance.world_from_object);
     set_shadow(draw.values, shadow, instance.world_from_object);
@@ -906,6 +911,7 @@ void RenderCache::drop_unused() {
     implementation_->textures.drop_unused();
     implementation_->environments.drop_unused();
     implementation_->targets.drop_unused();
+    implementation_->sheens.drop_unused();
 }
 
 void RenderCache::drop_programs() {

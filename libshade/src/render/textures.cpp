@@ -119,6 +119,8 @@ const std::array<TextureRow, material_unit_count>& texture_rows() {
                                               "specular color texture"),
         model_row<&P::sheen_color_texture>(TextureUnit::sheen_color_texture, ImageUse::color,
                                            "sheen color texture"),
+        model_row<&P::sheen_roughness_texture>(TextureUnit::sheen_roughness_texture, ImageUse::data,
+                                               "sheen roughness texture"),
         model_row<&P::clearcoat_texture>(TextureUnit::clearcoat_texture, ImageUse::data,
                                          "clearcoat texture"),
         model_row<&P::clearcoat_roughness_texture>(TextureUnit::clearcoat_roughness_texture,

@@ -205,9 +205,9 @@ TexcoordSources texcoord_sources(const GltfMaterial& material) {
           &material.metallic_roughness_texture, &material.occlusion_texture,
           &material.emission_texture, &material.specular_texture, &material.specular_color_texture,
           &material.clearcoat_texture, &material.clearcoat_roughness_texture,
-          &material.sheen_color_texture, &material.iridescence_texture,
-          &material.iridescence_thickness_texture, &material.transmission_texture,
-          &material.thickness_texture}) {
+          &material.sheen_color_texture, &material.sheen_roughness_texture,
+          &material.iridescence_texture, &material.iridescence_thickness_texture,
+          &material.transmission_texture, &material.thickness_texture}) {
         if (!*texture) continue;
         const TexcoordSource source = source_of(**texture);
         if (!first) first = source;
@@ -372,6 +372,7 @@ void add_textures(MetallicRoughness& model, const GltfMaterial& material,
             NormalMap{*normal, material.clearcoat_normal_scale, Green::up, std::nullopt};
     }
     model.sheen_color_texture = texture(material.sheen_color_texture);
+    model.sheen_roughness_texture = texture(material.sheen_roughness_texture);
     model.anisotropy_texture = texture(material.anisotropy_texture, true);
     model.iridescence_texture = texture(material.iridescence_texture);
     model.iridescence_thickness_texture = texture(material.iridescence_thickness_texture);
@@ -419,11 +420,8 @@ void add_undrawn_extensions(Material& result, const GltfMaterial& material, std:
         std::sort(names.begin(), names.end());
     }
     for (const std::string& name : names) {
-        // A texture is required with its extension: "specularTexture of KHR_materials_specular".
         const bool is_required =
-            std::any_of(required.begin(), required.end(), [&](const std::string& extension) {
-                return name == extension || name.ends_with(" of " + extension);
-            });
+            std::find(required.begin(), required.end(), name) != required.end();
         report.add(is_required ? name + ", which the file requires" : name, "material", index,
                    is_required ? "not drawn: the picture is not the intended one"
                                : "left out: drawn without it");

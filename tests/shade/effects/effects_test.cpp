@@ -74,7 +74,8 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
             ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
             (c.dielectric_reflectance ||
              (!c.specular_weight_texture && !c.specular_color_texture)) &&
-            (c.sheen || !c.sheen_color_texture) && (c.anisotropy || !c.anisotropy_texture) &&
+            (c.sheen || (!c.sheen_color_texture && !c.sheen_roughness_texture)) &&
+            (c.anisotropy || !c.anisotropy_texture) &&
             (c.clearcoat || (!c.clearcoat_texture && !c.clearcoat_normal_map)) &&
             ((c.clearcoat && (has_lights(c) || reflects)) || !c.clearcoat_roughness_texture) &&
             (c.interpolation == Interpolation::per_pixel || !c.clearcoat_normal_map) &&

@@ -85,6 +85,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::specular_weight_texture>("specular weight texture"),
         field<&F::specular_color_texture>("specular color texture"),
         field<&F::sheen_color_texture>("sheen color texture"),
+        field<&F::sheen_roughness_texture>("sheen roughness texture"),
         field<&F::clearcoat_texture>("clearcoat texture"),
         field<&F::clearcoat_roughness_texture>("clearcoat roughness texture"),
         field<&F::clearcoat_normal_map>("clearcoat normal map"),
@@ -240,6 +241,10 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
     }
     if (f.specular_color_texture) model.specular_color_texture = color("specular color", 10);
     if (f.sheen_color_texture) model.sheen_color_texture = color("sheen", 11);
+    if (f.sheen_roughness_texture) {
+        model.sheen_roughness_texture =
+            add_image(scene, "fibers", noise(20, 4, 40, 256, ColorSpace::data));
+    }
     if (f.clearcoat_texture) model.clearcoat_texture = data("coat", 12, 40);
     if (f.clearcoat_roughness_texture)
         model.clearcoat_roughness_texture = data("coat roughness", 13, 40);

@@ -93,6 +93,7 @@ const Change filmy = with(&MetallicRoughness::iridescence, 0.001F);
 const Change specular_weight = with(&MetallicRoughness::specular_texture, Texture{});
 const Change specular_color = with(&MetallicRoughness::specular_color_texture, Texture{});
 const Change sheen_texture = with(&MetallicRoughness::sheen_color_texture, Texture{});
+const Change sheen_roughness = with(&MetallicRoughness::sheen_roughness_texture, Texture{});
 const Change coat_texture = with(&MetallicRoughness::clearcoat_texture, Texture{});
 const Change coat_roughness = with(&MetallicRoughness::clearcoat_roughness_texture, Texture{});
 const Change coat_map = with(&MetallicRoughness::clearcoat_normal_map, NormalMap{});
@@ -280,6 +281,13 @@ const std::vector<Boundary> color_boundaries = {
     {"specular color texture", "texture coordinates", {denser, specular_color}, {no_texcoords}, {}},
     {"sheen color texture", "has one", {sheen}, {}, {sheen_texture}},
     {"sheen color texture", "a sheen", {sheen_texture}, {}, {sheen}},
+    {"sheen roughness texture", "has one", {sheen}, {}, {sheen_roughness}},
+    {"sheen roughness texture", "a sheen", {sheen_roughness}, {}, {sheen}},
+    {"sheen roughness texture",
+     "texture coordinates",
+     {sheen, sheen_roughness},
+     {no_texcoords},
+     {}},
     {"clearcoat texture", "has one", {clearcoat}, {}, {coat_texture}},
     {"clearcoat texture", "a coat", {coat_texture}, {}, {clearcoat}},
     {"clearcoat roughness texture", "has one", {clearcoat}, {}, {coat_roughness}},

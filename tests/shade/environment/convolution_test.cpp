@@ -595,6 +595,32 @@ TEST(Sheen, AlbedoIsTheIntegral) {
     }
 }
 
+TEST(Sheen, TablesHaveTheAlbedoOfEveryTexel) {
+    for (const double roughness : {1.0, 0.6, 0.3}) {
+        const SheenAlbedos tables = sheen_albedo_tables(roughness);
+        EXPECT_EQ(tables.back(), sheen_albedo_table(roughness)) << roughness;
+        double sum = 0.0;
+        double count = 0.0;
+        for (double texel = 0.0; texel <= 1.0; texel += 1.0 / 64.0) {
+            const double at_texel = roughness * texel;
+            if (at_texel < 0.1) continue;
+            const SheenAlbedo table = sheen_albedo_table(at_texel);
+            for (double n_v = 0.026; n_v <= 1.0; n_v += 0.05) {
+                const double difference =
+                    std::abs(sheen_albedo(tables, n_v, texel) - sheen_albedo(table, n_v));
+                EXPECT_LT(difference, 1e-2) << at_texel << ", " << n_v;
+                sum += difference;
+                count += 1.0;
+            }
+        }
+        EXPECT_LT(sum / count, 1e-3) << roughness;
+        EXPECT_EQ(sheen_albedo(tables, 0.3, 1.0), sheen_albedo(tables.back(), 0.3));
+        EXPECT_EQ(sheen_albedo(tables, 0.3, 2.0), sheen_albedo(tables, 0.3, 1.0));
+        EXPECT_EQ(sheen_albedo(tables, 0.3, -1.0), sheen_albedo(sheen_albedo_table(0.0), 0.3));
+        EXPECT_EQ(sheen_albedo(tables, 1e-4, 0.1), 1.0) << "its fibers would reflect more";
+    }
+}
+
 TEST(Sheen, NeverReflectsMoreThanItReceives) {
     const SheenAlbedo smooth = sheen_albedo_table(0.0);
     EXPECT_EQ(smooth, sheen_albedo_table(0.045)) << "the smallest roughness";

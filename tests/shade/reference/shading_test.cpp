@@ -684,6 +684,12 @@ TEST(ReferenceShading, OfTexturesOfExtensionsIsThatOfTheirFactors) {
     expect_same(&M::sheen_color_texture, 0, [](M& m) {
         m.sheen_color = {0.25F, 0.0625F, 0.5625F};
     });
+    // The table of the roughness 1/4 lies between two rows.
+    const glm::dvec3 smoother = light_of([](M& m) { m.sheen_roughness = 0.25F; });
+    const glm::dvec3 by_texel = light_of([](M& m) { m.sheen_roughness_texture = Texture{0}; });
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(by_texel[i], smoother[i], 1e-3) << i;
+    EXPECT_GT(glm::distance(by_texel, light_of([](M&) {})), 0.02);
     expect_same(&M::clearcoat_texture, 0, [](M& m) { m.clearcoat = 0.4F; });
     expect_same(&M::clearcoat_roughness_texture, 0, [](M& m) { m.clearcoat_roughness = 0.125F; });
     expect_same(&M::iridescence_texture, 0, [](M& m) { m.iridescence = 0.25F; });

@@ -203,6 +203,7 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "specular weight texture",
                                "specular color texture",
                                "sheen color texture",
+                               "sheen roughness texture",
                                "clearcoat texture",
                                "clearcoat roughness texture",
                                "clearcoat normal map",

@@ -288,6 +288,7 @@ std::vector<AddedThing> texture_effects() {
         model_texture<&M::specular_texture>("specular weight texture", 4, ColorSpace::data),
         model_texture<&M::specular_color_texture>("specular color texture", 3, ColorSpace::linear),
         model_texture<&M::sheen_color_texture>("sheen color texture", 3, ColorSpace::linear),
+        model_texture<&M::sheen_roughness_texture>("sheen roughness texture", 4, ColorSpace::data),
         model_texture<&M::clearcoat_texture>("clearcoat texture", 3, ColorSpace::data),
         model_texture<&M::clearcoat_roughness_texture>("clearcoat roughness texture", 3,
                                                        ColorSpace::data),

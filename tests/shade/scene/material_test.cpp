@@ -333,17 +333,18 @@ TYPED_TEST(SceneFields, HaveDefaultsWithinTheirRanges) {
 TEST(SceneField, HasALabelForMessages) {
     std::vector<std::string> labels;
     for_each_field<MetallicRoughness>([&](const auto& field) { labels.push_back(field.label()); });
-    EXPECT_THAT(labels,
-                testing::ElementsAre(
-                    "base color", "metallic", "roughness", "metallic-roughness texture",
-                    "refractive index", "specular", "specular color", "specular texture",
-                    "specular color texture", "clearcoat", "clearcoat roughness",
-                    "clearcoat texture", "clearcoat roughness texture", "clearcoat normal map",
-                    "sheen color", "sheen roughness", "sheen color texture", "anisotropy",
-                    "anisotropy rotation", "anisotropy texture", "iridescence", "iridescence index",
-                    "iridescence thickness", "iridescence thickness minimum", "iridescence texture",
-                    "iridescence thickness texture", "transmission", "transmission texture",
-                    "thickness", "thickness texture", "attenuation distance", "attenuation color"));
+    EXPECT_THAT(
+        labels,
+        testing::ElementsAre(
+            "base color", "metallic", "roughness", "metallic-roughness texture", "refractive index",
+            "specular", "specular color", "specular texture", "specular color texture", "clearcoat",
+            "clearcoat roughness", "clearcoat texture", "clearcoat roughness texture",
+            "clearcoat normal map", "sheen color", "sheen roughness", "sheen color texture",
+            "sheen roughness texture", "anisotropy", "anisotropy rotation", "anisotropy texture",
+            "iridescence", "iridescence index", "iridescence thickness",
+            "iridescence thickness minimum", "iridescence texture", "iridescence thickness texture",
+            "transmission", "transmission texture", "thickness", "thickness texture",
+            "attenuation distance", "attenuation color"));
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }
 

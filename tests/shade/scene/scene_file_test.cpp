@@ -141,16 +141,15 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
     EXPECT_THAT(
         scene.materials[1].undrawn_extensions,
         testing::ElementsAre("KHR_materials_diffuse_transmission", "KHR_materials_dispersion"));
-    const auto [drawn, textures] = load(
+    const auto [drawn, all_drawn] = load(
         R"({"extensions": {"KHR_materials_ior": {"ior": 0.5}, "KHR_materials_specular":
                 {"specularFactor": 0.25, "specularColorFactor": [2, 1, -1]},
-                 "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1],
-                     "sheenRoughnessTexture": {"index": 0}}}}, {"extensions": {"KHR_materials_ior": {"ior": 0}}})",
-        R"(, "textures": [{}], "extensionsUsed": ["KHR_materials_ior", "KHR_materials_specular", "KHR_materials_sheen"],
+                 "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1], "sheenRoughnessFactor": 2}}},
+           {"extensions": {"KHR_materials_ior": {"ior": 0}}})",
+        R"(, "extensionsUsed": ["KHR_materials_ior", "KHR_materials_specular", "KHR_materials_sheen"],
            "extensionsRequired": ["KHR_materials_sheen"])");
-    ASSERT_EQ(textures.findings().size(), 1U) << "factors are drawn";
-    EXPECT_EQ(textures.findings()[0].kind,
-              "sheenRoughnessTexture of KHR_materials_sheen, which the file requires");
+    EXPECT_TRUE(all_drawn.empty()) << "factors are drawn";
+    EXPECT_EQ(drawn.materials[0].metallic_roughness->sheen_roughness, 1.0F);
     const MetallicRoughness& model = *drawn.materials[0].metallic_roughness;
     EXPECT_EQ(model.refractive_index, 1.0F) << "the nearest allowed index";
     EXPECT_EQ(model.specular, 0.25F);
@@ -256,16 +255,19 @@ TEST(LoadScene, HasTheTexturesOfMaterialExtensions) {
     const test::TemporaryDirectory folder;
     write_text(folder / "m.gltf", R"({"asset": {"version": "2.0"}, "images": [
         {"uri": "0.png"}, {"uri": "1.png"}, {"uri": "2.png"}, {"uri": "3.png"}, {"uri": "4.png"},
-        {"uri": "5.png"}, {"uri": "6.png"}, {"uri": "7.png"}, {"uri": "8.png"}, {"uri": "9.png"}, {"uri": "10.png"}],
+        {"uri": "5.png"}, {"uri": "6.png"}, {"uri": "7.png"}, {"uri": "8.png"}, {"uri": "9.png"}, {"uri": "10.png"},
+        {"uri": "11.png"}],
       "textures": [{"source": 0}, {"source": 1}, {"source": 2}, {"source": 3}, {"source": 4},
-        {"source": 5}, {"source": 6}, {"source": 7}, {"source": 8}, {"source": 9}, {"source": 10}],
+        {"source": 5}, {"source": 6}, {"source": 7}, {"source": 8}, {"source": 9}, {"source": 10},
+        {"source": 11}],
       "materials": [{"extensions": {
         "KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": {"index": 9}},
         "KHR_materials_volume": {"thicknessFactor": 1, "thicknessTexture": {"index": 10}},
         "KHR_materials_specular": {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 1}},
         "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 2},
             "clearcoatRoughnessTexture": {"index": 3}, "clearcoatNormalTexture": {"index": 4, "scale": 0.5}},
-        "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1], "sheenColorTexture": {"index": 5}},
+        "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1], "sheenColorTexture": {"index": 5},
+            "sheenRoughnessTexture": {"index": 11}},
         "KHR_materials_anisotropy": {"anisotropyStrength": 1, "anisotropyTexture": {"index": 6}},
         "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessMinimum": 200,
             "iridescenceTexture": {"index": 7}, "iridescenceThicknessTexture": {"index": 8}}}}]})");
@@ -283,7 +285,8 @@ TEST(LoadScene, HasTheTexturesOfMaterialExtensions) {
                                                model.iridescence_texture,
                                                model.iridescence_thickness_texture,
                                                model.transmission_texture,
-                                               model.thickness_texture};
+                                               model.thickness_texture,
+                                               model.sheen_roughness_texture};
     for (std::size_t i = 0; i < std::size(textures); ++i) {
         ASSERT_TRUE(textures[i]) << i;
         EXPECT_EQ(textures[i]->image, i);

@@ -117,7 +117,7 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
             "anisotropy": 0.5, "anisotropy_rotation": -180,
             "specular_texture": "a.png", "specular_color_texture": "b.png", "clearcoat_texture": "a.png",
             "clearcoat_roughness_texture": "b.png", "clearcoat_normal_map": {"texture": "a.png", "scale": 0.5},
-            "sheen_color_texture": "b.png", "anisotropy_texture": "a.png", "iridescence_texture": "b.png",
+            "sheen_color_texture": "b.png", "sheen_roughness_texture": "a.png", "anisotropy_texture": "a.png", "iridescence_texture": "b.png",
             "iridescence_thickness_texture": "a.png", "iridescence_thickness_minimum": 50,
             "iridescence": 0.25, "iridescence_index": 1.75, "iridescence_thickness": 550,
             "transmission": 0.875, "transmission_texture": "a.png", "thickness": 2, "thickness_texture": "b.png",
@@ -166,7 +166,8 @@ TEST_F(SceneFile, MaterialsHaveEveryMemberByItsName) {
          {m.metallic_roughness->specular_texture, m.metallic_roughness->clearcoat_texture,
           m.metallic_roughness->anisotropy_texture,
           m.metallic_roughness->iridescence_thickness_texture,
-          m.metallic_roughness->transmission_texture})
+          m.metallic_roughness->transmission_texture,
+          m.metallic_roughness->sheen_roughness_texture})
         EXPECT_EQ(texture->image, m.metallic_roughness->texture->image);
     for (const auto& texture :
          {m.metallic_roughness->specular_color_texture,

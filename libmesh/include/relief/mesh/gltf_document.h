@@ -128,10 +128,10 @@ struct GltfMaterial {
     std::optional<GltfTexture> thickness_texture;     ///< Green.
     std::optional<float> attenuation_distance;        ///< In world space; infinite if absent.
     glm::vec3 attenuation_color{1.0F};
-    /// The extensions that change the appearance and are not among the members above, and the
-    /// textures of those that are ("sheenRoughnessTexture of KHR_materials_sheen"), sorted.
-    /// Extensions whose values change nothing are left out.
+    /// The extensions that change the appearance and are not among the members, sorted. Extensions
+    /// whose values change nothing are left out.
     std::vector<std::string> more_extensions{};
+    std::optional<GltfTexture> sheen_roughness_texture;  ///< Alpha; of KHR_materials_sheen.
 };
 
 enum class LightType { directional, point, spot };

@@ -197,7 +197,7 @@ bool is_neutral(const std::string& name, const Json& extension) {
     });
 }
 
-/// Returns true for extensions whose factors are members of GltfMaterial.
+/// Returns true for extensions whose factors and textures are members of GltfMaterial.
 bool has_members(std::string_view name) {
     static constexpr std::array names = {
         "KHR_materials_unlit",      "KHR_materials_emissive_strength", "KHR_materials_ior",
@@ -208,32 +208,13 @@ bool has_members(std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Returns true for textures of such extensions that are members of GltfMaterial, too.
-bool is_member(std::string_view texture) {
-    static constexpr std::array names = {
-        "specularTexture",           "specularColorTexture",   "clearcoatTexture",
-        "clearcoatRoughnessTexture", "clearcoatNormalTexture", "sheenColorTexture",
-        "anisotropyTexture",         "iridescenceTexture",     "iridescenceThicknessTexture",
-        "transmissionTexture",       "thicknessTexture",
-    };
-    return std::find(names.begin(), names.end(), texture) != names.end();
-}
-
-/// Returns the extensions and textures of extensions that GltfMaterial does not have, without
-/// neutral ones.
+/// Returns the extensions that GltfMaterial does not have, without neutral ones.
 std::vector<std::string> more_extensions_of(const Json& json) {
     std::vector<std::string> names;
     const Json* extensions = find(json, "extensions");
     if (extensions == nullptr || !extensions->is_object()) return names;
     for (const auto& [name, extension] : extensions->items()) {
-        if (is_neutral(name, extension)) continue;
-        if (!has_members(name)) {
-            names.push_back(name);
-            continue;
-        }
-        for (const auto& [key, value] : extension.items())
-            if (key.ends_with("Texture") && !is_member(key))
-                names.push_back(fmt::format("{} of {}", key, name));
+        if (!has_members(name) && !is_neutral(name, extension)) names.push_back(name);
     }
     std::sort(names.begin(), names.end());
     return names;
@@ -262,6 +243,7 @@ void add_extensions(const Json& root, const Json& json, GltfMaterial& material) 
         material.sheen_color = vector_in(*sheen, "sheenColorFactor", glm::vec3(0.0F));
         material.sheen_roughness = float_in(*sheen, "sheenRoughnessFactor", 0.0F);
         material.sheen_color_texture = texture_in(root, *sheen, "sheenColorTexture");
+        material.sheen_roughness_texture = texture_in(root, *sheen, "sheenRoughnessTexture");
     }
     if (const Json* anisotropy = find(json, "extensions", "KHR_materials_anisotropy")) {
         material.anisotropy = float_in(*anisotropy, "anisotropyStrength", 0.0F);

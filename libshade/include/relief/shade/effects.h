@@ -59,6 +59,7 @@ struct Features {
     bool specular_color_texture = false;
     bool sheen = false;  ///< KHR_materials_sheen
     bool sheen_color_texture = false;
+    bool sheen_roughness_texture = false;
     bool clearcoat = false;  ///< KHR_materials_clearcoat
     bool clearcoat_texture = false;
     bool clearcoat_roughness_texture = false;

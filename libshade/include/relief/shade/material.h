@@ -124,6 +124,7 @@ struct MetallicRoughness {
     /// volume is clear.
     std::optional<float> attenuation_distance = std::nullopt;
     glm::vec3 attenuation_color{1.0F};
+    std::optional<Texture> sheen_roughness_texture{};  ///< Alpha multiplies sheen_roughness.
 };
 
 /// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
@@ -202,10 +203,10 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// up coarser levels of the picture. The surface itself covers what is behind.
 ///
 /// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
-/// color, D' and V' Charlie's distribution and visibility for alpha = sheen_roughness^2
-/// (convolution.h), E their directional albedo at n.v, which counts as at most 1, n' the normal
-/// with the coat's map alone, w = clearcoat (0.04 + 0.96 (1 - n'.v)^5), and D, V, A and B of the
-/// coat those for clearcoat_roughness and n':
+/// color, D' and V' Charlie's distribution and visibility for alpha = (sheen_roughness *
+/// sheen_roughness_texture)^2 (convolution.h), E their directional albedo at n.v, which counts as
+/// at most 1, n' the normal with the coat's map alone, w = clearcoat (0.04 + 0.96 (1 - n'.v)^5),
+/// and D, V, A and B of the coat those for clearcoat_roughness and n':
 ///
 ///     sheened = (1 - max(s) E) (radiance without emission)
 ///             + s (sum_i L max(n.l, 0) pi D' V' + E occlusion (scene.ambient + E(n)))

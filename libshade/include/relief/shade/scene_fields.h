@@ -185,6 +185,7 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
     SceneField{"sheen_color", &MetallicRoughness::sheen_color, {0, 1}, FieldUnit::color},
     SceneField{"sheen_roughness", &MetallicRoughness::sheen_roughness, {0, 1}},
     SceneField{"sheen_color_texture", &MetallicRoughness::sheen_color_texture},
+    SceneField{"sheen_roughness_texture", &MetallicRoughness::sheen_roughness_texture},
     SceneField{"anisotropy", &MetallicRoughness::anisotropy, {0, 1}},
     SceneField{
         "anisotropy_rotation", &MetallicRoughness::anisotropy_rotation, {}, FieldUnit::radians},
