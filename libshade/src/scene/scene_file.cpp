@@ -138,6 +138,11 @@ MtlMaterial visible_material(MtlMaterial material, std::size_t index, Report& re
     return material;
 }
 
+/// MeshLab writes Ns 0 and a white Ks for every material.
+bool has_highlight(const MtlMaterial& material) {
+    return material.illumination_model >= 2 && material.shininess > 0.0F;
+}
+
 Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath& images,
                        Report& report) {
     const MtlMaterial material = visible_material(read, index, report);
@@ -147,7 +152,7 @@ Material material_from(const MtlMaterial& read, std::size_t index, ImagesByPath&
     if (material.specular_map) {
         phong.specular_texture = images.texture(material, *material.specular_map);
         // map_Ks without Ks is not scaled.
-        if (phong.specular == glm::vec3(0.0F) && material.illumination_model >= 2)
+        if (phong.specular == glm::vec3(0.0F) && has_highlight(material))
             phong.specular = glm::vec3(1.0F);
     }
     if (material.emission_map) {
@@ -237,7 +242,7 @@ Material phong_from_mtl(const MtlMaterial& material) {
     phong.emission = usable(material.emission, max_reflectance);
     const glm::vec3 specular = usable(material.specular, max_reflectance);
     const int illumination = material.illumination_model;
-    if (illumination >= 2) phong.specular = specular;
+    if (has_highlight(material)) phong.specular = specular;
     phong.specular_model = SpecularModel::blinn_phong;
     phong.shininess = usable(material.shininess, 1e6F);
     if (illumination >= 3 && illumination <= 9) {

@@ -219,6 +219,10 @@ TEST(PhongFromMtl, FollowsTheIlluminationModel) {
     EXPECT_EQ(with(2).ambient, mtl.ambient);
     EXPECT_EQ(with(2).shininess, 50.0F);
     EXPECT_TRUE(with(2).double_sided);
+    mtl.shininess = 0.0F;
+    EXPECT_EQ(with(2).specular, glm::vec3(0.0F)) << "as MeshLab writes it";
+    EXPECT_EQ(with(3).specular, glm::vec3(0.0F));
+    EXPECT_EQ(with(3).reflectivity, mtl.specular);
 }
 
 TEST(PhongFromMtl, BlendsOrRefractsWhatIsNotSolid) {

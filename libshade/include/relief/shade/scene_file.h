@@ -147,11 +147,11 @@ struct TextureMeans {
 /// itself multiplies them.
 Material phong_from_metallic_roughness(const GltfMaterial& material, const TextureMeans& means);
 
-/// Converts MTL to Phong's model, without textures: illum 0 is unlit, 1 has no highlight, 3 to 9
-/// reflect by Ks, with Fresnel's effect for 5 and 7 only. If d is below 1, illum 6 and 7 refract
-/// (transmission 1 - d, by Ni); every other model, and map_d, blend, as OBJ viewers do. Ns above
-/// 1e6 counts as 1e6, Ni is clamped to [1, 1000]; colors below 0 count as 0. Source: the MTL
-/// format's illumination models (Blinn's half vector for all highlights).
+/// Converts MTL to Phong's model, without textures: illum 0 is unlit; 1 and Ns 0, which would cover
+/// the lit side, have no highlight; 3 to 9 reflect by Ks, 5 and 7 with Fresnel's effect. If d is
+/// below 1, illum 6 and 7 refract (transmission 1 - d, by Ni); every other model, and map_d, blend,
+/// as OBJ viewers do. Ns above 1e6 counts as 1e6, Ni is clamped to [1, 1000]; colors below 0 count
+/// as 0. Source: the MTL format's illumination models (Blinn's half vector for all highlights).
 Material phong_from_mtl(const MtlMaterial& material);
 
 // Saves an edited scene as a scene file (docs/scene-files.md) that draws the same pixels.
