@@ -5,7 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "tools/workplace.h"
 #include "window/background_jobs.h"
@@ -202,6 +206,29 @@ TEST_F(PlayingState, MovesWithoutPreparingTheSceneAgain) {
     EXPECT_EQ(state_.request()->pose, after.pose);
     state_.act(Action::step_forward);
     EXPECT_NE(state_.request()->pose, after.pose);
+}
+
+TEST_F(PlayingState, FitsTheWholeMotionUnlessItGoesFar) {
+    const auto cameras = [&](const std::string& radius, std::optional<double> time) {
+        state_ = ViewerState{ViewOptions{}};
+        state_.set_view({64, 48});
+        options_.time = time;
+        show(R"("nodes": [{"model": "square.obj", "orbit": {"azimuth_speed": 90, "radius": )" +
+             radius + "}}]");
+        const OrbitCamera opened = state_.camera();
+        state_.act(Action::fit);
+        return std::pair(opened, state_.camera());
+    };
+    const auto [first_pose, fitted_pose] = cameras("0.5", 0.0);
+    const auto [motion, fitted_motion] = cameras("0.5", std::nullopt);
+    EXPECT_NEAR(first_pose.target.z, 0.5F, rounding);
+    EXPECT_NEAR(motion.target.z, 0.0F, rounding) << "the center of the circle";
+    EXPECT_NEAR(fitted_motion.target.z, 0.0F, rounding);
+    // Half the diagonals of the square and of the box that contains its motion.
+    const float growth = glm::length(glm::vec3(1.5F, 1.0F, 0.5F)) / std::sqrt(2.0F);
+    EXPECT_NEAR(motion.distance, growth * first_pose.distance, 1e-4F);
+    EXPECT_NEAR(cameras("9", std::nullopt).first.distance, cameras("9", 0.0).first.distance,
+                rounding);
 }
 
 TEST_F(PlayingState, OpensPausedAtAGivenTime) {

@@ -427,12 +427,21 @@ void ViewerState::take(Loaded loaded) {
         reach.empty()
             ? sphere_
             : bounding_sphere({glm::min(bounds.min, reach.min), glm::max(bounds.max, reach.max)});
+    // A model that moves far away would be small for most of the time.
+    constexpr float max_growth = 4.0F;
+    fitted_ = reach_.radius <= max_growth * sphere_.radius ? reach_ : sphere_;
     mark_health();
     if (is_new) {
         const std::optional<CameraOption>& view = options_.camera;
         camera_ = view && view->place
                       ? orbit_of(*view, *view->place, camera.vertical_fov, options_.orthographic)
                       : orbit_of(camera, sphere_);
+        // The scene was framed in its first pose; with --time, the window shows one pose.
+        const bool is_framed = !(view && view->place) && !loaded.composed->camera_follows_scene;
+        if (is_framed && !options_.time) {
+            camera_.target += fitted_.center - sphere_.center;
+            camera_.distance *= fitted_.radius / sphere_.radius;
+        }
         followed_.reset();
         if (loaded.composed->camera_follows_scene && playback_.camera()) followed_ = camera_;
     }
@@ -726,7 +735,7 @@ void ViewerState::act(Action action) {
         view_.y > 0 ? static_cast<float>(view_.x) / static_cast<float>(view_.y) : 1.0F;
     switch (action) {
         case Action::fit:
-            return fit(camera_, sphere_, aspect);
+            return fit(camera_, fitted_, aspect);
         case Action::front:
             return look_from(0.0F, 0.0F);
         case Action::back:

@@ -327,7 +327,8 @@ class ViewerState {
     SceneTree tree_;
     LightRows light_rows_;
     Playback playback_;
-    BoundingSphere reach_;  ///< Contains everything, wherever the animation moves it.
+    BoundingSphere reach_;   ///< Contains everything, wherever the animation moves it.
+    BoundingSphere fitted_;  ///< The part of it that the camera shows when it fits the model.
     /// The camera of the animation as it was shown last, until the user moves it.
     std::optional<OrbitCamera> followed_;
     std::filesystem::path shown_model_;
