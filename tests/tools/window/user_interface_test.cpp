@@ -59,6 +59,16 @@ TEST(StatusLine, ShowsWhatFitsFromTheFirstPartOn) {
     EXPECT_EQ(fitting_line({}, 9.0F, width_of), "");
 }
 
+TEST(FittingEnd, KeepsTheNameOfTheFile) {
+    const auto width_of = [](const std::string& text) { return static_cast<float>(text.size()); };
+    EXPECT_EQ(fitting_end("bricks.png", 10.0F, width_of), "bricks.png");
+    EXPECT_EQ(fitting_end("/far/away/bricks.png", 13.0F, width_of), "...bricks.png");
+    EXPECT_EQ(fitting_end("/far/\u00e9cru.png", 11.0F, width_of), "...cru.png")
+        << "whole characters";
+    EXPECT_EQ(fitting_end("bricks.png", 2.0F, width_of), "...");
+    EXPECT_EQ(fitting_end("", 2.0F, width_of), "");
+}
+
 std::string page() {
     return test::contents_of(test::source_directory() / "docs/window.md");
 }

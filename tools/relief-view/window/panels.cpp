@@ -181,6 +181,37 @@ void draw(const Thumbnail& thumbnail) {
 
 }  // namespace
 
+namespace {
+
+/// A text field. While nobody types, it shows the end of a text that is too long, since paths end
+/// with the name of the file.
+bool edit_path(std::string& text) {
+    ImGuiStorage* const storage = ImGui::GetStateStorage();
+    const ImGuiID id = ImGui::GetID("##path");
+    const float width = ImGui::CalcItemWidth() - 2.0F * ImGui::GetStyle().FramePadding.x;
+    const auto width_of = [](const std::string& part) {
+        return ImGui::CalcTextSize(part.c_str()).x;
+    };
+    const std::string end = fitting_end(text, width, width_of);
+    const bool is_replaced = end != text && !storage->GetBool(id);
+    const ImU32 color = ImGui::GetColorU32(ImGuiCol_Text);
+    if (is_replaced) ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.0F, 0.0F, 0.0F, 0.0F));
+    const bool is_entered = ImGui::InputTextWithHint(
+        "##path", "path of a file", &text,
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    if (is_replaced) ImGui::PopStyleColor();
+    storage->SetBool(id, ImGui::IsItemActive());
+    if (is_replaced && !ImGui::IsItemActive()) {
+        const ImVec2 corner = ImGui::GetItemRectMin();
+        const ImVec2& padding = ImGui::GetStyle().FramePadding;
+        ImGui::GetWindowDrawList()->AddText({corner.x + padding.x, corner.y + padding.y}, color,
+                                            end.c_str());
+    }
+    return is_entered;
+}
+
+}  // namespace
+
 FileChoice file_field(const char* label, const std::optional<std::string>& shown,
                       const std::optional<Thumbnail>& thumbnail) {
     FileChoice choice;
@@ -196,9 +227,7 @@ FileChoice file_field(const char* label, const std::optional<std::string>& shown
     if (shown) ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemInnerSpacing.x);
     std::string text = shown.value_or("");
     // Dear ImGui keeps the text while it is edited.
-    if (ImGui::InputTextWithHint(
-            "##path", "path of a file", &text,
-            ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll)) {
+    if (edit_path(text)) {
         const std::filesystem::path file = path_of(text);
         if (file.empty()) {
             choice.is_cleared = shown.has_value();
@@ -228,6 +257,19 @@ void draw_progress(const std::string& what, const Progress::State& progress) {
                            {12.0F * ImGui::GetFontSize(), ImGui::GetTextLineHeight()},
                            percent.c_str());
     }
+}
+
+std::string fitting_end(const std::string& text, float width,
+                        const std::function<float(const std::string&)>& width_of) {
+    if (width_of(text) <= width) return text;
+    const auto continues = [&](std::size_t i) {  // A character of UTF-8 is not divided.
+        return i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U;
+    };
+    for (std::size_t begin = 1; begin < text.size(); ++begin) {
+        const std::string end = "..." + text.substr(begin);
+        if (!continues(begin) && width_of(end) <= width) return end;
+    }
+    return "...";
 }
 
 std::string fitting_line(const std::vector<std::string>& parts, float width,

@@ -129,6 +129,10 @@ void draw_progress(const std::string& what, const Progress::State& progress);
 std::string fitting_line(const std::vector<std::string>& parts, float width,
                          const std::function<float(const std::string&)>& width_of);
 
+/// Returns a text, or if it is too long "..." and the longest end that fits.
+std::string fitting_end(const std::string& text, float width,
+                        const std::function<float(const std::string&)>& width_of);
+
 // The effects panel: the reasons for each effect, measured times, and the shader source.
 
 /// Adds line numbers: " 1  #version 330 core".
