@@ -115,6 +115,10 @@ void open_by_dialog_and_key(ViewerWindow& window) {
     window.wait_for("the selected scene", shows("shading-lights.json"));
     window.key("Next");
     window.wait_for("the next scene", shows("shading-reflection.json"));
+    window.key("F1");
+    window.wait_for("help", [](const json& now) { return now["help"] == true; });
+    window.key("Escape");
+    window.wait_for("no help", [](const json& now) { return now["help"] == false; });
 }
 
 TEST(Drops, ScenesModelsMapsAndFacesAreShown) {
@@ -330,6 +334,10 @@ TEST(ReloadWindow, UnreadableModelIsShownAfterItsRepair) {
     });
     window.wait_for("the view in the size that was asked for", [](const json& now) {
         return now["view"] == json({500, 400}) && now["drawn"]["size"] == now["view"];
+    });
+    window.key("Next");
+    window.wait_for("a notice", [](const json& now) {
+        return now["notice"] == "There is no other model in the folder";
     });
     // A damaged file that is dropped must not stop the watch on the first file.
     workplace.write("broken.glb", "this is no model");

@@ -295,13 +295,14 @@ TEST(Folders, ListTheirFoldersAndWhatTheWindowShows) {
     const test::TemporaryDirectory folder;
     const std::filesystem::path root = std::filesystem::path(folder / "root");
     std::filesystem::create_directories(root / "inner");
-    for (const char* name : {"b.glb", "a.obj", "map.PNG", "notes.txt", ".hidden.obj", "c.json"})
+    for (const char* name :
+         {"b.glb", "a.obj", "Box.obj", "map.PNG", "notes.txt", ".hidden.obj", "c.json"})
         std::ofstream(root / name) << "x";
     const FolderListing listing = list_folder(root / "inner" / ".." / "");
     EXPECT_EQ(listing.folder, root);
     EXPECT_EQ(listing.folders, (Files{root.parent_path(), root / "inner"}));
-    EXPECT_EQ(listing.files,
-              (Files{root / "a.obj", root / "b.glb", root / "c.json", root / "map.PNG"}));
+    EXPECT_EQ(listing.files, (Files{root / "a.obj", root / "b.glb", root / "Box.obj",
+                                    root / "c.json", root / "map.PNG"}));
     EXPECT_EQ(listing.error, "");
     EXPECT_NE(list_folder(root / "missing").error, "");
     const FolderListing top = list_folder("/");

@@ -258,6 +258,17 @@ DroppedAs dropped_as(const std::filesystem::path& file) {
     return DroppedAs::diffuse_map;
 }
 
+namespace {
+
+/// Orders files by name as people do: upper and lower case do not matter.
+bool comes_before(const std::filesystem::path& a, const std::filesystem::path& b) {
+    const std::string lower_a = lower(a.filename().string());
+    const std::string lower_b = lower(b.filename().string());
+    return lower_a != lower_b ? lower_a < lower_b : a < b;
+}
+
+}  // namespace
+
 FolderListing list_folder(const std::filesystem::path& folder) {
     FolderListing listing;
     std::error_code error;
@@ -275,8 +286,8 @@ FolderListing list_folder(const std::filesystem::path& folder) {
         }
     }
     if (error) listing.error = listing.folder.string() + ": " + error.message();
-    std::sort(listing.folders.begin(), listing.folders.end());
-    std::sort(listing.files.begin(), listing.files.end());
+    std::sort(listing.folders.begin(), listing.folders.end(), comes_before);
+    std::sort(listing.files.begin(), listing.files.end(), comes_before);
     const std::filesystem::path parent = listing.folder.parent_path();
     if (parent != listing.folder) listing.folders.insert(listing.folders.begin(), parent);
     return listing;

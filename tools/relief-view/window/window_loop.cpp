@@ -699,7 +699,7 @@ class WindowLoop {
                                loader_.is_loading() ? loader_.progress() : drawer_.progress(),
                                was_busy || is_full_resolution_pending_,
                                &capture_settings_,
-                               saved_text(),
+                               notice_.empty() ? saved_text() : notice_,
                                saved_layout_.note(),
                                effect_times_,
                                shaders_,
@@ -732,6 +732,7 @@ class WindowLoop {
     }
 
     void act(Action action) {
+        notice_.clear();
         state_.act(action);
         if (action == Action::help) interface_.show_help();
         if (action == Action::open) open();
@@ -763,7 +764,9 @@ class WindowLoop {
     }
 
     void open_neighbor(bool is_next) {
-        if (const auto file = neighbor_of(loading_options_.model, is_next)) drop({*file});
+        const auto file = neighbor_of(loading_options_.model, is_next);
+        if (file) return drop({*file});
+        if (!loading_options_.model.empty()) notice_ = "There is no other model in the folder";
     }
 
     [[nodiscard]] std::string command_line() const {
@@ -932,6 +935,7 @@ class WindowLoop {
         state["drawn"]["beside"] = drawn.beside;
         state["drawn"]["difference"] = drawn.is_difference;
         state["saved"] = json_of(captured_->state());
+        state["notice"] = notice_;
         state["saved_files"] = saving_.json();
         state["layout"] = {{"scale", interface_.scale().layout},
                            {"panels", panel_names()},
@@ -979,6 +983,7 @@ class WindowLoop {
     bool is_full_resolution_pending_ =
         false;  ///< The picture at full resolution is still to be drawn.
     int pending_frames_ = frames_to_settle;
+    std::string notice_;  ///< The status line shows it until the next action.
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
