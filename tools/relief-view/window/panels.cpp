@@ -999,7 +999,6 @@ void draw_help(bool& is_open) {
     if (!ImGui::IsAnyItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
         is_open = false;
     ImGui::End();
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) is_open = false;
 }
 
 // The file dialog.
