@@ -81,7 +81,7 @@ TEST(ViewCommand, LightsAreAddedWhereThereAreNoneAndItSaysSo) {
     EXPECT_EQ(result.error, "") << "progress is for terminals";
     EXPECT_THAT(result.out,
                 HasSubstr("read      square.obj: 1 mesh, 2 triangles\nlight     2 directional "
-                          "lights and ambient light\nnotes     the model and --light contain no "
+                          "lights and ambient light\nnotes     the model has no "
                           "light, so a key light and a fill light were added\nfindings  none\n"));
     EXPECT_THAT(result.out, HasSubstr("wrote     out/p.png: "));
     EXPECT_GT(pixel(picture_in(workplace / "out/p.png"), 16, 16)[0], 100);

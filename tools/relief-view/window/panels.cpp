@@ -996,8 +996,6 @@ void draw_help(bool& is_open) {
             row(shortcut.key, shortcut.description);
         ImGui::EndTable();
     }
-    if (!ImGui::IsAnyItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-        is_open = false;
     ImGui::End();
 }
 

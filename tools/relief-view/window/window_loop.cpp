@@ -400,6 +400,7 @@ std::optional<glm::ivec2> UserInterface::pointer() {
 
 void UserInterface::on_key(int key, int modifiers, bool is_held) {
     if (is_typing() || dialog_.is_open()) return;
+    if (key == GLFW_KEY_ESCAPE) is_help_open_ = false;
     for (const Shortcut& shortcut : shortcuts()) {
         if (is_named(shortcut.key, key, modifiers) && (!is_held || is_repeating(shortcut.action)))
             pressed_.push_back(shortcut.action);
