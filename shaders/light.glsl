@@ -45,14 +45,15 @@ vec4 light_row(int index) { return texelFetch(light_buffer, index); }
 
 #include <light_rows>
 #include <highlight_row>
-#include <shadow>
+#include <directional_shadow>
 #include <receive>
 
 void add_directional_lights(Surface surface, inout Lighting lighting) {
+    float first_share = directional_share(surface);
     for (int i = 0; i < directional_light_count; ++i) {
         int row = directional_light_rows * i;
         vec3 irradiance = light_row(row + 1).rgb;
-        float share = visible_share(surface, row);
+        float share = i == 0 ? first_share : 1.0;
         receive(surface, light_row(row).xyz, irradiance * share,
                 highlight_power(row + 2, irradiance) * share, lighting);
     }
@@ -64,17 +65,18 @@ void add_directional_lights(Surface surface, inout Lighting lighting) {
 #include <light_rows>
 #include <highlight_row>
 #include "falloff.glsl#irradiance"
-#include <shadow>
+#include <point_shadow>
 #include <receive>
 
 void add_point_lights(Surface surface, inout Lighting lighting) {
+    float first_share = point_share(surface);
     for (int i = 0; i < point_light_count; ++i) {
         int row = first_point_row + point_light_rows * i;
         vec4 place = light_row(row);
         vec4 power = light_row(row + 1);
         vec3 to_light_world = place.xyz - surface.position_world;
         float reach = reach_of(to_light_world, place.w, power.w);
-        float share = visible_share(surface, row);
+        float share = i == 0 ? first_share : 1.0;
         receive(surface, direction_to(to_light_world), irradiance_of(power.rgb, reach) * share,
                 irradiance_of(highlight_power(row + 2, power.rgb), reach) * share, lighting);
     }
@@ -88,10 +90,11 @@ void add_point_lights(Surface surface, inout Lighting lighting) {
 #include <light_rows>
 #include <highlight_row>
 #include "falloff.glsl#irradiance"
-#include <shadow>
+#include <spot_shadow>
 #include <receive>
 
 void add_spot_lights(Surface surface, inout Lighting lighting) {
+    float first_share = spot_share(surface);
     for (int i = 0; i < spot_light_count; ++i) {
         int row = first_spot_row + spot_light_rows * i;
         vec4 place = light_row(row);
@@ -102,7 +105,7 @@ void add_spot_lights(Surface surface, inout Lighting lighting) {
         float inside = clamp(dot(-light_world, cone.xyz) + cone.w, 0.0, 1.0);
         float reach = reach_of(to_light_world, place.w, power.w);
         vec3 highlights = highlight_power(row + 3, power.rgb);
-        float share = visible_share(surface, row);
+        float share = i == 0 ? first_share : 1.0;
         receive(surface, light_world, irradiance_of(power.rgb * (inside * inside), reach) * share,
                 irradiance_of(highlights * (inside * inside), reach) * share, lighting);
     }

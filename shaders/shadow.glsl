@@ -18,9 +18,8 @@ void pass_shadow() { shadow_place = shadow_from_object * vec4(position_deformed,
 in vec4 shadow_place;
 
 #part visible_share
-// The share of the main light that reaches the surface; 1 for all other lights. The surface is lifted
-// along its normal, so that it does not shade itself. Each lookup compares with the four nearest
-// texels.
+// The share of the main light that reaches the surface. The surface is lifted along its normal, so
+// that it does not shade itself. Each lookup compares with the four nearest texels.
 
 #include <shadow_place>
 
@@ -30,10 +29,8 @@ uniform int shadow_samples;
 uniform vec4 shadow_points[8];  // Two places on the light in each.
 uniform sampler2DArrayShadow shadow_maps;
 
-float visible_share(Surface surface, int row) {
-    if (row != shadow_row || shadow_samples == 0) return 1.0;
+float visible_share(Surface surface) {
     vec4 place = shadow_place + shadow_lift * vec4(surface.normal_world, 0.0);
-    if (!(place.w > 0.0)) return 1.0;
     vec3 middle = place.xyz / place.w;
     float shift = dot(shadow_shift, place.zw) / place.w;
     float share = 0.0;
@@ -42,5 +39,27 @@ float visible_share(Surface surface, int row) {
         vec2 point = i % 2 == 0 ? points.xy : points.zw;
         share += texture(shadow_maps, vec4(middle.xy + point * shift, float(i), middle.z));
     }
-    return share / float(shadow_samples);
+    bool is_in_front = shadow_samples > 0 && place.w > 0.0;
+    return is_in_front ? share / float(shadow_samples) : 1.0;
 }
+
+#part directional
+// The main light is the first directional light.
+
+#include "shadow.glsl#visible_share"
+
+float directional_share(Surface surface) { return visible_share(surface); }
+
+#part point
+// The main light is the first point light.
+
+#include "shadow.glsl#visible_share"
+
+float point_share(Surface surface) { return visible_share(surface); }
+
+#part spot
+// The main light is the first spot light.
+
+#include "shadow.glsl#visible_share"
+
+float spot_share(Surface surface) { return visible_share(surface); }

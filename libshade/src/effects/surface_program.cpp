@@ -450,6 +450,9 @@ Steps normal_steps(By f) {
 Steps light_steps(By f, bool in_this_stage) {
     const bool any = in_this_stage && has_lights(f);
     const bool positional = in_this_stage && has_positional_lights(f);
+    const Takes shadow{
+        .uniforms = {"shadow_lift", "shadow_shift", "shadow_samples", "shadow_points"},
+        .samplers = {"shadow_maps"}};
     return {
         {"light_rows",
          "",
@@ -472,12 +475,15 @@ Steps light_steps(By f, bool in_this_stage) {
          {{"falloff.glsl#inverse_square", positional && f.falloff == FalloffTerm::inverse_square},
           {"falloff.glsl#none", positional && f.falloff == FalloffTerm::none},
           {"falloff.glsl#mixed", positional && f.falloff == FalloffTerm::mixed}}},
-        {"shadow",
-         "float visible_share(Surface surface, int row) { return 1.0; }",
-         {{"shadow.glsl#visible_share",
-           any && has_shadow(f),
-           {.uniforms = {"shadow_lift", "shadow_shift", "shadow_samples", "shadow_points"},
-            .samplers = {"shadow_maps"}}}}},
+        {"directional_shadow",
+         "float directional_share(Surface surface) { return 1.0; }",
+         {{"shadow.glsl#directional", any && f.shadow == ShadowTerm::directional_light, shadow}}},
+        {"point_shadow",
+         "float point_share(Surface surface) { return 1.0; }",
+         {{"shadow.glsl#point", any && f.shadow == ShadowTerm::point_light, shadow}}},
+        {"spot_shadow",
+         "float spot_share(Surface surface) { return 1.0; }",
+         {{"shadow.glsl#spot", any && f.shadow == ShadowTerm::spot_light, shadow}}},
         {"range",
          "float within_range(float distance_squared, float inverse_range) { return 1.0; }",
          {{"falloff.glsl#range", positional && f.light_ranges}}},
@@ -802,22 +808,15 @@ ShaderSteps chosen_of(const Steps& steps) {
 ShaderConstants light_constants(const Features& f) {
     const LightRowLayout layout = light_row_layout(f);
     const auto number = [](std::uint32_t value) { return static_cast<int>(value); };
-    ShaderConstants constants = {{"directional_light_count", number(f.directional_lights)},
-                                 {"point_light_count", number(f.point_lights)},
-                                 {"spot_light_count", number(f.spot_lights)},
-                                 {"directional_light_rows", number(layout.directional_rows)},
-                                 {"point_light_rows", number(layout.point_rows)},
-                                 {"spot_light_rows", number(layout.spot_rows)},
-                                 {"first_point_row", number(layout.first_point)},
-                                 {"first_spot_row", number(layout.first_spot)},
-                                 {"light_row_count", number(layout.count)}};
-    if (has_shadow(f)) {
-        constants.emplace_back("shadow_row",
-                               number(f.shadow == ShadowTerm::directional_light ? 0
-                                      : f.shadow == ShadowTerm::point_light     ? layout.first_point
-                                                                            : layout.first_spot));
-    }
-    return constants;
+    return {{"directional_light_count", number(f.directional_lights)},
+            {"point_light_count", number(f.point_lights)},
+            {"spot_light_count", number(f.spot_lights)},
+            {"directional_light_rows", number(layout.directional_rows)},
+            {"point_light_rows", number(layout.point_rows)},
+            {"spot_light_rows", number(layout.spot_rows)},
+            {"first_point_row", number(layout.first_point)},
+            {"first_spot_row", number(layout.first_spot)},
+            {"light_row_count", number(layout.count)}};
 }
 
 void append(std::vector<std::string>& names, const std::vector<std::string_view>& more) {
