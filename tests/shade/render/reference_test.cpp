@@ -693,8 +693,8 @@ class Shadows : public AgainstReference {
 
     void expect_agreement_of_shadow(const Scene& scene) const {
         const ShadowErrors errors = errors_of(scene);
-        // Without shadows, the mean is 0.11 codes. Shadows differ at edges only, by a fraction of a
-        // texel of their maps, which are about as fine as these pictures.
+        // Pictures are rounded to codes. Shadows differ at edges only, by a fraction of a texel of
+        // their maps, which are finer than these pictures.
         EXPECT_LT(errors.mean, 0.22);
         EXPECT_LT(errors.large, 0.003);
         EXPECT_GT(errors.dark, 0.03);
