@@ -74,7 +74,7 @@ struct ShadowView {
     std::vector<glm::dvec2> points;  ///< Of the light, within the unit circle.
     int texels = 0;                  ///< The width of a map.
     double lift = 0.0;               ///< Rays begin this far from the surface, along its normal.
-    /// Of the middle of the light: the position, or the direction to it (w = 0).
+    /// The position of the middle of the light, or if w is 0, the direction to it.
     glm::dvec4 light_world{0.0};
     glm::dvec3 right_world{0.0};  ///< The axes of the disc, times its radius.
     glm::dvec3 up_world{0.0};

@@ -564,10 +564,7 @@ namespace {
 Mesh in_world(const Scene& scene, std::size_t instance) {
     const glm::mat4& world_from_object = scene.instances[instance].world_from_object;
     const Shared<Mesh> mesh = deformed_mesh(scene, instance);
-    const glm::dmat3 m(world_from_object);
-    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
-                               glm::cross(m[0], m[1]));
-    const double side = glm::dot(m[0], cofactors[0]) < 0.0 ? -1.0 : 1.0;
+    const glm::dmat3 to_world = reference::normal_matrix(glm::dmat3(world_from_object)).matrix;
     Mesh world;
     world.triangles = mesh->triangles;
     for (const glm::vec3& position : mesh->positions)
@@ -576,7 +573,7 @@ Mesh in_world(const Scene& scene, std::size_t instance) {
         mesh->normals.empty() ? vertex_normals(mesh->positions, mesh->triangles, NormalOptions{})
                               : mesh->normals;
     for (const glm::vec3& normal : normals)
-        world.normals.emplace_back(direction_or_zero(side * (cofactors * glm::dvec3(normal))));
+        world.normals.emplace_back(direction_or_zero(to_world * glm::dvec3(normal)));
     return world;
 }
 

@@ -101,7 +101,8 @@ struct DrawValues {
 
     float exposure = 1.0F;
 
-    // Of the shadow maps (ShadowView); without a sample, nothing is in shadow.
+    // These values describe the shadow maps (ShadowView). If there are no samples, nothing is in
+    // shadow.
     glm::mat4 shadow_from_object{1.0F};  ///< To places in the maps.
     glm::mat4 shadow_lift{0.0F};         ///< From the normal to the lift of a place.
     glm::vec2 shadow_shift{0.0F};

@@ -734,19 +734,22 @@ void Renderer::Implementation::prepare_shadow(const Scene& scene) {
 /// positions and the holes of masks only.
 void Renderer::Implementation::draw_shadow_maps() {
     has_old_shadow = false;
+    std::vector<std::pair<const Draw*, std::shared_ptr<const DrawProgram>>> casting;
+    for (const Draw& draw : draws) {
+        if (!draw.casts_shadow) continue;
+        Features depth_only = draw.features;
+        depth_only.view = DebugView::overdraw;
+        casting.emplace_back(&draw, cache.programs.get(canonical(depth_only)));
+    }
     api->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     api->Disable(GL_CULL_FACE);
     for (std::size_t i = 0; i < shadow->points.size(); ++i) {
         shadow_maps->begin(static_cast<int>(i));
         const glm::dmat4 to_clip = shadow->clip_from_world(shadow->points[i]);
-        for (const Draw& draw : draws) {
-            if (!draw.casts_shadow) continue;
-            Features depth_only = draw.features;
-            depth_only.view = DebugView::overdraw;
-            const auto program = cache.programs.get(canonical(depth_only));
-            use_program(*program, draw, to_clip, nullptr);
-            bind_textures(draw);
-            meshes.at(draw.mesh)->draw(api, draw.range);
+        for (const auto& [draw, program] : casting) {
+            use_program(*program, *draw, to_clip, nullptr);
+            bind_textures(*draw);
+            meshes.at(draw->mesh)->draw(api, draw->range);
         }
     }
     api->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -179,10 +179,6 @@ void draw(const Thumbnail& thumbnail) {
     ImGui::EndTooltip();
 }
 
-}  // namespace
-
-namespace {
-
 /// A text field. While nobody types, it shows the end of a text that is too long, since paths end
 /// with the name of the file.
 bool edit_path(std::string& text) {
