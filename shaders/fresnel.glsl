@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresnel's factor: the share of light that a surface mirrors, by n.v and channel.
+// Fresnel's factor: the share of light that a surface mirrors, by angle and channel.
+
+#part viewing_cosine
+// n.v, clamped to [0,1], since a perturbed normal may leave it.
+
+float viewing_cosine(Surface surface) {
+    return clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
+}
 
 #part constant
 // The same reflectivity at every angle.
 
 uniform vec3 reflectivity;
 
-vec3 fresnel_factor(float n_dot_v) { return reflectivity; }
+vec3 fresnel_factor(Surface surface) { return reflectivity; }
 
 #part schlick
 // Schlick's approximation: from reflectivity at normal incidence to grazing_reflectivity.
 // Source: [Schlick 1994].
 
+#include "fresnel.glsl#viewing_cosine"
+
 uniform vec3 reflectivity;
 uniform vec3 grazing_reflectivity;
 
-vec3 fresnel_factor(float n_dot_v) {
+vec3 fresnel_factor(Surface surface) {
+    float n_dot_v = viewing_cosine(surface);
     float m = 1.0 - n_dot_v;
     return reflectivity + (grazing_reflectivity - reflectivity) * (m * m * m * m * m);
 }
@@ -25,10 +35,13 @@ vec3 fresnel_factor(float n_dot_v) {
 // is no boundary, and nothing is mirrored, at grazing angles too. Source: [Born and Wolf 1999],
 // 1.5.2.
 
+#include "fresnel.glsl#viewing_cosine"
+
 uniform vec3 reflectivity;
 uniform float refractive_index;
 
-vec3 fresnel_factor(float n_dot_v) {
+vec3 fresnel_factor(Surface surface) {
+    float n_dot_v = viewing_cosine(surface);
     float index_squared = refractive_index * refractive_index;
     // The index times the cosine inside, by Snell's law: exactly n.v where nothing is refracted.
     float inside = sqrt(index_squared - 1.0 + n_dot_v * n_dot_v);
@@ -43,11 +56,14 @@ vec3 fresnel_factor(float n_dot_v) {
 // index 1 and no absorption there is no boundary, and nothing is mirrored, at grazing angles too.
 // Source: [Born and Wolf 1999], 14.2.
 
+#include "fresnel.glsl#viewing_cosine"
+
 uniform vec3 reflectivity;
 uniform vec3 conductor_index;
 uniform vec3 conductor_absorption;
 
-vec3 fresnel_factor(float n_dot_v) {
+vec3 fresnel_factor(Surface surface) {
+    float n_dot_v = viewing_cosine(surface);
     float cosine_squared = n_dot_v * n_dot_v;
     float sine_squared = 1.0 - cosine_squared;
     vec3 n_squared = conductor_index * conductor_index;

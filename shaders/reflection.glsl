@@ -4,8 +4,7 @@
 
 #part phong
 // Phong's surfaces: the mirror image gets Fresnel's factor, and scattering and refraction get the
-// rest. n.v is clamped to [0,1], since a perturbed normal may leave it. The lookup is in world
-// space. Source: [Blinn and Newell 1976].
+// rest. The lookup is in world space. Source: [Blinn and Newell 1976].
 
 #include <fresnel>
 #include <mirror_image>
@@ -13,8 +12,7 @@
 #include <refraction>
 
 vec3 with_reflection(Surface surface, vec3 scattered) {
-    float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
-    vec3 fresnel = fresnel_factor(n_dot_v);
+    vec3 fresnel = fresnel_factor(surface);
     return with_refraction(surface, scattered) * (vec3(1.0) - fresnel) +
            mirror_image(reflected_direction(surface)) * fresnel;
 }

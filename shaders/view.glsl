@@ -106,7 +106,12 @@ vec3 scattering_tint(Surface surface) { return vec3(0.0); }
 
 vec3 specular_texture_color() { return vec3(0.0); }
 
-#part no_mirror_image
+#part black_mirror_image
 // A view of a term that reflections dim: the mirror image is black, and only takes its share.
 
-vec3 mirror_image(vec3 mirrored_world) { return vec3(0.0); }
+#include <fresnel>
+#include <refraction>
+
+vec3 with_reflection(Surface surface, vec3 scattered) {
+    return with_refraction(surface, scattered) * (vec3(1.0) - fresnel_factor(surface));
+}

@@ -127,17 +127,14 @@ void drop_layers(Features& f) {
 /// Rotation and direction show where the environment is looked up by direction. The light that it
 /// scatters is rotated before.
 void drop_lookups(Features& f) {
-    const bool mirrored =
-        f.reflection != ReflectionTerm::none && (f.metallic_roughness || !has_black_mirror(f));
-    const bool refracted = f.refraction && !has_black_transmission(f);
-    f.environment_rotation &= mirrored || refracted;
-    f.reflection_by_normal &= mirrored && !f.metallic_roughness;
+    f.environment_rotation &= looks_up_mirror(f) || looks_up_refraction(f);
+    f.reflection_by_normal &= looks_up_mirror(f) && !f.metallic_roughness;
 }
 
 void drop_normal(Features& f) {
     const bool per_pixel_lights = light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
-    const bool seen = per_pixel_lights || f.reflection != ReflectionTerm::none || f.refraction ||
-                      f.environment_diffuse || f.sheen || transmits(f);
+    const bool seen = per_pixel_lights || reflection_shows_normal(f) || f.environment_diffuse ||
+                      f.sheen || transmits(f);
     // A coat shows the normal without its map.
     const bool plain_seen = seen || f.clearcoat;
     if (!seen) f.detail = NormalDetail::none;

@@ -50,6 +50,28 @@ inline bool transmits(const Features& f) {
     return f.transmission && !is_term(f.view);
 }
 
+/// True if a mirror image is looked up along the normal or a reflected direction.
+inline bool looks_up_mirror(const Features& f) {
+    return f.reflection != ReflectionTerm::none && (f.metallic_roughness || !has_black_mirror(f));
+}
+
+/// True if the environment behind the surface is looked up along a refracted direction.
+inline bool looks_up_refraction(const Features& f) {
+    return f.refraction && !has_black_transmission(f);
+}
+
+/// True if reflection or refraction depends on the direction to the eye.
+inline bool reflection_shows_view(const Features& f) {
+    const bool by_angle = f.reflection != ReflectionTerm::none &&
+                          (f.metallic_roughness || f.fresnel != FresnelTerm::constant);
+    return by_angle || (looks_up_mirror(f) && !f.reflection_by_normal) || looks_up_refraction(f);
+}
+
+/// True if reflection or refraction depends on the normal.
+inline bool reflection_shows_normal(const Features& f) {
+    return reflection_shows_view(f) || looks_up_mirror(f);
+}
+
 /// True if the view shows a vector of the tangent frame.
 inline bool shows_frame(const Features& f) {
     return f.view == DebugView::tangent || f.view == DebugView::bitangent ||

@@ -82,15 +82,15 @@ struct Needs {
 
 /// \param lights  the stage computes them  \param rest  and everything else that shows the normal
 Needs needs_of(By f, bool lights, bool rest) {
-    const bool reflects =
-        rest && (f.reflection != ReflectionTerm::none || f.refraction || transmits(f));
+    const bool shows_view = rest && (reflection_shows_view(f) || transmits(f));
+    const bool shows_normal = shows_view || (rest && reflection_shows_normal(f));
     const bool lit_around = rest && f.environment_diffuse;
     Needs needs;
     needs.lights = lights && has_lights(f);
     const bool layered = rest && (f.sheen || f.clearcoat);
-    needs.normal = needs.lights || reflects || lit_around || layered;
+    needs.normal = needs.lights || shows_normal || lit_around || layered;
     needs.position = needs.lights && has_positional_lights(f);
-    needs.view = (needs.lights && f.specular != SpecularTerm::none) || reflects || layered ||
+    needs.view = (needs.lights && f.specular != SpecularTerm::none) || shows_view || layered ||
                  (f.metallic_roughness && needs.normal);
     return needs;
 }
@@ -623,8 +623,7 @@ Step rotation_step(By f) {
 Steps reflection_steps(By f) {
     const bool none = f.reflection == ReflectionTerm::none;
     const bool phong = !none && !f.metallic_roughness;
-    const bool mirrors = phong && !has_black_mirror(f);
-    const bool dims = f.refraction && has_black_transmission(f);
+    const bool mirrors = phong && looks_up_mirror(f);
     const auto fresnel = [&](FresnelTerm term) { return phong && f.fresnel == term; };
     return {
         rotation_step(f),
@@ -635,15 +634,15 @@ Steps reflection_steps(By f) {
            !none && f.metallic_roughness,
            {.uniforms = {"environment_intensity", "blurred_levels"},
             .samplers = {"blurred_environment", "environment_brdf"}}},
-          {"reflection.glsl#phong", phong}}},
+          {"reflection.glsl#phong", mirrors},
+          {"view.glsl#black_mirror_image", phong && !mirrors}}},
         {"reflected_direction",
          "vec3 reflected_direction(Surface surface) "
          "{ return reflect(-surface.view_world, surface.normal_world); }",
          {{"reflection.glsl#by_normal", f.reflection_by_normal}}},
         {"mirror_image",
          "",
-         {{"view.glsl#no_mirror_image", phong && has_black_mirror(f)},
-          {"reflection.glsl#mirror",
+         {{"reflection.glsl#mirror",
            mirrors && f.reflection == ReflectionTerm::mirror,
            {.uniforms = {"environment_intensity"}, .samplers = {"environment"}}},
           {"reflection.glsl#glossy",
@@ -664,9 +663,11 @@ Steps reflection_steps(By f) {
            {.uniforms = {"reflectivity", "conductor_index", "conductor_absorption"}}}}},
         {"refraction",
          "vec3 with_refraction(Surface surface, vec3 scattered) { return scattered; }",
-         {{"refraction.glsl#dimming", dims, {.uniforms = {"transmission"}}},
+         {{"refraction.glsl#dimming",
+           f.refraction && !looks_up_refraction(f),
+           {.uniforms = {"transmission"}}},
           {"refraction.glsl#refracted",
-           f.refraction && !dims,
+           looks_up_refraction(f),
            {.uniforms = {"environment_intensity", "transmission", "refraction_ratio"},
             .samplers = {"environment"}}}}},
     };

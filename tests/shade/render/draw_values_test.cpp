@@ -132,6 +132,47 @@ TEST_P(DrawUniforms, HaveAValueForEveryPlannedName) {
     }
 }
 
+TEST_P(DrawUniforms, NameTheEyeOnlyWhereReflectionsDependOnIt) {
+    struct Case {
+        const char* what;
+        DebugView view;
+        FresnelTerm fresnel;
+        bool by_normal;
+        bool refraction;
+        bool takes_eye;
+    };
+    constexpr auto picture = DebugView::picture;
+    constexpr auto constant = FresnelTerm::constant;
+    const std::array cases{
+        Case{"mirror image", picture, constant, false, false, true},
+        Case{"mirror image along the normal", picture, constant, true, false, false},
+        Case{"Fresnel's factor", picture, FresnelTerm::schlick, true, false, true},
+        Case{"refraction", picture, constant, true, true, true},
+        Case{"dimming", DebugView::diffuse, constant, false, true, false},
+        Case{"dimming by angle", DebugView::diffuse, FresnelTerm::schlick, false, false, true},
+    };
+    ProgramCache cache(api());
+    const DrawValues values;
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.what);
+        Features f;
+        f.view = c.view;
+        f.interpolation = Interpolation::gouraud;
+        f.directional_lights = 1;
+        f.diffuse = true;
+        f.reflection = ReflectionTerm::mirror;
+        f.fresnel = c.fresnel;
+        f.reflection_by_normal = c.by_normal;
+        f.refraction = c.refraction;
+        const DrawProgram& program = *cache.get(canonical(f));
+        const std::vector<std::string>& names = program.planned.uniforms;
+        EXPECT_EQ(std::find(names.begin(), names.end(), "eye_world") != names.end(), c.takes_eye);
+        program.linked.use();
+        for (const std::string& name : names)
+            EXPECT_TRUE(set_uniform(program.linked, name, values)) << name;
+    }
+}
+
 test::CallingScene normal_mapped() {
     Features f;
     f.directional_lights = 1;
