@@ -534,7 +534,7 @@ std::vector<EffectRow> color_rows() {
     return {
         {.effect = one_switch<&F::diffuse_texture>("diffuse texture", no_color),
          .decide = [](Subject s) { return of_texture(s, s.material.diffuse_texture); }},
-        {.effect = one_switch<&F::vertex_colors>("vertex colours", no_color),
+        {.effect = one_switch<&F::vertex_colors>("vertex colors", no_color),
          .decide = of_vertex_colors},
         {.effect = one_value<&F::alpha, AlphaMode::mask>("alpha mask", ""),
          .decide = [](Subject s) { return of_alpha(s, AlphaMode::mask); }},
@@ -610,7 +610,7 @@ std::vector<EffectRow> lighting_rows() {
              if (!s.lights.light_ranges) return {false, "no light has one"};
              return {true, "a point or spot light has one"};
          }},
-        {.effect = one_switch<&F::highlight_colors>("highlight colours", no_highlights),
+        {.effect = one_switch<&F::highlight_colors>("highlight colors", no_highlights),
          .decide = [](Subject s) -> Decision {
              if (!s.lights.highlight_colors)
                  return {false, "every light's highlights have the color of its light"};

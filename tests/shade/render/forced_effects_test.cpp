@@ -169,7 +169,7 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
     // Every effect that is not a choice of the scene and can be forced alone. Exposure belongs to
     // sRGB.
     for (const char* effect : {"diffuse texture",
-                               "vertex colours",
+                               "vertex colors",
                                "alpha mask",
                                "morphing",
                                "skinning",
@@ -181,7 +181,7 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "spot lights",
                                "mixed falloff",
                                "light ranges",
-                               "highlight colours",
+                               "highlight colors",
                                "light buffer",
                                "environment light",
                                "Phong highlights",

@@ -124,7 +124,7 @@ std::vector<AddedThing> light_effects() {
          [](Scene& scene, test::Dice&) {
              scene.point_lights.push_back({{2, 2, 2}, glm::vec3(0.2F), 4.0F, Falloff::none});
          }},
-        {"highlight colours",
+        {"highlight colors",
          [](Scene& scene, test::Dice&) {
              scene.materials[0].specular = glm::vec3(0.5F);
              scene.point_lights[0].highlight_intensity = glm::vec3(2, 0, 1);
@@ -219,7 +219,7 @@ std::vector<AddedThing> material_effects() {
              s.materials[0].metallic_roughness = with_layers(glm::vec3(0.0F), 1.0F);
              s.materials[0].emission = {0.2F, 0.1F, 0.4F};
          }},
-        {"vertex colours",
+        {"vertex colors",
          [](Scene& s, test::Dice&) {
              for (const glm::vec3& position : s.meshes[0]->positions)
                  s.meshes[0].edit().colors.emplace_back(position * 0.5F + 0.5F, 1.0F);
