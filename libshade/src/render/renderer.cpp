@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "effects/features.h"
+#include "effects/light_rows.h"
 #include "effects/shader_source.h"
 #include "gl/cube_map.h"
 #include "gl/resources.h"
@@ -356,6 +357,14 @@ void report_missing_texcoords(const Scene& scene, const FramePlan& plan, Report&
     }
 }
 
+/// Reports a shadow that the scene requests and no light casts.
+void report_missing_shadow(const Scene& scene, Report& report) {
+    if (!scene.shadow || shadow_term(scene) != ShadowTerm::none) return;
+    report.add("requested shadow that nothing casts", "scene", 0,
+               "drawn without a shadow: no light shines from outside of the scene, or no surface "
+               "casts a shadow");
+}
+
 /// Returns the numbers of instances and lights, which must stay the same when a scene moves.
 std::array<std::size_t, 4> object_counts(const Scene& scene) {
     return {scene.instances.size(), scene.directional_lights.size(), scene.point_lights.size(),
@@ -428,6 +437,7 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
       textures(cache.textures),
       counts_fragments(settings.view == DebugView::overdraw) {
     report_missing_texcoords(scene, plan, report);
+    report_missing_shadow(scene, report);
 
     Stopwatch stopwatch;  // OpenGL's timer queries are wrong on llvmpipe.
     request_planned(textures, scene, plan);

@@ -4,6 +4,7 @@
 // Nothing is repaired.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -194,6 +195,13 @@ void validate_instance(const Scene& scene, std::size_t index) {
     if (!shares.empty()) {
         check_count(thing, shares.size(), scene.meshes[instance.mesh]->positions.size(),
                     "open shares");
+        const auto is_share = [](float share) { return share >= 0.0F && share <= 1.0F; };
+        const auto wrong = std::find_if_not(shares.begin(), shares.end(), is_share);
+        if (wrong != shares.end()) {
+            throw InvalidInput(
+                fmt::format("{}: the open share of vertex {} is {}, but must be within [0, 1]",
+                            thing, wrong - shares.begin(), *wrong));
+        }
     }
     for (const MaterialRange& range : scene.meshes[instance.mesh]->material_ranges) {
         if (range.material) {

@@ -329,6 +329,24 @@ TEST_F(Rendering, ReportsTexturesThatCannotShow) {
     EXPECT_EQ(report.count("textured material on a mesh without texture coordinates"), 1U);
 }
 
+TEST_F(Rendering, ReportsAShadowThatNothingCasts) {
+    Scene scene = test::scene_of(test::sphere(8, 4), Material{});
+    scene.shadow = Shadow{};
+    scene.point_lights = {{{0.5F, 0, 0}, {1, 1, 1}}};
+    const auto findings = [&] {
+        Report report;
+        const Renderer renderer(context(), scene, {8, 8, 1, OutputCoding::srgb}, report);
+        return report.count("requested shadow that nothing casts");
+    };
+    EXPECT_EQ(findings(), 1U) << "the light is inside of the scene";
+    scene.point_lights[0].position_world = {5, 0, 0};
+    EXPECT_EQ(findings(), 0U);
+    scene.materials[0].unlit = true;
+    EXPECT_EQ(findings(), 1U) << "no surface casts one";
+    scene.shadow.reset();
+    EXPECT_EQ(findings(), 0U);
+}
+
 TEST_F(Rendering, FillsWithTheBackground) {
     Scene scene;
     scene.background = {0.5F, 0.25F, 2.0F, 0.5F};

@@ -2,6 +2,7 @@
 // Boxes and cameras by hand, and every number that validate() refuses.
 #include "relief/shade/scene.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -183,6 +184,12 @@ TEST(ValidateScene, NamesNumbersOutOfRange) {
         },
         [](Scene& s) { s.instances[0].world_from_object[1].y = not_a_number; },
         [](Scene& s) { s.background.a = 1.5F; },
+        [](Scene& s) { s.instances[0].open_shares = std::vector(23, 1.0F); },
+        [](Scene& s) {
+            s.instances[0].open_shares = std::vector(24, 0.5F);
+            s.instances[0].open_shares.edit()[7] = not_a_number;
+        },
+        [](Scene& s) { s.instances[0].open_shares = std::vector(24, 1.5F); },
         [](Scene& s) {
             s.environment = Environment{Equirectangular{}, -1.0F, true};
         },
@@ -203,6 +210,9 @@ TEST(ValidateScene, NamesNumbersOutOfRange) {
     EXPECT_EQ(
         verdict(spoils[12]),
         "spot light 0 inner cone is 0.2, but must be at least 0 and below its outer cone 0.2");
+    EXPECT_THAT(verdict(spoils[17]),
+                testing::HasSubstr("the open share of vertex 7 is nan, but must be within "
+                                   "[0, 1]"));
 }
 
 }  // namespace

@@ -201,8 +201,8 @@ enum class ToneMapping {
 /// The light is a disc that faces the middle of the scene. The shadow at a point is the share of
 /// `shadow_point_count` places on the disc that a surface hides, for all light of the main light.
 /// Rays begin above the point, by 2.5 texels of the shadow maps along its normal, so that a surface
-/// does not shade itself. Unlit materials and those with transmission or alpha blending cast no
-/// shadow. Middle and radius are those of the sphere around the bounding box of all that casts one.
+/// does not shade itself. Unlit materials and those with alpha blending or glTF's transmission cast
+/// none. Middle and radius are those of the sphere around the bounding box of all that casts one.
 /// A point or spot light closer to the middle than 1.1 times the radius casts none.
 struct Shadow {
     /// The diameter of the disc, as an angle seen from the middle; 0 is a hard edge.
