@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "window/edit_panels.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "relief/mesh/report.h"
@@ -13,6 +15,8 @@ namespace relief::tools {
 namespace {
 
 using test::Workplace;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
 
 TEST(MaterialModels, CanBeChangedToEachOther) {
     for (const ShadingModel from :
@@ -130,7 +134,8 @@ TEST_F(MapSlots, NormalMapAndBumpMapReplaceEachOther) {
     EXPECT_FALSE(material.bump_map);
     material.normal_map->scale = 2.0F;
     material.normal_map->flat = FlatCode::middle;
-    set_map(scene(), 0, slot_named("Normal map"), heights());
+    std::filesystem::copy_file(colors(), workplace() / "other.png");
+    set_map(scene(), 0, slot_named("Normal map"), workplace() / "other.png");
     EXPECT_EQ(material.normal_map->scale, 2.0F);
     EXPECT_FALSE(material.normal_map->flat) << "told by the image again";
     set_map(scene(), 0, slot_named("Bump map"), heights());
@@ -154,6 +159,10 @@ TEST_F(MapSlots, RejectInvalidImages) {
     EXPECT_THROW(set_map(scene(), 0, slot, workplace() / "words.png"), FileError);
     EXPECT_THROW(set_map(scene(), 0, slot, workplace() / "absent.png"), FileError);
     EXPECT_EQ(map_name(scene(), 0, slot), colors().string());
+    EXPECT_THAT([&] { set_map(scene(), 0, slot_named("Normal map"), heights()); },
+                ThrowsMessage<InvalidInput>(HasSubstr(
+                    "a normal map has 3 or 4 channels, not 1; a height map is a \"Bump map\"")));
+    EXPECT_FALSE(scene().materials[0].normal_map);
 }
 
 TEST_F(MapSlots, DependOnTheMaterialModel) {

@@ -343,7 +343,8 @@ TEST_F(Panel, LightsEnvironmentAndToneCurveChangeThePicture) {
 TEST_F(Panel, MaterialsTakeMapsAndChangeTheirModel) {
     RELIEF_NEEDS_PANELS("data/vase.obj");
     open_panel("Materials");
-    window().click_on("material 'bricks'");
+    window().wait_for("the only material, unfolded",
+                      [](const json& now) { return now["places"].contains("Bump map"); });
     const auto has = [](const char* effect) {
         return [effect](const json& now) { return has_effect(now, effect); };
     };

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <string_view>
 #include <utility>
 
 #include "relief/mesh/image_file.h"
@@ -499,7 +500,12 @@ std::optional<std::string> map_name(const Scene& scene, std::size_t material, co
 
 void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
              const std::filesystem::path& file) {
-    read_image_info(file);
+    const ImageInfo info = read_image_info(file);
+    if (slot.name == std::string_view("Normal map") && info.channels < 3) {
+        throw InvalidInput(fmt::format(
+            "{}: a normal map has 3 or 4 channels, not {}; a height map is a \"Bump map\"",
+            file.string(), info.channels));
+    }
     Texture texture = slot.texture(scene.materials[material]).value_or(Texture{});
     texture.image = image_of(scene, file);
     slot.set(scene.materials[material], texture);
@@ -693,6 +699,7 @@ void draw_material_panel(const PanelInput& input) {
     for (std::size_t i = 0; i < state.scene().materials.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const std::string label = material_label(state.scene(), i);
+        if (state.scene().materials.size() == 1) ImGui::SetNextItemOpen(true, ImGuiCond_Once);
         const bool is_open = ImGui::TreeNode("material", "%s", label.c_str());
         probe_item(label);
         if (is_open) {

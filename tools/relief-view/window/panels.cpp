@@ -382,8 +382,10 @@ void draw_switch(ViewerState& state, const std::string& name) {
     ImGui::PopID();
 }
 
-void draw_reasons(const PanelInput& input, const std::vector<EffectReason>& reasons) {
+/// Draws the rows of the effects that are on, or of those that are off.
+void draw_reasons(const PanelInput& input, const std::vector<EffectReason>& reasons, bool are_on) {
     for (const EffectReason& reason : reasons) {
+        if (reason.on != are_on) continue;
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         draw_switch(input.state, reason.effect);
@@ -440,8 +442,10 @@ void draw_effects_panel(const PanelInput& input, PanelRequests& requests) {
         ImGui::TreePop();
     }
     if (ImGui::BeginTable("effects", 3, ImGuiTableFlags_SizingFixedFit)) {
-        draw_reasons(input, plan.reasons);
-        if (!plan.draws.empty()) draw_reasons(input, plan.draws.front().reasons);
+        for (const bool are_on : {true, false}) {
+            draw_reasons(input, plan.reasons, are_on);
+            if (!plan.draws.empty()) draw_reasons(input, plan.draws.front().reasons, are_on);
+        }
         ImGui::EndTable();
     }
 }
@@ -585,7 +589,9 @@ void draw_scene_panel(const PanelInput& input, PanelRequests& requests) {
     draw_tree(state);
     draw_findings(input);
     choose_variant(state, requests);
-    bool is_occluded = state.scene().ambient_occlusion.has_value();
+    const bool is_chosen = input.loading != nullptr && input.loading->ambient_occlusion;
+    bool is_occluded = is_chosen ? *input.loading->ambient_occlusion > 0.0F
+                                 : state.scene().ambient_occlusion.has_value();
     if (check("Ambient occlusion", is_occluded))
         requests.ambient_occlusion = is_occluded ? AmbientOcclusion{}.distance : 0.0F;
     if (ImGui::IsItemHovered())
@@ -895,11 +901,9 @@ void choose_speed(ViewerState& state) {
 
 void choose_clip(ViewerState& state) {
     const Playback& now = state.playback();
-    if (now.clips().size() < 2) return;
     std::vector<std::string> names = {"all"};
     names.insert(names.end(), now.clips().begin(), now.clips().end());
     std::size_t index = now.clip() ? *now.clip() + 1 : 0;
-    ImGui::SameLine();
     ImGui::SetNextItemWidth(8.0F * ImGui::GetFontSize());
     if (!choose_index("##Clip", index, names)) return;
     state.change_playback([&](Playback& playback) {
@@ -914,17 +918,26 @@ float draw_playback(ViewerState& state, float left, float bottom) {
     if (!state.has_scene() || (!now.has_motion() && now.clips().size() < 2)) return 0.0F;
     const ImGuiIO& io = ImGui::GetIO();
     const float letter = ImGui::GetFontSize();
-    const float height = ImGui::GetFrameHeight() + 0.6F * letter;
+    const float width = io.DisplaySize.x - left;
+    // Narrow windows show the clips below.
+    const bool has_clips = now.clips().size() > 1;
+    const bool is_narrow = has_clips && width < 32.0F * letter;
+    const float height = ImGui::GetFrameHeight() + 0.6F * letter +
+                         (is_narrow ? ImGui::GetFrameHeightWithSpacing() : 0.0F);
     ImGui::SetNextWindowPos({left, io.DisplaySize.y - bottom - height});
-    ImGui::SetNextWindowSize({io.DisplaySize.x - left, height});
+    ImGui::SetNextWindowSize({width, height});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.6F * letter, 0.3F * letter});
     ImGui::Begin("Playback", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
     if (ImGui::Button(now.is_playing() ? "Pause" : "Play", {4.5F * letter, 0.0F}))
         state.act(Action::play);
     probe_item("Play");
     ImGui::SameLine();
-    const float others = (now.clips().size() < 2 ? 10.0F : 22.0F) * letter;
-    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - others, 8.0F * letter));
+    const float others = (is_narrow   ? 5.0F
+                          : has_clips ? 13.0F
+                                      : 5.0F) *
+                             letter +
+                         3.0F * ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - others, 4.0F * letter));
     auto time = static_cast<float>(now.time_in_clip());
     const auto end = static_cast<float>(now.duration());
     const std::string format = fmt::format("%.2f of {:.2f} s", end);
@@ -936,7 +949,8 @@ float draw_playback(ViewerState& state, float left, float bottom) {
     }
     ImGui::SameLine();
     choose_speed(state);
-    choose_clip(state);
+    if (has_clips && !is_narrow) ImGui::SameLine();
+    if (has_clips) choose_clip(state);
     ImGui::End();
     ImGui::PopStyleVar();
     return height;
@@ -952,8 +966,11 @@ void draw_status(const PanelInput& input, PanelRequests& requests) {
     ImGui::Begin("Status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
     const std::string& error =
         input.state.error().empty() ? input.drawn.error : input.state.error();
-    if (input.loading_seconds > 0.0) {
-        draw_progress("Reading " + input.loading, input.progress);
+    if (input.loading != nullptr) {
+        const std::filesystem::path& model = input.loading->model;
+        const bool is_shown = input.state.has_scene() && input.state.options().model == model;
+        draw_progress((is_shown ? "Updating " : "Reading ") + model.filename().string(),
+                      input.progress);
         ImGui::SameLine();
         ImGui::Text("%.1f s", input.loading_seconds);
         ImGui::SameLine();

@@ -170,9 +170,10 @@ struct PanelInput {
     const RenderedPicture& drawn;
     const std::string& renderer;
     double loading_seconds = 0.0;  ///< 0 if nothing is being read.
-    std::string loading;           ///< The name of the file that is being read.
-    Progress::State progress;      ///< Progress of reading, or else of preparing the next picture.
-    bool is_drawing = false;       ///< Otherwise the picture is up to date.
+    const ViewOptions* loading =
+        nullptr;               ///< The options of a read under way; null: there is none.
+    Progress::State progress;  ///< Progress of reading, or else of preparing the next picture.
+    bool is_drawing = false;   ///< Otherwise the picture is up to date.
     CaptureSettings* capture = nullptr;
     std::string captured;     ///< A message about saved files.
     std::string layout_note;  ///< A message about the saved layout.

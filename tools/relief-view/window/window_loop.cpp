@@ -189,10 +189,16 @@ void draw_difference(const PictureExchange::Shown& picture, const ViewPlace& pla
 
 /// Shows the most important gestures, until the mouse moves the picture for the first time.
 void draw_hint(const ViewPlace& place) {
-    const std::string text = "Drag: orbit    Shift+drag: pan    Wheel: zoom    F1: all shortcuts";
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
-    const float x = 0.5F * (place.min.x + place.max.x - width);
-    draw_label(text, {x, place.max.y - 3.0F * ImGui::GetFontSize()}, 0.0F);
+    const std::array<const char*, 4> gestures{"Drag: orbit", "Shift+drag: pan", "Wheel: zoom",
+                                              "F1: all shortcuts"};
+    std::string text = fmt::format("{}", fmt::join(gestures, "    "));
+    ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    if (size.x + 2.0F * label_margin > place.max.x - place.min.x) {  // A narrow window.
+        text = fmt::format("{}", fmt::join(gestures, "\n"));
+        size = ImGui::CalcTextSize(text.c_str());
+    }
+    const float x = 0.5F * (place.min.x + place.max.x - size.x);
+    draw_label(text, {x, place.max.y - 2.0F * ImGui::GetFontSize() - size.y}, 0.0F);
 }
 
 /// The characters of the font: Latin, Greek, Cyrillic and punctuation.
@@ -238,9 +244,11 @@ ImGuiStyle style_of(bool is_light) {
     }};
     for (const auto& [part, dark, light] : grays)
         style.Colors[part] = gray(is_light ? light : dark);
-    for (const ImGuiCol part : {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
-                                ImGuiCol_PlotHistogram, ImGuiCol_TabHovered})
+    for (const ImGuiCol part : {ImGuiCol_CheckMark, ImGuiCol_PlotHistogram, ImGuiCol_TabHovered})
         style.Colors[part] = accent;
+    // The number of a slider shows through its handle.
+    style.Colors[ImGuiCol_SliderGrab] = ImVec4(accent.x, accent.y, accent.z, 0.45F);
+    style.Colors[ImGuiCol_SliderGrabActive] = ImVec4(accent.x, accent.y, accent.z, 0.7F);
     return style;
 }
 
@@ -696,7 +704,7 @@ class WindowLoop {
                                drawn,
                                drawer_.renderer_name(),
                                loader_.seconds_so_far(),
-                               loading_options_.model.filename().string(),
+                               loader_.is_loading() ? &loading_options_ : nullptr,
                                loader_.is_loading() ? loader_.progress() : drawer_.progress(),
                                was_busy || is_full_resolution_pending_,
                                &capture_settings_,
