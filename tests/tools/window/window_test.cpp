@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
@@ -48,6 +49,7 @@ class Window : public testing::Test {
         window().key("ctrl+q");
         EXPECT_EQ(window().process().wait_for_end(100.0), 0) << window().error_output();
         EXPECT_THAT(window().error_output(), Not(HasSubstr("relief-view:")));
+        EXPECT_FALSE(std::filesystem::exists(workplace() / "imgui.ini")) << "of Dear ImGui";
     }
 
     const Display& display() { return *display_; }
