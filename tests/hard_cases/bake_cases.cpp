@@ -607,9 +607,14 @@ HardCase memory_case() {
                   if (result.texels_baked != 1024UL * 64)
                       return fmt::format("{} texels baked", result.texels_baked);
                   // Memory: 50 MB per thread for the owners of samples, 134 MB for a strip of them,
-                  // and Embree.
+                  // and Embree. ThreadSanitizer adds up to 4 bytes for each byte that is accessed.
+#ifdef __SANITIZE_THREAD__
+                  constexpr double limit = 512 * 5;
+#else
+                  constexpr double limit = 512;
+#endif
                   const double more = test::peak_megabytes() - before;
-                  return says(more < 512, fmt::format("{:.0f} MB more", more));
+                  return says(more < limit, fmt::format("{:.0f} MB more", more));
               }}}};
 }
 

@@ -25,7 +25,11 @@ namespace {
 
 using test::pixel;
 
+#ifdef __SANITIZE_ADDRESS__
+constexpr int reference_size = 48;  // The reference is several times slower when instrumented.
+#else
 constexpr int reference_size = 96;
+#endif
 /// In codes: half a code of rounding, and the rest for float arithmetic and vertices rounded to
 /// 1/256 pixel.
 constexpr double agreement_tolerance = 1.0;

@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <string_view>
 #include <utility>
 
 #include "relief/mesh/image_file.h"
@@ -501,7 +500,7 @@ std::optional<std::string> map_name(const Scene& scene, std::size_t material, co
 void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
              const std::filesystem::path& file) {
     const ImageInfo info = read_image_info(file);
-    if (slot.name == std::string_view("Normal map") && info.channels < 3) {
+    if (slot.set == set_normal_texture && info.channels < 3) {
         throw InvalidInput(fmt::format(
             "{}: a normal map has 3 or 4 channels, not {}; a height map is a \"Bump map\"",
             file.string(), info.channels));

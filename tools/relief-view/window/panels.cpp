@@ -932,11 +932,9 @@ float draw_playback(ViewerState& state, float left, float bottom) {
         state.act(Action::play);
     probe_item("Play");
     ImGui::SameLine();
-    const float others = (is_narrow   ? 5.0F
-                          : has_clips ? 13.0F
-                                      : 5.0F) *
-                             letter +
-                         3.0F * ImGui::GetStyle().ItemSpacing.x;
+    const bool clips_are_beside = has_clips && !is_narrow;
+    const float others =
+        (clips_are_beside ? 13.0F : 5.0F) * letter + 3.0F * ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - others, 4.0F * letter));
     auto time = static_cast<float>(now.time_in_clip());
     const auto end = static_cast<float>(now.duration());
@@ -949,7 +947,7 @@ float draw_playback(ViewerState& state, float left, float bottom) {
     }
     ImGui::SameLine();
     choose_speed(state);
-    if (has_clips && !is_narrow) ImGui::SameLine();
+    if (clips_are_beside) ImGui::SameLine();
     if (has_clips) choose_clip(state);
     ImGui::End();
     ImGui::PopStyleVar();
