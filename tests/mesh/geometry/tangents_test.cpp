@@ -551,15 +551,20 @@ TEST(Tangents, NoShapeTakesLong) {
                                  "point"};
     for (int kind = 0; kind < 5; ++kind) {
         SCOPED_TRACE(names[kind]);
-        const Mesh mesh = crowded(kind, 100000);
-        const std::clock_t start = std::clock();  // Processor time, which other programs do not
-                                                  // change.
-        const auto tangents = tangents_of(mesh);
-        const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-        EXPECT_EQ(test::broken_tangents(mesh, tangents), "");
-        // The time is about 0.1 s, and ten times that under sanitizers. Quadratic time would be
-        // half a minute.
-        EXPECT_LT(seconds, 5.0);
+        // Eight times as many triangles take eight times as long in linear time, and 64 times in
+        // quadratic time. The least of three is compared, because other programs change times.
+        constexpr std::uint32_t small = 12500;
+        double of_small = 1e9;
+        double of_large = 1e9;
+        for (const std::uint32_t size : {small, small, small, 8 * small, 8 * small, 8 * small}) {
+            const Mesh mesh = crowded(kind, size);
+            const std::clock_t start = std::clock();
+            const auto tangents = tangents_of(mesh);
+            double& least = size == small ? of_small : of_large;
+            least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+            EXPECT_EQ(test::broken_tangents(mesh, tangents), "");
+        }
+        EXPECT_LT(of_large, 24.0 * of_small);
     }
 }
 

@@ -231,6 +231,43 @@ TEST_F(PlayingState, FitsTheWholeMotionUnlessItGoesFar) {
                 rounding);
 }
 
+/// Shows two clips of which the second moves the square twice as far, and chooses the second.
+TEST_F(PlayingState, FitsAnotherClipUnlessTheCameraWasMoved) {
+    const SceneGraph graph = moving_scene();
+    const auto choose = [&](std::size_t clip) {
+        state_.change_playback([&](Playback& playback) { playback.set_clip(clip); });
+    };
+    const auto far_end = [&](float x) {
+        const Camera camera = state_.request()->camera;
+        const glm::vec3 corner(x + 1.0F, 0.0F, 0.0F);
+        return -(glm::inverse(camera.world_from_view) * glm::vec4(corner, 1.0F)).z / camera.far;
+    };
+    Loaded loaded;
+    loaded.options.model = "two-clips.gltf";
+    loaded.composed.emplace();
+    loaded.composed->graph = graph;
+    loaded.composed->camera = framed(graph.scene, 0.0F, 0.0F, 0.6F, 4.0F / 3.0F);
+    state_.take(std::move(loaded));
+    EXPECT_NEAR(state_.camera().target.x, 2.0F, rounding) << "the middle of -1 and 5";
+    const float distance = state_.camera().distance;
+    choose(1);
+    EXPECT_NEAR(state_.camera().target.x, 4.0F, rounding);
+    EXPECT_GT(state_.camera().distance, 1.5F * distance);
+
+    choose(0);
+    EXPECT_NEAR(state_.camera().distance, distance, rounding * distance);
+    state_.act(Action::left);
+    state_.camera().distance *= 1.5F;
+    const OrbitCamera moved = state_.camera();
+    EXPECT_GT(far_end(0.0F), 0.0F);
+    choose(1);
+    EXPECT_EQ(state_.camera(), moved);
+    EXPECT_LE(far_end(7.0F), 1.0F) << "the far plane is behind all that this clip reaches";
+    EXPECT_LE(far_end(-1.0F), 1.0F);
+    state_.act(Action::fit);
+    EXPECT_NEAR(state_.camera().target.x, 4.0F, rounding);
+}
+
 TEST_F(PlayingState, OpensPausedAtAGivenTime) {
     options_.time = 2.0;
     show(orbiting_light);

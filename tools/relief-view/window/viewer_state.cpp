@@ -419,17 +419,10 @@ void ViewerState::take(Loaded loaded) {
     end_edit_step();
     edit_error_.clear();
     ++scenes_;
-    const Bounds bounds = world_bounds(*scene_);
-    sphere_ = bounding_sphere(bounds);
-    grid_ = grid_below(bounds);
-    const Bounds& reach = playback_.reach();
-    reach_ =
-        reach.empty()
-            ? sphere_
-            : bounding_sphere({glm::min(bounds.min, reach.min), glm::max(bounds.max, reach.max)});
-    // A model that moves far away would be small for most of the time.
-    constexpr float max_growth = 4.0F;
-    fitted_ = reach_.radius <= max_growth * sphere_.radius ? reach_ : sphere_;
+    bounds_ = world_bounds(*scene_);
+    sphere_ = bounding_sphere(bounds_);
+    grid_ = grid_below(bounds_);
+    measure_reach();
     mark_health();
     if (is_new) {
         const std::optional<CameraOption>& view = options_.camera;
@@ -442,6 +435,7 @@ void ViewerState::take(Loaded loaded) {
             camera_.target += fitted_.center - sphere_.center;
             camera_.distance *= fitted_.radius / sphere_.radius;
         }
+        fitting_ = is_framed ? std::optional(camera_) : std::nullopt;
         followed_.reset();
         if (loaded.composed->camera_follows_scene && playback_.camera()) followed_ = camera_;
     }
@@ -450,6 +444,26 @@ void ViewerState::take(Loaded loaded) {
     } else {
         show_all_but_hidden();  // The size of markers is that of the new scene.
     }
+}
+
+void ViewerState::measure_reach() {
+    const Bounds& reach = playback_.reach();
+    reach_ =
+        reach.empty()
+            ? sphere_
+            : bounding_sphere({glm::min(bounds_.min, reach.min), glm::max(bounds_.max, reach.max)});
+    // A model that moves far away would be small for most of the time.
+    constexpr float max_growth = 4.0F;
+    fitted_ = reach_.radius <= max_growth * sphere_.radius ? reach_ : sphere_;
+}
+
+void ViewerState::show_clip() {
+    const BoundingSphere before = fitted_;
+    measure_reach();
+    if (!fitting_ || *fitting_ != camera_) return;
+    camera_.target += fitted_.center - before.center;
+    camera_.distance *= fitted_.radius / before.radius;
+    fitting_ = camera_;
 }
 
 ViewerState::EditState ViewerState::edit_state() const {
@@ -735,7 +749,9 @@ void ViewerState::act(Action action) {
         view_.y > 0 ? static_cast<float>(view_.x) / static_cast<float>(view_.y) : 1.0F;
     switch (action) {
         case Action::fit:
-            return fit(camera_, fitted_, aspect);
+            fit(camera_, fitted_, aspect);
+            fitting_ = camera_;
+            return;
         case Action::front:
             return look_from(0.0F, 0.0F);
         case Action::back:

@@ -268,11 +268,15 @@ class ViewerState {
     bool advance(double seconds);
 
     [[nodiscard]] const Playback& playback() const { return playback_; }
-    /// Changes the playback, and shows the scene at its time.
+    /// Changes the playback, and shows the scene at its time. If another clip was chosen, a camera
+    /// that fits the model fits what this clip reaches; a camera that the user has moved stays.
     template <typename Change>
     void change_playback(const Change& change) {
+        const std::optional<std::size_t> clip = playback_.clip();
         change(playback_);
-        if (scene_) move_to(playback_.time());
+        if (!scene_) return;
+        if (playback_.clip() != clip) show_clip();
+        move_to(playback_.time());
     }
 
     /// The scene with its edits, in the pose in which it was read.
@@ -303,6 +307,9 @@ class ViewerState {
     void exchange_edits(std::vector<EditState>& from, std::vector<EditState>& to);
     void replace(std::shared_ptr<const Scene> scene);
     void show_all_but_hidden();
+    /// Measures how far the clip moves the scene.
+    void measure_reach();
+    void show_clip();
     template <typename Change>
     void move(const Change& change);
     void move_to(double seconds);
@@ -329,6 +336,8 @@ class ViewerState {
     Playback playback_;
     BoundingSphere reach_;   ///< Contains everything, wherever the animation moves it.
     BoundingSphere fitted_;  ///< The part of it that the camera shows when it fits the model.
+    /// The camera when it last fitted the model. Absent if an option or the animation chose it.
+    std::optional<OrbitCamera> fitting_;
     /// The camera of the animation as it was shown last, until the user moves it.
     std::optional<OrbitCamera> followed_;
     std::filesystem::path shown_model_;
@@ -338,6 +347,7 @@ class ViewerState {
     bool has_health_request_ = false;
     EffectRequest effects_;
     OrbitCamera camera_;
+    Bounds bounds_;  ///< Of the scene as it was read.
     BoundingSphere sphere_;
     Grid grid_;
     glm::ivec2 view_{0};
