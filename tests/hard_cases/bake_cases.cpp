@@ -586,6 +586,12 @@ HardCase map_size_case() {
               }}}};
 }
 
+#ifdef __SANITIZE_THREAD__
+constexpr double max_megabytes = 5 * 512;  // Up to 4 bytes for each byte that is accessed.
+#else
+constexpr double max_megabytes = 512;
+#endif
+
 HardCase memory_case() {
     return {"8192 texels across with 16 samples each",
             "A map of 8192 x 512 texels with a chart on a 64th of its area, baked in "
@@ -607,14 +613,9 @@ HardCase memory_case() {
                   if (result.texels_baked != 1024UL * 64)
                       return fmt::format("{} texels baked", result.texels_baked);
                   // Memory: 50 MB per thread for the owners of samples, 134 MB for a strip of them,
-                  // and Embree. ThreadSanitizer adds up to 4 bytes for each byte that is accessed.
-#ifdef __SANITIZE_THREAD__
-                  constexpr double limit = 512 * 5;
-#else
-                  constexpr double limit = 512;
-#endif
+                  // and Embree.
                   const double more = test::peak_megabytes() - before;
-                  return says(more < limit, fmt::format("{:.0f} MB more", more));
+                  return says(more < max_megabytes, fmt::format("{:.0f} MB more", more));
               }}}};
 }
 
