@@ -139,8 +139,9 @@ if(RELIEF_SANITIZE)
     list(APPEND RELIEF_TEST_ENVIRONMENT ASAN_OPTIONS=handle_sigill=1)
 endif()
 if(RELIEF_TSAN)
+    # Suppressions name functions of either stack: the longest history restores most stacks of earlier accesses.
     list(APPEND RELIEF_TEST_ENVIRONMENT
-         TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp)
+         TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp:history_size=7)
 endif()
 
 # relief_add_tests(NAME sources... [LIBRARIES ...] [SLOW patterns...] [ALONE patterns...] [CLI patterns...]):
