@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -266,6 +267,36 @@ TEST_F(PlayingState, FitsAnotherClipUnlessTheCameraWasMoved) {
     EXPECT_LE(far_end(-1.0F), 1.0F);
     state_.act(Action::fit);
     EXPECT_NEAR(state_.camera().target.x, 4.0F, rounding);
+}
+
+TEST_F(PlayingState, DoesNotFitAnotherClipIfTheCameraFitsNoneOrTheModelChanged) {
+    const auto load = [&](const char* model, float size, std::optional<double> time) {
+        Loaded loaded;
+        loaded.options.model = model;
+        loaded.options.time = time;
+        loaded.composed.emplace();
+        loaded.composed->graph = moving_scene();
+        Scene& scene = loaded.composed->graph.scene;
+        scene.meshes[0] = placed(make_quad(1), glm::scale(glm::mat4(1.0F), glm::vec3(size)));
+        loaded.composed->camera = framed(scene, 0.0F, 0.0F, 0.6F, 4.0F / 3.0F);
+        state_.take(std::move(loaded));
+    };
+    const auto choose = [&](std::size_t clip) {
+        state_.change_playback([&](Playback& playback) { playback.set_clip(clip); });
+    };
+    load("a.gltf", 1.0F, 0.0);
+    const OrbitCamera of_pose = state_.camera();
+    choose(1);
+    EXPECT_EQ(state_.camera(), of_pose) << "--time shows one pose";
+
+    load("b.gltf", 1.0F, std::nullopt);
+    load("b.gltf", 1.0F, std::nullopt);
+    choose(1);
+    const OrbitCamera of_clip = state_.camera();
+    EXPECT_NEAR(of_clip.target.x, 4.0F, rounding) << "a reload without changes";
+    load("b.gltf", 2.0F, std::nullopt);
+    choose(0);
+    EXPECT_EQ(state_.camera(), of_clip) << "a reload of another size";
 }
 
 TEST_F(PlayingState, OpensPausedAtAGivenTime) {

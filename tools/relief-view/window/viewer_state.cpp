@@ -422,16 +422,21 @@ void ViewerState::take(Loaded loaded) {
     bounds_ = world_bounds(*scene_);
     sphere_ = bounding_sphere(bounds_);
     grid_ = grid_below(bounds_);
+    const BoundingSphere before = fitted_;
     measure_reach();
     mark_health();
+    if (!is_new && (fitted_.center != before.center || fitted_.radius != before.radius)) {
+        fitting_.reset();  // The camera stays, and the model that it fitted is another one.
+    }
     if (is_new) {
         const std::optional<CameraOption>& view = options_.camera;
         camera_ = view && view->place
                       ? orbit_of(*view, *view->place, camera.vertical_fov, options_.orthographic)
                       : orbit_of(camera, sphere_);
         // The scene was framed in its first pose; with --time, the window shows one pose.
-        const bool is_framed = !(view && view->place) && !loaded.composed->camera_follows_scene;
-        if (is_framed && !options_.time) {
+        const bool is_framed =
+            !(view && view->place) && !loaded.composed->camera_follows_scene && !options_.time;
+        if (is_framed) {
             camera_.target += fitted_.center - sphere_.center;
             camera_.distance *= fitted_.radius / sphere_.radius;
         }
