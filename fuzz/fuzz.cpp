@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One libFuzzer program with all targets; the environment variable RELIEF_FUZZ_TARGET names one.
-// scripts/fuzz builds and runs it.
+// One libFuzzer program with all targets; the environment variable RELIEF_FUZZ_TARGET names one, or
+// is "list". scripts/fuzz builds and runs it.
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 
 #include "targets.h"
 
@@ -20,12 +21,22 @@ const FuzzTarget& chosen_target() {
     std::string names;
     for (const FuzzTarget& target : fuzz_targets())
         names += fmt::format(" {}", target.name);
-    fmt::print(stderr, "RELIEF_FUZZ_TARGET is not one of{}\n", names);
+    if (name != nullptr && std::string_view(name) == "list") {
+        fmt::print("{}\n", names);
+        std::exit(0);
+    }
+    fmt::print(stderr, "RELIEF_FUZZ_TARGET is not list or one of{}\n", names);
     std::exit(2);
 }
 
 }  // namespace
 }  // namespace relief
+
+// Names from libFuzzer.
+extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
+    (void)relief::chosen_target();  // Before libFuzzer takes exit() for a fault.
+    return 0;
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const relief::FuzzTarget& target = relief::chosen_target();
