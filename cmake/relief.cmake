@@ -46,7 +46,7 @@ if(RELIEF_SANITIZE)
 endif()
 
 if(RELIEF_FUZZ)
-    target_compile_options(relief_flags INTERFACE $<$<NOT:${is_test}>:-fsanitize=fuzzer-no-link>)
+    target_compile_options(relief_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
 if(RELIEF_TSAN)

@@ -32,9 +32,10 @@ const FuzzTarget& chosen_target() {
 }  // namespace
 }  // namespace relief
 
-// Names from libFuzzer.
+// libFuzzer calls the following functions. It takes a call of exit() for a fault, but not in the
+// first one.
 extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
-    (void)relief::chosen_target();  // Before libFuzzer takes exit() for a fault.
+    (void)relief::chosen_target();
     return 0;
 }
 
