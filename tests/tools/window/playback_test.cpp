@@ -182,6 +182,22 @@ class PlayingState : public testing::Test {
         loaded.composed = compose_scene(loaded.options, silent, loaded.findings);
         state_.take(std::move(loaded));
     }
+    /// Shows moving_scene() as if read from `model`, with a quad of `size`, and the camera that
+    /// frames it.
+    void show_clips(const char* model, float size = 1.0F, std::optional<double> time = {}) {
+        Loaded loaded;
+        loaded.options.model = model;
+        loaded.options.time = time;
+        loaded.composed.emplace();
+        loaded.composed->graph = moving_scene();
+        Scene& scene = loaded.composed->graph.scene;
+        scene.meshes[0] = placed(make_quad(1), glm::scale(glm::mat4(1.0F), glm::vec3(size)));
+        loaded.composed->camera = framed(scene, 0.0F, 0.0F, 0.6F, 4.0F / 3.0F);
+        state_.take(std::move(loaded));
+    }
+    void choose_clip(std::size_t clip) {
+        state_.change_playback([&](Playback& playback) { playback.set_clip(clip); });
+    }
     glm::vec3 light() const { return state_.scene().point_lights.at(0).position_world; }
 
     Workplace workplace_;
@@ -232,36 +248,26 @@ TEST_F(PlayingState, FitsTheWholeMotionUnlessItGoesFar) {
                 rounding);
 }
 
-/// Shows two clips of which the second moves the square twice as far, and chooses the second.
 TEST_F(PlayingState, FitsAnotherClipUnlessTheCameraWasMoved) {
-    const SceneGraph graph = moving_scene();
-    const auto choose = [&](std::size_t clip) {
-        state_.change_playback([&](Playback& playback) { playback.set_clip(clip); });
-    };
     const auto far_end = [&](float x) {
         const Camera camera = state_.request()->camera;
         const glm::vec3 corner(x + 1.0F, 0.0F, 0.0F);
         return -(glm::inverse(camera.world_from_view) * glm::vec4(corner, 1.0F)).z / camera.far;
     };
-    Loaded loaded;
-    loaded.options.model = "two-clips.gltf";
-    loaded.composed.emplace();
-    loaded.composed->graph = graph;
-    loaded.composed->camera = framed(graph.scene, 0.0F, 0.0F, 0.6F, 4.0F / 3.0F);
-    state_.take(std::move(loaded));
+    show_clips("two-clips.gltf");
     EXPECT_NEAR(state_.camera().target.x, 2.0F, rounding) << "the middle of -1 and 5";
     const float distance = state_.camera().distance;
-    choose(1);
+    choose_clip(1);
     EXPECT_NEAR(state_.camera().target.x, 4.0F, rounding);
     EXPECT_GT(state_.camera().distance, 1.5F * distance);
 
-    choose(0);
+    choose_clip(0);
     EXPECT_NEAR(state_.camera().distance, distance, rounding * distance);
     state_.act(Action::left);
     state_.camera().distance *= 1.5F;
     const OrbitCamera moved = state_.camera();
     EXPECT_GT(far_end(0.0F), 0.0F);
-    choose(1);
+    choose_clip(1);
     EXPECT_EQ(state_.camera(), moved);
     EXPECT_LE(far_end(7.0F), 1.0F) << "the far plane is behind all that this clip reaches";
     EXPECT_LE(far_end(-1.0F), 1.0F);
@@ -270,32 +276,18 @@ TEST_F(PlayingState, FitsAnotherClipUnlessTheCameraWasMoved) {
 }
 
 TEST_F(PlayingState, DoesNotFitAnotherClipIfTheCameraFitsNoneOrTheModelChanged) {
-    const auto load = [&](const char* model, float size, std::optional<double> time) {
-        Loaded loaded;
-        loaded.options.model = model;
-        loaded.options.time = time;
-        loaded.composed.emplace();
-        loaded.composed->graph = moving_scene();
-        Scene& scene = loaded.composed->graph.scene;
-        scene.meshes[0] = placed(make_quad(1), glm::scale(glm::mat4(1.0F), glm::vec3(size)));
-        loaded.composed->camera = framed(scene, 0.0F, 0.0F, 0.6F, 4.0F / 3.0F);
-        state_.take(std::move(loaded));
-    };
-    const auto choose = [&](std::size_t clip) {
-        state_.change_playback([&](Playback& playback) { playback.set_clip(clip); });
-    };
-    load("a.gltf", 1.0F, 0.0);
+    show_clips("a.gltf", 1.0F, 0.0);
     const OrbitCamera of_pose = state_.camera();
-    choose(1);
+    choose_clip(1);
     EXPECT_EQ(state_.camera(), of_pose) << "--time shows one pose";
 
-    load("b.gltf", 1.0F, std::nullopt);
-    load("b.gltf", 1.0F, std::nullopt);
-    choose(1);
+    show_clips("b.gltf");
+    show_clips("b.gltf");
+    choose_clip(1);
     const OrbitCamera of_clip = state_.camera();
     EXPECT_NEAR(of_clip.target.x, 4.0F, rounding) << "a reload without changes";
-    load("b.gltf", 2.0F, std::nullopt);
-    choose(0);
+    show_clips("b.gltf", 2.0F);
+    choose_clip(0);
     EXPECT_EQ(state_.camera(), of_clip) << "a reload of another size";
 }
 

@@ -425,9 +425,6 @@ void ViewerState::take(Loaded loaded) {
     const BoundingSphere before = fitted_;
     measure_reach();
     mark_health();
-    if (!is_new && (fitted_.center != before.center || fitted_.radius != before.radius)) {
-        fitting_.reset();  // The camera stays, and the model that it fitted is another one.
-    }
     if (is_new) {
         const std::optional<CameraOption>& view = options_.camera;
         camera_ = view && view->place
@@ -443,6 +440,8 @@ void ViewerState::take(Loaded loaded) {
         fitting_ = is_framed ? std::optional(camera_) : std::nullopt;
         followed_.reset();
         if (loaded.composed->camera_follows_scene && playback_.camera()) followed_ = camera_;
+    } else if (fitted_.center != before.center || fitted_.radius != before.radius) {
+        fitting_.reset();  // The camera stays, and the model that it fitted is another one.
     }
     if (playback_.has_motion()) {
         move_to(playback_.time());

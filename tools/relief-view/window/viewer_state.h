@@ -309,6 +309,8 @@ class ViewerState {
     void show_all_but_hidden();
     /// Measures how far the clip moves the scene.
     void measure_reach();
+    /// After a change of clip: the camera fits what this clip reaches if it fitted the model
+    /// before.
     void show_clip();
     template <typename Change>
     void move(const Change& change);
@@ -336,7 +338,8 @@ class ViewerState {
     Playback playback_;
     BoundingSphere reach_;   ///< Contains everything, wherever the animation moves it.
     BoundingSphere fitted_;  ///< The part of it that the camera shows when it fits the model.
-    /// The camera when it last fitted the model. Absent if an option or the animation chose it.
+    /// The camera when it last fitted the model. Absent if an option or the animation chose it, or
+    /// if a reload changed the extent of the model.
     std::optional<OrbitCamera> fitting_;
     /// The camera of the animation as it was shown last, until the user moves it.
     std::optional<OrbitCamera> followed_;
