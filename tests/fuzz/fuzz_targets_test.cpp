@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -130,7 +129,6 @@ class Fuzzing : public testing::TestWithParam<FuzzTarget> {
         set_input_limits({});
     }
 };
-class SlowFuzzing : public Fuzzing {};
 
 TEST_P(Fuzzing, KnownAndMutatedInputsGiveResultsOrErrors) {
     const std::vector<Bytes> inputs = inputs_of(GetParam());
@@ -141,24 +139,11 @@ TEST_P(Fuzzing, KnownAndMutatedInputsGiveResultsOrErrors) {
         ASSERT_NO_THROW(run_target(GetParam(), mutated(inputs, random))) << "mutation " << i;
 }
 
-TEST_P(SlowFuzzing, MoreMutatedInputsGiveResultsOrErrors) {
-    const std::vector<Bytes> inputs = inputs_of(GetParam());
-    const char* const given = std::getenv("RELIEF_FUZZ_SECONDS");
-    const auto end = std::chrono::steady_clock::now() +
-                     std::chrono::seconds(given == nullptr ? 2 : std::atoi(given));
-    Random random;
-    for (int i = 0; std::chrono::steady_clock::now() < end; ++i)
-        ASSERT_NO_THROW(run_target(GetParam(), mutated(inputs, random))) << "mutation " << i;
-}
-
 std::string name_of_case(const testing::TestParamInfo<FuzzTarget>& target) {
     return std::string(target.param.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, Fuzzing,
-                         testing::ValuesIn(fuzz_targets().begin(), fuzz_targets().end()),
-                         name_of_case);
-INSTANTIATE_TEST_SUITE_P(Targets, SlowFuzzing,
                          testing::ValuesIn(fuzz_targets().begin(), fuzz_targets().end()),
                          name_of_case);
 
