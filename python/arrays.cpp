@@ -73,6 +73,15 @@ Image::Samples copied_samples(const py::array& array) {
     return std::vector<Scalar>(first, first + packed.size());
 }
 
+/// Makes a str of a message. File names in it may be any bytes: those that are not UTF-8 become
+/// "\xe4" and the like.
+py::str text_object(std::string_view text) {
+    PyObject* const object = PyUnicode_DecodeUTF8(
+        text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace");
+    if (object == nullptr) throw py::error_already_set();
+    return py::reinterpret_steal<py::str>(object);
+}
+
 // Exceptions. The objects live as long as the process.
 
 PyObject* error = nullptr;
@@ -91,21 +100,25 @@ PyObject* add_error(py::module_& module, const char* name, const char* text,
     return type;
 }
 
+void set_error(PyObject* type, const Error& problem) {
+    PyErr_SetObject(type, text_object(problem.what()).ptr());
+}
+
 void translate(std::exception_ptr pointer) {
     try {
         if (pointer) std::rethrow_exception(pointer);
     } catch (const BakeMismatch& problem) {
-        PyErr_SetString(bake_mismatch, problem.what());
+        set_error(bake_mismatch, problem);
     } catch (const InvalidInput& problem) {
-        PyErr_SetString(invalid_input, problem.what());
+        set_error(invalid_input, problem);
     } catch (const FileError& problem) {
-        PyErr_SetString(file_error, problem.what());
+        set_error(file_error, problem);
     } catch (const GpuError& problem) {
-        PyErr_SetString(gpu_error, problem.what());
+        set_error(gpu_error, problem);
     } catch (const Cancelled& problem) {
-        PyErr_SetString(cancelled, problem.what());
+        set_error(cancelled, problem);
     } catch (const Error& problem) {
-        PyErr_SetString(error, problem.what());
+        set_error(error, problem);
     }
 }
 
@@ -233,11 +246,11 @@ py::list to_list(const Report& report) {
     py::list list;
     for (const Finding& finding : report.findings()) {
         py::dict entry;
-        entry["kind"] = finding.kind;
-        entry["element"] = finding.element;
+        entry["kind"] = text_object(finding.kind);
+        entry["element"] = text_object(finding.element);
         entry["count"] = finding.count;
         entry["first"] = finding.first;
-        entry["outcome"] = finding.outcome;
+        entry["outcome"] = text_object(finding.outcome);
         list.append(std::move(entry));
     }
     return list;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays in and out: views without copies, types and shapes that are refused, exceptions, reports and threads."""
+import os
 import pathlib
 import subprocess
 import sys
@@ -145,6 +146,8 @@ class Refusals(unittest.TestCase):
     def test_files(self):
         with self.assertRaisesRegex(relief.FileError, "missing.obj: no such file") as caught:
             relief.read_mesh("missing.obj")
+        with self.assertRaisesRegex(relief.FileError, r"b\\xe4r.obj: no such file"):
+            relief.read_mesh(os.fsdecode(b"b\xe4r.obj"))
         self.assertIsInstance(caught.exception, OSError)
         self.assertIsInstance(caught.exception, relief.Error)
         with self.assertRaises(relief.ToolError) as failed:
@@ -172,6 +175,15 @@ class Reports(unittest.TestCase):
         for finding in report:
             self.assertEqual(list(finding), ["kind", "element", "count", "first", "outcome"])
         self.assertIn(7, [index for finding in report if finding["element"] == "vertex" for index in finding["first"]])
+
+    def test_findings_name_files_that_are_not_utf8(self):
+        with tempfile.TemporaryDirectory() as folder:
+            model = pathlib.Path(folder, "a.obj")
+            model.with_suffix(".mtl").write_bytes(b"newmtl a\nmap_Kd b\xe4r.png\n")
+            model.write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n")
+            report = []
+            relief.Scene.load(model).render(size=(8, 8), report=report)
+        self.assertIn(r"b\xe4r.png", "".join(finding["outcome"] for finding in report))
 
     def test_list_is_needed(self):
         positions, _, triangles = grid(5)

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -109,6 +110,50 @@ TEST(AllToolsAlike, EscapeControlCharactersOfModels) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.out, testing::HasSubstr("x\\x1b[2J\\x07y"));
     EXPECT_THAT(result.out, testing::Not(testing::HasSubstr("\x1B")));
+}
+
+TEST(AllToolsAlike, EscapeControlCharactersOfFileNames) {
+    const Workplace workplace;
+    for (const std::string name : {"a\x1B[2J", "b\xC2\x9B", "c\xE4"}) {
+        workplace.write_square(name + ".obj");
+        std::filesystem::copy_file(workplace / "data/bricks-height.png",
+                                   workplace / (name + ".png"));
+    }
+    for (const char* command :
+         {"relief-mesh info a*.obj", "relief-mesh process *.obj -o out/", "relief-mesh check *.obj",
+          "relief-bake check *.png", "relief-bake bump *.png -o out/",
+          "relief-bake convert *.png -o out/", "relief-accuracy own *.obj --no-times",
+          "relief-view a*.obj --output view.png --size 16x16 --explain-effects"}) {
+        const ProgramResult result = workplace.run(command);
+        const std::string text = result.out + result.error;
+        EXPECT_THAT(text, testing::HasSubstr("a\\x1b[2J")) << command;
+        for (const char* raw : {"\x1B", "\xC2\x9B", "c\xE4"})
+            EXPECT_THAT(text, testing::Not(testing::HasSubstr(raw))) << command;
+    }
+}
+
+TEST(AllToolsAlike, StoreNamesThatAreNotUtf8OrRefuseThem) {
+    const Workplace workplace;
+    const std::string name = "b\xE4r";
+    workplace.write(name + ".mtl", "newmtl a\nmap_Kd " + name + ".png\n");
+    workplace.write(name + ".obj", "mtllib " + name +
+                                       ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                                       "usemtl a\nf 1/1 2/2 3/3\n");
+    std::filesystem::copy_file(workplace / "data/bricks-diffuse.png", workplace / (name + ".png"));
+    const ProgramResult processed = workplace.run("relief-mesh process b*r.obj a.gltf");
+    EXPECT_EQ(processed.exit_code, 0) << processed.error;
+    EXPECT_THAT(processed.out, testing::HasSubstr("name that is not UTF-8 (image 0)"));
+    EXPECT_THAT(workplace.read("a.gltf"), testing::HasSubstr("\"b\xC3\xA4r\""));
+    const ProgramResult stored =
+        workplace.run("relief-mesh material a.gltf c.gltf --normal b*r.png");
+    EXPECT_EQ(stored.exit_code, 0) << stored.error;
+    EXPECT_THAT(stored.out, testing::HasSubstr("name that is not UTF-8 (image 1)"));
+    EXPECT_THAT(workplace.read("c.gltf"), testing::HasSubstr("\"uri\": \"b%E4r.png\""));
+    EXPECT_EQ(workplace.run("relief-mesh check c.gltf").exit_code, 0);
+    const ProgramResult scene =
+        workplace.run("relief-view b*r.obj --output view.png --size 16x16 --save-scene scene.json");
+    EXPECT_EQ(scene.exit_code, 1);
+    EXPECT_THAT(scene.error, testing::HasSubstr("a scene file cannot name b\\xe4r.obj"));
 }
 
 TEST(Command, NamesTheFileInComplaintsAboutItsContents) {

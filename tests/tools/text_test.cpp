@@ -46,6 +46,18 @@ TEST(SummaryText, ExtensionsAreLowerCase) {
     EXPECT_EQ(extension_of("a.b/c"), "");
 }
 
+TEST(SummaryText, EscapesControlCharactersAndWhatIsNotUtf8) {
+    const std::string kept = "a\xC2\xA0\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80~";
+    EXPECT_EQ(printable(kept), kept);
+    EXPECT_EQ(printable("a\x1B[2J\n\x7F"), "a\\x1b[2J\\x0a\\x7f");
+    // U+009B begins commands of terminals, as ESC [ does.
+    EXPECT_EQ(printable("\xC2\x9B\x32J\xC2\x80"), "\\xc2\\x9b2J\\xc2\\x80");
+    EXPECT_EQ(printable("b\xE4r"), "b\\xe4r") << "Latin-1";
+    EXPECT_EQ(printable("\xC2"), "\\xc2");
+    EXPECT_EQ(printable_lines("a\x07\nb\n\nc\x9B\n"), "a\\x07\nb\n\nc\\x9b\n");
+    EXPECT_EQ(printable_lines(""), "");
+}
+
 TEST(Summary, RendersTextAndJsonFromOneList) {
     Summary part;
     part.add("error", "2 degrees", {{"degrees", 2}});

@@ -123,7 +123,7 @@ void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 
 /// Returns a message without control characters. Lines after the first one, as in the messages of
 /// shader compilers, are indented, so that they cannot look like messages of their own.
-std::string printable_lines(std::string_view text) {
+std::string indented_lines(std::string_view text) {
     std::string result;
     while (true) {
         const std::string_view line = text.substr(0, text.find('\n'));
@@ -139,7 +139,7 @@ void print_message(const CLI::App& app, const std::string& severity, const std::
     const CLI::App* parent = app.get_parent();
     std::fflush(out());
     tell("{}: {}: {}\n", parent == nullptr ? app.get_name() : parent->get_name(), severity,
-         printable_lines(text));
+         indented_lines(text));
 }
 
 void print_error(const CLI::App& root, const std::string& text) {

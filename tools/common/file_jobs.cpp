@@ -16,6 +16,7 @@
 
 #include "common/command.h"
 #include "common/summary.h"
+#include "common/text.h"
 #include "parallel.h"
 
 namespace relief::tools {
@@ -221,7 +222,7 @@ class OutcomePrinter {
         if (!outcome.done)
             complain(app_, outcome.error);
         else if (!quiet_)
-            fmt::print(out(), "{}\n", outcome.done->line);
+            fmt::print(out(), "{}\n", printable(outcome.done->line));
     }
     void show_progress() const {
         if (!shows_progress_ || finished_ == outcomes_.size()) return;

@@ -86,14 +86,31 @@ std::string quoted(const std::filesystem::path& file) {
 
 std::string printable(std::string_view text) {
     std::string result;
-    for (const char letter : text) {
-        const auto code = static_cast<unsigned char>(letter);
-        if (code < 0x20 || code == 0x7F)
-            result += fmt::format("\\x{:02x}", code);
-        else
-            result += letter;
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        const std::string_view character = text.substr(0, std::max<std::size_t>(length, 1));
+        const auto first = static_cast<unsigned char>(character[0]);
+        // Those of ASCII, and U+0080 to U+009F, which begin commands of terminals too.
+        const bool is_control =
+            first < 0x20 || first == 0x7F || (length == 2 && character < "\xC2\xA0");
+        if (length == 0 || is_control) {
+            for (const char byte : character)
+                result += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+        } else {
+            result += character;
+        }
+        text.remove_prefix(character.size());
     }
     return result;
+}
+
+std::string printable_lines(std::string_view text) {
+    std::string result;
+    for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
+        result += printable(text.substr(0, end)) + "\n";
+        text.remove_prefix(end + 1);
+    }
+    return result + printable(text);
 }
 
 void print_entry(const std::string& label, const std::string& text) {

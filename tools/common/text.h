@@ -37,9 +37,12 @@ std::string file_and_size(const std::filesystem::path& file);
 /// Returns the extension in lower case with its dot.
 std::string extension_of(const std::filesystem::path& file);
 
-/// Returns text without control characters, which could change the terminal or imitate other lines:
-/// each one becomes "\x1b" and the like.
+/// Returns text without control characters, which could change the terminal or imitate other lines,
+/// and without bytes that are not UTF-8: each such byte becomes "\x1b" and the like.
 std::string printable(std::string_view text);
+
+/// The same for text of several lines.
+std::string printable_lines(std::string_view text);
 
 /// Returns a file name as typed in a shell, with quotes if necessary.
 std::string quoted(const std::filesystem::path& file);

@@ -405,7 +405,8 @@ ExitCode run(const AssetCommandOptions& options) {
             print_entry("findings", findings_of(experiments));
         }
         for (AssetExperiment& one : experiments) {
-            if (prints_tables(options.how)) fmt::print(out(), "\n{}", short_table(one));
+            if (prints_tables(options.how))
+                fmt::print(out(), "\n{}", printable_lines(short_table(one)));
             is_within_limits = is_within_limits && one.recommendation.method.has_value();
             report.experiments.push_back(std::move(one.experiment));
         }

@@ -292,7 +292,7 @@ std::vector<Experiment> run_subjects(const std::vector<Subject>& subjects,
         experiment.command = command_for(std::string(name_of(experiment.subject)), options);
         if (!prints_tables(options.how)) return;
         stages.clear_progress();
-        fmt::print(out(), "{}\n", table_of(experiment));
+        fmt::print(out(), "{}\n", printable_lines(table_of(experiment)));
         std::fflush(out());
     };
     std::vector<Experiment> experiments = run_experiments(subjects, run);

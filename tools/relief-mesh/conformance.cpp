@@ -16,6 +16,7 @@
 #include "common/command.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "json_cursor.h"
 #include "relief/mesh/compare.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/statistics.h"
@@ -108,7 +109,7 @@ std::vector<KitMesh> read_kit(const std::filesystem::path& folder) {
         if (kit.empty()) throw FileError(file, "names no meshes");
         return kit;
     } catch (const nlohmann::json::exception& error) {
-        throw FileError(file, error.what());
+        throw FileError(file, json_problem(error));
     } catch (const UsageError& error) {
         throw FileError(file, error.what());
     }

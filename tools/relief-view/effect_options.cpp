@@ -10,6 +10,7 @@
 
 #include "common/command.h"
 #include "common/summary.h"
+#include "common/text.h"
 #include "relief/shade/effects.h"
 
 namespace relief::tools {
@@ -392,7 +393,7 @@ void print_shaders(const Scene& scene, const FramePlan& plan) {
         fmt::print(out(), "{}// Program {} of {}: {}\n", i == 0 ? "" : "\n", i + 1, listings.size(),
                    describe(listing.features));
         for (const std::size_t draw : listing.draws)
-            fmt::print(out(), "// draws {}\n", draw_heading(scene, plan.draws[draw]));
+            fmt::print(out(), "// draws {}\n", printable(draw_heading(scene, plan.draws[draw])));
         fmt::print(out(), "// from {}\n\n// Vertex shader\n{}\n// Fragment shader\n{}",
                    fmt::join(listing.files, ", "), listing.vertex, listing.fragment);
     }

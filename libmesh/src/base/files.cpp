@@ -118,6 +118,50 @@ std::string lower_extension(const std::filesystem::path& file) {
     return extension;
 }
 
+std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(0);
+    if (first < 0x80) return 1;
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    if (first < 0xC2 || first > 0xF4 || length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0U) != 0x80) return 0;
+    }
+    // No second form of a shorter character, no surrogate, nothing above U+10FFFF.
+    const unsigned second = byte(1);
+    const bool is_wrong = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+                          (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
+    return is_wrong ? 0 : length;
+}
+
+bool is_utf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
+std::string utf8_from_latin1(std::string_view text) {
+    std::string converted;
+    for (const char letter : text) {
+        const auto code = static_cast<unsigned char>(letter);
+        if (code < 0x80) {
+            converted += letter;
+        } else {
+            converted += static_cast<char>(0xC0 | code >> 6);
+            converted += static_cast<char>(0x80 | (code & 0x3F));
+        }
+    }
+    return converted;
+}
+
+std::string utf8_stem(const std::filesystem::path& file) {
+    const std::string stem = file.stem().string();
+    return is_utf8(stem) ? stem : utf8_from_latin1(stem);
+}
+
 namespace {
 
 /// A file in progress, for the signal handler.

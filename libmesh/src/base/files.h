@@ -60,6 +60,18 @@ class RandomAccessFile {
 /// Returns the extension in lower case with its dot (".obj"); empty if there is none.
 std::string lower_extension(const std::filesystem::path& file);
 
+// Names may be any bytes, but JSON holds UTF-8 only.
+
+/// Returns the bytes of the first character of a text in UTF-8 [RFC 3629]; 0 if it is none.
+std::size_t utf8_length(std::string_view text);
+bool is_utf8(std::string_view text);
+
+/// Converts from Latin-1, whose codes are those of Unicode.
+std::string utf8_from_latin1(std::string_view text);
+
+/// Returns the stem of a file name, converted from Latin-1 if it is not UTF-8.
+std::string utf8_stem(const std::filesystem::path& file);
+
 // Bytes of a file.
 
 inline std::string_view text_of(std::span<const std::byte> bytes) {

@@ -53,6 +53,12 @@ class DuplicateKeys {
 
 }  // namespace
 
+std::string json_problem(const std::exception& error) {
+    const std::string_view what = error.what();
+    const std::size_t name_end = what.find("] ");
+    return std::string(name_end == what.npos ? what : what.substr(name_end + 2));
+}
+
 void require_json_depth(std::string_view text, std::size_t max_depth) {
     std::size_t depth = 0;
     bool is_string = false;
@@ -92,7 +98,7 @@ JsonCursor JsonCursor::parse(std::string_view text) {
         return JsonCursor(Json::parse(text.begin(), text.end(), std::ref(duplicates)),
                           Wording::requirement);
     } catch (const Json::exception& error) {
-        throw InvalidInput(fmt::format("is no JSON: {}", error.what()));
+        throw InvalidInput(fmt::format("is no JSON: {}", json_problem(error)));
     }
 }
 

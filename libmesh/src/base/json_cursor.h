@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <glm/glm.hpp>
 #include <initializer_list>
 #include <limits>
@@ -27,6 +28,10 @@ namespace RELIEF_API relief {
 /// Limits the nesting of a document before it is parsed. Broken text is not noticed.
 /// \throws InvalidInput if arrays and objects are nested deeper
 void require_json_depth(std::string_view text, std::size_t max_depth);
+
+/// Returns the message of an nlohmann::json::exception without the name of the error in brackets,
+/// with which it begins.
+std::string json_problem(const std::exception& error);
 
 class JsonCursor {
   public:

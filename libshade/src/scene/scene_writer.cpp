@@ -22,6 +22,14 @@ bool is_scene_file(const std::filesystem::path& file) {
     return file.extension() == ".json";
 }
 
+/// Returns the text of a path. \throws InvalidInput if JSON, which is UTF-8, cannot hold it
+std::string json_text(const std::filesystem::path& path) {
+    std::string text = path.string();
+    if (!is_utf8(text))
+        throw InvalidInput("a scene file cannot name " + text + ", which is not UTF-8");
+    return text;
+}
+
 /// Returns the path of a file relative to a folder.
 std::string relative_path(const std::filesystem::path& folder, const std::filesystem::path& file) {
     namespace fs = std::filesystem;
@@ -30,7 +38,7 @@ std::string relative_path(const std::filesystem::path& folder, const std::filesy
     // The path of "." ends in a slash, which has no file name.
     const fs::path relative =
         absolute.lexically_relative(begin.has_filename() ? begin : begin.parent_path());
-    return relative.empty() ? absolute.string() : relative.string();
+    return json_text(relative.empty() ? absolute : relative);
 }
 
 /// Returns all lights, in the world.
@@ -188,7 +196,7 @@ class SceneWriter {
                 return relative_path(file_.parent_path(), *path);
             if (!std::holds_alternative<Shared<Image>>(source.source))
                 throw InvalidInput(source.name + " is an image in memory, which cannot be named");
-            return new_image(image).filename().string();
+            return json_text(new_image(image).filename());
         };
     }
 

@@ -16,7 +16,9 @@
 namespace relief::tools {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(UiScaleTest, FollowsTheScreenUnlessItIsSet) {
     EXPECT_EQ(ui_scale_for({}, 1.0F, 1.0F), (UiScale{1.0F, 1.0F}));
@@ -108,6 +110,16 @@ TEST_F(Layout, IsReadBack) {
     EXPECT_EQ(again.layout(), layout);
 }
 
+TEST_F(Layout, IsWrittenWithoutNamesThatAreNotUtf8) {
+    SavedLayout first(file());
+    EXPECT_EQ(first.save({.has_panels = false, .recent_files = {"/\xE4.obj", "/\xC3\xA4.obj"}}),
+              "");
+    const SavedLayout again(file());
+    EXPECT_EQ(again.note(), "");
+    EXPECT_FALSE(again.layout().has_panels);
+    EXPECT_THAT(again.layout().recent_files, ElementsAre("/\xC3\xA4.obj"));
+}
+
 TEST(RecentFiles, AreTheLastTenWithoutRepetition) {
     WindowLayout layout;
     for (int i = 0; i < 12; ++i)
@@ -139,12 +151,14 @@ TEST_F(Layout, IsWrittenOnlyIfItChanged) {
 TEST_F(Layout, InvalidFileIsReportedAndReplaced) {
     for (const char* broken :
          {"", "{", "[]", R"({"version": "one"})", R"({"version": 1, "scale": "big"})",
-          R"({"version": 1, "window": {"size": [1]}})"}) {
+          R"({"version": 1, "window": {"size": [1]}})", R"({"version": 1e300})",
+          R"({"version": 1, "window": {"size": [1e300, 1]}})", "{\"version\": 1, \"\xE4\": 1}"}) {
         write(broken);
         SavedLayout read(file());
         EXPECT_EQ(read.layout(), WindowLayout()) << broken;
         EXPECT_THAT(read.note(), HasSubstr("view.json: ")) << broken;
         EXPECT_THAT(read.note(), HasSubstr("the default layout is used")) << broken;
+        EXPECT_THAT(read.note(), Not(HasSubstr("json.exception"))) << broken;
         EXPECT_EQ(read.save({.has_panels = false}), "");
         EXPECT_FALSE(SavedLayout(file()).layout().has_panels) << broken;
     }

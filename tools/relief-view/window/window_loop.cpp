@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "common/command.h"
+#include "common/text.h"
 #include "files.h"
 #include "view_command.h"
 #include "window/background_jobs.h"
@@ -623,7 +624,7 @@ class WindowLoop {
         // A size from the command line is not stored.
         if (!state_.options().size_given) system_.store_geometry(layout_);
         if (const std::string problem = saved_layout_.save(layout_); !problem.empty())
-            fmt::print(err(), "relief-view: warning: {}\n", problem);
+            fmt::print(err(), "relief-view: warning: {}\n", printable(problem));
     }
 
   private:
@@ -955,7 +956,8 @@ class WindowLoop {
         state["pointer"] = pointer ? nlohmann::ordered_json{pointer->x, pointer->y} : nullptr;
         state["help"] = interface_.is_help_open();
         state["places"] = ui_probe_json();
-        const std::string text = state.dump(2) + "\n";
+        const std::string text =
+            state.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
         if (text == written_state_) return;
         written_state_ = text;
         replace_file(*state_file_, std::as_bytes(std::span(text)));

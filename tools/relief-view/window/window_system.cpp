@@ -9,16 +9,18 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <glm/common.hpp>
 #include <glm/glm.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "common/command.h"
 #include "files.h"
+#include "json_cursor.h"
 
 namespace relief::tools {
 namespace {
@@ -52,7 +54,6 @@ float next_ui_scale(float scale, bool is_larger) {
 
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr int layout_version = 1;
@@ -65,31 +66,56 @@ class NewerVersion : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-glm::ivec2 pair_of(const json& value) {
-    const auto pair = value.get<std::array<int, 2>>();
-    const glm::ivec2 limit(largest_window_side);
-    return glm::clamp(glm::ivec2(pair[0], pair[1]), -limit, limit);
+int any_int(const JsonCursor& value) {
+    return value.whole_number(std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
 }
 
-WindowLayout layout_of(const json& document) {
-    const int found = document.at("version").get<int>();
+glm::ivec2 pair_of(const JsonCursor& value) {
+    const std::vector<JsonCursor> pair = value.elements();
+    if (pair.size() != 2) value.fail("must be two numbers");
+    const glm::ivec2 limit(largest_window_side);
+    return glm::clamp(glm::ivec2(any_int(pair[0]), any_int(pair[1])), -limit, limit);
+}
+
+WindowLayout layout_of(const JsonCursor& document) {
+    const int found = any_int(document.at("version"));
     if (found > layout_version) throw NewerVersion(fmt::format("of version {}", found));
     WindowLayout layout;
-    const json window = document.value("window", json::object());
-    if (window.contains("size")) layout.size = glm::max(pair_of(window["size"]), smallest);
-    if (window.contains("position")) layout.position = pair_of(window["position"]);
-    layout.is_maximized = window.value("maximized", false);
-    const json panels = document.value("panels", json::object());
-    layout.has_panels = panels.value("shown", true);
-    layout.open_panels = panels.value("open", std::map<std::string, bool>{});
-    if (document.contains("scale")) {
-        layout.ui_scale = std::clamp(document["scale"].get<float>(), min_ui_scale, max_ui_scale);
+    if (const auto window = document.find("window")) {
+        if (const auto size = window->find("size"))
+            layout.size = glm::max(pair_of(*size), smallest);
+        if (const auto position = window->find("position")) layout.position = pair_of(*position);
+        if (const auto maximized = window->find("maximized"))
+            layout.is_maximized = maximized->boolean();
     }
-    layout.has_light_theme = document.value("theme", "dark") == "light";
-    layout.has_seen_hint = document.value("hint_seen", false);
-    layout.recent_files = document.value("recent_files", std::vector<std::string>{});
-    if (layout.recent_files.size() > max_recent_files) layout.recent_files.resize(max_recent_files);
+    if (const auto panels = document.find("panels")) {
+        if (const auto shown = panels->find("shown")) layout.has_panels = shown->boolean();
+        if (const auto open = panels->find("open")) {
+            for (const auto& [name, is_open] : open->members())
+                layout.open_panels[name] = is_open.boolean();
+        }
+    }
+    if (const auto scale = document.find("scale"))
+        layout.ui_scale = std::clamp(scale->number(), min_ui_scale, max_ui_scale);
+    if (const auto theme = document.find("theme"))
+        layout.has_light_theme = theme->text() == "light";
+    if (const auto seen = document.find("hint_seen")) layout.has_seen_hint = seen->boolean();
+    if (const auto files = document.find("recent_files")) {
+        for (const JsonCursor& file : files->elements()) {
+            if (layout.recent_files.size() < max_recent_files)
+                layout.recent_files.push_back(file.text());
+        }
+    }
     return layout;
+}
+
+/// \throws FileError if the file cannot be read or holds no layout, NewerVersion
+WindowLayout read_layout(const std::filesystem::path& file) {
+    try {
+        return layout_of(JsonCursor::parse(read_file(file)));
+    } catch (const InvalidInput& error) {
+        throw FileError(file, error.what());
+    }
 }
 
 ordered_json json_of(const WindowLayout& layout) {
@@ -104,7 +130,11 @@ ordered_json json_of(const WindowLayout& layout) {
     if (layout.ui_scale) document["scale"] = *layout.ui_scale;
     if (layout.has_light_theme) document["theme"] = "light";
     document["hint_seen"] = layout.has_seen_hint;
-    document["recent_files"] = layout.recent_files;
+    // JSON cannot hold other names.
+    document["recent_files"] = ordered_json::array();
+    for (const std::string& file : layout.recent_files) {
+        if (is_utf8(file)) document["recent_files"].push_back(file);
+    }
     return document;
 }
 
@@ -162,16 +192,14 @@ SavedLayout::SavedLayout(std::filesystem::path file) : file_(std::move(file)) {
     std::error_code none;
     if (!std::filesystem::exists(*file_, none)) return;
     try {
-        std::ifstream stream(*file_, std::ios::binary);
-        if (!stream) throw std::runtime_error("cannot be read");
-        layout_ = layout_of(json::parse(stream));
+        layout_ = read_layout(*file_);
     } catch (const NewerVersion& later) {
         note_ = fmt::format(
             "{} is {}, and this program supports {}: the default layout is used and not saved",
             file_->string(), later.what(), layout_version);
         file_.reset();
     } catch (const std::exception& error) {
-        note_ = fmt::format("{}: {}: the default layout is used", file_->string(), error.what());
+        note_ = fmt::format("{}: the default layout is used", error.what());
     }
 }
 

@@ -322,7 +322,8 @@ class GltfDocument {
     /// Creates a document with one mesh: a primitive for each material range with its own vertices,
     /// and materials converted from MTL. Kd and d become the base color (within [0,1]), roughness
     /// is (2 / (Ns + 2))^(1/4), metallic 0, Ke becomes emission (KHR_materials_emissive_strength
-    /// above 1), norm the normal map. Images are embedded without re-encoding. Bump maps (heights),
+    /// above 1), norm the normal map. Images are embedded without re-encoding, with the names of
+    /// their files, which are converted from Latin-1 if they are not UTF-8. Bump maps (heights),
     /// specular and opacity maps are left out, because glTF cannot hold them. Normals are
     /// normalized (OBJ allows any length). The origin of the file becomes the node's translation.
     ///
@@ -332,7 +333,8 @@ class GltfDocument {
 
     /// The same, but a material whose image is missing loses that texture.
     ///
-    /// \param report  names each such texture: its material, its file and the problem
+    /// \param report  names each such texture: its material, its file and the problem; counts
+    ///                converted names
     static GltfDocument from_mesh(const MeshFile& contents, Report& report);
 
     GltfDocument(GltfDocument&&) noexcept;
@@ -455,12 +457,15 @@ class GltfDocument {
     ///
     /// The sampler, the texture coordinate set, the transform and the factors stay. If nothing else
     /// uses the old texture, its entry changes, and its image is left out when the document is
-    /// written. A file that is used for several textures is stored once. If the material emits no
-    /// light, an emissive map sets the emissive factor to 1.
+    /// written. A file that is used for several textures is stored once. The image gets the name of
+    /// the file, converted from Latin-1 if it is not UTF-8. If the material emits no light, an
+    /// emissive map sets the emissive factor to 1.
     ///
     /// \param image    PNG or JPEG
     /// \param storage  external: write() copies the file beside a .gltf; a .glb embeds all images
-    /// \param report   counts properties of the material that hide or transform the map
+    /// \param report   counts converted names, and properties of the material that hide or
+    /// transform
+    ///                 the map
     /// \throws FileError if the image cannot be read, is neither PNG nor JPEG, or has the name of
     ///         another external image; InvalidInput if there is no such material
     void set_texture(std::size_t material, GltfTextureSlot slot, const std::filesystem::path& image,

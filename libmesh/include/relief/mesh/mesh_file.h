@@ -98,8 +98,9 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report = IgnoredRe
 ///
 /// A temporary file is written and renamed: after a failure there is no partial file, and the old
 /// one is unchanged.
-/// \throws FileError if the file cannot be written; InvalidInput for another extension, or if the
-///         mesh is not valid or names a missing material
+/// \throws FileError if the file cannot be written, or if the name of an image begins or ends with
+///         a blank or has a line break or a backslash, which MTL cannot hold; InvalidInput for
+///         another extension, or if the mesh is not valid or names a missing material
 void write_mesh(const std::filesystem::path& file, const MeshFile& contents);
 
 }  // namespace relief

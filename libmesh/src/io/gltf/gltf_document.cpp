@@ -113,11 +113,7 @@ Json parse_json(std::string_view text, const std::filesystem::path& file) {
     try {
         return Json::parse(text);
     } catch (const Json::exception& error) {
-        // The library's message begins with its own error name in brackets.
-        const std::string_view what = error.what();
-        throw FileError(
-            file, fmt::format("its JSON is malformed: {}",
-                              what.substr(what.find("] ") == what.npos ? 0 : what.find("] ") + 2)));
+        throw FileError(file, fmt::format("its JSON is malformed: {}", json_problem(error)));
     }
 }
 

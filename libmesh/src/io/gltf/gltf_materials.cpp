@@ -82,7 +82,7 @@ void retire_images(GltfContents& contents, Json& texture) {
 
 /// Returns the entry of an image file. A file that was stored before is not stored again.
 std::size_t image_entry(GltfContents& contents, const std::filesystem::path& file,
-                        GltfImageStorage storage) {
+                        GltfImageStorage storage, Report& report) {
     const auto known =
         contents.stored_images.find({std::filesystem::weakly_canonical(file), storage});
     if (known != contents.stored_images.end()) return known->second;
@@ -90,7 +90,7 @@ std::size_t image_entry(GltfContents& contents, const std::filesystem::path& fil
     const std::string media_type = image_media_type(bytes);
     if (media_type != "image/png" && media_type != "image/jpeg")
         throw FileError(file, "is neither PNG nor JPEG, which is all that glTF holds");
-    Json image = {{"name", file.stem().string()}};
+    Json image = {{"name", utf8_stem(file)}};
     if (storage == GltfImageStorage::embedded) {
         image["bufferView"] = add_view(contents, bytes);
         image["mimeType"] = media_type;
@@ -105,6 +105,8 @@ std::size_t image_entry(GltfContents& contents, const std::filesystem::path& fil
         image["uri"] = uri;
     }
     Json& images = contents.root["images"];
+    if (!is_utf8(file.stem().string()))
+        report.add("name that is not UTF-8", "image", images.size(), "is read as Latin-1");
     images.push_back(std::move(image));
     contents.stored_images.emplace(std::pair(std::filesystem::weakly_canonical(file), storage),
                                    images.size() - 1);
@@ -167,7 +169,7 @@ void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
     Json& root = contents.root;
     const std::size_t count = array_in(root, "materials").size();
     if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
-    const std::size_t new_image = image_entry(contents, image, storage);
+    const std::size_t new_image = image_entry(contents, image, storage, report);
     Json& json = root["materials"][material];
     const SlotMember member = member_of(slot);
     Json& parent = member.parent == nullptr ? json : json[member.parent];

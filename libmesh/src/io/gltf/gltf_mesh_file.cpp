@@ -172,7 +172,9 @@ Json DocumentBuilder::texture_info(const std::filesystem::path& image) {
         }
         contents_.root["images"].push_back({{"bufferView", add_view(contents_, bytes)},
                                             {"mimeType", media_type},
-                                            {"name", image.stem().string()}});
+                                            {"name", utf8_stem(image)}});
+        if (report_ != nullptr && !is_utf8(image.stem().string()))
+            report_->add("name that is not UTF-8", "image", entry->second, "is read as Latin-1");
         contents_.root["textures"].push_back({{"sampler", 0}, {"source", entry->second}});
         contents_.root["samplers"] = Json::array({{{"wrapS", 10497}, {"wrapT", 10497}}});
     }

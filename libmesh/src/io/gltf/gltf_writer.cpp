@@ -420,8 +420,8 @@ void write_pieces(const std::filesystem::path& file, const std::vector<std::stri
 std::string dump(const Json& root, int indent, const std::filesystem::path& file) {
     try {
         return root.dump(indent, ' ');
-    } catch (const Json::exception& error) {
-        throw FileError(file, fmt::format("its JSON cannot be written: {}", error.what()));
+    } catch (const Json::exception&) {
+        throw FileError(file, "cannot be written: the document has a name that is not UTF-8");
     }
 }
 

@@ -369,8 +369,22 @@ std::vector<std::string> material_names(const std::vector<MtlMaterial>& material
     return names;
 }
 
+/// Returns the name of a file, which stands in a line of its own.
+/// \throws FileError if reading the line would give another name
+std::string name_in_line(const std::filesystem::path& name, const std::filesystem::path& file) {
+    std::string text = name.generic_string();
+    if (text.empty() || text.find_first_of("\r\n\\") != text.npos || is_blank(text.front()) ||
+        is_blank(text.back())) {
+        throw FileError(file, fmt::format("cannot name the file '{}', whose blanks, line breaks or "
+                                          "backslashes would be read otherwise (rename it)",
+                                          text));
+    }
+    return text.front() == '-' ? "./" + text : text;  // Options of maps begin with '-'.
+}
+
 std::string mtl_text(const MeshFile& contents, const std::vector<std::string>& names,
-                     const std::filesystem::path& folder) {
+                     const std::filesystem::path& file) {
+    const auto folder = std::filesystem::absolute(file).lexically_normal().parent_path();
     std::string text;
     auto out = std::back_inserter(text);
     const auto color = [&](const char* key, const glm::vec3& c) {
@@ -380,7 +394,7 @@ std::string mtl_text(const MeshFile& contents, const std::vector<std::string>& n
                          const std::optional<std::filesystem::path>& image) {
         if (!image) return;
         const auto beside = std::filesystem::absolute(*image).lexically_proximate(folder);
-        fmt::format_to(out, "{} {}\n", key, beside.generic_string());
+        fmt::format_to(out, "{} {}\n", key, name_in_line(beside, file));
     };
     for (std::size_t i = 0; i < contents.materials.size(); ++i) {
         const MtlMaterial& material = contents.materials[i];
@@ -482,12 +496,11 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
     if (!names.empty()) {
         std::filesystem::path mtl_file = file;
         mtl_file.replace_extension(".mtl");
-        const auto folder = std::filesystem::absolute(file).lexically_normal().parent_path();
-        const std::string mtl = mtl_text(contents, names, folder);
+        text += fmt::format("mtllib {}\n", name_in_line(mtl_file.filename(), file));
+        const std::string mtl = mtl_text(contents, names, mtl_file);
         materials.emplace(mtl_file);
         write_all(*materials, std::as_bytes(std::span(mtl)));
         materials->complete();
-        text += fmt::format("mtllib {}\n", mtl_file.filename().string());
     }
     if (!mesh.name.empty()) {
         std::string name = mesh.name;

@@ -172,7 +172,8 @@ struct SceneToSave {
 /// beside the file as PNG: NAME-image-1.png, and so on.
 /// \throws FileError if the source cannot be read again, or a file cannot be written or exists
 ///         already; InvalidInput if a scene file cannot express the change: meshes were moved or
-///         added, a scene file is written to another folder, or an environment is no file
+///         added, a scene file is written to another folder, an environment is no file, or the
+///         path of a file is not UTF-8
 void save_scene(const std::filesystem::path& file, const SceneToSave& saved);
 
 // Finds the images of environment maps in folders.

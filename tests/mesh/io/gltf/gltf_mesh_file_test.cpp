@@ -138,6 +138,26 @@ TEST_F(GltfFromMesh, ImagesAreEmbeddedOnceAsTheyAre) {
     EXPECT_THAT(bytes.substr(0, 4096), HasSubstr("\"mimeType\":\"image/jpeg\""));
 }
 
+TEST_F(GltfFromMesh, NamesOfImagesInLatin1BecomeUtf8) {
+    const std::filesystem::path image = folder_ / "Stra\xDF.png";
+    std::ofstream(image, std::ios::binary) << "\x89PNG\r\n\x1A\n";
+    MeshFile file;
+    file.mesh = test::grid(1);
+    file.materials.resize(1);
+    file.materials[0].diffuse_map = image;
+    EXPECT_EQ(written(file).view().images.at(0).name, "Stra\xC3\x9F");
+    Report report;
+    GltfDocument document = GltfDocument::from_mesh(file, report);
+    EXPECT_EQ(report.count("name that is not UTF-8"), 1U);
+    document.set_texture(0, GltfTextureSlot::emissive, image, GltfImageStorage::embedded, report);
+    EXPECT_EQ(report.count("name that is not UTF-8"), 2U);
+    EXPECT_EQ(document.view().images.at(1).name, "Stra\xC3\x9F");
+    document.add_material("\xDF");
+    EXPECT_EQ(message_of<FileError>([&] { document.write(folder_ / "b.glb"); }),
+              (folder_ / "b.glb").string() +
+                  ": cannot be written: the document has a name that is not UTF-8");
+}
+
 TEST_F(GltfFromMesh, WithAReportMissingImagesAreLeftOutAndNamed) {
     MeshFile file;
     file.mesh = test::grid(1);

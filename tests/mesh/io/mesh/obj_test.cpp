@@ -17,12 +17,14 @@
 #include "relief/mesh/limits.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
+#include "support/invariants.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
+using test::message_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -307,6 +309,31 @@ TEST_F(Obj, MaterialsComeBack) {
     EXPECT_EQ(read.materials[1].refractive_index, 1.5F);
     EXPECT_EQ(read.materials[0].refractive_index, 1.0F);
     EXPECT_TRUE(report_.empty());
+}
+
+TEST_F(Obj, NamesOfImagesComeBackOrAreRefused) {
+    MeshFile contents{test::cube(), {}};
+    contents.materials.resize(1);
+    contents.mesh.material_ranges = {{0, 12, 0}};
+    for (const char* name : {"a b.png", "#.png", "a #b.png", "-bm 2.png", "-s.png", "a\"b.png",
+                             "\xE4.png", "'.png", "a\tb.png", "\x1B.png", "1", "-clamp on"}) {
+        contents.materials[0].diffuse_map = folder_ / name;
+        contents.materials[0].bump_map = folder_ / name;
+        write_mesh(folder_ / "d.obj", contents);
+        const MtlMaterial back = read_mesh(folder_ / "d.obj", report_).materials.at(0);
+        EXPECT_EQ(back.diffuse_map, folder_ / name) << name;
+        EXPECT_EQ(back.bump_map, folder_ / name) << name;
+    }
+    std::filesystem::remove(folder_ / "d.obj");
+    for (const char* name :
+         {"a\nnewmtl b.png", "a\rb.png", " a.png", "a.png ", "\ta", "a\\b.png"}) {
+        contents.materials[0].diffuse_map = folder_ / name;
+        EXPECT_THAT(message_of<FileError>([&] { write_mesh(folder_ / "d.obj", contents); }),
+                    HasSubstr(std::string("d.mtl: cannot name the file '") + name + "'"));
+    }
+    contents.materials[0].diffuse_map = folder_ / "a.png";
+    EXPECT_THROW(write_mesh(folder_ / "d\nf 1 2 3.obj", contents), FileError);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "d.obj")) << "nothing is written";
 }
 
 TEST_F(Obj, RealFilesHaveTheCountsOfTheirLists) {
