@@ -132,6 +132,22 @@ TEST(AllToolsAlike, EscapeControlCharactersOfFileNames) {
     }
 }
 
+TEST(AllToolsAlike, NameTheFileThatTheSystemRefuses) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    std::filesystem::create_symlink("loop.obj", workplace / "loop.obj");
+    for (const char* command :
+         {"relief-mesh info loop.obj", "relief-mesh process square.obj loop.obj",
+          "relief-mesh process loop.obj square.obj -o out/", "relief-view loop.obj --output a.png",
+          "relief-mesh material square.obj a.gltf --normal loop.obj"}) {
+        const ProgramResult result = workplace.run(command);
+        EXPECT_EQ(result.exit_code, 1) << command;
+        EXPECT_THAT(result.error, testing::HasSubstr("error: loop.obj: ")) << command;
+        EXPECT_THAT(result.error, testing::HasSubstr("Too many levels of symbolic links"))
+            << command;
+    }
+}
+
 TEST(AllToolsAlike, StoreNamesThatAreNotUtf8OrRefuseThem) {
     const Workplace workplace;
     const std::string name = "b\xE4r";

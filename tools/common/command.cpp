@@ -262,6 +262,10 @@ bool is_err_terminal() {
     return ::isatty(::fileno(err())) == 1;
 }
 
+FileError file_error(const std::filesystem::filesystem_error& error) {
+    return {error.path1(), error.code().message()};
+}
+
 FileError failure(const std::filesystem::path& file, const std::string& problem,
                   const std::string& remedy) {
     return {file, fmt::format("{} ({})", problem, remedy)};
@@ -316,7 +320,8 @@ void Stages::show_progress(const std::string& name, double part, const std::stri
     const int percent = static_cast<int>(part * 100);
     if (!show_ || percent == shown_percent_) return;
     shown_percent_ = percent;
-    tell("\r\033[K{} {} %{}{} ...", name, percent, more.empty() ? "" : ", ", more);
+    tell("\r\033[K{} {} %{}{} ...", printable(name), percent, more.empty() ? "" : ", ",
+         printable(more));
     std::fflush(err());
 }
 
@@ -329,7 +334,7 @@ void Stages::clear_progress() const {
 Stages::Running::Running(Stages& stages, const std::string& name, const std::string& shown)
     : stages_(stages), index_(stages.index_of(name)) {
     if (stages.show_) {
-        tell("\r\033[K{} ...", shown);
+        tell("\r\033[K{} ...", printable(shown));
         std::fflush(err());
     }
 }
@@ -400,6 +405,8 @@ int run_tool(const Tool& tool, const std::vector<std::string>& given, std::FILE*
         return report(root, error);
     } catch (const std::bad_alloc&) {
         return report_failure(root, "out of memory");
+    } catch (const std::filesystem::filesystem_error& error) {
+        return report_failure(root, file_error(error).what());
     } catch (const std::system_error& error) {
         if (error.code() == std::errc::broken_pipe) return static_cast<int>(ExitCode::failed);
         return report_failure(root, error.what());

@@ -50,6 +50,9 @@ class UsageError : public std::runtime_error {
     std::string remedy_;
 };
 
+/// Returns an error of std::filesystem in the form of a FileError.
+FileError file_error(const std::filesystem::filesystem_error& error);
+
 /// Returns the error "FILE: PROBLEM (REMEDY)". Exit code 1.
 FileError failure(const std::filesystem::path& file, const std::string& problem,
                   const std::string& remedy);

@@ -187,6 +187,8 @@ std::string error_text(const Job& job) {
         return error.what();
     } catch (const std::bad_alloc&) {
         return job.input.string() + ": out of memory";
+    } catch (const std::filesystem::filesystem_error& error) {
+        return file_error(error).what();
     } catch (const std::exception& error) {
         return fmt::format("{}: {}", job.input.string(), error.what());
     }

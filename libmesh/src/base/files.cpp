@@ -37,7 +37,9 @@ void note_and_check(const std::filesystem::path& file) {
     note_file(file);
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) throw FileError(file, "no such file");
+    if (status.type() == std::filesystem::file_type::not_found)
+        throw FileError(file, "no such file");
+    if (error) throw FileError(file, fmt::format("cannot be opened: {}", error.message()));
     if (!std::filesystem::is_regular_file(status)) throw FileError(file, "is not a file");
 }
 

@@ -83,9 +83,10 @@ void retire_images(GltfContents& contents, Json& texture) {
 /// Returns the entry of an image file. A file that was stored before is not stored again.
 std::size_t image_entry(GltfContents& contents, const std::filesystem::path& file,
                         GltfImageStorage storage, Report& report) {
-    const auto known =
-        contents.stored_images.find({std::filesystem::weakly_canonical(file), storage});
-    if (known != contents.stored_images.end()) return known->second;
+    std::error_code failed;  // The file is missing or unreadable: read_file() tells why.
+    const std::filesystem::path path = std::filesystem::weakly_canonical(file, failed);
+    const auto known = contents.stored_images.find({path, storage});
+    if (!failed && known != contents.stored_images.end()) return known->second;
     const std::string bytes = read_file(file);
     const std::string media_type = image_media_type(bytes);
     if (media_type != "image/png" && media_type != "image/jpeg")
@@ -108,8 +109,7 @@ std::size_t image_entry(GltfContents& contents, const std::filesystem::path& fil
     if (!is_utf8(file.stem().string()))
         report.add("name that is not UTF-8", "image", images.size(), "is read as Latin-1");
     images.push_back(std::move(image));
-    contents.stored_images.emplace(std::pair(std::filesystem::weakly_canonical(file), storage),
-                                   images.size() - 1);
+    if (!failed) contents.stored_images.emplace(std::pair(path, storage), images.size() - 1);
     return images.size() - 1;
 }
 

@@ -549,13 +549,15 @@ void copy_images(const GltfContents& contents, const std::filesystem::path& file
         const std::string bytes = read_file(*source);
         const std::filesystem::path target =
             folder / (is_added ? source->filename() : source->lexically_relative(contents.folder));
-        if (std::filesystem::exists(target)) {
+        std::error_code failed;
+        if (std::filesystem::exists(target, failed)) {
             if (read_file(target) == bytes) continue;
             throw FileError(target, fmt::format("is in the way of images[{}] of {}, which is "
                                                 "another image; write .glb, which holds its own",
                                                 i, file.string()));
         }
-        std::filesystem::create_directories(target.parent_path());
+        std::filesystem::create_directories(target.parent_path(), failed);
+        if (failed) throw FileError(target.parent_path(), "cannot be made: " + failed.message());
         write_pieces(target, {bytes});
     }
 }
