@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <charconv>
+#include <string>
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
@@ -172,8 +173,19 @@ glm::mat4 matrix_from(const JsonCursor& cursor) {
     return matrix;
 }
 
+namespace {
+
+/// Reads back a formatted number. (strtod() depends on the locale of the process.)
+double double_of(const std::string& text) {
+    double value = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+}  // namespace
+
 Json number_json(float value) {
-    return std::strtod(fmt::format("{}", value).c_str(), nullptr);
+    return double_of(fmt::format("{}", value));
 }
 
 Json vector_json(const glm::vec3& value) {
@@ -185,8 +197,7 @@ Json degrees_json(float radians) {
     constexpr int digits_of_double = 17;
     const double degrees = glm::degrees(static_cast<double>(radians));
     for (int digits = usual_digits;; ++digits) {
-        const double rounded =
-            std::strtod(fmt::format("{:.{}g}", degrees, digits).c_str(), nullptr);
+        const double rounded = double_of(fmt::format("{:.{}g}", degrees, digits));
         if (static_cast<float>(glm::radians(rounded)) == radians || digits == digits_of_double)
             return rounded;
     }

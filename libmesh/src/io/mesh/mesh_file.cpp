@@ -7,9 +7,11 @@
 #include "relief/mesh/mesh_file.h"
 
 #include <fmt/format.h>
+#include <locale.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <new>
 
 #include "files.h"
@@ -28,6 +30,11 @@ char lower(char c) {
 }
 
 }  // namespace
+
+double strtod_in_c_locale(std::string_view number) {
+    static const locale_t c = ::newlocale(LC_ALL_MASK, "C", nullptr);
+    return ::strtod_l(std::string(number).c_str(), nullptr, c);
+}
 
 void TextScanner::skip_blanks() {
     std::size_t i = 0;

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <charconv>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
@@ -22,6 +21,9 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+
+/// Returns what strtod() does in the C locale; that of the process may have another decimal point.
+double strtod_in_c_locale(std::string_view number);
 
 /// Parses a whole word as a number; nullopt if it is none.
 ///
@@ -36,7 +38,7 @@ std::optional<Number> number_in(std::string_view word) {
     if (error == std::errc() && stop == end) return value;
     if constexpr (std::numeric_limits<Number>::has_infinity) {
         if (error == std::errc::result_out_of_range && stop == end) {
-            return static_cast<Number>(std::strtod(std::string(word).c_str(), nullptr));
+            return static_cast<Number>(strtod_in_c_locale(word));
         }
         const auto has = [&](std::string_view part) { return word.find(part) != word.npos; };
         if (has("#QNAN") || has("#IND") || has("#SNAN")) {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <clocale>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <random>
@@ -309,6 +311,34 @@ TEST_F(Obj, MaterialsComeBack) {
     EXPECT_EQ(read.materials[1].refractive_index, 1.5F);
     EXPECT_EQ(read.materials[0].refractive_index, 1.0F);
     EXPECT_TRUE(report_.empty());
+}
+
+TEST_F(Obj, NumbersDoNotDependOnTheLocaleOfTheProcess) {
+    const std::string make =
+        "localedef -i de_DE -f UTF-8 " + (folder_ / "de_DE.UTF-8").string() + " 2>/dev/null";
+    if (std::system(make.c_str()) != 0)
+        GTEST_SKIP() << "needs localedef and de_DE (Debian: locales)";
+    ASSERT_EQ(::setenv("LOCPATH", folder_.path().c_str(), 1), 0);
+    ASSERT_NE(std::setlocale(LC_ALL, "de_DE.UTF-8"), nullptr);
+    ASSERT_STREQ(std::localeconv()->decimal_point, ",");
+    write("m.mtl", "newmtl a\nKd 0.25 0.5 0.75\nNs 12.5\nd 0.5\nmap_Bump -bm 0.5 b.png\n");
+    const MeshFile file =
+        read("mtllib m.mtl\nv 1.5e-50 0.5 -2.5e50\nv 1.25 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    write_mesh(folder_ / "b.obj", file);
+    const MeshFile back = read_mesh(folder_ / "b.obj", report_);
+    std::setlocale(LC_ALL, "C");
+    ::unsetenv("LOCPATH");
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    EXPECT_THAT(file.mesh.positions, ElementsAre(glm::vec3(0, 0.5F, -infinity),
+                                                 glm::vec3(1.25F, 0, 0), glm::vec3(0, 1, 0)));
+    EXPECT_EQ(back.mesh.positions, file.mesh.positions);
+    for (const MeshFile* one : {&file, &back}) {
+        const MtlMaterial& material = one->materials.at(0);
+        EXPECT_EQ(material.diffuse, glm::vec3(0.25F, 0.5F, 0.75F));
+        EXPECT_EQ(material.shininess, 12.5F);
+        EXPECT_EQ(material.opacity, 0.5F);
+        EXPECT_EQ(material.bump_strength, 0.5F);
+    }
 }
 
 TEST_F(Obj, NamesOfImagesComeBackOrAreRefused) {
