@@ -146,10 +146,10 @@ class Refusals(unittest.TestCase):
     def test_files(self):
         with self.assertRaisesRegex(relief.FileError, "missing.obj: no such file") as caught:
             relief.read_mesh("missing.obj")
-        with self.assertRaisesRegex(relief.FileError, r"b\\xe4r.obj: no such file"):
-            relief.read_mesh(os.fsdecode(b"b\xe4r.obj"))
         self.assertIsInstance(caught.exception, OSError)
         self.assertIsInstance(caught.exception, relief.Error)
+        with self.assertRaisesRegex(relief.FileError, r"b\\xe4r.obj: no such file"):
+            relief.read_mesh(os.fsdecode(b"b\xe4r.obj"))
         with self.assertRaises(relief.ToolError) as failed:
             relief.run("relief-mesh", "check", "--unknown")
         self.assertEqual(failed.exception.exit_code, 2)
