@@ -464,8 +464,7 @@ class GltfDocument {
     /// \param image    PNG or JPEG
     /// \param storage  external: write() copies the file beside a .gltf; a .glb embeds all images
     /// \param report   counts converted names, and properties of the material that hide or
-    /// transform
-    ///                 the map
+    ///                 transform the map
     /// \throws FileError if the image cannot be read, is neither PNG nor JPEG, or has the name of
     ///         another external image; InvalidInput if there is no such material
     void set_texture(std::size_t material, GltfTextureSlot slot, const std::filesystem::path& image,
