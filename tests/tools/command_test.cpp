@@ -146,6 +146,13 @@ TEST(AllToolsAlike, NameTheFileThatTheSystemRefuses) {
         EXPECT_THAT(result.error, testing::HasSubstr("Too many levels of symbolic links"))
             << command;
     }
+    const ProgramResult lost = workplace.run(
+        "model=$PWD/square.obj; mkdir gone; cd gone; rmdir ../gone; "
+        "relief-mesh process \"$model\" b.gltf");
+    EXPECT_EQ(lost.exit_code, 1);
+    EXPECT_EQ(lost.error,
+              "relief-mesh: error: b.gltf: is relative to a working folder that does not exist any "
+              "more\n");
 }
 
 TEST(AllToolsAlike, StoreNamesThatAreNotUtf8OrRefuseThem) {

@@ -124,14 +124,11 @@ void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 /// Returns a message without control characters. Lines after the first one, as in the messages of
 /// shader compilers, are indented, so that they cannot look like messages of their own.
 std::string indented_lines(std::string_view text) {
-    std::string result;
-    while (true) {
-        const std::string_view line = text.substr(0, text.find('\n'));
-        result += printable(line);
-        if (line.size() == text.size()) return result;
-        text.remove_prefix(line.size() + 1);
-        result += text.empty() ? "\n" : "\n  ";
-    }
+    std::string result = printable_lines(text);
+    for (std::size_t end = result.find('\n'); end < result.size() - 1;
+         end = result.find('\n', end + 1))
+        result.insert(end + 1, "  ");
+    return result;
 }
 
 /// Prints "relief-mesh: error: TEXT" with the name of the tool, without the command.
@@ -263,6 +260,9 @@ bool is_err_terminal() {
 }
 
 FileError file_error(const std::filesystem::filesystem_error& error) {
+    std::error_code ignored;
+    if (error.path1().is_relative() && std::filesystem::current_path(ignored).empty())
+        return {error.path1(), "is relative to a working folder that does not exist any more"};
     return {error.path1(), error.code().message()};
 }
 

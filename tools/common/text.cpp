@@ -16,15 +16,6 @@
 #include "files.h"
 
 namespace relief::tools {
-namespace {
-
-/// Returns JSON text with invalid UTF-8 replaced.
-std::string dumped(const nlohmann::ordered_json& json) {
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-}  // namespace
-
 std::string counted(std::size_t count, const std::string& thing, const std::string& plural) {
     if (count == 1) return "1 " + thing;
     return fmt::format("{} {}", count, plural.empty() ? thing + "s" : plural);
@@ -121,6 +112,10 @@ void print_entry(const std::string& label, const std::string& text) {
 void print_entry(const std::string& label, const std::vector<std::string>& lines) {
     for (std::size_t i = 0; i < lines.size(); ++i)
         print_entry(i == 0 ? label : "", lines[i]);
+}
+
+std::string dumped(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 void print_json(const nlohmann::ordered_json& json) {

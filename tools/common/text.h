@@ -51,10 +51,13 @@ std::string quoted(const std::filesystem::path& file);
 void print_entry(const std::string& label, const std::string& text);
 void print_entry(const std::string& label, const std::vector<std::string>& lines);
 
-/// Prints indented JSON, with invalid UTF-8 in names replaced.
+/// Returns indented JSON, with invalid UTF-8 in names replaced.
+std::string dumped(const nlohmann::ordered_json& json);
+
+/// Prints it.
 void print_json(const nlohmann::ordered_json& json);
 
-/// Replaces a file by indented JSON, or prints it for standard_stream. \throws FileError
+/// Replaces a file by it, or prints it for standard_stream. \throws FileError
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 
 // Findings with the part of the input to which they belong.

@@ -145,9 +145,12 @@ bool is_utf8(std::string_view text) {
     return true;
 }
 
-std::string utf8_from_latin1(std::string_view text) {
+std::string utf8_name(std::string name, std::string_view element, std::size_t index,
+                      Report& report) {
+    if (is_utf8(name)) return name;
+    report.add("name that is not UTF-8", element, index, "is read as Latin-1");
     std::string converted;
-    for (const char letter : text) {
+    for (const char letter : name) {  // The codes of Latin-1 are those of Unicode.
         const auto code = static_cast<unsigned char>(letter);
         if (code < 0x80) {
             converted += letter;
@@ -157,11 +160,6 @@ std::string utf8_from_latin1(std::string_view text) {
         }
     }
     return converted;
-}
-
-std::string utf8_stem(const std::filesystem::path& file) {
-    const std::string stem = file.stem().string();
-    return is_utf8(stem) ? stem : utf8_from_latin1(stem);
 }
 
 namespace {

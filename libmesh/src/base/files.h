@@ -16,6 +16,8 @@
 
 namespace RELIEF_API relief {
 
+class Report;
+
 /// Returns the bytes of a file, as text. \throws FileError if it is missing, a folder or unreadable
 std::string read_file(const std::filesystem::path& file);
 
@@ -66,11 +68,10 @@ std::string lower_extension(const std::filesystem::path& file);
 std::size_t utf8_length(std::string_view text);
 bool is_utf8(std::string_view text);
 
-/// Converts from Latin-1, whose codes are those of Unicode.
-std::string utf8_from_latin1(std::string_view text);
-
-/// Returns the stem of a file name, converted from Latin-1 if it is not UTF-8.
-std::string utf8_stem(const std::filesystem::path& file);
+/// Returns a name in UTF-8. One that is not is converted from Latin-1, with a finding for the
+/// element that has it.
+std::string utf8_name(std::string name, std::string_view element, std::size_t index,
+                      Report& report);
 
 // Bytes of a file.
 

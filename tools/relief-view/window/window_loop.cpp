@@ -956,8 +956,7 @@ class WindowLoop {
         state["pointer"] = pointer ? nlohmann::ordered_json{pointer->x, pointer->y} : nullptr;
         state["help"] = interface_.is_help_open();
         state["places"] = ui_probe_json();
-        const std::string text =
-            state.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+        const std::string text = dumped(state);
         if (text == written_state_) return;
         written_state_ = text;
         replace_file(*state_file_, std::as_bytes(std::span(text)));

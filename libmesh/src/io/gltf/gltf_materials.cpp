@@ -91,7 +91,8 @@ std::size_t image_entry(GltfContents& contents, const std::filesystem::path& fil
     const std::string media_type = image_media_type(bytes);
     if (media_type != "image/png" && media_type != "image/jpeg")
         throw FileError(file, "is neither PNG nor JPEG, which is all that glTF holds");
-    Json image = {{"name", utf8_stem(file)}};
+    const std::size_t index = array_in(contents.root, "images").size();
+    Json image = {{"name", utf8_name(file.stem().string(), "image", index, report)}};
     if (storage == GltfImageStorage::embedded) {
         image["bufferView"] = add_view(contents, bytes);
         image["mimeType"] = media_type;
@@ -105,12 +106,9 @@ std::size_t image_entry(GltfContents& contents, const std::filesystem::path& fil
         }
         image["uri"] = uri;
     }
-    Json& images = contents.root["images"];
-    if (!is_utf8(file.stem().string()))
-        report.add("name that is not UTF-8", "image", images.size(), "is read as Latin-1");
-    images.push_back(std::move(image));
-    if (!failed) contents.stored_images.emplace(std::pair(path, storage), images.size() - 1);
-    return images.size() - 1;
+    contents.root["images"].push_back(std::move(image));
+    if (!failed) contents.stored_images.emplace(std::pair(path, storage), index);
+    return index;
 }
 
 /// Returns a texture of an image with a sampler, or without one.

@@ -170,11 +170,11 @@ Json DocumentBuilder::texture_info(const std::filesystem::path& image) {
         if (media_type != "image/png" && media_type != "image/jpeg") {
             throw FileError(image, "is neither PNG nor JPEG, which is all that glTF holds");
         }
-        contents_.root["images"].push_back({{"bufferView", add_view(contents_, bytes)},
-                                            {"mimeType", media_type},
-                                            {"name", utf8_stem(image)}});
-        if (report_ != nullptr && !is_utf8(image.stem().string()))
-            report_->add("name that is not UTF-8", "image", entry->second, "is read as Latin-1");
+        Report ignored;
+        const std::string name = utf8_name(image.stem().string(), "image", entry->second,
+                                           report_ == nullptr ? ignored : *report_);
+        contents_.root["images"].push_back(
+            {{"bufferView", add_view(contents_, bytes)}, {"mimeType", media_type}, {"name", name}});
         contents_.root["textures"].push_back({{"sampler", 0}, {"source", entry->second}});
         contents_.root["samplers"] = Json::array({{{"wrapS", 10497}, {"wrapT", 10497}}});
     }

@@ -175,20 +175,17 @@ MeshFile read_with_local_origin(const std::filesystem::path& file, const MeshRea
 
 namespace {
 
-void convert_name(std::string& name, std::size_t number, Report& report) {
-    if (is_utf8(name)) return;
-    name = utf8_from_latin1(name);
-    report.add("name that is not UTF-8", "name", number, "is read as Latin-1");
-}
-
 /// Converts names to UTF-8, and replaces colors that are not finite.
 MeshFile with_valid_values(MeshFile file, Report& report) {
     std::size_t number = 0;
-    convert_name(file.mesh.name, number++, report);
+    const auto convert = [&](std::string& name) {
+        name = utf8_name(std::move(name), "name", number++, report);
+    };
+    convert(file.mesh.name);
     for (MtlMaterial& material : file.materials)
-        convert_name(material.name, number++, report);
+        convert(material.name);
     for (std::string& object : file.objects)
-        convert_name(object, number++, report);
+        convert(object);
     for (std::size_t i = 0; i < file.mesh.colors.size(); ++i) {
         glm::vec4& color = file.mesh.colors[i];
         const bool is_finite = std::isfinite(color.r) && std::isfinite(color.g) &&
