@@ -19,6 +19,7 @@
 #include <climits>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <span>
@@ -347,6 +348,29 @@ void FileReplacement::commit() {
     std::error_code error;
     std::filesystem::rename(temporary_, target_, error);
     if (error) throw FileError(file_, "cannot be written: " + error.message());
+    committed_ = true;
+}
+
+void FileReplacement::commit_with(FileReplacement& other) {
+    complete();
+    other.complete();
+    // The old file has the name of the temporary one until the other file is committed.
+    const auto exchange = [&] {
+        return ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(),
+                           RENAME_EXCHANGE) == 0;
+    };
+    wait_if_ending();
+    const bool holds_old = is_same_file(temporary_, descriptor_) && exchange();
+    const bool is_new = !holds_old && errno == ENOENT;
+    if (!holds_old) commit();
+    try {
+        other.commit();
+    } catch (const FileError&) {
+        if (holds_old) exchange();
+        if (is_new) ::unlink(target_.c_str());
+        throw;
+    }
+    if (holds_old) ::unlink(temporary_.c_str());
     committed_ = true;
 }
 

@@ -116,6 +116,10 @@ class FileReplacement {
     /// Calls complete() if needed, and renames the temporary file. \throws FileError
     void commit();
 
+    /// Commits this file and then another that belongs to it. If the other one fails, the old file
+    /// comes back, unless the file system cannot exchange two files. \throws FileError
+    void commit_with(FileReplacement& other);
+
   private:
     std::filesystem::path file_;
     std::filesystem::path target_;  ///< `file_`, or the file that the link `file_` names.

@@ -106,6 +106,30 @@ TEST(FileReplacement, CommitReplaces) {
     EXPECT_EQ(file_count(folder.path()), 1U);
 }
 
+TEST(FileReplacement, AFileIsCommittedWithAnotherOrNotAtAll) {
+    for (const bool replaces : {false, true}) {
+        const test::TemporaryDirectory folder;
+        if (replaces) std::ofstream(folder / "a.mtl") << "old";
+        const auto commit = [&](const char* other) {
+            FileReplacement materials(folder / "a.mtl");
+            FileReplacement obj(folder / "a.obj");
+            write_all(materials, std::as_bytes(std::span("new")));
+            write_all(obj, std::as_bytes(std::span("new")));
+            if (other != nullptr) std::filesystem::create_directory(folder / other);
+            materials.commit_with(obj);
+        };
+        EXPECT_THAT(test::message_of<FileError>([&] { commit("a.obj"); }),
+                    testing::HasSubstr("a.obj: cannot be written: Is a directory"));
+        EXPECT_EQ(text_of(folder / "a.mtl"), replaces ? "old" : "");
+        EXPECT_EQ(file_count(folder.path()), replaces ? 2U : 1U);
+        std::filesystem::remove(folder / "a.obj");
+        commit(nullptr);
+        EXPECT_EQ(text_of(folder / "a.mtl"), std::string("new\0", 4));
+        EXPECT_EQ(text_of(folder / "a.obj"), std::string("new\0", 4));
+        EXPECT_EQ(file_count(folder.path()), 2U);
+    }
+}
+
 TEST(FileReplacement, TheModeOfAReplacedFileIsKept) {
     const test::TemporaryDirectory folder;
     const std::string text = "new";

@@ -343,14 +343,14 @@ class GltfDocument {
 
     /// Writes .glb (one file, in which images of files and data URIs are embedded) or .gltf (JSON,
     /// with its buffer beside it as NAME.bin), by extension. Files are written to temporary ones
-    /// and renamed.
+    /// and renamed: after a failure, the old document and its buffer are unchanged.
     ///
     /// Buffers are joined into one with the name and extras of the first. Replaced parts are left
     /// out; everything else keeps its bytes. For a .gltf in another folder, image files are copied
     /// to the same relative paths. Missing images stay missing.
     /// \throws FileError if the file cannot be written, if another file is in the place of an
-    ///         image, or if an image lies outside the document's folder and the target is in
-    ///         another folder
+    ///         image, if NAME.bin is a buffer of another document that was read as this one, or if
+    ///         an image lies outside the document's folder and the target is in another folder
     void write(const std::filesystem::path& file) const;
 
     /// Returns all primitives of triangles (lists, strips, fans) with positions, each once, in

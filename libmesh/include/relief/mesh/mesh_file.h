@@ -96,8 +96,8 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report = IgnoredRe
 /// gives the same floats (OBJ: v closer to 0 than 2e-9 within 1.2e-16; PLY: v within 6e-8).
 /// Tangents are left out, because neither format can hold them.
 ///
-/// A temporary file is written and renamed: after a failure there is no partial file, and the old
-/// one is unchanged.
+/// Temporary files are written and renamed: after a failure there is no partial file, and the old
+/// ones are unchanged, also the materials of an OBJ file.
 /// \throws FileError if the file cannot be written, or if the name of an image begins or ends with
 ///         a blank or has a line break or a backslash, which MTL cannot hold; InvalidInput for
 ///         another extension, or if the mesh is not valid or names a missing material

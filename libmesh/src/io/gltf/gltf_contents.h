@@ -118,6 +118,7 @@ struct GltfExtent {
 
 struct GltfContents {
     Json root;                        ///< Has passed check_gltf().
+    std::filesystem::path file;       ///< Absolute; empty if the document was not read.
     std::filesystem::path folder;     ///< Base of relative URIs; absolute.
     std::vector<GltfBuffer> buffers;  ///< One for each entry of "buffers".
     /// Chunks of a GLB other than JSON and the buffer. They are kept unchanged.

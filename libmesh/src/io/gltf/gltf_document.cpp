@@ -200,7 +200,8 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
         contents.root = parse_json(
             std::string_view(container.bytes).substr(container.json_begin, container.json_size),
             file);
-        contents.folder = std::filesystem::absolute(file).parent_path();
+        contents.file = std::filesystem::absolute(file);
+        contents.folder = contents.file.parent_path();
         check_gltf(contents.root);
         contents.extra_chunks = std::move(container.extra_chunks);
         const Json& buffers = array_in(contents.root, "buffers");

@@ -19,7 +19,9 @@
 #include <limits>
 #include <list>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -405,16 +407,17 @@ GltfLayout layout_of(const GltfContents& contents) {
     return layout;
 }
 
-/// Writes the pieces to a temporary file and renames it.
-void write_pieces(const std::filesystem::path& file, const std::vector<std::string_view>& pieces) {
-    FileReplacement replacement(file);
+/// Writes the pieces to a temporary file.
+void write_pieces(const FileReplacement& replacement, const std::vector<std::string_view>& pieces) {
     std::ofstream stream(replacement.written_path(), std::ios::binary);
     for (const std::string_view piece : pieces) {
         stream.write(piece.data(), static_cast<std::streamsize>(piece.size()));
     }
     stream.close();
-    if (!stream) throw FileError(file, fmt::format("cannot be written: {}", std::strerror(errno)));
-    replacement.commit();
+    if (!stream) {
+        throw FileError(replacement.file(),
+                        fmt::format("cannot be written: {}", std::strerror(errno)));
+    }
 }
 
 std::string dump(const Json& root, int indent, const std::filesystem::path& file) {
@@ -534,7 +537,9 @@ void write_glb(const std::filesystem::path& file, const GltfContents& contents) 
     std::vector<std::string_view> pieces = {head};
     pieces.insert(pieces.end(), layout.pieces.begin(), layout.pieces.end());
     pieces.push_back(tail);
-    write_pieces(file, pieces);
+    FileReplacement glb(file);
+    write_pieces(glb, pieces);
+    glb.commit();
 }
 
 /// Copies image files to the same relative path in the new folder.
@@ -558,21 +563,45 @@ void copy_images(const GltfContents& contents, const std::filesystem::path& file
         }
         std::filesystem::create_directories(target.parent_path(), failed);
         if (failed) throw FileError(target.parent_path(), "cannot be made: " + failed.message());
-        write_pieces(target, {bytes});
+        replace_file(target, std::as_bytes(std::span(bytes)));
+    }
+}
+
+/// Throws if the new buffer would replace one of the document that was read, which stays.
+void check_buffer_place(const std::filesystem::path& buffer_file, const std::filesystem::path& file,
+                        const GltfContents& contents) {
+    std::error_code missing;
+    if (std::filesystem::equivalent(file, contents.file, missing)) return;
+    for (const Json& buffer : array_in(contents.root, "buffers")) {
+        const std::string uri = text_in(buffer, "uri");
+        if (uri.empty() || is_data_uri(uri)) continue;
+        const auto path = readable_path(contents.folder, uri);
+        if (!path || !std::filesystem::equivalent(*path, buffer_file, missing)) continue;
+        throw FileError(buffer_file, fmt::format("is a buffer of {}, which would be lost; use "
+                                                 "another name, or write .glb",
+                                                 contents.file.string()));
     }
 }
 
 void write_json(const std::filesystem::path& file, const GltfContents& contents) {
     GltfLayout layout = layout_of(contents);
-    copy_images(contents, file);
+    FileReplacement gltf(file);
+    std::optional<FileReplacement> buffer;
     if (layout.size > 0) {
         std::filesystem::path buffer_file = file;
         buffer_file.replace_extension(".bin");
         layout.root["buffers"][0]["uri"] = uri_of(buffer_file.filename().string());
-        write_pieces(buffer_file, layout.pieces);
+        check_buffer_place(buffer_file, file, contents);
+        buffer.emplace(buffer_file);
+        write_pieces(*buffer, layout.pieces);
     }
     const std::string json = dump(layout.root, 2, file) + "\n";
-    write_pieces(file, {json});
+    write_all(gltf, std::as_bytes(std::span(json)));
+    copy_images(contents, file);
+    if (buffer)
+        buffer->commit_with(gltf);
+    else
+        gltf.commit();
 }
 
 }  // namespace

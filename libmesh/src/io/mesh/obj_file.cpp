@@ -490,7 +490,6 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
     const Mesh& mesh = contents.mesh;
     const std::vector<std::string> names = material_names(contents.materials);
     std::string text;
-    // Both files are complete before either is renamed.
     FileReplacement obj(file);
     std::optional<FileReplacement> materials;
     if (!names.empty()) {
@@ -500,7 +499,6 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
         const std::string mtl = mtl_text(contents, names, mtl_file);
         materials.emplace(mtl_file);
         write_all(*materials, std::as_bytes(std::span(mtl)));
-        materials->complete();
     }
     if (!mesh.name.empty()) {
         std::string name = mesh.name;
@@ -514,9 +512,10 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
         add_faces(mesh, range, text);
     }
     write_all(obj, std::as_bytes(std::span(text)));
-    obj.complete();
-    if (materials) materials->commit();
-    obj.commit();
+    if (materials)
+        materials->commit_with(obj);
+    else
+        obj.commit();
 }
 
 }  // namespace relief

@@ -158,6 +158,38 @@ TEST_F(GltfFromMesh, NamesOfImagesInLatin1BecomeUtf8) {
                   ": cannot be written: the document has a name that is not UTF-8");
 }
 
+TEST_F(GltfFromMesh, AFailureKeepsTheOldDocumentAndItsBuffer) {
+    MeshFile file;
+    file.mesh = test::grid(1);
+    GltfDocument::from_mesh(file).write(folder_ / "a.gltf");
+    const std::string text = read_file(folder_ / "a.gltf");
+    const std::string buffer = read_file(folder_ / "a.bin");
+    file.mesh = test::grid(2);
+    GltfDocument document = GltfDocument::from_mesh(file);
+    document.add_material("\xDF");
+    EXPECT_THROW(document.write(folder_ / "a.gltf"), FileError);
+    EXPECT_EQ(read_file(folder_ / "a.gltf"), text);
+    EXPECT_EQ(read_file(folder_ / "a.bin"), buffer);
+}
+
+TEST_F(GltfFromMesh, ABufferOfTheDocumentThatWasReadIsNotReplacedByThatOfAnother) {
+    MeshFile file;
+    file.mesh = test::grid(1);
+    GltfDocument::from_mesh(file).write(folder_ / "buffer.gltf");
+    std::filesystem::rename(folder_ / "buffer.gltf", folder_ / "a.gltf");
+    GltfDocument document = GltfDocument::read(folder_ / "a.gltf", report_);
+    EXPECT_EQ(message_of<FileError>([&] { document.write(folder_ / "buffer.gltf"); }),
+              fmt::format("{}: is a buffer of {}, which would be lost; use another name, or write "
+                          ".glb",
+                          (folder_ / "buffer.bin").string(), (folder_ / "a.gltf").string()));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "buffer.gltf"));
+    document.write(folder_ / "b.gltf");
+    document = GltfDocument::read(folder_ / "b.gltf", report_);
+    document.write(folder_ / "b.gltf");
+    EXPECT_EQ(document.triangle_primitives().size(), 1U);
+    EXPECT_TRUE(report_.empty());
+}
+
 TEST_F(GltfFromMesh, WithAReportMissingImagesAreLeftOutAndNamed) {
     MeshFile file;
     file.mesh = test::grid(1);
