@@ -92,7 +92,7 @@ TEST(CompareRefuses, WhatCouldShowNothing) {
           "--compare kernel=central3: there is no height map"},
          {"relief-view data/vase.obj --compare interpolation=flat --difference-map out/m.png "
           "--output out/m.png",
-          2, "--difference-map: would overwrite"},
+          2, "--difference-map out/m.png: is also the input or the output"},
          {"relief-view data/vase.obj --compare-to none.obj --output out/picture.png", 1,
           "none.obj"}});
 }

@@ -260,9 +260,6 @@ bool is_err_terminal() {
 }
 
 FileError file_error(const std::filesystem::filesystem_error& error) {
-    std::error_code ignored;
-    if (error.path1().is_relative() && std::filesystem::current_path(ignored).empty())
-        return {error.path1(), "is relative to a working folder that does not exist any more"};
     return {error.path1(), error.code().message()};
 }
 

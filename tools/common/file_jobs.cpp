@@ -147,6 +147,16 @@ fs::path identity_of(const fs::path& file) {
     return error ? whole.lexically_normal() : canonical;
 }
 
+void check_distinct(const std::string& option, const fs::path& file,
+                    const std::vector<fs::path>& others) {
+    for (const fs::path& other : others) {
+        if (identity_of(file) == identity_of(other)) {
+            throw UsageError(
+                fmt::format("{} {}: is also the input or the output", option, file.string()));
+        }
+    }
+}
+
 fs::path with_word(const fs::path& file, std::string_view word, const std::string& replacement) {
     std::string name = file.filename().string();
     const std::size_t place = name.find(word);

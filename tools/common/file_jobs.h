@@ -30,6 +30,10 @@ inline constexpr std::string_view tile_word = "<UDIM>";
 /// Returns a canonical path for comparisons. The file need not exist.
 std::filesystem::path identity_of(const std::filesystem::path& file);
 
+/// \throws UsageError if a file to write is one of the other files of the command
+void check_distinct(const std::string& option, const std::filesystem::path& file,
+                    const std::vector<std::filesystem::path>& others);
+
 /// Replaces a word in the name of a file, but not in its folders.
 std::filesystem::path with_word(const std::filesystem::path& file, std::string_view word,
                                 const std::string& replacement);

@@ -203,11 +203,7 @@ void add_report_options(CLI::App& app, ReportOptions& options, const std::string
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files) {
     if (!options.file) return;
     if (*options.file == standard_stream) return reserve_out_for_report();
-    for (const std::filesystem::path& file : files) {
-        if (identity_of(*options.file) == identity_of(file))
-            throw UsageError(fmt::format("--report {}: is also the input or the output",
-                                         options.file->string()));
-    }
+    check_distinct("--report", *options.file, files);
     require_folder_of(*options.file);
     const FileReplacement can_be_made(*options.file);  // Throws if not; removed at once.
 }

@@ -740,12 +740,7 @@ void check_write_into(const BumpRequest& request, const WriteIntoOptions& write_
     check_image("--write-into", job.output);
     if (!std::filesystem::exists(*write_into.model))
         throw failure(*write_into.model, "does not exist", "name a model that has the surface");
-    for (const std::filesystem::path& file : {job.input, job.output}) {
-        if (identity_of(file) == identity_of(*write_into.model)) {
-            throw UsageError(fmt::format("--write-into {}: is also the input or the output",
-                                         write_into.model->string()));
-        }
-    }
+    check_distinct("--write-into", *write_into.model, {job.input, job.output});
 }
 
 /// Stores the finished map in the model of --write-into.

@@ -214,16 +214,6 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
 
 // Checks of the command line.
 
-/// \throws UsageError if an output file is one of the other files of the command
-void check_distinct(const char* option, const std::filesystem::path& file,
-                    const std::vector<std::filesystem::path>& files) {
-    for (const std::filesystem::path& other : files) {
-        if (identity_of(file) == identity_of(other))
-            throw UsageError(
-                fmt::format("{} {}: is also the input or the output", option, file.string()));
-    }
-}
-
 /// Samples are counted along the sides of the map.
 void check_sample_count(const MeshBakeRequest& request) {
     int across = 1;

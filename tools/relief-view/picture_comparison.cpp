@@ -138,9 +138,6 @@ void check_map(const ViewOptions& options) {
         throw UsageError("--difference-map " + map.string() + ": unsupported format",
                          "use .png for colors or .exr for numbers");
     }
-    if (map == options.model || map == options.reference || map == options.output ||
-        map == options.compare.file)
-        throw UsageError("--difference-map: would overwrite the model or a picture");
     require_folder_of(map);
 }
 
@@ -170,8 +167,6 @@ void check_reference(const ViewOptions& options) {
         if (options.difference_map) check_map(options);
         return;
     }
-    if (options.output == options.reference)
-        throw UsageError("--output: would overwrite the reference");
     if (options.output &&
         is_linear_format(*options.output) != is_linear_format(*options.reference)) {
         throw UsageError("--reference " + options.reference->string() +

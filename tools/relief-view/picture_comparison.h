@@ -46,7 +46,7 @@ Image split_picture(const Image& left, const Image& right, float split);
 
 void add_reference_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if an option needs another one, or would overwrite an input file
+/// \throws UsageError if an option needs another one
 /// \throws FileError if the folder of the difference map does not exist
 void check_reference(const ViewOptions& options);
 

@@ -453,8 +453,6 @@ void check_save_options(const ViewOptions& options) {
                            const std::string& option, bool has_format, const char* formats) {
         if (!file) return;
         refuse(!has_format, option + " " + file->string(), "unsupported format", formats);
-        refuse(*file == options.model || file == options.output, option,
-               "would overwrite the model or the picture", "");
         require_folder_of(*file);
     };
     const auto extension = [](const auto& file) { return file ? extension_of(*file) : ""; };

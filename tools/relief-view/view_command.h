@@ -72,8 +72,7 @@ Frame draw_sequence(const std::function<std::unique_ptr<Renderer>()>& prepare,
 
 void add_save_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if the format of a file is not supported, or the file would overwrite the
-///                 model
+/// \throws UsageError if the format of a file is not supported
 void check_save_options(const ViewOptions& options);
 
 /// Writes the files of --save-scene and --save-model.

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/text.h"
 #include "effect_options.h"
@@ -281,8 +284,25 @@ void check_output(const ViewOptions& options) {
     refuse(std::find(formats.begin(), formats.end(), extension) == formats.end(),
            "--output " + options.output->string(), "unsupported format",
            "use .png, .exr, .apng, .mp4 or .webm");
-    refuse(*options.output == options.model, "--output", "would overwrite the model", "");
     require_folder_of(*options.output);
+}
+
+/// No file that is read may be replaced, and no file is written twice.
+void check_written_files(const ViewOptions& options) {
+    std::vector<std::filesystem::path> others = options.environment;
+    for (const auto& file : {std::optional(options.model), options.compare.file, options.reference,
+                             options.normal_map, options.height_map, options.diffuse_map}) {
+        if (file && !file->empty()) others.push_back(*file);
+    }
+    const auto check = [&](const char* option, const std::optional<std::filesystem::path>& file) {
+        if (!file) return;
+        check_distinct(option, *file, others);
+        others.push_back(*file);
+    };
+    check("--output", options.output);
+    check("--save-scene", options.save_scene);
+    check("--save-model", options.save_model);
+    check("--difference-map", options.difference_map);
 }
 
 void check_lights(const ViewOptions& options) {
@@ -371,6 +391,7 @@ void settle(ViewOptions& options) {
     if (options.model.empty() && !options.wants_window() && !options.list_bindings)
         throw UsageError("MODEL is missing");
     check_output(options);
+    check_written_files(options);
     check_save_options(options);
     check_sequence(options);
     check_reference(options);

@@ -185,8 +185,9 @@ void wait_if_ending() {
 
 /// Adds a file to the list. \return its index, or max_listed if the list is full
 std::size_t add_to_list(const std::filesystem::path& file) {
-    const std::string path = std::filesystem::absolute(file).string();
-    if (path.size() >= PATH_MAX) return max_listed;
+    std::error_code missing;  // The working folder was deleted: the file cannot be created either.
+    const std::string path = std::filesystem::absolute(file, missing).string();
+    if (missing || path.size() >= PATH_MAX) return max_listed;
     for (std::size_t at = 0; at < max_listed; ++at) {
         int expected = ListedFile::free;
         if (!listed_files[at].state.compare_exchange_strong(expected, ListedFile::changing))
