@@ -130,6 +130,11 @@ Image draw(const SceneObject& object, const ViewRequest& view, Report& report) {
         settings.width = object.size->x;
         settings.height = object.size->y;
     }
+    if (settings.width < 1 || settings.height < 1) {
+        throw InvalidInput("size: " + std::to_string(settings.width) + " x " +
+                           std::to_string(settings.height) +
+                           " pixels, expected at least 1 along each side");
+    }
     settings.samples = view.samples;
     settings.output = value_of<OutputCoding>(view.output, "output", codings);
     const Backend backend = value_of<Backend>(view.backend, "backend", backends);

@@ -142,6 +142,26 @@ class Refusals(unittest.TestCase):
         mesh = relief.Mesh(self.positions, self.triangles, texcoords=self.texcoords)
         with self.assertRaisesRegex(relief.InvalidInput, "size: -4 x 4 texels"):
             relief.bake(mesh, mesh, (-4, 4))
+        with self.assertRaisesRegex(relief.InvalidInput, "size: 0 x 4 pixels"):
+            relief.Scene(mesh).render(size=(0, 4))
+
+    def test_meshes_whose_triangles_were_changed(self):
+        mesh = relief.Mesh(self.positions, self.triangles, texcoords=self.texcoords)
+        mesh.triangles[0, 0] = 100_000_000
+        for work in (
+            lambda: relief.bake(mesh, mesh, (4, 4)),
+            lambda: relief.check_mesh(mesh),
+            lambda: relief.compare_meshes(mesh, mesh),
+            lambda: relief.decimate(mesh, triangles=4),
+            lambda: relief.levels_of_detail(mesh, [4]),
+            lambda: relief.subdivide(mesh, 1),
+            lambda: relief.surface_distance(mesh, mesh),
+            lambda: relief.with_frames(mesh),
+            lambda: relief.write_mesh(pathlib.Path(tempfile.gettempdir(), "changed.obj"), mesh),
+            lambda: relief.Scene(mesh),
+        ):
+            with self.assertRaisesRegex(relief.InvalidInput, "triangle 0 names vertex 100000000, but"):
+                work()
 
     def test_files(self):
         with self.assertRaisesRegex(relief.FileError, "missing.obj: no such file") as caught:

@@ -573,6 +573,8 @@ void match_nearly(const Mesh& a, const Mesh& b, const MatchOptions& options, Cor
 }  // namespace
 
 CornerMatch match_corners(const Mesh& a, const Mesh& b, const MatchOptions& options) {
+    validate(a);
+    validate(b);
     CornerMatch match;
     match.by_texcoord = options.by_texcoord && !a.texcoords.empty() && !b.texcoords.empty();
     match.corners.assign(3 * a.triangles.size(), no_corner_matched);

@@ -14,6 +14,7 @@
 #include "relief/mesh/compare.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -58,6 +59,14 @@ glm::vec3 about_y(const glm::vec3& v, double degrees) {
 FrameComparison comparison(const Mesh& a, const Mesh& b, const MatchOptions& options = {}) {
     const CornerMatch match = match_corners(a, b, options);
     return compared(corner_differences(a, b, match), match, 0, a.triangles.size());
+}
+
+TEST(Compare, AnInvalidMeshIsRefused) {
+    const Mesh torus = make_torus();
+    Mesh wrong = torus;
+    wrong.triangles[7].y = 100'000'000;
+    EXPECT_THROW(match_corners(torus, wrong), InvalidInput);
+    EXPECT_THROW(match_corners(wrong, torus), InvalidInput);
 }
 
 TEST(Compare, AMeshWithItself) {

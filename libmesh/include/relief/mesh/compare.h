@@ -46,7 +46,6 @@ struct CornerMatch {
 /// Matches triangles with the same three corners in the same cyclic order, whichever corner comes
 /// first. Triangles with opposite winding do not match.
 ///
-/// \param a, b  valid meshes (mesh.h)
 /// \return at most one match for each triangle. Equal values are matched first; the remaining
 ///         triangles are matched within the tolerances, nearest first. Among several triangles with
 ///         the same corners, those in material ranges of the same index are matched first, then in
@@ -56,6 +55,7 @@ struct CornerMatch {
 /// The expected time is linear. If more than 256 triangles lie within a few tolerances of each
 /// other, those with closer candidates are matched first, as if the tolerance were smaller; for
 /// each remaining triangle at most 256 candidates are examined.
+/// \throws InvalidInput if a mesh is not valid
 CornerMatch match_corners(const Mesh& a, const Mesh& b, const MatchOptions& options = {});
 
 /// The differences at each corner of mesh a.

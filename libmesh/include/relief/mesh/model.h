@@ -151,7 +151,7 @@ struct MapModel {
 /// without normals gets flat ones, as glTF requires, and no tangents. If only some primitives of a
 /// scene have tangents, the others get those of MikkTSpace, as in a renderer. Other files without
 /// normals get none.
-/// \throws InvalidInput if the document is not valid
+/// \throws InvalidInput if the document or the mesh is not valid
 MapModel map_model(Model model, ModelSpace space, Report& report = IgnoredReport());
 
 /// Joins the parts in their order to one mesh with their material ranges and the attributes that
@@ -185,7 +185,7 @@ struct JoinedModel {
 
 /// Joins the primitives in object space, or with `in_world_space` all their instances in world
 /// space. Mesh files are always in world space.
-/// \throws InvalidInput if there are no triangles
+/// \throws InvalidInput if there are no triangles, or the mesh is not valid
 JoinedModel joined_model(Model model, bool in_world_space);
 
 struct ModelMatchOptions {

@@ -177,6 +177,7 @@ JoinedModel joined_model(Model model, bool in_world_space) {
     JoinedModel result;
     result.in_world_space = in_world_space;
     if (auto* contents = std::get_if<MeshFile>(&model)) {
+        validate(contents->mesh);
         result.origin = contents->origin;
         append_part(result, std::move(contents->mesh), "");
     } else {

@@ -135,6 +135,7 @@ MapModel map_model(Model model, ModelSpace space, Report& report) {
     if (const auto* document = std::get_if<GltfDocument>(&model))
         return model_of(*document, space, report);
     auto& contents = std::get<MeshFile>(model);
+    validate(contents.mesh);
     MapModel result;
     result.parts.push_back({"", std::move(contents.mesh), std::move(contents.objects),
                             std::move(contents.object_of), 0});
