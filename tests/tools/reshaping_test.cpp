@@ -524,6 +524,11 @@ TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
                       "--levels and --triangles contradict each other (give one of them)"},
                      {"relief-mesh lods data/vase.obj out/old.glb --triangles 500,500", 2,
                       "--triangles: 500 is not less than 500 (give the finest level first)"},
+                     {"relief-mesh lods out/old_LOD1.glb out/old.glb --separate", 2,
+                      "--separate out/old_LOD1.glb: is also the input or the output"},
+                     {"relief-mesh lods data/vase.obj out/old.glb --separate --report "
+                      "out/old_LOD3.glb",
+                      2, "--report out/old_LOD3.glb: is also the input or the output"},
                      {"relief-mesh lods data/vase.obj out/old.glb --error 0", 2,
                       "--error 0: not between 0.001 and 1000 pixels"}});
 }

@@ -17,6 +17,7 @@
 
 #include "commands.h"
 #include "common/command.h"
+#include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
@@ -471,9 +472,19 @@ Json options_json(const LodsCommand& command) {
     return options;
 }
 
+/// No level may replace the input, and the report none of the files.
+void check_files(const LodsCommand& command) {
+    std::vector<std::filesystem::path> files = {command.input, command.output};
+    for (std::size_t level = 0; level <= max_lod_levels && command.separate; ++level) {
+        files.push_back(level_file(command.output, level));
+        if (level > 0) check_distinct("--separate", files.back(), {command.input});
+    }
+    check(command.report, files);
+}
+
 ExitCode lods(const CLI::App& app, const LodsCommand& command) {
     check_command(command);
-    check(command.report, {command.input, command.output});
+    check_files(command);
     require_folder_of(command.output);
     set_thread_limit(command.general.threads);
     Stages stages(command.general.quiet);

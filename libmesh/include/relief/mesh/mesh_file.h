@@ -60,6 +60,8 @@ struct MeshFile {
     std::vector<std::string> objects{};
     /// The object of each triangle; empty if there is only one.
     std::vector<std::uint32_t> object_of{};
+    /// The OBJ file that was read, and its MTL files; empty for other formats.
+    std::vector<std::filesystem::path> sources{};
 };
 
 /// Reads OBJ, PLY, STL or OFF, by extension.
@@ -98,9 +100,10 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report = IgnoredRe
 ///
 /// Temporary files are written and renamed: after a failure there is no partial file, and the old
 /// ones are unchanged, also the materials of an OBJ file.
-/// \throws FileError if the file cannot be written, or if the name of an image begins or ends with
-///         a blank or has a line break or a backslash, which MTL cannot hold; InvalidInput for
-///         another extension, or if the mesh is not valid or names a missing material
+/// \throws FileError if the file cannot be written, if the MTL file is one of `contents.sources`,
+///         whose OBJ file is another one, or if the name of an image begins or ends with a blank or
+///         has a line break or a backslash, which MTL cannot hold; InvalidInput for another
+///         extension, or if the mesh is not valid or names a missing material
 void write_mesh(const std::filesystem::path& file, const MeshFile& contents);
 
 }  // namespace relief

@@ -186,11 +186,14 @@ std::string with_default_illumination(std::string mtl) {
 /// \param names      as after usemtl
 /// \param libraries  as after mtllib: a file name, which may contain blanks, or several names;
 ///         relative to the folder of `file`
+/// \param sources    receives the MTL files that were read
 /// \param report     counts MTL files that are missing, unreadable or outside of the folder, and
 ///         materials that none of them defines: these have only a name and default values
 std::vector<MtlMaterial> read_materials(const std::filesystem::path& file,
                                         const std::vector<std::string>& names,
-                                        const std::vector<std::string>& libraries, Report& report) {
+                                        const std::vector<std::string>& libraries,
+                                        std::vector<std::filesystem::path>& sources,
+                                        Report& report) {
     std::map<std::string, MtlMaterial> known;
     for (std::size_t i = 0; i < libraries.size(); ++i) {
         for (const auto& library : library_files(file.parent_path(), libraries[i])) {
@@ -201,6 +204,7 @@ std::vector<MtlMaterial> read_materials(const std::filesystem::path& file,
             }
             try {
                 std::istringstream text(with_default_illumination(read_file(library)));
+                sources.push_back(library);
                 std::map<std::string, int> numbers;
                 std::vector<tinyobj::material_t> materials;
                 std::string ignored;
@@ -346,8 +350,9 @@ MeshFile read_obj(const std::filesystem::path& file, const glm::dvec3& origin, R
     CutPolygons cut = cut_polygons(result.mesh, polygons, report);
     if (cut.triangles.empty()) throw FileError(file, "has no triangle");
     group_by_material(std::move(cut), statements, result);
-    result.materials =
-        read_materials(file, statements.materials, statements.material_libraries, report);
+    result.sources = {file};
+    result.materials = read_materials(file, statements.materials, statements.material_libraries,
+                                      result.sources, report);
     return result;
 }
 
@@ -474,6 +479,18 @@ void add_faces(const Mesh& mesh, const MaterialRange& range, std::string& text) 
     }
 }
 
+/// Throws if the MTL file would replace one of the OBJ file that was read, which stays.
+void check_materials_place(const std::filesystem::path& mtl_file, const std::filesystem::path& file,
+                           const std::vector<std::filesystem::path>& sources) {
+    std::error_code missing;
+    if (sources.empty() || std::filesystem::equivalent(file, sources[0], missing)) return;
+    for (const std::filesystem::path& source : sources) {
+        if (!std::filesystem::equivalent(mtl_file, source, missing)) continue;
+        throw FileError(mtl_file, fmt::format("has the materials of {}; use another name",
+                                              sources[0].string()));
+    }
+}
+
 std::vector<MaterialRange> ranges_without_material_first(const Mesh& mesh) {
     std::vector<MaterialRange> ranges = mesh.material_ranges;
     if (ranges.empty()) {
@@ -496,6 +513,7 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
         std::filesystem::path mtl_file = file;
         mtl_file.replace_extension(".mtl");
         text += fmt::format("mtllib {}\n", name_in_line(mtl_file.filename(), file));
+        check_materials_place(mtl_file, file, contents.sources);
         const std::string mtl = mtl_text(contents, names, mtl_file);
         materials.emplace(mtl_file);
         write_all(*materials, std::as_bytes(std::span(mtl)));

@@ -341,6 +341,22 @@ TEST_F(Obj, NumbersDoNotDependOnTheLocaleOfTheProcess) {
     }
 }
 
+TEST_F(Obj, AnMtlFileThatWasReadIsNotReplacedByThatOfAnotherObjFile) {
+    write("m.mtl", "newmtl a\nnewmtl unused\n");
+    const MeshFile file = read("mtllib m.mtl\n" + three + "usemtl a\nf 1 2 3\n");
+    EXPECT_EQ(message_of<FileError>([&] { write_mesh(folder_ / "m.obj", file); }),
+              fmt::format("{}: has the materials of {}; use another name",
+                          (folder_ / "m.mtl").string(), (folder_ / "a.obj").string()));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "m.obj"));
+    EXPECT_EQ(std::filesystem::file_size(folder_ / "m.mtl"), 23U);
+    for (int i = 0; i < 2; ++i) {  // The second time, a.mtl is read and replaced.
+        const MeshFile back = read_mesh(folder_ / "a.obj", report_);
+        EXPECT_THAT(back.sources,
+                    ElementsAre(folder_ / "a.obj", folder_ / (i == 0 ? "m.mtl" : "a.mtl")));
+        write_mesh(folder_ / "a.obj", back);
+    }
+}
+
 TEST_F(Obj, NamesOfImagesComeBackOrAreRefused) {
     MeshFile contents{test::cube(), {}};
     contents.materials.resize(1);
