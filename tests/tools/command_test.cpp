@@ -44,6 +44,8 @@ TEST(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
          "relief-mesh: error: IN is missing (see relief-mesh process --help)"},
         {"relief-mesh process a.obj",
          "relief-mesh: error: OUT is missing (see relief-mesh process --help)"},
+        {"relief-mesh process '' b.obj",
+         "relief-mesh: error: '': not a file name (see relief-mesh process --help)"},
         {"relief-mesh process a.obj b.obj c.obj",
          "relief-mesh: error: 3 files: inputs and output are ambiguous "
          "(for several inputs, give a folder: -o out/)"},

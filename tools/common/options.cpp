@@ -191,6 +191,8 @@ AddedOption add_files(CLI::App& app, const std::string& name,
                 add_names(value, text_of_standard_input(), target);
             } else if (value.starts_with('@') && value.size() > 1) {
                 add_names(value, read_file(value.substr(1)), target);
+            } else if (value.empty()) {
+                throw UsageError("'': not a file name");
             } else {
                 target.emplace_back(value);
             }
