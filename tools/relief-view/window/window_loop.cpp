@@ -106,6 +106,7 @@ class UserInterface {
     const WindowSystem& system_;
     std::vector<std::filesystem::path> dropped_;
     bool has_input_ = false;
+    bool has_release_ = false;  ///< Of a mouse button, since the last frame.
     std::vector<Action> pressed_;
     std::vector<Move> moves_;
     Drag drag_ = Drag::none;
@@ -440,6 +441,7 @@ bool UserInterface::is_second_click() {
 
 void UserInterface::on_button(int button, bool is_down, int modifiers) {
     drag_ = Drag::none;
+    has_release_ |= !is_down;
     if (!is_down || !is_on_picture()) return;
     if (button == GLFW_MOUSE_BUTTON_LEFT && is_on_line()) {
         drag_ = Drag::line;
@@ -527,6 +529,8 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
     Events events;
     events.dropped = std::exchange(dropped_, {});
     events.has_input = std::exchange(has_input_, false);
+    // Dear ImGui overlooks a release that is followed by another press in the same frame.
+    if (std::exchange(has_release_, false) && moves_.empty()) input.state.end_edit_step();
     left_ = input.layout.has_panels ? draw_panels(input, events.panels) : 0.0F;
     bottom_ = ImGui::GetFrameHeightWithSpacing();
     bottom_ += draw_playback(input.state, left_, bottom_);
