@@ -366,7 +366,7 @@ void FileReplacement::commit_with(FileReplacement& other) {
     if (!holds_old) commit();
     try {
         other.commit();
-    } catch (const FileError&) {
+    } catch (...) {
         if (holds_old) exchange();
         if (is_new) ::unlink(target_.c_str());
         throw;

@@ -343,7 +343,8 @@ class GltfDocument {
 
     /// Writes .glb (one file, in which images of files and data URIs are embedded) or .gltf (JSON,
     /// with its buffer beside it as NAME.bin), by extension. Files are written to temporary ones
-    /// and renamed: after a failure, the old document and its buffer are unchanged.
+    /// and renamed: after a failure, the old document is unchanged, and so is its buffer unless the
+    /// file system cannot exchange two files (NFS, vfat).
     ///
     /// Buffers are joined into one with the name and extras of the first. Replaced parts are left
     /// out; everything else keeps its bytes. For a .gltf in another folder, image files are copied

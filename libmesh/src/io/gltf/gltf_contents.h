@@ -119,7 +119,6 @@ struct GltfExtent {
 struct GltfContents {
     Json root;                        ///< Has passed check_gltf().
     std::filesystem::path file;       ///< Absolute; empty if the document was not read.
-    std::filesystem::path folder;     ///< Base of relative URIs; absolute.
     std::vector<GltfBuffer> buffers;  ///< One for each entry of "buffers".
     /// Chunks of a GLB other than JSON and the buffer. They are kept unchanged.
     std::vector<std::pair<std::uint32_t, std::string>> extra_chunks;
@@ -142,6 +141,9 @@ struct GltfContents {
     /// Number of primitives that use an accessor as POSITION, counted after reading. The set of
     /// sharing primitives must not change while primitives are processed one by one.
     std::vector<std::uint32_t> position_uses;
+
+    /// The base of relative URIs.
+    [[nodiscard]] std::filesystem::path folder() const { return file.parent_path(); }
 };
 
 struct GltfDocument::Contents {

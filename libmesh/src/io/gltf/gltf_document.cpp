@@ -136,7 +136,7 @@ GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents
         }
         result.size = result.storage.size();
     } else {
-        const auto path = readable_path(contents.folder, uri->get_ref<const std::string&>());
+        const auto path = readable_path(contents.folder(), uri->get_ref<const std::string&>());
         if (!path) {
             throw FileError(file, fmt::format("{}.uri '{}' lies outside the document's folder",
                                               name(), uri->get<std::string>()));
@@ -170,7 +170,7 @@ void check_images(const GltfContents& contents, Report& report) {
             }
             continue;
         }
-        const auto path = readable_path(contents.folder, uri);
+        const auto path = readable_path(contents.folder(), uri);
         std::error_code ignored;
         if (!path && !uri.empty()) {
             report.add("image outside the document's folder", "image", i, "kept by name, not read");
@@ -201,7 +201,6 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
             std::string_view(container.bytes).substr(container.json_begin, container.json_size),
             file);
         contents.file = std::filesystem::absolute(file);
-        contents.folder = contents.file.parent_path();
         check_gltf(contents.root);
         contents.extra_chunks = std::move(container.extra_chunks);
         const Json& buffers = array_in(contents.root, "buffers");

@@ -327,7 +327,7 @@ GltfImage image_from(const GltfContents& contents, std::size_t index) {
             size_in(view, "byteOffset"), size_in(view, "byteLength")));
     } else if (is_data_uri(uri)) {
         image.source = bytes_of(decode_data_uri(uri).bytes);
-    } else if (const auto path = readable_path(contents.folder, uri)) {
+    } else if (const auto path = readable_path(contents.folder(), uri)) {
         image.source = *path;
     } else {
         image.fault = uri.empty() ? fmt::format("images[{}] names no file and has no bytes", index)

@@ -441,7 +441,7 @@ std::optional<std::filesystem::path> image_file(const Json& image, const GltfCon
     if (uri.empty() || is_data_uri(uri)) return std::nullopt;
     const auto added = contents.image_files.find(uri);
     if (added != contents.image_files.end()) return added->second;
-    const auto path = path_of(contents.folder, uri);
+    const auto path = path_of(contents.folder(), uri);
     std::error_code ignored;
     if (!path || !std::filesystem::is_regular_file(*path, ignored)) return std::nullopt;
     return path;
@@ -451,12 +451,12 @@ std::optional<std::filesystem::path> image_file(const Json& image, const GltfCon
 void check_inside_folder(const Json& image, std::size_t number, const GltfContents& contents,
                          const std::filesystem::path& file) {
     const std::string uri = text_in(image, "uri");
-    if (uri.empty() || has_scheme(uri) || path_inside(contents.folder, uri)) return;
-    if (std::filesystem::absolute(file).parent_path() == contents.folder) return;
+    if (uri.empty() || has_scheme(uri) || path_inside(contents.folder(), uri)) return;
+    if (std::filesystem::absolute(file).parent_path() == contents.folder()) return;
     throw FileError(file,
                     fmt::format("images[{}] '{}' lies outside the document's folder, so it is "
                                 "neither read nor right from here; write to {}",
-                                number, uri, contents.folder.string()));
+                                number, uri, contents.folder().string()));
 }
 
 /// Appends images from files and data URIs to the buffer. `storage` owns their bytes.
@@ -468,7 +468,7 @@ void embed_images(GltfLayout& layout, const GltfContents& contents,
     for (std::size_t i = 0; i < images.size(); ++i) {
         Json& image = images[i];
         const std::string uri = text_in(image, "uri");
-        if (!readable_path(contents.folder, uri)) check_inside_folder(image, i, contents, file);
+        if (!readable_path(contents.folder(), uri)) check_inside_folder(image, i, contents, file);
         std::string media_type = text_in(image, "mimeType");
         if (is_data_uri(uri)) {
             DataUri data = decode_data_uri(uri);
@@ -550,10 +550,11 @@ void copy_images(const GltfContents& contents, const std::filesystem::path& file
         check_inside_folder(images[i], i, contents, file);
         const auto source = image_file(images[i], contents, path_inside);
         const bool is_added = contents.image_files.contains(text_in(images[i], "uri"));
-        if (!source || (folder == contents.folder && !is_added)) continue;
+        if (!source || (folder == contents.folder() && !is_added)) continue;
         const std::string bytes = read_file(*source);
         const std::filesystem::path target =
-            folder / (is_added ? source->filename() : source->lexically_relative(contents.folder));
+            folder /
+            (is_added ? source->filename() : source->lexically_relative(contents.folder()));
         std::error_code failed;
         if (std::filesystem::exists(target, failed)) {
             if (read_file(target) == bytes) continue;
@@ -575,7 +576,7 @@ void check_buffer_place(const std::filesystem::path& buffer_file, const std::fil
     for (const Json& buffer : array_in(contents.root, "buffers")) {
         const std::string uri = text_in(buffer, "uri");
         if (uri.empty() || is_data_uri(uri)) continue;
-        const auto path = readable_path(contents.folder, uri);
+        const auto path = readable_path(contents.folder(), uri);
         if (!path || !std::filesystem::equivalent(*path, buffer_file, missing)) continue;
         throw FileError(buffer_file, fmt::format("is a buffer of {}, which would be lost; use "
                                                  "another name, or write .glb",

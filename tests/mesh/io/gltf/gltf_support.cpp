@@ -36,7 +36,7 @@ void resolve_images(const GltfContents& contents, Json& root) {
         const std::string uri = text_in(contents.root["images"][i], "uri");
         if (is_data_uri(uri)) {
             image["bytes"] = decode_data_uri(uri).bytes;
-        } else if (const auto path = path_inside(contents.folder, uri);
+        } else if (const auto path = path_inside(contents.folder(), uri);
                    path && std::filesystem::exists(*path)) {
             image["bytes"] = read_file(*path);
         } else if (uri.empty()) {
