@@ -251,12 +251,15 @@ MeshObject py_read_mesh(const std::filesystem::path& file, const std::string& sp
     return mesh;
 }
 
-void py_write_mesh(const std::filesystem::path& file, const MeshObject& mesh) {
+void py_write_mesh(const std::filesystem::path& file, const MeshObject& mesh,
+                   const FindingList& report) {
+    Report findings;
     without_gil([&] {
         MeshFile file_mesh{.mesh = mesh, .materials = {}, .origin = mesh.origin};
         file_mesh.mesh.material_ranges.clear();
-        write_mesh(file, file_mesh);
+        write_mesh(file, file_mesh, findings);
     });
+    append(findings, report);
 }
 
 FrameOptions frame_options(const std::string& normals, const std::string& tangents,
@@ -598,7 +601,8 @@ void add_mesh_functions(py::module_& module) {
                "Read an OBJ, PLY, STL or OFF file, or a glTF file as one mesh.\n\n"
                "`space` is for glTF: all instances of the scene in world space, or each primitive\n"
                "once in object space, with the exact numbers of the file.");
-    module.def("write_mesh", &py_write_mesh, arg("file"), arg("mesh"),
+    module.def("write_mesh", &py_write_mesh, arg("file"), arg("mesh"), py::kw_only(),
+               arg("report") = py::none(),
                "Write an OBJ or PLY file. Both formats cannot store tangents.");
     module.def("with_frames", &py_with_frames, arg("mesh"), py::kw_only(), arg("normals") = "keep",
                arg("tangents") = "keep", arg("crease_degrees") = py::none(),

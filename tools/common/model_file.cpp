@@ -58,25 +58,26 @@ const FormatRow& row_of(ModelFormat format) {
 }
 
 std::vector<std::string> write_as_mesh(const std::filesystem::path& file, const MeshFile& contents,
-                                       bool has_tangents) {
+                                       bool has_tangents, Report& report) {
     std::vector<std::string> omitted;
     if (has_tangents) omitted.emplace_back("tangents");
     if (writable_format(file) == ModelFormat::ply && !contents.materials.empty())
         omitted.push_back(counted(contents.materials.size(), "material"));
-    write_mesh(file, contents);
+    write_mesh(file, contents, report);
     return omitted;
 }
 
 std::vector<std::string> write_document(const std::filesystem::path& file,
                                         const GltfDocument& document,
-                                        const std::filesystem::path& input, bool has_tangents) {
+                                        const std::filesystem::path& input, bool has_tangents,
+                                        Report& report) {
     if (is_document(writable_format(file))) {
         document.write(file);
         return {};
     }
     const MeshFile flat = about(input, [&] { return flattened(document); });
     std::vector<std::string> omitted = document.unsupported_contents();
-    for (std::string& more : write_as_mesh(file, flat, has_tangents))
+    for (std::string& more : write_as_mesh(file, flat, has_tangents, report))
         omitted.push_back(std::move(more));
     return omitted;
 }
@@ -184,9 +185,10 @@ std::vector<std::string> write_model(const std::filesystem::path& file, const Mo
                                      const std::filesystem::path& input, bool has_tangents,
                                      Report& report) {
     if (const auto* document = std::get_if<GltfDocument>(&model))
-        return write_document(file, *document, input, has_tangents);
+        return write_document(file, *document, input, has_tangents, report);
     const auto& contents = std::get<MeshFile>(model);
-    if (!is_document(writable_format(file))) return write_as_mesh(file, contents, has_tangents);
+    if (!is_document(writable_format(file)))
+        return write_as_mesh(file, contents, has_tangents, report);
     GltfDocument::from_mesh(contents, report).write(file);
     return {};
 }

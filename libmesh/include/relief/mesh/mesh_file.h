@@ -98,12 +98,18 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report = IgnoredRe
 /// gives the same floats (OBJ: v closer to 0 than 2e-9 within 1.2e-16; PLY: v within 6e-8).
 /// Tangents are left out, because neither format can hold them.
 ///
+/// \param report  names each material whose name is changed, because OBJ cannot hold it: it is
+///                empty, that of an earlier material, or has blanks or line breaks; likewise the
+///                name of the mesh if it has line breaks
+///
 /// Temporary files are written and renamed: after a failure there is no partial file, and the old
-/// ones are unchanged, also the materials of an OBJ file.
+/// ones are unchanged, also the materials of an OBJ file unless the file system cannot exchange two
+/// files (NFS, vfat).
 /// \throws FileError if the file cannot be written, if the MTL file is one of `contents.sources`,
 ///         whose OBJ file is another one, or if the name of an image begins or ends with a blank or
 ///         has a line break or a backslash, which MTL cannot hold; InvalidInput for another
 ///         extension, or if the mesh is not valid or names a missing material
-void write_mesh(const std::filesystem::path& file, const MeshFile& contents);
+void write_mesh(const std::filesystem::path& file, const MeshFile& contents,
+                Report& report = IgnoredReport());
 
 }  // namespace relief

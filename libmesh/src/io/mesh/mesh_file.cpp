@@ -221,7 +221,7 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report) {
                                       extension));
 }
 
-void write_mesh(const std::filesystem::path& file, const MeshFile& contents) {
+void write_mesh(const std::filesystem::path& file, const MeshFile& contents, Report& report) {
     validate(contents.mesh);
     for (const MaterialRange& range : contents.mesh.material_ranges) {
         if (range.material && *range.material >= contents.materials.size()) {
@@ -233,7 +233,7 @@ void write_mesh(const std::filesystem::path& file, const MeshFile& contents) {
     }
     const std::string extension = lower_extension(file);
     if (extension == ".obj") {
-        write_obj(file, contents);
+        write_obj(file, contents, report);
     } else if (extension == ".ply") {
         write_ply(file, contents);
     } else {

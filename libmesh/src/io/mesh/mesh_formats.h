@@ -111,7 +111,7 @@ bool equal_ignoring_case(std::string_view a, std::string_view b);
 MeshFile read_obj(const std::filesystem::path& file, const glm::dvec3& origin, Report& report);
 
 /// Writes materials to a file of the same name with the extension .mtl.
-void write_obj(const std::filesystem::path& file, const MeshFile& contents);
+void write_obj(const std::filesystem::path& file, const MeshFile& contents, Report& report);
 
 /// Vertices keep their number and order, except if texture coordinates are stored per face: corners
 /// are then merged into vertices as for OBJ.

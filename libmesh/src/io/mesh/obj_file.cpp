@@ -358,17 +358,28 @@ MeshFile read_obj(const std::filesystem::path& file, const glm::dvec3& origin, R
 
 namespace {
 
+/// Replaces what would end a line, or join it with the next one.
+std::string name_in_statement(std::string name) {
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c >= 0 && c < ' '; }, '_');
+    if (name.ends_with('\\')) name.back() = '_';
+    return name;
+}
+
 /// Unique names that OBJ can represent: not empty, without blanks and line breaks.
-std::vector<std::string> material_names(const std::vector<MtlMaterial>& materials) {
+std::vector<std::string> material_names(const std::vector<MtlMaterial>& materials, Report& report) {
     std::vector<std::string> names;
     std::set<std::string> taken;
     for (const MtlMaterial& material : materials) {
-        std::string name = material.name.empty() ? "material" : material.name;
-        std::replace_if(
-            name.begin(), name.end(), [](char c) { return c >= 0 && c <= ' '; }, '_');
+        std::string name = name_in_statement(material.name.empty() ? "material" : material.name);
+        std::replace(name.begin(), name.end(), ' ', '_');
         const std::string base = name;
         for (int i = 2; !taken.insert(name).second; ++i)
             name = fmt::format("{}_{}", base, i);
+        if (name != material.name) {
+            report.add("material name that OBJ cannot hold", "material", names.size(),
+                       "is written with _ for blanks, and with a number if it is taken");
+        }
         names.push_back(name);
     }
     return names;
@@ -503,9 +514,9 @@ std::vector<MaterialRange> ranges_without_material_first(const Mesh& mesh) {
 
 }  // namespace
 
-void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
+void write_obj(const std::filesystem::path& file, const MeshFile& contents, Report& report) {
     const Mesh& mesh = contents.mesh;
-    const std::vector<std::string> names = material_names(contents.materials);
+    const std::vector<std::string> names = material_names(contents.materials, report);
     std::string text;
     FileReplacement obj(file);
     std::optional<FileReplacement> materials;
@@ -519,9 +530,10 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents) {
         write_all(*materials, std::as_bytes(std::span(mtl)));
     }
     if (!mesh.name.empty()) {
-        std::string name = mesh.name;
-        std::replace_if(
-            name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+        const std::string name = name_in_statement(mesh.name);
+        if (name != mesh.name)
+            report.add("mesh name that OBJ cannot hold", "mesh", 0,
+                       "is written with _ for line breaks");
         text += fmt::format("o {}\n", name);
     }
     add_vertices(mesh, contents.origin, text);

@@ -293,13 +293,19 @@ TEST_F(Obj, MaterialsComeBack) {
     contents.materials[0].specular_map = folder_ / "s.png";
     contents.materials[0].opacity_map = folder_ / "d.png";
     contents.materials[0].refractive_index = 1.5F;
+    contents.mesh.name = "two\nlines\\";
     contents.materials[1].name = "with blank";  // Equal names become different.
     contents.materials[1].emission = glm::vec3(0.1F, 0.2F, 0.3F);
-    write_mesh(folder_ / "c.obj", contents);
+    Report names;
+    write_mesh(folder_ / "c.obj", contents, names);
+    ASSERT_EQ(names.findings().size(), 2U);
+    EXPECT_EQ(names.findings()[0].first, (std::vector<std::size_t>{0, 1}));
+    EXPECT_EQ(names.count("mesh name that OBJ cannot hold"), 1U);
     const MeshFile read = read_mesh(folder_ / "c.obj", report_);
     EXPECT_THAT(read.mesh.material_ranges,
                 ElementsAre(MaterialRange{0, 2, std::nullopt}, MaterialRange{2, 4, 0U},
                             MaterialRange{6, 6, 1U}));
+    EXPECT_EQ(read.mesh.name, "two_lines_");
     EXPECT_EQ(read.materials[0].name, "with_blank_2");
     EXPECT_EQ(read.materials[0].emission, glm::vec3(0.1F, 0.2F, 0.3F));
     EXPECT_EQ(read.materials[1].name, "with_blank");
