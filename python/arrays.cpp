@@ -31,6 +31,11 @@ py::array as_array(const py::handle& value, const char* name, const std::string&
         throw py::type_error(fmt::format("{}: expected a numpy array of {}, not {}", name, expected,
                                          Py_TYPE(value.ptr())->tp_name));
     }
+    // Views of a numpy.ma.MaskedArray have all values.
+    if (py::hasattr(value, "mask") && value.attr("mask").attr("any")().cast<bool>()) {
+        throw InvalidInput(
+            fmt::format("{}: has masked values (replace them: {}.filled(0))", name, name));
+    }
     return py::reinterpret_borrow<py::array>(value);
 }
 

@@ -55,7 +55,8 @@ struct RowView {
 /// Views an array of float32 and shape (n, columns). The values of a row must be adjacent; rows may
 /// have any distance, as in an interleaved vertex buffer.
 /// \param name  for messages
-/// \throws TypeError for another type, InvalidInput for another shape or layout, with the remedy
+/// \throws TypeError for another type, InvalidInput for another shape or layout, or if values are
+///         masked, with the remedy
 RowView float_rows(const py::handle& value, const char* name, int columns, bool is_output = false);
 
 /// The same as a span of vectors.

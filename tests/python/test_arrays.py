@@ -128,6 +128,15 @@ class Refusals(unittest.TestCase):
         with self.assertRaisesRegex(relief.InvalidInput, "also the input"):
             relief.vertex_normals(self.positions, self.triangles, out=self.positions)
 
+    def test_masked_values(self):
+        hidden = numpy.zeros(self.positions.shape, bool)
+        whole = numpy.ma.masked_array(self.positions, hidden)
+        numpy.testing.assert_array_equal(relief.vertex_normals(whole, self.triangles),
+                                         relief.vertex_normals(self.positions, self.triangles))
+        hidden[3, 1] = True
+        with self.assertRaisesRegex(relief.InvalidInput, r"positions: has masked values .*positions\.filled\(0\)"):
+            relief.vertex_normals(numpy.ma.masked_array(self.positions, hidden), self.triangles)
+
     def test_values(self):
         with self.assertRaisesRegex(relief.InvalidInput, "triangle 0 names vertex 5, but there are only 5"):
             relief.vertex_normals(self.positions[:5], self.triangles)
@@ -329,6 +338,10 @@ class Files(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             relief.write_mesh(pathlib.Path(folder) / "vase.ply", mesh)
             again = relief.read_mesh(pathlib.Path(folder) / "vase.ply")
+            mesh.name = "two\nlines"
+            report = []
+            relief.write_mesh(pathlib.Path(folder) / "vase.obj", mesh, report=report)
+            self.assertEqual([finding["kind"] for finding in report], ["mesh name that OBJ cannot hold"])
         numpy.testing.assert_array_equal(again.positions, mesh.positions)
         numpy.testing.assert_array_equal(again.triangles, mesh.triangles)
         self.assertEqual(mesh.origin, (0.0, 0.0, 0.0))
