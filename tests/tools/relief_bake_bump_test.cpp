@@ -422,6 +422,8 @@ TEST(BakeRefusal, ExplainsAndLeavesNoFiles) {
           "--strength, --height: both set the depth of the map"},
          {"relief-bake bump flat.png out/n.png --report flat.png", 2,
           "--report flat.png: is also the input or the output"},
+         {"relief-bake bump flat.png out/n.png --report height.png", 2,
+          "--report height.png: is the name of a model or an image (use .json)"},
          {"relief-bake bump flat.png out/n.png --channel blue", 1,
           "flat.png: a gray image has no blue channel to take heights from"},
          {"relief-bake bump flat.png out/n.png --slope-moments", 2,

@@ -262,7 +262,7 @@ TEST(MeshPreviewRefusal, LeavesAllFilesUnchanged) {
          {"relief-bake mesh high.obj low.obj out/map.png --preview out/p.jpg", 2,
           "--preview out/p.jpg: the format is not supported (use .png)"},
          {"relief-bake mesh high.obj low.obj out/map.png --report out/r.png --preview out/r.png", 2,
-          "--preview out/r.png: is also the input or the output"},
+          "--report out/r.png: is the name of a model or an image (use .json)"},
          {"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --preview "
           "out/h.png",
           2, "--preview out/h.png: is also the input or the output"},

@@ -418,6 +418,8 @@ TEST(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
           "/dev/full: is a device or a pipe"},
          {"relief-mesh process square.obj out/new.glb --report ./out/new.glb", 2,
           "--report ./out/new.glb: is also the input or the output"},
+         {"relief-mesh process square.obj out/new.gltf --report out/new.bin", 2,
+          "--report out/new.bin: is the name of a model or an image (use .json)"},
          {"relief-mesh info missing.obj", 1, "missing.obj: "},
          {"relief-mesh info noise.glb --json", 1, "noise.glb: "},
          {"relief-mesh info", 2, "IN is missing (see relief-mesh info --help)"}});

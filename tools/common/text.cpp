@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -200,10 +201,27 @@ void add_report_options(CLI::App& app, ReportOptions& options, const std::string
         .group("Report");
 }
 
+namespace {
+
+/// Such files beside a model belong to it, also if the command does not name them.
+bool is_part_of_model(const std::filesystem::path& file) {
+    static constexpr std::array<std::string_view, 20> extensions = {
+        ".glb",  ".gltf", ".bin", ".obj", ".mtl",  ".ply", ".stl", ".off",  ".png", ".jpg",
+        ".jpeg", ".hdr",  ".exr", ".tif", ".tiff", ".tga", ".bmp", ".ktx2", ".dds", ".webp"};
+    return std::find(extensions.begin(), extensions.end(), extension_of(file)) != extensions.end();
+}
+
+}  // namespace
+
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files) {
     if (!options.file) return;
     if (*options.file == standard_stream) return reserve_out_for_report();
     check_distinct("--report", *options.file, files);
+    if (is_part_of_model(*options.file)) {
+        throw UsageError(
+            fmt::format("--report {}: is the name of a model or an image", options.file->string()),
+            "use .json");
+    }
     require_folder_of(*options.file);
     const FileReplacement can_be_made(*options.file);  // Throws if not; removed at once.
 }

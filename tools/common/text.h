@@ -106,8 +106,9 @@ struct ReportOptions {
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict = "");
 
 /// Checks the report file before the work begins.
-/// \throws UsageError if the report would overwrite one of the files, FileError if it cannot be
-/// written
+/// \throws UsageError if the report would overwrite one of the files or has the extension of a
+/// model
+///         or an image, FileError if it cannot be written
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files);
 
 /// Prints a warning if --strict was given and there are findings. \return whether it did
