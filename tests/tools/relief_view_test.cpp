@@ -486,6 +486,13 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
     write_sky(workplace);
     std::filesystem::create_directory(workplace / "empty");
     workplace.write("noise.png", "this is no image");
+    std::filesystem::create_directory(workplace / "own");
+    write_plain(workplace / "own/wood.png", {128, 128, 255});
+    workplace.write("own/crate.mtl", "newmtl wood\nmap_Kd wood.png\n");
+    workplace.write("own/crate.obj",
+                    "mtllib crate.mtl\nusemtl wood\n" + workplace.read("plain.obj"));
+    workplace.write("own/scene.json", R"({"relief_scene": 1, "nodes": [{"model": "crate.obj"}]})");
+    std::filesystem::create_symlink("crate.obj", workplace / "own/link.glb");
     expect_refusals(
         workplace, "relief-view", "old.png",
         {{"--explain-effects", 2, "MODEL is missing (see relief-view --help)"},
@@ -550,6 +557,10 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
           "--environment: takes one file, six files or a folder, not 2 files"},
          {"square.obj --output out/old.png --backend vulkan", 2,
           "--backend vulkan: not one of auto, osmesa, egl"},
+         {"own/crate.obj --output own/wood.png", 2,
+          "--output own/wood.png: is also the input or the output"},
+         {"own/scene.json --save-model own/link.glb", 2,
+          "--save-model own/link.glb: is also the input or the output"},
          {"missing.obj --output out/old.png", 1, "missing.obj: "},
          {"empty --output out/old.png", 1,
           "empty: is a folder, not a model (it contains no model)"},

@@ -17,6 +17,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <numbers>
+#include <variant>
 
 #include "common/command.h"
 #include "common/material_maps.h"
@@ -680,6 +681,22 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
     return drawn;
 }
 
+/// Composes the scene, and checks that no picture or file will replace a file that it reads.
+ComposedScene composed_scene(ViewOptions& options, Stages& stages, Report& report) {
+    Progress opened;
+    const ProgressScope scope(opened);
+    ComposedScene composed = compose_scene(options, stages, report);
+    std::vector<std::filesystem::path> files;
+    for (const auto& [file, stamp] : opened.files())
+        files.push_back(file);
+    for (const ImageSource& image : composed.scene().images) {  // Their files are opened later.
+        if (const auto* file = std::get_if<std::filesystem::path>(&image.source))
+            files.push_back(*file);
+    }
+    check_written_files(options, std::move(files));
+    return composed;
+}
+
 ExitCode run(const CLI::App& app, ViewOptions& options) {
     settle(options);
     if (options.list_bindings) {
@@ -690,7 +707,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.wants_window()) return run_window(options);
     Stages stages(options.general.quiet);
     Report report;
-    ComposedScene composed = compose_scene(options, stages, report);
+    ComposedScene composed = composed_scene(options, stages, report);
     HealthMarkers markers;
     if (options.debug.health_markers)
         markers =

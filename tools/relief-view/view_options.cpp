@@ -287,24 +287,6 @@ void check_output(const ViewOptions& options) {
     require_folder_of(*options.output);
 }
 
-/// No file that is read may be replaced, and no file is written twice.
-void check_written_files(const ViewOptions& options) {
-    std::vector<std::filesystem::path> others = options.environment;
-    for (const auto& file : {std::optional(options.model), options.compare.file, options.reference,
-                             options.normal_map, options.height_map, options.diffuse_map}) {
-        if (file && !file->empty()) others.push_back(*file);
-    }
-    const auto check = [&](const char* option, const std::optional<std::filesystem::path>& file) {
-        if (!file) return;
-        check_distinct(option, *file, others);
-        others.push_back(*file);
-    };
-    check("--output", options.output);
-    check("--save-scene", options.save_scene);
-    check("--save-model", options.save_model);
-    check("--difference-map", options.difference_map);
-}
-
 void check_lights(const ViewOptions& options) {
     const bool has_none = std::any_of(
         options.lights.begin(), options.lights.end(),
@@ -386,12 +368,29 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_general_options(app, options.general);
 }
 
+void check_written_files(const ViewOptions& options, std::vector<std::filesystem::path> others) {
+    others.insert(others.end(), options.environment.begin(), options.environment.end());
+    for (const auto& file : {std::optional(options.model), options.compare.file, options.reference,
+                             options.normal_map, options.height_map, options.diffuse_map}) {
+        if (file && !file->empty()) others.push_back(*file);
+    }
+    const auto check = [&](const char* option, const std::optional<std::filesystem::path>& file) {
+        if (!file) return;
+        check_distinct(option, *file, others);
+        others.push_back(*file);
+    };
+    check("--output", options.output);
+    check("--save-scene", options.save_scene);
+    check("--save-model", options.save_model);
+    check("--difference-map", options.difference_map);
+}
+
 void settle(ViewOptions& options) {
     recover_model(options);
     if (options.model.empty() && !options.wants_window() && !options.list_bindings)
         throw UsageError("MODEL is missing");
     check_output(options);
-    check_written_files(options);
+    check_written_files(options, {});
     check_save_options(options);
     check_sequence(options);
     check_reference(options);

@@ -257,6 +257,11 @@ void refuse(bool useless, const std::string& option, const std::string& because,
 /// Completes the options after parsing, and rejects contradictions. \throws UsageError
 void settle(ViewOptions& options);
 
+/// Checks that no file is written twice, and that none replaces a file that is read.
+/// \param others  files that the scene reads, besides those of the command line
+/// \throws UsageError
+void check_written_files(const ViewOptions& options, std::vector<std::filesystem::path> others);
+
 /// Returns whether the output, or else the reference, stores linear radiance (.exr, .hdr).
 bool is_linear_output(const ViewOptions& options);
 
