@@ -310,6 +310,18 @@ TEST(MeshBakeTextures, NormalMapsOfMaterialsAreAddedUnlessOptionsReplaceThem) {
     EXPECT_EQ(workplace.run(strict_line + "--high-normal-map none.png").exit_code, 1);
 }
 
+TEST(MeshBakeTextures, AreNotReplacedByMaps) {
+    const Workplace workplace;
+    write_models(workplace);
+    const std::string line = "relief-bake mesh high.obj low.obj --size 4 ";
+    const std::string problem = ": would replace a texture that the bake reads";
+    expect_refusals(workplace, "relief-bake", "map.png",
+                    {{line + "normal.png", 2, "normal.png" + problem},
+                     {line + "out/map.png --color-map ./color.png", 2, "./color.png" + problem},
+                     {line + "out/map.png --preview normal.png", 2,
+                      "--preview normal.png: is also the input"}});
+}
+
 TEST(MeshBakeTextures, GltfFilesGiveTheSame) {
     const Workplace workplace;
     write_models(workplace);

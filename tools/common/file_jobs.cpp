@@ -157,6 +157,13 @@ void check_distinct(const std::string& option, const fs::path& file,
     }
 }
 
+std::vector<fs::path> names_of(const std::map<fs::path, FileStamp>& files) {
+    std::vector<fs::path> names;
+    for (const auto& [file, stamp] : files)
+        names.push_back(file);
+    return names;
+}
+
 fs::path with_word(const fs::path& file, std::string_view word, const std::string& replacement) {
     std::string name = file.filename().string();
     const std::size_t place = name.find(word);

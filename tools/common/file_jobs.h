@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +22,7 @@
 #include "common/command.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "relief/mesh/execution.h"
 
 namespace relief::tools {
 
@@ -33,6 +35,10 @@ std::filesystem::path identity_of(const std::filesystem::path& file);
 /// \throws UsageError if a file to write is one of the other files of the command
 void check_distinct(const std::string& option, const std::filesystem::path& file,
                     const std::vector<std::filesystem::path>& others);
+
+/// Returns the names of the files of Progress::files().
+std::vector<std::filesystem::path> names_of(
+    const std::map<std::filesystem::path, FileStamp>& files);
 
 /// Replaces a word in the name of a file, but not in its folders.
 std::filesystem::path with_word(const std::filesystem::path& file, std::string_view word,

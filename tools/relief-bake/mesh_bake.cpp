@@ -9,11 +9,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <set>
+#include <vector>
 
+#include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/summary.h"
 #include "mesh_preview.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/statistics.h"
 
 namespace relief::tools {
@@ -145,15 +150,28 @@ void verify_all(const MeshBakeRequest& request, const Baker& baker, const BakeMo
     }
 }
 
-/// Checks that no planned map is the report or the preview.
-void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& plans) {
+/// Checks that no planned map is the report, the preview or a file that was read. Textures of the
+/// low models are not read, so a map may replace an old one.
+void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& plans,
+                   const std::vector<std::filesystem::path>& read) {
     std::vector<std::filesystem::path> outputs;
     for (const MapPlan& plan : plans) {
         outputs.push_back(plan.output);
         for (const auto& [kind, file] : request.layers.files)
             outputs.push_back(plan.named(file));
     }
+    std::set<std::filesystem::path> inputs;
+    for (const std::filesystem::path& file : read)
+        inputs.insert(identity_of(file));
+    for (const std::filesystem::path& output : outputs) {
+        if (inputs.contains(identity_of(output))) {
+            throw UsageError(
+                fmt::format("{}: would replace a texture that the bake reads", output.string()),
+                "choose another output file");
+        }
+    }
     check(request.report, outputs);
+    outputs.insert(outputs.end(), read.begin(), read.end());
     check(request.preview, outputs);
 }
 
@@ -253,12 +271,13 @@ void describe_models(const MeshBakeRequest& request, const BakeModels& models, M
 }
 
 /// The steps after the models are read.
-void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stages& stages,
-                 MeshBake& bake) {
+/// \param read  the files of the models and textures
+void bake_models(const MeshBakeRequest& request, const BakeModels& models,
+                 const std::vector<std::filesystem::path>& read, Stages& stages, MeshBake& bake) {
     MapPlans plans = plan_maps(request, models.low, models.materials);
     bake.materials = plans.materials;
     bake.findings.add("", plans.report);
-    check_outputs(request, plans.maps);
+    check_outputs(request, plans.maps, read);
     BakeOptions options = bake_options_of(request);
     options.map_count = plans.maps.size();
     options.output_from_mesh = output_axes(request, models.world_from_low);
@@ -306,10 +325,14 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
     bake.format = format_of(request.map, request.output);
     std::optional<MeshPreview> preview;
     if (request.preview.file) stages.run("context", [&] { preview.emplace(); });
-    BakeModels models =
-        stages.run("read", [&] { return read_bake_models(request, bake.findings); });
+    Progress opened;
+    BakeModels models = stages.run("read", [&] {
+        const ProgressScope scope(opened);
+        return read_bake_models(request, bake.findings);
+    });
+    const std::vector<std::filesystem::path> read = names_of(opened.files());
     describe_models(request, models, bake);
-    about(request.low, [&] { bake_models(request, models, stages, bake); });
+    about(request.low, [&] { bake_models(request, models, read, stages, bake); });
     if (preview) {
         stages.run("preview", [&] { draw_preview(*preview, request, bake, std::move(models)); });
     }

@@ -20,6 +20,7 @@
 #include <variant>
 
 #include "common/command.h"
+#include "common/file_jobs.h"
 #include "common/material_maps.h"
 #include "common/model_file.h"
 #include "common/summary.h"
@@ -686,9 +687,7 @@ ComposedScene composed_scene(ViewOptions& options, Stages& stages, Report& repor
     Progress opened;
     const ProgressScope scope(opened);
     ComposedScene composed = compose_scene(options, stages, report);
-    std::vector<std::filesystem::path> files;
-    for (const auto& [file, stamp] : opened.files())
-        files.push_back(file);
+    std::vector<std::filesystem::path> files = names_of(opened.files());
     for (const ImageSource& image : composed.scene().images) {  // Their files are opened later.
         if (const auto* file = std::get_if<std::filesystem::path>(&image.source))
             files.push_back(*file);
