@@ -314,10 +314,12 @@ TEST(MeshBakeTextures, AreNotReplacedByMaps) {
     const Workplace workplace;
     write_models(workplace);
     const std::string line = "relief-bake mesh high.obj low.obj --size 4 ";
-    const std::string problem = ": would replace a texture that the bake reads";
+    const std::string problem = ": would replace a texture of a high model";
     expect_refusals(workplace, "relief-bake", "map.png",
                     {{line + "normal.png", 2, "normal.png" + problem},
-                     {line + "out/map.png --color-map ./color.png", 2, "./color.png" + problem},
+                     {line + "color.png", 2, "color.png" + problem},  // Although it is not read.
+                     {line + "out/map.png --high-normal-map other.png --color-map ./other.png", 2,
+                      "./other.png" + problem},
                      {line + "out/map.png --preview normal.png", 2,
                       "--preview normal.png: is also the input"}});
 }

@@ -18,7 +18,6 @@
 #include "common/options.h"
 #include "common/summary.h"
 #include "mesh_preview.h"
-#include "relief/mesh/execution.h"
 #include "relief/mesh/statistics.h"
 
 namespace relief::tools {
@@ -150,10 +149,9 @@ void verify_all(const MeshBakeRequest& request, const Baker& baker, const BakeMo
     }
 }
 
-/// Checks that no planned map is the report, the preview or a file that was read. Textures of the
-/// low models are not read, so a map may replace an old one.
+/// Checks that no planned map is the report, the preview or one of the other files.
 void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& plans,
-                   const std::vector<std::filesystem::path>& read) {
+                   const std::vector<std::filesystem::path>& files) {
     std::vector<std::filesystem::path> outputs;
     for (const MapPlan& plan : plans) {
         outputs.push_back(plan.output);
@@ -161,17 +159,17 @@ void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& p
             outputs.push_back(plan.named(file));
     }
     std::set<std::filesystem::path> inputs;
-    for (const std::filesystem::path& file : read)
+    for (const std::filesystem::path& file : files)
         inputs.insert(identity_of(file));
     for (const std::filesystem::path& output : outputs) {
         if (inputs.contains(identity_of(output))) {
             throw UsageError(
-                fmt::format("{}: would replace a texture that the bake reads", output.string()),
+                fmt::format("{}: would replace a texture of a high model", output.string()),
                 "choose another output file");
         }
     }
     check(request.report, outputs);
-    outputs.insert(outputs.end(), read.begin(), read.end());
+    outputs.insert(outputs.end(), files.begin(), files.end());
     check(request.preview, outputs);
 }
 
@@ -271,13 +269,12 @@ void describe_models(const MeshBakeRequest& request, const BakeModels& models, M
 }
 
 /// The steps after the models are read.
-/// \param read  the files of the models and textures
-void bake_models(const MeshBakeRequest& request, const BakeModels& models,
-                 const std::vector<std::filesystem::path>& read, Stages& stages, MeshBake& bake) {
+void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stages& stages,
+                 MeshBake& bake) {
     MapPlans plans = plan_maps(request, models.low, models.materials);
     bake.materials = plans.materials;
     bake.findings.add("", plans.report);
-    check_outputs(request, plans.maps, read);
+    check_outputs(request, plans.maps, models.files);
     BakeOptions options = bake_options_of(request);
     options.map_count = plans.maps.size();
     options.output_from_mesh = output_axes(request, models.world_from_low);
@@ -325,14 +322,10 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
     bake.format = format_of(request.map, request.output);
     std::optional<MeshPreview> preview;
     if (request.preview.file) stages.run("context", [&] { preview.emplace(); });
-    Progress opened;
-    BakeModels models = stages.run("read", [&] {
-        const ProgressScope scope(opened);
-        return read_bake_models(request, bake.findings);
-    });
-    const std::vector<std::filesystem::path> read = names_of(opened.files());
+    BakeModels models =
+        stages.run("read", [&] { return read_bake_models(request, bake.findings); });
     describe_models(request, models, bake);
-    about(request.low, [&] { bake_models(request, models, read, stages, bake); });
+    about(request.low, [&] { bake_models(request, models, stages, bake); });
     if (preview) {
         stages.run("preview", [&] { draw_preview(*preview, request, bake, std::move(models)); });
     }

@@ -9,9 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
+#include "common/file_jobs.h"
 #include "common/text.h"
 #include "relief/mesh/bake_check.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 
 namespace relief::tools {
@@ -217,6 +220,8 @@ std::string HighTextures::description() const {
 
 BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) {
     BakeModels models;
+    Progress opened;
+    const ProgressScope scope(opened);
     MapModel low = read(request.low, findings);
     require_texcoords(request.low, low, "no texture coordinates, which a map needs",
                       "unwrap it in a modeling program");
@@ -233,6 +238,13 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
     const std::vector<std::size_t> file_of =
         add_high(request, low, std::move(high), models, findings);
     add_textures(request, appearances, file_of, models, findings);
+    models.files = names_of(opened.files());
+    for (const MapAppearance& appearance : appearances) {
+        for (const GltfImage& image : appearance.images) {
+            if (const auto* file = std::get_if<std::filesystem::path>(&image.source))
+                models.files.push_back(*file);
+        }
+    }
     models.materials = low.materials;
     models.world_from_low = low.world_from_object;
     models.origin = low.origin;

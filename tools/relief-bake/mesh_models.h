@@ -79,6 +79,9 @@ struct BakeModels {
     HighTextures textures;
     std::vector<BakePair> pairs;  ///< Empty: every low part sees all high parts.
     std::vector<std::string> unpaired;
+    /// The files that were read, and the textures of the high models. Textures of the low model are
+    /// not among them: a new map may replace an old one.
+    std::vector<std::filesystem::path> files;
 };
 
 /// \throws FileError if a model cannot be read, or the low one has no texture coordinates
