@@ -421,6 +421,8 @@ TEST_F(Sets, NamesOfTheSameFileAreRefusedBeforeAnyIsWritten) {
 
 TEST_F(Sets, NoReportReplacesAMap) {
     write({{"A", 0, 0, leaning_right}, {"B", 0, 0, leaning_up}});
+    EXPECT_EQ(bake("out/<material>.png", "--report out/../out/B.png").exit_code, 2);
+    EXPECT_EQ(place_.outputs(), "");
     place_.write("out/B.png", "old");
     std::filesystem::create_symlink("out/B.png", place_ / "r.json");
     const ProgramResult result = bake("out/<material>.png", "--report r.json");

@@ -149,8 +149,9 @@ fs::path identity_of(const fs::path& file) {
 
 void check_distinct(const std::string& option, const fs::path& file,
                     const std::vector<fs::path>& others) {
+    const fs::path identity = identity_of(file);
     for (const fs::path& other : others) {
-        if (identity_of(file) == identity_of(other)) {
+        if (identity == identity_of(other)) {
             throw UsageError(
                 fmt::format("{} {}: is also the input or the output", option, file.string()));
         }

@@ -62,7 +62,7 @@ bool may_share_companions(const std::vector<Job>& jobs);
 /// \param input         the file name in errors about the model
 /// \param has_tangents  whether the model has tangents, which mesh files cannot store
 /// \param report        receives textures that are omitted because their files are missing, and
-///                      changed names of materials
+///                      names that the format cannot hold
 /// \return the content that the format cannot store: "tangents", "2 animations", ...
 std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
                                      const std::filesystem::path& input, bool has_tangents,

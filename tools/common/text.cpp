@@ -62,6 +62,13 @@ std::string extension_of(const std::filesystem::path& file) {
     return extension;
 }
 
+bool has_image_extension(const std::filesystem::path& file) {
+    static constexpr std::array<std::string_view, 12> images = {".png",  ".jpg",  ".jpeg", ".hdr",
+                                                                ".exr",  ".tif",  ".tga",  ".bmp",
+                                                                ".tiff", ".ktx2", ".dds",  ".webp"};
+    return std::find(images.begin(), images.end(), extension_of(file)) != images.end();
+}
+
 std::string quoted(const std::filesystem::path& file) {
     const std::string name = file.string();
     const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char letter) {
@@ -203,12 +210,12 @@ void add_report_options(CLI::App& app, ReportOptions& options, const std::string
 
 namespace {
 
-/// Such files beside a model belong to it, also if the command does not name them.
-bool is_part_of_model(const std::filesystem::path& file) {
-    static constexpr std::array<std::string_view, 20> extensions = {
-        ".glb",  ".gltf", ".bin", ".obj", ".mtl",  ".ply", ".stl", ".off",  ".png", ".jpg",
-        ".jpeg", ".hdr",  ".exr", ".tif", ".tiff", ".tga", ".bmp", ".ktx2", ".dds", ".webp"};
-    return std::find(extensions.begin(), extensions.end(), extension_of(file)) != extensions.end();
+/// Returns whether a file may be a model or the buffer or material file of one. Commands read and
+/// write such files also if their command line does not name them.
+bool has_model_extension(const std::filesystem::path& file) {
+    static constexpr std::array<std::string_view, 8> models = {".glb", ".gltf", ".bin", ".obj",
+                                                               ".mtl", ".ply",  ".stl", ".off"};
+    return std::find(models.begin(), models.end(), extension_of(file)) != models.end();
 }
 
 }  // namespace
@@ -217,7 +224,7 @@ void check(const ReportOptions& options, const std::vector<std::filesystem::path
     if (!options.file) return;
     if (*options.file == standard_stream) return reserve_out_for_report();
     check_distinct("--report", *options.file, files);
-    if (is_part_of_model(*options.file)) {
+    if (has_model_extension(*options.file) || has_image_extension(*options.file)) {
         throw UsageError(
             fmt::format("--report {}: is the name of a model or an image", options.file->string()),
             "use .json");

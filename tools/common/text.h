@@ -37,6 +37,9 @@ std::string file_and_size(const std::filesystem::path& file);
 /// Returns the extension in lower case with its dot.
 std::string extension_of(const std::filesystem::path& file);
 
+/// Returns whether the name of a file has the extension of an image.
+bool has_image_extension(const std::filesystem::path& file);
+
 /// Returns text without control characters, which could change the terminal or imitate other lines,
 /// and without bytes that are not UTF-8: each such byte becomes "\x1b" and the like.
 std::string printable(std::string_view text);
@@ -106,9 +109,8 @@ struct ReportOptions {
 void add_report_options(CLI::App& app, ReportOptions& options, const std::string& strict = "");
 
 /// Checks the report file before the work begins.
-/// \throws UsageError if the report would overwrite one of the files or has the extension of a
-/// model
-///         or an image, FileError if it cannot be written
+/// \throws UsageError if the report would overwrite one of the files, or has the extension of a
+///         model or an image; FileError if it cannot be written
 void check(const ReportOptions& options, const std::vector<std::filesystem::path>& files);
 
 /// Prints a warning if --strict was given and there are findings. \return whether it did

@@ -683,7 +683,7 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
 }
 
 /// Composes the scene, and checks that no picture or file will replace a file that it reads.
-ComposedScene composed_scene(ViewOptions& options, Stages& stages, Report& report) {
+ComposedScene compose_and_check(ViewOptions& options, Stages& stages, Report& report) {
     Progress opened;
     const ProgressScope scope(opened);
     ComposedScene composed = compose_scene(options, stages, report);
@@ -706,7 +706,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.wants_window()) return run_window(options);
     Stages stages(options.general.quiet);
     Report report;
-    ComposedScene composed = composed_scene(options, stages, report);
+    ComposedScene composed = compose_and_check(options, stages, report);
     HealthMarkers markers;
     if (options.debug.health_markers)
         markers =

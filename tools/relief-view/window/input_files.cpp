@@ -205,13 +205,6 @@ bool is_folder(const std::filesystem::path& file) {
     return std::filesystem::is_directory(file, error);
 }
 
-bool is_image(const std::filesystem::path& file) {
-    static constexpr std::array<std::string_view, 12> images = {".png",  ".jpg",  ".jpeg", ".hdr",
-                                                                ".exr",  ".tif",  ".tga",  ".bmp",
-                                                                ".tiff", ".ktx2", ".dds",  ".webp"};
-    return std::find(images.begin(), images.end(), extension_of(file)) != images.end();
-}
-
 bool are_images(const std::vector<std::filesystem::path>& files) {
     return std::none_of(files.begin(), files.end(), [](const auto& file) {
         return dropped_as(file) == DroppedAs::model || is_folder(file);
@@ -281,7 +274,7 @@ FolderListing list_folder(const std::filesystem::path& folder) {
         if (path.filename().string().starts_with('.')) continue;
         if (is_folder(path)) {
             listing.folders.push_back(path);
-        } else if (dropped_as(path) == DroppedAs::model || is_image(path)) {
+        } else if (dropped_as(path) == DroppedAs::model || has_image_extension(path)) {
             listing.files.push_back(path);
         }
     }
