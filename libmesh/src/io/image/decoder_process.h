@@ -6,9 +6,12 @@
 ///
 /// The program sends one request at a time, and the decoder sends one reply. Both have the same
 /// build, so messages are plain structures. The first reply comes without a request: it tells
-/// whether the image module was loaded. The program does not trust the numbers in replies.
+/// whether the image module was loaded. The program does not trust the numbers in replies, and
+/// limits the memory and time of the decoder from outside.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +27,18 @@ namespace relief {
 // In the program
 
 class DecoderProcess;
+
+/// The time that is left for an image. All requests for the image share it.
+struct DecoderTime {
+    std::chrono::nanoseconds computing{0};  ///< Processor time of the decoder.
+    std::chrono::nanoseconds waiting{0};    ///< For replies.
+
+    /// Adds the time for so many bytes, and some seconds for a whole image.
+    void add(std::uint64_t bytes, bool is_image);
+};
+
+/// For tests: the most time in milliseconds that an image gets. 0 means that the size decides.
+extern constinit std::atomic<int> max_decoder_milliseconds;
 
 /// An image that a decoder process decodes.
 ///
@@ -45,7 +60,8 @@ class DecodedImage {
     DecodedImage(const DecodedImage&) = delete;
     DecodedImage& operator=(const DecodedImage&) = delete;
 
-    /// The header as the decoder sent it; only the sample size has been checked.
+    /// The header as the decoder sent it. Width, height and channels are 0 to the largest int, and
+    /// `bits` is 8, 16 or 32.
     [[nodiscard]] const ImageModuleHeader& header() const { return header_; }
     /// The height of a tile, or 1.
     [[nodiscard]] std::int64_t row_grain() const { return row_grain_; }
@@ -60,6 +76,8 @@ class DecodedImage {
 
     std::filesystem::path name_;
     std::unique_ptr<DecoderProcess> process_;  ///< Null after a failure.
+    DecoderTime time_;
+    bool has_time_to_decode_ = false;
     std::uint64_t encoded_size_ = 0;
     ImageModuleHeader header_;
     std::int64_t row_grain_ = 1;
@@ -77,12 +95,10 @@ struct DecoderRequest {
     DecoderAction action = DecoderAction::open;
     /// open: whether the descriptor, which is sent with the request, is memory that can be mapped.
     std::uint32_t in_memory = 0;
-    char format[16] = {};       ///< open: OpenImageIO's name.
-    std::uint64_t size = 0;     ///< open: encoded bytes in memory.
-    std::int64_t first = 0;     ///< read: the first row.
-    std::int64_t end = 0;       ///< read: the row after the last one.
-    std::uint64_t memory = 0;   ///< Bytes that the decoder may allocate for this request.
-    std::uint64_t seconds = 0;  ///< Processor time that it may use for this request.
+    char format[16] = {};    ///< open: OpenImageIO's name.
+    std::uint64_t size = 0;  ///< open: encoded bytes in memory.
+    std::int64_t first = 0;  ///< read: the first row.
+    std::int64_t end = 0;    ///< read: the row after the last one.
 };
 
 struct DecoderReply {

@@ -3,24 +3,22 @@
 // requests over the socket at descriptor 0. It ends with that program.
 //
 // OpenImageIO's readers crash, loop or allocate gigabytes on some damaged files. Here this ends
-// only the decoder. It limits its own memory and processor time for each request, and a seccomp
-// filter permits only the system calls that decoding needs: no file can be opened, no program can
-// be started, and there is no network.
+// only the decoder. The program limits its memory and processor time for each request
+// (decoder_process.cpp). A seccomp filter permits only the system calls that decoding needs: no
+// file can be opened, no program, process or thread can be started, no other process can be
+// signaled, no limit can be changed, and there is no network.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <malloc.h>
-#include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <climits>
@@ -29,60 +27,19 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/image/decoder_process.h"
 
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-#define RELIEF_SANITIZED 1
-#elif defined __has_feature
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define RELIEF_SANITIZED 1
-#endif
-#endif
-
 namespace relief {
 namespace {
 
-#ifdef RELIEF_SANITIZED
-constexpr bool is_sanitized = true;  // Sanitizers reserve terabytes of addresses.
-#else
-constexpr bool is_sanitized = false;
-#endif
-
 constexpr int socket_descriptor = 0;
 
-// --- Limits ---
-
-/// Returns the bytes of addresses in use. The descriptor is opened before the filter is installed.
-std::uint64_t address_bytes() {
-    static const int statm = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-    std::array<char, 64> text{};
-    if (statm < 0 || ::pread(statm, text.data(), text.size() - 1, 0) <= 0) return 0;
-    return std::strtoull(text.data(), nullptr, 10) *
-           static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
-
-/// Sets the limits of the next request. Limits of the parent that are lower stay.
-void limit(const DecoderRequest& request) {
-    rlimit now{};
-    if (!is_sanitized && ::getrlimit(RLIMIT_AS, &now) == 0) {
-        const rlim_t wanted = address_bytes() + request.memory;
-        now.rlim_cur = std::min(wanted, now.rlim_max);
-        ::setrlimit(RLIMIT_AS, &now);
-    }
-    rusage used{};
-    ::getrusage(RUSAGE_SELF, &used);
-    if (::getrlimit(RLIMIT_CPU, &now) == 0) {
-        const auto spent =
-            static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec +
-                                (used.ru_utime.tv_usec + used.ru_stime.tv_usec) / 1'000'000);
-        now.rlim_cur = std::min<rlim_t>(spent + 1 + request.seconds, now.rlim_max);
-        ::setrlimit(RLIMIT_CPU, &now);
-    }
-}
+// --- System calls ---
 
 #if defined __x86_64__
 constexpr std::uint32_t architecture = AUDIT_ARCH_X86_64;
@@ -93,17 +50,22 @@ constexpr std::uint32_t architecture = 0;
 #endif
 
 constexpr unsigned permitted_calls[] = {
-    // Memory and threads.
+    // Memory, and locks of the only thread.
     __NR_brk, __NR_mmap, __NR_munmap, __NR_mremap, __NR_mprotect, __NR_madvise, __NR_futex,
     __NR_set_robust_list, __NR_rseq, __NR_sched_yield, __NR_sched_getaffinity, __NR_membarrier,
     __NR_gettid, __NR_getpid, __NR_exit, __NR_exit_group, __NR_sigaltstack, __NR_rt_sigaction,
     __NR_rt_sigprocmask, __NR_rt_sigreturn, __NR_restart_syscall,
     // Descriptors that are open already.
     __NR_read, __NR_pread64, __NR_lseek, __NR_fstat, __NR_close, __NR_sendto, __NR_recvmsg,
-    __NR_recvfrom, __NR_fcntl, __NR_write,
+    __NR_recvfrom, __NR_write,
     // Clocks, limits and numbers.
     __NR_clock_gettime, __NR_clock_getres, __NR_clock_nanosleep, __NR_nanosleep, __NR_gettimeofday,
     __NR_getrusage, __NR_getrandom, __NR_sysinfo, __NR_uname, __NR_getrlimit};
+
+/// Commands of fcntl that concern the descriptor only. Others change the open file, which the
+/// program shares, or make the kernel send signals to any process of the user.
+constexpr std::uint32_t permitted_fcntl_commands[] = {F_GETFD, F_SETFD, F_GETFL, F_DUPFD,
+                                                      F_DUPFD_CLOEXEC};
 
 constexpr std::uint32_t field(std::size_t offset) {
     return static_cast<std::uint32_t>(offset);
@@ -112,6 +74,9 @@ constexpr std::uint32_t field(std::size_t offset) {
 /// The low half of an argument of a system call. Both architectures are little-endian.
 constexpr std::uint32_t argument(std::size_t index) {
     return field(offsetof(seccomp_data, args) + index * sizeof(std::uint64_t));
+}
+constexpr std::uint32_t high_half_of_argument(std::size_t index) {
+    return argument(index) + field(sizeof(std::uint32_t));
 }
 
 sock_filter load(std::uint32_t offset) {
@@ -125,11 +90,10 @@ sock_filter unless_equal(std::uint32_t value, std::uint8_t count) {
     return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, count);
 }
 
-/// Installs the filter for all threads. Kernels without seccomp continue without it.
+/// Installs the filter. Kernels without seccomp continue without it.
 void forbid_system_calls() {
     if (architecture == 0) return;
     constexpr std::uint32_t refused = SECCOMP_RET_ERRNO | EPERM;
-    constexpr std::uint32_t unknown = SECCOMP_RET_ERRNO | ENOSYS;
     std::vector<sock_filter> filter{load(field(offsetof(seccomp_data, arch))),
                                     unless_equal(architecture, 1), BPF_STMT(BPF_JMP | BPF_JA, 1),
                                     give(SECCOMP_RET_KILL_PROCESS),
@@ -139,18 +103,19 @@ void forbid_system_calls() {
     };
     for (const unsigned call : permitted_calls)
         append({unless_equal(call, 1), give(SECCOMP_RET_ALLOW)});
-    // The C library uses clone instead of clone3 then, whose flags a filter can read.
-    append({unless_equal(__NR_clone3, 1), give(unknown)});
-    // Threads, but no processes.
-    append({unless_equal(__NR_clone, 4), load(argument(0)),
-            BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, CLONE_THREAD, 0, 1), give(SECCOMP_RET_ALLOW),
-            give(refused)});
-    // Signals and limits of this process only.
+    append(
+        {unless_equal(__NR_fcntl, 2 * std::size(permitted_fcntl_commands) + 2), load(argument(1))});
+    for (const std::uint32_t command : permitted_fcntl_commands)
+        append({unless_equal(command, 1), give(SECCOMP_RET_ALLOW)});
+    append({give(refused)});
+    // Signals to this process only: abort() sends one.
     append({unless_equal(__NR_tgkill, 4), load(argument(0)),
             unless_equal(static_cast<std::uint32_t>(::getpid()), 1), give(SECCOMP_RET_ALLOW),
             give(refused)});
-    append({unless_equal(__NR_prlimit64, 4), load(argument(0)), unless_equal(0, 1),
-            give(SECCOMP_RET_ALLOW), give(refused)});
+    // Limits of this process can be read, but not changed: the new limit must be null.
+    append({unless_equal(__NR_prlimit64, 8), load(argument(0)), unless_equal(0, 5),
+            load(argument(2)), unless_equal(0, 3), load(high_half_of_argument(2)),
+            unless_equal(0, 1), give(SECCOMP_RET_ALLOW), give(refused)});
     append({give(refused)});
     const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
     if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return;
@@ -314,7 +279,7 @@ const ImageModule* load_module(std::string& reason) {
         reply_failure(reason);
         ::_exit(1);
     }
-    address_bytes();
+    module->use_one_thread();
     forbid_system_calls();
     DecoderReply ready;
     ready.succeeded = 1;
@@ -324,7 +289,6 @@ const ImageModule* load_module(std::string& reason) {
         int descriptor = -1;
         const DecoderRequest request = receive(descriptor);
         try {
-            limit(request);
             if (request.action == DecoderAction::open)
                 decoder.open(request, descriptor);
             else if (request.action == DecoderAction::read)
@@ -345,8 +309,6 @@ int main() {
     ::open("/dev/null", O_WRONLY);
     ::open("/dev/null", O_WRONLY);
     ::close_range(3, ~0U, 0);
-    rlimit none{};
-    ::setrlimit(RLIMIT_CORE, &none);
-    ::mallopt(M_ARENA_MAX, 2);  // Each arena reserves addresses.
+    ::setenv("OPENIMAGEIO_THREADS", "1", 1);  // Read when the module is loaded.
     relief::serve();
 }

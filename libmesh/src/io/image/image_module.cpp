@@ -215,6 +215,12 @@ ImageModuleReader* open_proxy(const char* format, std::unique_ptr<OIIO::Filesyst
     return reader.release();
 }
 
+void use_one_thread() {
+    OIIO::attribute("threads", 1);
+    // OpenEXR has threads of its own. -1 means none, while 0 would mean one per processor.
+    OIIO::attribute("exr_threads", -1);
+}
+
 ImageModuleReader* open(const char* format, const void* bytes, std::size_t size,
                         ImageModuleHeader* header, ImageModuleText text,
                         ImageModuleFailure failure) {
@@ -345,6 +351,7 @@ void release(ImageModuleWriter* writer) {
 }
 
 constexpr ImageModule table{image_module_version,
+                            use_one_thread,
                             open,
                             open_descriptor,
                             row_grain,

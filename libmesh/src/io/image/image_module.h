@@ -14,7 +14,7 @@ namespace relief {
 
 /// The version of this interface; it changes with every change here. Modules of other versions are
 /// refused.
-inline constexpr std::uint32_t image_module_version = 4;
+inline constexpr std::uint32_t image_module_version = 5;
 
 inline constexpr const char* image_module_name = "relief_image.so";
 
@@ -61,6 +61,9 @@ struct ImageModulePicture {
 
 struct ImageModule {
     std::uint32_t version;
+
+    /// Makes the module start no threads.
+    void (*use_one_thread)();
 
     /// Opens encoded bytes, which must outlive the reader, and reads their header. `format` is
     /// OpenImageIO's name for it. Null after a failure.
