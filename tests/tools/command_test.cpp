@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "tools/help_pages.h"
 #include "tools/workplace.h"
@@ -95,6 +96,46 @@ TEST(AllToolsAlike, FailWhenTheirResultCannotBePrinted) {
     EXPECT_EQ(result.error, "relief-mesh: error: standard output: cannot be written\n");
     EXPECT_EQ(workplace.run("relief-mesh process --help > /dev/full").exit_code, 1);
     EXPECT_EQ(workplace.run("relief-mesh --version > /dev/full").exit_code, 1);
+}
+
+TEST(AllToolsAlike, SucceedWhenOnlyTheSummaryOfTheirFilesCannotBePrinted) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const std::string warning =
+        "relief-mesh: warning: standard output: cannot be written (the output files are "
+        "complete)\n";
+    for (const char* stream : {"> /dev/full", ">&-"}) {
+        const ProgramResult result = workplace.run(
+            std::string("relief-mesh process square.obj out/a.glb --report out/a.json ") + stream);
+        EXPECT_EQ(result.exit_code, 0) << stream;
+        EXPECT_EQ(result.error, warning);
+        EXPECT_EQ(workplace.outputs(), "a.glb a.json");
+        std::filesystem::remove(workplace / "out/a.json");
+    }
+    // A report on standard output is a result.
+    const ProgramResult report =
+        workplace.run("relief-mesh process square.obj out/a.glb --report - > /dev/full");
+    EXPECT_EQ(report.exit_code, 1);
+    EXPECT_EQ(report.error,
+              "relief-mesh: error: standard output: cannot be written (the output files are "
+              "complete)\n");
+    EXPECT_EQ(workplace.run("relief-mesh --help-json > /dev/full").exit_code, 1);
+}
+
+TEST(AllToolsAlike, ReadImagesOnManyProcessorsAndWithLargeStacks) {
+    const Workplace workplace;
+    for (const char* name : {"n.exr", "n.tif"}) {
+        Image flat = make_image(8, 8, 3, 32, ColorSpace::data);
+        for (std::size_t i = 0; i < flat.sample_count(); ++i)
+            flat.as<float>()[i] = i % 3 == 2 ? 1.0F : 0.0F;
+        write_image(workplace / name, flat);
+        for (const char* setting :
+             {"OPENIMAGEIO_THREADS=256", "ulimit -s 65536; OPENIMAGEIO_THREADS=64"}) {
+            const ProgramResult result =
+                workplace.run(std::string(setting) + " relief-bake check " + name);
+            EXPECT_EQ(result.exit_code, 0) << setting << ' ' << name << result.error;
+        }
+    }
 }
 
 TEST(AllToolsAlike, ReturnTheirCodeWhenTheErrorCannotBePrinted) {

@@ -20,7 +20,7 @@
 
 #include "common/help.h"
 #include "common/text.h"
-#include "files.h"
+#include "file_replacement.h"
 #include "near_names.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/limits.h"
@@ -34,6 +34,8 @@ struct Console {
     std::FILE* out = stdout;
     std::FILE* err = stderr;
     bool is_out_reserved = false;
+    int out_error = 0;             ///< The first error of printing to `out`.
+    std::size_t files_before = 0;  ///< replaced_file_count() at the beginning.
 };
 Console console;
 
@@ -50,7 +52,9 @@ constexpr bool is_sanitized = false;
 /// Replaces the streams for its lifetime.
 class ConsoleScope {
   public:
-    ConsoleScope(std::FILE* out, std::FILE* err) : before_(console) { console = {out, err}; }
+    ConsoleScope(std::FILE* out, std::FILE* err) : before_(console) {
+        console = {out, err, false, 0, replaced_file_count()};
+    }
     ~ConsoleScope() { console = before_; }
     ConsoleScope(const ConsoleScope&) = delete;
     ConsoleScope& operator=(const ConsoleScope&) = delete;
@@ -114,6 +118,16 @@ UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
     return UsageError(what);
 }
 
+/// Keeps the first error.
+void flush_out() {
+    const bool is_flushed = std::fflush(out()) == 0;
+    if (console.out_error != 0) return;
+    if (!is_flushed)
+        console.out_error = errno;
+    else if (std::ferror(out()) != 0)
+        console.out_error = EIO;
+}
+
 /// Prints to err(). A message that cannot be printed is lost; the exit code still tells the result.
 template <typename... Arguments>
 void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -134,7 +148,7 @@ std::string indented_lines(std::string_view text) {
 /// Prints "relief-mesh: error: TEXT" with the name of the tool, without the command.
 void print_message(const CLI::App& app, const std::string& severity, const std::string& text) {
     const CLI::App* parent = app.get_parent();
-    std::fflush(out());
+    flush_out();
     tell("{}: {}: {}\n", parent == nullptr ? app.get_name() : parent->get_name(), severity,
          indented_lines(text));
 }
@@ -156,13 +170,21 @@ int report_failure(const CLI::App& root, const std::string& text) {
     return static_cast<int>(ExitCode::failed);
 }
 
-/// Returns the code if everything could be printed.
-/// \throws FileError if standard output cannot be written
-int flushed(int code) {
-    if (std::fflush(out()) == 0 && std::ferror(out()) == 0) return code;
+/// Returns the code if everything could be printed. If files were written, they are the result, and
+/// a summary that cannot be printed is a warning.
+/// \throws FileError if standard output was the result
+int flushed(const CLI::App& root, int code) {
+    flush_out();
+    if (console.out_error == 0) return code;
+    const bool has_files = replaced_file_count() > console.files_before;
+    const bool is_summary = has_files && !console.is_out_reserved;
+    const std::string problem =
+        has_files ? "cannot be written (the output files are complete)" : "cannot be written";
     // A reader that closes its pipe, such as head, needs no message.
-    if (errno == EPIPE) return static_cast<int>(ExitCode::failed);
-    throw FileError("standard output", "cannot be written");
+    const bool is_quiet = console.out_error == EPIPE;
+    if (!is_summary && !is_quiet) throw FileError("standard output", problem);
+    if (!is_quiet) print_message(root, "warning", "standard output: " + problem);
+    return is_summary ? code : static_cast<int>(ExitCode::failed);
 }
 
 /// Parses the arguments and runs the command.
@@ -173,14 +195,14 @@ int parse_and_run(CLI::App& root, const std::vector<Command>& commands,
     } catch (const CLI::Success& request) {  // --help and --version
         std::ostringstream text;
         const int code = root.exit(request, text, text);
-        fmt::print(out(), "{}", text.str());
-        return flushed(code);
+        print_text(text.str());
+        return flushed(root, code);
     } catch (const CLI::ParseError& error) {
         throw usage_error(root, error);
     }
     for (const Command& command : commands) {
         if (!command.app->parsed()) continue;
-        return flushed(static_cast<int>(command.run()));
+        return flushed(root, static_cast<int>(command.run()));
     }
     throw UsageError("a command is missing");
 }
@@ -245,6 +267,11 @@ std::FILE* out() {
 
 std::FILE* err() {
     return console.err;
+}
+
+void print_text(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), out()) != text.size() && console.out_error == 0)
+        console.out_error = errno;
 }
 
 void reserve_out_for_report() {
@@ -392,8 +419,8 @@ int run_tool(const Tool& tool, const std::vector<std::string>& given, std::FILE*
     CLI::App& root = *built.root;
     try {
         if (given == std::vector<std::string>{json_help}) {
-            fmt::print(out, "{}\n", describe(root).dump(2));
-            return static_cast<int>(ExitCode::done);
+            print_text(describe(root).dump(2) + "\n");
+            return flushed(root, static_cast<int>(ExitCode::done));
         }
         std::vector<std::string> arguments = given;
         if (take_help_all(arguments)) show_advanced_options(root);

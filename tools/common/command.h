@@ -207,6 +207,10 @@ int run_tool(const Tool& tool, const std::vector<std::string>& arguments, std::F
 /// The stream for results: standard output, unless a caller of run_tool() passed another.
 std::FILE* out();
 
+/// Prints to out(). An error is reported when the tool ends: files that it writes are the result,
+/// and the text is their summary.
+void print_text(std::string_view text);
+
 /// The stream for errors, warnings and progress, likewise.
 std::FILE* err();
 

@@ -242,7 +242,7 @@ class OutcomePrinter {
         if (!outcome.done)
             complain(app_, outcome.error);
         else if (!quiet_)
-            fmt::print(out(), "{}\n", printable(outcome.done->line));
+            print_text(fmt::format("{}\n", printable(outcome.done->line)));
     }
     void show_progress() const {
         if (!shows_progress_ || finished_ == outcomes_.size()) return;

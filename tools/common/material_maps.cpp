@@ -129,6 +129,13 @@ void store_in_material(GltfDocument& document, std::size_t material, const Mater
     }
 }
 
+GltfDocument read_model_for_maps(const MaterialRequest& request, Report& report) {
+    Model model = read_model(request.input, report);
+    if (auto* document = std::get_if<GltfDocument>(&model)) return std::move(*document);
+    return about(request.input,
+                 [&] { return GltfDocument::from_mesh(std::get<MeshFile>(model), report); });
+}
+
 bool has_normal_map(const StoredMaterial& material) {
     return std::ranges::any_of(
         material.maps, [](const MaterialMap& map) { return map.slot == GltfTextureSlot::normal; });
@@ -152,13 +159,26 @@ const char* to_string(GltfTextureSlot slot) {
     return "emissive";
 }
 
+void check_materials(const MaterialRequest& request) {
+    Report unused;  // store_maps() reports the same findings.
+    GltfDocument document = read_model_for_maps(request, unused);
+    about(request.input, [&] {
+        for (const MaterialMaps& maps : request.materials) {
+            bool is_new = false;
+            for (const std::size_t material :
+                 chosen_materials(document, request, maps.material, is_new)) {
+                if (!request.are_baked) continue;
+                for (const MaterialMap& map : maps.maps)
+                    check_baked(request, document, material, map, unused);
+            }
+        }
+    });
+}
+
 MaterialResult store_maps(const MaterialRequest& request, Stages& stages) {
     MaterialResult result;
     Report read_report;
-    Model model = stages.run("read", [&] { return read_model(request.input, read_report); });
-    if (const auto* contents = std::get_if<MeshFile>(&model))
-        model =
-            about(request.input, [&] { return GltfDocument::from_mesh(*contents, read_report); });
+    Model model = stages.run("read", [&] { return read_model_for_maps(request, read_report); });
     result.findings.add("", read_report);
     auto& document = std::get<GltfDocument>(model);
     Report report;

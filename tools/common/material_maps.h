@@ -60,6 +60,10 @@ const char* to_string(GltfTextureSlot slot);
 /// \throws FileError; then the output is unchanged
 MaterialResult store_maps(const MaterialRequest& request, Stages& stages);
 
+/// Checks that store_maps() will find the materials and, for baked maps, their texture coordinates.
+/// The files of the maps need not exist yet. \throws FileError
+void check_materials(const MaterialRequest& request);
+
 /// "material", "maps" and "tangents".
 Summary summary_of(const MaterialResult& result);
 

@@ -14,6 +14,7 @@
 
 #include "common/file_jobs.h"
 #include "common/options.h"
+#include "file_replacement.h"
 #include "files.h"
 
 namespace relief::tools {
@@ -114,7 +115,7 @@ std::string printable_lines(std::string_view text) {
 
 void print_entry(const std::string& label, const std::string& text) {
     if (is_out_reserved()) return;
-    fmt::print(out(), "{:<10}{}\n", label, printable(text));
+    print_text(fmt::format("{:<10}{}\n", label, printable(text)));
 }
 
 void print_entry(const std::string& label, const std::vector<std::string>& lines) {
@@ -127,7 +128,7 @@ std::string dumped(const nlohmann::ordered_json& json) {
 }
 
 void print_json(const nlohmann::ordered_json& json) {
-    fmt::print(out(), "{}", dumped(json));
+    print_text(dumped(json));
 }
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {

@@ -406,11 +406,11 @@ ExitCode run(const AssetCommandOptions& options) {
         }
         for (AssetExperiment& one : experiments) {
             if (prints_tables(options.how))
-                fmt::print(out(), "\n{}", printable_lines(short_table(one)));
+                print_text(fmt::format("\n{}", printable_lines(short_table(one))));
             is_within_limits = is_within_limits && one.recommendation.method.has_value();
             report.experiments.push_back(std::move(one.experiment));
         }
-        if (prints_tables(options.how)) fmt::print(out(), "\n");
+        if (prints_tables(options.how)) print_text("\n");
         std::fflush(out());
     }
     finish_report(options.how, std::move(report), false);

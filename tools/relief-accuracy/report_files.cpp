@@ -13,7 +13,7 @@
 #include "accuracy_report.h"
 #include "common/command.h"
 #include "common/text.h"
-#include "files.h"
+#include "file_replacement.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -187,12 +187,14 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 
 std::vector<std::filesystem::path> write_report(const std::filesystem::path& folder,
                                                 const AccuracyReport& report) {
+    FileSet files;
     write_pictures(folder, report);
     write_text(folder / "accuracy.csv", measurements_csv(report));
     write_text(folder / "accuracy-curves.csv", curves_csv(report));
     const nlohmann::ordered_json json = json_of(report, true);
     write_text(folder / "report.html", report_html(json, folder));
     write_json(folder / "accuracy.json", json);
+    files.commit();
     return {folder / "report.html", folder / "accuracy.json", folder / "accuracy.csv",
             folder / "accuracy-curves.csv"};
 }

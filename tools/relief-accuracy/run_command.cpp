@@ -115,10 +115,10 @@ void finish_report(const ExperimentOptions& options, AccuracyReport report, bool
         print_json(json_of(report, options.output.has_value()));
     } else if (!options.general.quiet) {
         if (!options.no_times)
-            fmt::print(out(),
-                       "* efficient: no other method is both faster and at least as accurate\n"
-                       "± half of the range from the 10th to the 90th percentile of the rounds, in "
-                       "percent of the median\n");
+            print_text(
+                "* efficient: no other method is both faster and at least as accurate\n"
+                "± half of the range from the 10th to the 90th percentile of the rounds, in "
+                "percent of the median\n");
         print_entry("written", written);
     }
 }
@@ -292,7 +292,7 @@ std::vector<Experiment> run_subjects(const std::vector<Subject>& subjects,
         experiment.command = command_for(std::string(name_of(experiment.subject)), options);
         if (!prints_tables(options.how)) return;
         stages.clear_progress();
-        fmt::print(out(), "{}\n", printable_lines(table_of(experiment)));
+        print_text(fmt::format("{}\n", printable_lines(table_of(experiment))));
         std::fflush(out());
     };
     std::vector<Experiment> experiments = run_experiments(subjects, run);

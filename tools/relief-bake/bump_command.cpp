@@ -17,6 +17,7 @@
 #include "common/material_maps.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "file_replacement.h"
 #include "relief/accuracy/asset.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/height_map.h"
@@ -751,11 +752,7 @@ MaterialResult write_into_model(const WriteIntoOptions& write_into, const Job& j
     request.materials.push_back({write_into.material, {{GltfTextureSlot::normal, job.output}}});
     request.embeds = write_into.embed;
     request.normal_scale = write_into.scale;
-    try {
-        return store_maps(request, stages);
-    } catch (const Error& error) {
-        throw Error(fmt::format("{} (the map is complete, but not in a model)", error.what()));
-    }
+    return store_maps(request, stages);
 }
 
 ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& given,
@@ -776,6 +773,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& give
         check_write_into(request, write_into, job);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
+        FileSet outputs;
         BumpConversion conversion = convert_bump(job, request, stages);
         std::optional<MaterialResult> stored;
         if (write_into.model) {
@@ -786,6 +784,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& give
                 conversion.findings.add(placed.where, report);
             }
         }
+        outputs.commit();
         Summary summary = summary_of(job, request, conversion, stages);
         if (stored) {
             summary.add_part("stored", summary_of(*stored));

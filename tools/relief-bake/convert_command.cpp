@@ -10,6 +10,7 @@
 #include "common/options.h"
 #include "common/summary.h"
 #include "convert.h"
+#include "file_replacement.h"
 
 namespace relief::tools {
 
@@ -397,7 +398,9 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& g
         check_files(job, request, inputs);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
+        FileSet levels;
         const MapConversion conversion = convert_map(job, request, stages);
+        levels.commit();
         return {line_of(job, conversion, stages), conversion.findings,
                 summary_of(job, conversion, stages)};
     };

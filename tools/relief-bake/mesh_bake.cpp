@@ -17,6 +17,7 @@
 #include "common/file_jobs.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "file_replacement.h"
 #include "mesh_preview.h"
 #include "relief/mesh/statistics.h"
 
@@ -69,7 +70,8 @@ void add_result(BakeResult& all, const BakeResult& more) {
     all.occlusion_rays += more.occlusion_rays;
 }
 
-/// A baked map whose files are complete but not renamed yet. They are deleted unless finished.
+/// A baked map whose files are complete but not in the FileSet yet. They are deleted unless
+/// finished.
 class PendingMap {
   public:
     PendingMap(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
@@ -89,7 +91,7 @@ class PendingMap {
 
     [[nodiscard]] const BakedMap& map() const { return map_; }
 
-    /// Renames the files.
+    /// Adds the files to the FileSet.
     BakedMap finish(Findings& findings) {
         writer_->finish();
         findings.add(map_.plan.name(), report_, width_);
@@ -103,16 +105,6 @@ class PendingMap {
     std::optional<MapWriter> writer_;
 };
 
-/// The error if a map cannot be renamed, with the maps that are finished.
-FileError partial_failure(const MeshBake& bake, const Error& error, const std::size_t count) {
-    std::string finished;
-    for (const BakedMap& map : bake.maps)
-        finished += (finished.empty() ? "" : ", ") + map.plan.output.string();
-    return {bake.maps.back().plan.output.parent_path(),
-            fmt::format("only {} of {} maps are written: {}; {}", bake.maps.size(), count, finished,
-                        error.what())};
-}
-
 void bake_all(const MeshBakeRequest& request, const Baker& baker, const BakeModels& models,
               MapPlans plans, const BakeOptions& options, Stages& stages, MeshBake& bake) {
     MapProgress progress(stages, plans.maps.size());
@@ -124,12 +116,7 @@ void bake_all(const MeshBakeRequest& request, const Baker& baker, const BakeMode
         check_missed(request, models, map.plan.name(), map.result);
     }
     for (const std::unique_ptr<PendingMap>& map : pending) {
-        try {
-            bake.maps.push_back(map->finish(bake.findings));
-        } catch (const Error& error) {
-            if (bake.maps.empty()) throw;
-            throw partial_failure(bake, error, pending.size());
-        }
+        bake.maps.push_back(map->finish(bake.findings));
         add_result(bake.all, bake.maps.back().result);
     }
 }
@@ -208,9 +195,10 @@ std::vector<MaterialMap> material_maps(const MeshBakeRequest& request, const Map
     return maps;
 }
 
-/// Stores the finished maps in the model of --write-into, which is made from the low model if it
+/// The request to store maps in the model of --write-into, which is made from the low model if it
 /// does not exist.
-void write_into(const MeshBakeRequest& request, Stages& stages, MeshBake& bake) {
+MaterialRequest material_request(const MeshBakeRequest& request,
+                                 const std::vector<MapPlan>& plans) {
     const std::filesystem::path& model = *request.write_into.model;
     const bool exists = std::filesystem::exists(model);
     MaterialRequest wanted;
@@ -220,16 +208,16 @@ void write_into(const MeshBakeRequest& request, Stages& stages, MeshBake& bake) 
     wanted.embeds = request.write_into.embed;
     // A map of the whole low model belongs to all of its materials.
     wanted.all_materials = !exists || identity_of(model) == identity_of(request.low);
-    for (const BakedMap& map : bake.maps) {
-        wanted.materials.push_back(
-            {map.plan.material ? map.plan.material : request.write_into.material,
-             material_maps(request, map.plan)});
+    for (const MapPlan& plan : plans) {
+        wanted.materials.push_back({plan.material ? plan.material : request.write_into.material,
+                                    material_maps(request, plan)});
     }
-    try {
-        bake.stored = store_maps(wanted, stages);
-    } catch (const Error& error) {
-        throw Error(fmt::format("{} (the maps are complete, but not in a model)", error.what()));
-    }
+    return wanted;
+}
+
+/// Stores the maps in the model of --write-into.
+void write_into(const MaterialRequest& request, Stages& stages, MeshBake& bake) {
+    bake.stored = store_maps(request, stages);
     for (const PlacedFinding& placed : bake.stored->findings.all()) {
         Report report;
         report.add(placed.finding);
@@ -275,6 +263,11 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
     bake.materials = plans.materials;
     bake.findings.add("", plans.report);
     check_outputs(request, plans.maps, models.files);
+    std::optional<MaterialRequest> materials;
+    if (request.write_into.model) {
+        materials = material_request(request, plans.maps);
+        check_materials(*materials);
+    }
     BakeOptions options = bake_options_of(request);
     options.map_count = plans.maps.size();
     options.output_from_mesh = output_axes(request, models.world_from_low);
@@ -300,8 +293,11 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
         options.map.samples = selected.map.samples;
         options.map.sample_angle = selected.map.sample_angle;
     }
+    FileSet outputs;
     stages.run("bake",
                [&] { bake_all(settled, *baker, models, std::move(plans), options, stages, bake); });
+    if (materials) write_into(*materials, stages, bake);
+    outputs.commit();
     if (request.verify)
         stages.run("verify", [&] { verify_all(settled, *baker, models, options, bake); });
 }
@@ -329,7 +325,6 @@ MeshBake bake_maps(const MeshBakeRequest& request, Stages& stages) {
     if (preview) {
         stages.run("preview", [&] { draw_preview(*preview, request, bake, std::move(models)); });
     }
-    if (request.write_into.model) write_into(request, stages, bake);
     return bake;
 }
 

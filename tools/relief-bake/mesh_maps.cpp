@@ -451,7 +451,6 @@ struct MapWriter::Files {
     NormalMapFormat format;
     bool has_alpha, padding_is_opaque;
     Report& report;
-    std::filesystem::path map;
     ImageRowWriter normals;
     std::vector<std::unique_ptr<LayerFile>> layers;
 
@@ -497,7 +496,6 @@ MapWriter::MapWriter(const MeshBakeRequest& request, const MapPlan& plan,
               has_alpha,
               !request.fills_to_border,
               report,
-              plan.output,
               ImageRowWriter(plan.output, shape, map_metadata(request, plan, format),
                              write_options_of(request.map, plan.output)),
               {}});
@@ -527,16 +525,8 @@ void MapWriter::complete() {
 
 void MapWriter::finish() {
     files_->normals.finish(files_->report);
-    std::string finished = files_->map.string();
-    for (const auto& file : files_->layers) {
-        try {
-            file->rows.finish(files_->report);
-        } catch (const Error& error) {
-            throw FileError(file->layer.file,
-                            fmt::format("{}; complete are {}", error.what(), finished));
-        }
-        finished += ", " + file->layer.file.string();
-    }
+    for (const auto& file : files_->layers)
+        file->rows.finish(files_->report);
 }
 
 }  // namespace relief::tools

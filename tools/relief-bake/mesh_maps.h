@@ -113,10 +113,10 @@ class MapWriter {
     /// Row counts must be multiples of 64, except for the last rows.
     void write(const BakedRows& rows);
 
-    /// Closes the files; finish() renames them. \throws FileError
+    /// Closes the files; finish() replaces the old ones. \throws FileError
     void complete();
 
-    /// \throws FileError that lists the complete files
+    /// \throws FileError
     void finish();
 
   private:

@@ -21,6 +21,7 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "file_replacement.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/topology.h"
@@ -373,10 +374,12 @@ LodsResult make_levels(const LodsCommand& command, Stages& stages) {
     if (const auto* contents = std::get_if<MeshFile>(&model))
         model = about(command.input, [&] { return GltfDocument::from_mesh(*contents, report); });
     done.findings.add("", report);
+    FileSet files;
     about(command.input, [&] {
         LevelMaker(command, std::get<GltfDocument>(model), stages, done).make_all();
         return 0;
     });
+    files.commit();
     return done;
 }
 

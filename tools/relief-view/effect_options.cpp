@@ -390,12 +390,13 @@ void print_shaders(const Scene& scene, const FramePlan& plan) {
     const std::vector<ShaderListing> listings = shader_listings(plan);
     for (std::size_t i = 0; i < listings.size(); ++i) {
         const ShaderListing& listing = listings[i];
-        fmt::print(out(), "{}// Program {} of {}: {}\n", i == 0 ? "" : "\n", i + 1, listings.size(),
-                   describe(listing.features));
+        print_text(fmt::format("{}// Program {} of {}: {}\n", i == 0 ? "" : "\n", i + 1,
+                               listings.size(), describe(listing.features)));
         for (const std::size_t draw : listing.draws)
-            fmt::print(out(), "// draws {}\n", printable(draw_heading(scene, plan.draws[draw])));
-        fmt::print(out(), "// from {}\n\n// Vertex shader\n{}\n// Fragment shader\n{}",
-                   fmt::join(listing.files, ", "), listing.vertex, listing.fragment);
+            print_text(
+                fmt::format("// draws {}\n", printable(draw_heading(scene, plan.draws[draw]))));
+        print_text(fmt::format("// from {}\n\n// Vertex shader\n{}\n// Fragment shader\n{}",
+                               fmt::join(listing.files, ", "), listing.vertex, listing.fragment));
     }
 }
 

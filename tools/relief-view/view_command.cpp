@@ -25,7 +25,7 @@
 #include "common/model_file.h"
 #include "common/summary.h"
 #include "effect_options.h"
-#include "files.h"
+#include "file_replacement.h"
 #include "picture_comparison.h"
 #include "portable_math.h"
 #include "relief/mesh/execution.h"
@@ -699,7 +699,7 @@ ComposedScene compose_and_check(ViewOptions& options, Stages& stages, Report& re
 ExitCode run(const CLI::App& app, ViewOptions& options) {
     settle(options);
     if (options.list_bindings) {
-        fmt::print(out(), "{}", shortcuts_text());
+        print_text(shortcuts_text());
         return ExitCode::done;
     }
     set_thread_limit(options.general.threads);
@@ -732,7 +732,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
         if (options.effects.print_shaders) summary.add_json({{"shaders", shaders_json(plan)}});
         print_json(summary.json());
     } else if (drawn && !options.general.quiet) {
-        if (options.explain_effects || options.effects.print_shaders) fmt::print(out(), "\n");
+        if (options.explain_effects || options.effects.print_shaders) print_text("\n");
         summary.print();
     }
     if (drawn && drawn->comparison) require_match(options, *drawn->comparison);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "bake/layers.h"
+#include "file_replacement.h"
 #include "geometry/direction.h"
 #include "parallel.h"
 #include "relief/mesh/report.h"
@@ -68,9 +69,12 @@ class UnlinkedFile {
   public:
     explicit UnlinkedFile(const std::filesystem::path& folder) : folder_(folder) {
         std::string name = (folder / ".relief-XXXXXX").string();
-        descriptor_ = mkstemp(name.data());
+        {
+            const SignalDelay delay;  // A signal in between would leave the file.
+            descriptor_ = mkstemp(name.data());
+            if (descriptor_ >= 0) unlink(name.c_str());
+        }
         if (descriptor_ < 0) fail("no temporary file can be made");
-        unlink(name.c_str());
     }
     ~UnlinkedFile() {
         if (memory_ != nullptr) munmap(memory_, size_);

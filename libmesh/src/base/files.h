@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Reading files as a whole or in parts, with errors that tell the reason; text and numbers in
-/// their bytes; writing a file such that a failure leaves the old file intact and no partial file.
+/// their bytes. Writing is in file_replacement.h; files of an open FileSet are read as they will
+/// be.
 #pragma once
 
 #include <cstddef>
@@ -86,61 +87,5 @@ inline std::uint32_t big32(std::span<const std::byte> bytes, std::size_t offset 
         value = value << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
     return value;
 }
-
-/// A temporary file beside the file that it will replace.
-///
-/// Write to written_path(), which exists and is empty, then call commit(). Without commit(), the
-/// destructor removes the temporary file. Its name is random and keeps the extension, from which
-/// writers choose the format. A symbolic link is followed: the file that it names is replaced. The
-/// mode and, where the system permits it, the owner of a replaced file are kept; other hard links
-/// to it keep the old contents.
-class FileReplacement {
-  public:
-    /// \throws FileError if the folder does not exist, or `file` is a folder, a device or a pipe
-    explicit FileReplacement(std::filesystem::path file);
-    ~FileReplacement();
-    FileReplacement(const FileReplacement&) = delete;
-    FileReplacement& operator=(const FileReplacement&) = delete;
-
-    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-    /// The name of the temporary file.
-    [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
-    /// A path to the temporary file that stays its own if another program replaces the name by a
-    /// link: that of the open descriptor in /proc. Without /proc it is temporary().
-    [[nodiscard]] std::filesystem::path written_path() const;
-
-    /// Waits until the temporary file is on the disk, so that commit() only renames it.
-    /// \throws FileError
-    void complete();
-
-    /// Calls complete() if needed, and renames the temporary file. \throws FileError
-    void commit();
-
-    /// Commits this file and then another that belongs to it. If the other one fails, the old file
-    /// comes back, unless the file system cannot exchange two files. \throws FileError
-    void commit_with(FileReplacement& other);
-
-  private:
-    std::filesystem::path file_;
-    std::filesystem::path target_;  ///< `file_`, or the file that the link `file_` names.
-    std::filesystem::path temporary_;
-    int descriptor_ = -1;
-    bool is_complete_ = false;
-    bool committed_ = false;
-    std::size_t place_;  ///< Index in the list of files that a signal removes.
-};
-
-/// Makes SIGINT, SIGTERM and SIGHUP remove all temporary files before they end the program.
-///
-/// Programs call this once, before they start threads; a library must not handle the signals of its
-/// user. Ignored signals stay ignored. At most 128 files at a time are known; further ones would
-/// remain.
-void remove_temporaries_on_signals();
-
-/// Writes all bytes to a new temporary file. \throws FileError
-void write_all(const FileReplacement& replacement, std::span<const std::byte> bytes);
-
-/// Replaces the contents of a file. \throws FileError
-void replace_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
 }  // namespace relief

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <utility>
 
+#include "file_replacement.h"
 #include "progress_stage.h"
 #include "relief/mesh/execution.h"
 #include "work_array.h"
@@ -105,9 +106,11 @@ void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece)
     if (current_thread_limit == 1) return run_piece(0, count);
     FirstFailure failure;
     Workspace* const workspace = current_workspace;
+    FileSet* const file_set = current_file_set;
     const auto run_and_catch = [&](std::size_t begin, std::size_t end) {
         acquire_writes(&failure);
         Workspace* const before = std::exchange(current_workspace, workspace);
+        FileSet* const set_before = std::exchange(current_file_set, file_set);
         if (!failure.is_before(begin)) {
             try {
                 run_piece(begin, end);
@@ -116,6 +119,7 @@ void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece)
             }
         }
         current_workspace = before;
+        current_file_set = set_before;
         release_writes(&failure);
     };
     release_writes(&failure);

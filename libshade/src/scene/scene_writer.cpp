@@ -9,6 +9,7 @@
 #include <numbers>
 #include <span>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
@@ -79,10 +80,12 @@ class SceneWriter {
         json_["camera"] = {{"matrix", matrix_json(saved_.camera.world_from_view)}};
         add_fields(json_["camera"], saved_.camera, {});
         json_["picture"] = {{"width", saved_.size.x}, {"height", saved_.size.y}};
+        FileSet files;
         for (const auto& [image, path] : new_images_)
             write_image(path, *std::get<Shared<Image>>(scene_.images[image].source));
         const std::string text = json_.dump(2) + "\n";
         replace_file(file_, std::as_bytes(std::span(text)));
+        files.commit();
     }
 
   private:

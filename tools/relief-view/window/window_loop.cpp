@@ -23,6 +23,7 @@
 
 #include "common/command.h"
 #include "common/text.h"
+#include "file_replacement.h"
 #include "files.h"
 #include "view_command.h"
 #include "window/background_jobs.h"

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "common/command.h"
+#include "file_replacement.h"
 #include "files.h"
 #include "json_cursor.h"
 

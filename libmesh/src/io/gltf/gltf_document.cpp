@@ -20,6 +20,7 @@
 #include <new>
 #include <string_view>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_compression.h"
@@ -174,7 +175,7 @@ void check_images(const GltfContents& contents, Report& report) {
         std::error_code ignored;
         if (!path && !uri.empty()) {
             report.add("image outside the document's folder", "image", i, "kept by name, not read");
-        } else if (!path || !std::filesystem::is_regular_file(*path, ignored)) {
+        } else if (!path || !std::filesystem::is_regular_file(staged_file(*path), ignored)) {
             report.add("missing image", "image", i, "kept by name");
         }
     }

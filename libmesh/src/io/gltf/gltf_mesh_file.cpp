@@ -14,6 +14,7 @@
 #include <cmath>
 #include <map>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
@@ -190,7 +191,8 @@ void DocumentBuilder::add_texture(Json& holder, const char* key, const char* tex
     if (!image) return;
     std::error_code ignored;
     const bool may_read = material.may_read(*image);
-    if (may_read && (report_ == nullptr || std::filesystem::is_regular_file(*image, ignored))) {
+    if (may_read &&
+        (report_ == nullptr || std::filesystem::is_regular_file(staged_file(*image), ignored))) {
         holder[key] = texture_info(*image);
         return;
     }

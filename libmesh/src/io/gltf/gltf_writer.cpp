@@ -25,6 +25,7 @@
 #include <string_view>
 #include <vector>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
@@ -443,7 +444,8 @@ std::optional<std::filesystem::path> image_file(const Json& image, const GltfCon
     if (added != contents.image_files.end()) return added->second;
     const auto path = path_of(contents.folder(), uri);
     std::error_code ignored;
-    if (!path || !std::filesystem::is_regular_file(*path, ignored)) return std::nullopt;
+    if (!path || !std::filesystem::is_regular_file(staged_file(*path), ignored))
+        return std::nullopt;
     return path;
 }
 
@@ -556,7 +558,7 @@ void copy_images(const GltfContents& contents, const std::filesystem::path& file
             folder /
             (is_added ? source->filename() : source->lexically_relative(contents.folder()));
         std::error_code failed;
-        if (std::filesystem::exists(target, failed)) {
+        if (std::filesystem::exists(staged_file(target), failed)) {
             if (read_file(target) == bytes) continue;
             throw FileError(target, fmt::format("is in the way of images[{}] of {}, which is "
                                                 "another image; write .glb, which holds its own",
@@ -586,23 +588,22 @@ void check_buffer_place(const std::filesystem::path& buffer_file, const std::fil
 
 void write_json(const std::filesystem::path& file, const GltfContents& contents) {
     GltfLayout layout = layout_of(contents);
+    FileSet files;
     FileReplacement gltf(file);
-    std::optional<FileReplacement> buffer;
     if (layout.size > 0) {
         std::filesystem::path buffer_file = file;
         buffer_file.replace_extension(".bin");
         layout.root["buffers"][0]["uri"] = uri_of(buffer_file.filename().string());
         check_buffer_place(buffer_file, file, contents);
-        buffer.emplace(buffer_file);
-        write_pieces(*buffer, layout.pieces);
+        FileReplacement buffer(buffer_file);
+        write_pieces(buffer, layout.pieces);
+        buffer.commit();
     }
     const std::string json = dump(layout.root, 2, file) + "\n";
     write_all(gltf, std::as_bytes(std::span(json)));
     copy_images(contents, file);
-    if (buffer)
-        buffer->commit_with(gltf);
-    else
-        gltf.commit();
+    gltf.commit();
+    files.commit();
 }
 
 }  // namespace

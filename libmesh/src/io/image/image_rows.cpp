@@ -16,6 +16,7 @@
 #include <string_view>
 #include <utility>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "io/image/image_file_container.h"
 #include "io/image/image_module_client.h"

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"

@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/obj_parser.h"
@@ -518,16 +519,15 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents, Repo
     const Mesh& mesh = contents.mesh;
     const std::vector<std::string> names = material_names(contents.materials, report);
     std::string text;
+    FileSet files;
     FileReplacement obj(file);
-    std::optional<FileReplacement> materials;
     if (!names.empty()) {
         std::filesystem::path mtl_file = file;
         mtl_file.replace_extension(".mtl");
         text += fmt::format("mtllib {}\n", name_in_line(mtl_file.filename(), file));
         check_materials_place(mtl_file, file, contents.sources);
         const std::string mtl = mtl_text(contents, names, mtl_file);
-        materials.emplace(mtl_file);
-        write_all(*materials, std::as_bytes(std::span(mtl)));
+        replace_file(mtl_file, std::as_bytes(std::span(mtl)));
     }
     if (!mesh.name.empty()) {
         const std::string name = name_in_statement(mesh.name);
@@ -542,10 +542,8 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents, Repo
         add_faces(mesh, range, text);
     }
     write_all(obj, std::as_bytes(std::span(text)));
-    if (materials)
-        materials->commit_with(obj);
-    else
-        obj.commit();
+    obj.commit();
+    files.commit();
 }
 
 }  // namespace relief

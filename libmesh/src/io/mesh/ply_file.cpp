@@ -25,6 +25,7 @@
 #include <utility>
 #include <vector>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/polygon_mesh.h"

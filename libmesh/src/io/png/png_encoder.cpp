@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "file_replacement.h"
 #include "files.h"
 #include "io/image/row_codec.h"
 #include "io/png/png_format.h"
