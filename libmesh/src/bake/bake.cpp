@@ -316,7 +316,7 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
 
 void check_layers(const BakeLayers& requested, const BakeLayers& prepared) {
     if ((requested.normals && !prepared.normals) || (requested.curvature && !prepared.curvature) ||
-        (requested.colors && !prepared.colors))
+        (requested.colors && !prepared.colors) || (requested.opacity && !prepared.opacity))
         throw InvalidInput("a map wants a layer that its baker was not made for");
     if (requested.occlusion) check(*requested.occlusion);
 }

@@ -36,7 +36,7 @@ std::size_t wrapped(double index, int size, Wrap wrap) {
 
 /// Filters value(texel) at a texture coordinate.
 template <typename Value>
-glm::dvec3 filtered(const SurfaceTexture& texture, const glm::dvec2& texcoord, const Value& value) {
+auto filtered(const SurfaceTexture& texture, const glm::dvec2& texcoord, const Value& value) {
     const Image& image = *texture.image;
     glm::dvec2 uv = texcoord;
     if (texture.transform != GltfTextureTransform{})
@@ -54,9 +54,8 @@ glm::dvec3 filtered(const SurfaceTexture& texture, const glm::dvec2& texcoord, c
     }
     const glm::dvec2 corner = glm::floor(place - 0.5);
     const glm::dvec2 share = place - 0.5 - corner;
-    const glm::dvec3 upper =
-        glm::mix(at(corner.x, corner.y), at(corner.x + 1.0, corner.y), share.x);
-    const glm::dvec3 lower =
+    const auto upper = glm::mix(at(corner.x, corner.y), at(corner.x + 1.0, corner.y), share.x);
+    const auto lower =
         glm::mix(at(corner.x, corner.y + 1.0), at(corner.x + 1.0, corner.y + 1.0), share.x);
     return glm::mix(upper, lower, share.y);
 }
@@ -164,6 +163,23 @@ glm::dvec3 color_at(const SurfaceTexture& texture, const glm::dvec2& texcoord) {
         image.samples);
 }
 
+namespace {
+
+/// Returns the alpha of a texture; 1 if it has none.
+double alpha_at(const SurfaceTexture& texture, const glm::dvec2& texcoord) {
+    const auto channels = static_cast<std::size_t>(texture.image->channels);
+    if (channels != 2 && channels != 4) return 1.0;
+    return std::visit(
+        [&](const auto& samples) {
+            return filtered(texture, texcoord, [&](std::size_t texel) {
+                return linear_value(samples[channels * texel + channels - 1], false);
+            });
+        },
+        texture.image->samples);
+}
+
+}  // namespace
+
 glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord) {
     const Image& image = *map.texture.image;
     const auto channels = static_cast<std::size_t>(image.channels);
@@ -262,8 +278,8 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
     result.mesh = &mesh;
     const HighMaterials* detail = detail_of(mesh, options);
     report_missing(mesh, detail, index, layers, report);
-    if (layers.normals || layers.colors) result.detail = detail;
-    if (layers.colors && detail != nullptr) {
+    if (layers.normals || layers.colors || layers.opacity) result.detail = detail;
+    if ((layers.colors || layers.opacity) && detail != nullptr) {
         result.color_texcoords =
             detail->color_texcoords.empty() ? mesh.texcoords : detail->color_texcoords;
     }
@@ -362,9 +378,26 @@ glm::dvec3 HighSurface::color(const RayHit& hit) const {
     if (hit_material == nullptr) return color;
     color *= glm::dvec3(hit_material->color);
     if (!hit_material->color_texture || entry.color_texcoords.empty()) return color;
-    const glm::dvec2 texcoord =
-        interpolated<glm::vec2>(entry.color_texcoords, corners, hit, glm::dvec2(0.0));
-    return color * color_at(*hit_material->color_texture, texcoord);
+    return color * color_at(*hit_material->color_texture, color_texcoord(hit));
+}
+
+glm::dvec2 HighSurface::color_texcoord(const RayHit& hit) const {
+    const Entry& entry = entries_[hit.mesh];
+    return interpolated<glm::vec2>(entry.color_texcoords, entry.mesh->triangles[hit.triangle], hit,
+                                   glm::dvec2(0.0));
+}
+
+double HighSurface::opacity(const RayHit& hit) const {
+    const HighMaterial* hit_material = material(hit);
+    if (hit_material == nullptr || !hit_material->opacity) return 1.0;
+    const Entry& entry = entries_[hit.mesh];
+    auto opacity = static_cast<double>(*hit_material->opacity);
+    if (!entry.mesh->colors.empty()) {
+        const glm::uvec3& corners = entry.mesh->triangles[hit.triangle];
+        opacity *= interpolated<glm::vec4>(entry.mesh->colors, corners, hit, glm::dvec4(0.0)).w;
+    }
+    if (!hit_material->color_texture || entry.color_texcoords.empty()) return opacity;
+    return opacity * alpha_at(*hit_material->color_texture, color_texcoord(hit));
 }
 
 HighSurface::CurvatureRange HighSurface::curvature_range() const {

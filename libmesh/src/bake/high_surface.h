@@ -57,6 +57,9 @@ class HighSurface {
     /// Returns the linear RGB color, white if the mesh has none, if requested.
     [[nodiscard]] glm::dvec3 color(const RayHit& hit) const;
 
+    /// Returns the opacity, 1 for opaque materials, if requested.
+    [[nodiscard]] double opacity(const RayHit& hit) const;
+
     /// Bounds of the absolute curvature over all meshes, if requested.
     struct CurvatureRange {
         double usual = 0.0;  ///< Holds on 99% of the area.
@@ -80,6 +83,7 @@ class HighSurface {
     [[nodiscard]] Entry entry(const Mesh& mesh, std::size_t index, const BakeOptions& options,
                               Report& report);
     [[nodiscard]] const HighMaterial* material(const RayHit& hit) const;
+    [[nodiscard]] glm::dvec2 color_texcoord(const RayHit& hit) const;
     /// All attributes of a triangle that a bake can read, independent of its first corner. They
     /// order triangles that coincide.
     [[nodiscard]] std::vector<std::uint32_t> attributes(const MetTriangle& met) const;

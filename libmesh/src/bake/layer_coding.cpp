@@ -12,11 +12,13 @@
 namespace relief {
 namespace {
 
-/// Full alpha.
+/// Encodes alpha, which is linear in all layers.
 template <typename Sample>
-constexpr Sample full_sample = std::is_floating_point_v<Sample>
-                                   ? Sample{1}
-                                   : std::numeric_limits<Sample>::max();
+Sample alpha_code(float alpha) {
+    if constexpr (std::is_floating_point_v<Sample>) return alpha;
+    constexpr auto largest = static_cast<float>(std::numeric_limits<Sample>::max());
+    return static_cast<Sample>(std::floor(std::clamp(alpha, 0.0F, 1.0F) * largest + 0.5F));
+}
 
 /// Encodes a value. \param is_outside  becomes true if the value is outside the range of the codes
 template <typename Sample>
@@ -47,7 +49,7 @@ Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
 template <typename Sample>
 std::vector<std::byte> encode(std::span<const float> values, std::span<const TexelState> states,
                               const LayerCoding& coding, bool has_alpha, std::size_t first_texel,
-                              Report& report) {
+                              Report& report, std::span<const float> opacity) {
     constexpr std::size_t texels_per_task = 1 << 14;
     const std::size_t channels = coding.channels();
     const std::size_t stride = channels + (has_alpha ? 1 : 0);
@@ -71,7 +73,8 @@ std::vector<std::byte> encode(std::span<const float> values, std::span<const Tex
                 if (!has_alpha) continue;
                 const bool is_filled =
                     states[i] == TexelState::baked || states[i] == TexelState::padded;
-                put(i * stride + channels, is_filled ? full_sample<Sample> : Sample{0});
+                const float alpha = !is_filled ? 0.0F : opacity.empty() ? 1.0F : opacity[i];
+                put(i * stride + channels, alpha_code<Sample>(alpha));
             }
         });
     return bytes;
@@ -128,12 +131,17 @@ double LayerCoding::midlevel() const {
 
 std::vector<std::byte> encode_layer(std::span<const float> values,
                                     std::span<const TexelState> states, const LayerCoding& coding,
-                                    bool has_alpha, std::size_t first_texel, Report& report) {
-    if (coding.bits == 8)
-        return encode<std::uint8_t>(values, states, coding, has_alpha, first_texel, report);
-    if (coding.bits == 16)
-        return encode<std::uint16_t>(values, states, coding, has_alpha, first_texel, report);
-    return encode<float>(values, states, coding, has_alpha, first_texel, report);
+                                    bool has_alpha, std::size_t first_texel, Report& report,
+                                    std::span<const float> opacity) {
+    if (coding.bits == 8) {
+        return encode<std::uint8_t>(values, states, coding, has_alpha, first_texel, report,
+                                    opacity);
+    }
+    if (coding.bits == 16) {
+        return encode<std::uint16_t>(values, states, coding, has_alpha, first_texel, report,
+                                     opacity);
+    }
+    return encode<float>(values, states, coding, has_alpha, first_texel, report, opacity);
 }
 
 }  // namespace relief

@@ -32,6 +32,7 @@ inline constexpr std::array baked_layers = {
     BakedLayer{&BakedRows::curvature, 1, false, [](const BakeLayers& l) { return l.curvature; }},
     BakedLayer{&BakedRows::positions, 3, false, [](const BakeLayers& l) { return l.positions; }},
     BakedLayer{&BakedRows::colors, 3, false, [](const BakeLayers& l) { return l.colors; }},
+    BakedLayer{&BakedRows::opacity, 1, false, [](const BakeLayers& l) { return l.opacity; }},
 };
 
 /// \throws InvalidInput if the number of rays or the distance is out of range
@@ -78,12 +79,13 @@ struct LayerHit {
     std::uint32_t sample = 0;  ///< Index in the texel.
 };
 
-/// Sums occlusion, curvature, positions and colors over the samples of some texels.
+/// Sums occlusion, curvature, positions, colors and opacity over the samples of some texels.
 class LayerBake {
   public:
     /// Returns whether any of these layers is requested.
     static bool is_requested(const BakeLayers& layers) {
-        return layers.occlusion || layers.curvature || layers.positions || layers.colors;
+        return layers.occlusion || layers.curvature || layers.positions || layers.colors ||
+               layers.opacity;
     }
 
     /// \param first_texel  the map index of the first texel
@@ -106,7 +108,7 @@ class LayerBake {
     std::size_t first_texel_;
     std::optional<Occlusion> occlusion_;
     std::vector<std::uint32_t> hits_;
-    std::vector<double> open_, curvature_;
+    std::vector<double> open_, curvature_, opacity_;
     std::vector<glm::dvec3> positions_, colors_;
 };
 

@@ -32,6 +32,7 @@ BakeOptions all_layers(int width, int height) {
     options.map.layers.curvature = true;
     options.map.layers.positions = true;
     options.map.layers.colors = true;
+    options.map.layers.opacity = true;
     return options;
 }
 
@@ -83,6 +84,7 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
         EXPECT_EQ(only([](BakeLayers& layers) { layers.positions = true; }).positions,
                   all.positions);
         EXPECT_EQ(only([](BakeLayers& layers) { layers.colors = true; }).colors, all.colors);
+        EXPECT_EQ(only([](BakeLayers& layers) { layers.opacity = true; }).opacity, all.opacity);
         set_thread_limit(1);
         const BakedImage alone = with(all_layers(70, 50));
         set_thread_limit(0);

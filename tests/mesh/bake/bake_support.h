@@ -12,7 +12,7 @@
 namespace relief::test {
 
 struct BakedImage {
-    std::vector<float> normals, heights, occlusion, curvature, positions, colors;
+    std::vector<float> normals, heights, occlusion, curvature, positions, colors, opacity;
     std::vector<TexelState> states;
     BakeResult result;
     Report report;
@@ -35,6 +35,7 @@ inline void append(BakedImage& image, const BakedRows& rows) {
     add(image.curvature, rows.curvature);
     add(image.positions, rows.positions);
     add(image.colors, rows.colors);
+    add(image.opacity, rows.opacity);
     add(image.states, rows.states);
 }
 

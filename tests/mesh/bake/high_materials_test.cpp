@@ -103,6 +103,33 @@ TEST(HighMaterials, ColorIsFactorTimesTextureTimesVertex) {
               "3 texture coordinates for 4 vertices");
 }
 
+TEST(HighMaterials, OpacityIsFactorTimesTextureTimesVertexUnlessOpaque) {
+    std::vector<Mesh> meshes = {make_quad()};
+    meshes[0].colors.assign(4, {1.0F, 1.0F, 1.0F, 0.5F});
+    Image image = make_image(1, 1, 4, 8, ColorSpace::srgb);
+    image.as<std::uint8_t>()[3] = 51;
+    BakeOptions options = sized(2, 2);
+    options.map.layers.opacity = true;
+    HighMaterials& detail = options.materials.emplace_back();
+    detail.mesh = meshes.data();
+    detail.materials.resize(1);
+    HighMaterial& material = detail.materials[0];
+    material.color_texture = SurfaceTexture{.image = std::make_shared<const Image>(image)};
+    const auto opacity = [&] { return bake(meshes, make_quad(), options).opacity; };
+    EXPECT_EQ(opacity(), std::vector<float>(4, 1.0F));
+    material.opacity = 0.5F;
+    EXPECT_EQ(opacity(), std::vector<float>(4, 0.05F));
+    material.color_texture.reset();
+    EXPECT_EQ(opacity(), std::vector<float>(4, 0.25F));
+    // Gray with alpha.
+    Image two = make_image(1, 1, 2, 8, ColorSpace::srgb);
+    two.as<std::uint8_t>()[1] = 255;
+    material.color_texture = SurfaceTexture{.image = std::make_shared<const Image>(two)};
+    EXPECT_EQ(opacity(), std::vector<float>(4, 0.25F));
+    options.materials.clear();
+    EXPECT_EQ(opacity(), std::vector<float>(4, 1.0F));
+}
+
 TEST(HighMaterials, MaterialsAreByTriangle) {
     std::vector<Mesh> meshes = {make_quad()};
     meshes[0].material_ranges = {{0, 1, 1U}, {1, 1, std::nullopt}};

@@ -77,6 +77,9 @@ struct BakeLayers {
     bool positions = false;
     /// Linear RGB: vertex colors times the material's color and texture.
     bool colors = false;
+    /// HighMaterial::opacity times the alpha of the color texture and the vertex colors; 1 for
+    /// opaque materials.
+    bool opacity = false;
     glm::dmat4 position_from_mesh{1.0};  ///< For `positions`.
 };
 
@@ -113,9 +116,12 @@ struct SurfaceNormalMap {
 
 struct HighMaterial {
     glm::vec3 color{1.0F};  ///< Linear; multiplied by the texture and the vertex colors.
-    /// Gray or RGB; sRGB or linear, as the image says. Its alpha is ignored.
+    /// Gray or RGB, with or without alpha; sRGB or linear, as the image says.
     std::optional<SurfaceTexture> color_texture;
     std::optional<SurfaceNormalMap> normal_map;
+    /// Multiplied by the alpha of the texture and the vertex colors. Absent: the material is
+    /// opaque, whatever these are.
+    std::optional<float> opacity{};
 };
 
 /// The materials of a high mesh.
@@ -250,6 +256,7 @@ struct BakedRows {
     std::span<float> curvature{};
     std::span<float> positions{};  ///< Three per texel.
     std::span<float> colors{};     ///< Three per texel.
+    std::span<float> opacity{};
 };
 
 // The storage of layers in image files.
@@ -291,10 +298,12 @@ struct LayerCoding {
 /// \param has_alpha    appends an alpha channel, which is 1 for baked and padded texels
 /// \param first_texel  the index of the first texel in the map
 /// \param report       counts values outside the range, which are clamped
+/// \param opacity      one per texel, for the alpha channel instead of 1; empty: 1
 std::vector<std::byte> encode_layer(std::span<const float> values,
                                     std::span<const TexelState> states, const LayerCoding& coding,
                                     bool has_alpha, std::size_t first_texel,
-                                    Report& report = IgnoredReport());
+                                    Report& report = IgnoredReport(),
+                                    std::span<const float> opacity = {});
 
 struct BakeDistances {
     double offset = 0.0;        ///< Outside of the low mesh.

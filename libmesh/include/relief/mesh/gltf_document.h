@@ -475,6 +475,10 @@ class GltfDocument {
     /// \throws InvalidInput if there is no such material, or if it has no normal map
     void set_normal_scale(std::size_t material, double scale);
 
+    /// Sets the alpha mode of a material. \param cutoff  for AlphaMode::mask
+    /// \throws InvalidInput if there is no such material
+    void set_alpha_mode(std::size_t material, AlphaMode mode, float cutoff);
+
     /// Returns the document as a scene.
     /// \throws InvalidInput if instance attributes have a wrong type or differ in length
     [[nodiscard]] GltfView view() const;

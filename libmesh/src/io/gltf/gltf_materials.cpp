@@ -206,4 +206,16 @@ void GltfDocument::set_normal_scale(std::size_t material, double scale) {
     json["normalTexture"]["scale"] = scale;
 }
 
+void GltfDocument::set_alpha_mode(std::size_t material, AlphaMode mode, float cutoff) {
+    Json& root = contents_->data.root;
+    const std::size_t count = array_in(root, "materials").size();
+    if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
+    Json& json = root["materials"][material];
+    json.erase("alphaMode");
+    json.erase("alphaCutoff");
+    if (mode == AlphaMode::opaque) return;
+    json["alphaMode"] = mode == AlphaMode::mask ? "MASK" : "BLEND";
+    if (mode == AlphaMode::mask && cutoff != 0.5F) json["alphaCutoff"] = cutoff;
+}
+
 }  // namespace relief

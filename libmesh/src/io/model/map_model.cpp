@@ -49,7 +49,12 @@ MapAppearance appearance_of(const std::vector<MtlMaterial>& materials) {
     for (const MtlMaterial& material : materials) {
         GltfMaterial converted;
         converted.name = material.name;
-        converted.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), 1.0F);
+        // Some programs write the opacity where MTL expects transparency, so 0 means opaque.
+        const float opacity = material.opacity > 0.0F ? std::min(material.opacity, 1.0F) : 1.0F;
+        converted.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), opacity);
+        const bool has_alpha_texture =
+            material.opacity_map && material.opacity_map == material.diffuse_map;
+        if (opacity < 1.0F || has_alpha_texture) converted.alpha_mode = AlphaMode::blend;
         converted.base_color_texture = texture(material, material.diffuse_map);
         converted.normal_texture = texture(material, material.normal_map);
         appearance.materials.push_back(std::move(converted));
