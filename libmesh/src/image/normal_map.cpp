@@ -18,6 +18,7 @@
 #include "image/normal_bands.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -122,13 +123,6 @@ void count_pairs_around_zero(const ImageView& map, int x, int y,
             if (in_x <= 1 && in_y <= 1) ++counts[2U * in_x + in_y];
         }
     }
-}
-
-std::string zero_code(const NormalMapFormat& format) {
-    if (format.bits == 32) return "0.5";
-    const double largest = format.bits == 8 ? 255.0 : 65535.0;
-    return fmt::format("{}",
-                       format.flat == FlatCode::middle ? (largest + 1.0) / 2.0 : largest / 2.0);
 }
 
 void check_map(const ImageView& map) {
@@ -242,17 +236,16 @@ std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const ImageView& ma
 FlatCode detect_flat_code(const ImageView& map,
                           const std::map<std::string, std::string>& metadata) {
     check_map(map);
-    if (const auto said = metadata.find("relief:flat"); said != metadata.end()) {
-        if (said->second == "127.5" || said->second == "32767.5") return FlatCode::half;
-        if (said->second == "128" || said->second == "32768") return FlatCode::middle;
-    }
-    return FlatCode::half;
+    return read_description(metadata).flat.value_or(FlatCode::half);
 }
 
 std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format) {
-    return {{"relief:content", "normal map, tangent space"},
-            {"relief:green", enum_name(format.green)},
-            {"relief:flat", zero_code(format)}};
+    MapDescription description;
+    description.kind = MapKind::normal;
+    description.green = format.green;
+    description.flat = format.flat;
+    description.color_space = ColorSpace::data;
+    return write_description(description, format.bits);
 }
 
 namespace {

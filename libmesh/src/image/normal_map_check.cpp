@@ -13,6 +13,7 @@
 
 #include "image/map_statistics.h"
 #include "parallel.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -137,9 +138,11 @@ bool are_tangent_normals(const MapStatistics& all) {
            std::abs(all.mean.y) <= 0.2;
 }
 
-/// Returns whether the vectors have unit length and point in all directions. Colors of unit length
-/// do not.
+/// Returns whether the vectors have unit length and point in all directions, which colors of about
+/// unit length do not. Vectors of exact unit length may all face one side.
 bool are_object_normals(const MapStatistics& all) {
+    constexpr double exact_rms = 0.02;
+    if (all.lengths.rms_deviation <= exact_rms && all.vectors > 0) return true;
     return all.lengths.rms_deviation <= 0.12 && glm::length(all.mean) <= 0.6 &&
            all.share(all.upwards) <= 0.98;
 }
@@ -197,6 +200,15 @@ Meaning meaning_of(const ImageView& map, FlatCode flat) {
         consider(other);
     }
     return best;
+}
+
+/// Returns the content of normals whose space is stated: those of an object that is nearly flat
+/// look like normals in tangent space.
+MapContent with_stated_space(MapContent judged, const MapDescription& stated) {
+    const bool has_object_axes =
+        stated.kind == MapKind::object_normal || stated.kind == MapKind::world_normal;
+    return judged == MapContent::tangent_normals && has_object_axes ? MapContent::object_normals
+                                                                    : judged;
 }
 
 /// Returns one channel of a map, for the statistics of height maps.
@@ -282,31 +294,25 @@ void find_texels(const NormalMapCheck& check, const MapStatistics& all, FoundCon
 
 /// Returns whether flat texels have 127 although the file says that zero is 128. The opposite case
 /// cannot be detected: maps with zero at 127.5 have 128 in flat texels too.
-bool contradicts_flat_code(const ImageView& map,
-                           const std::map<std::string, std::string>& metadata) {
-    return metadata.contains("relief:flat") &&
-           detect_flat_code(map, metadata) == FlatCode::middle && flat_evidence(map).is_half();
+bool contradicts_flat_code(const ImageView& map, const MapDescription& stated) {
+    return stated.flat == FlatCode::middle && flat_evidence(map).is_half();
 }
 
 void find_conventions(const ImageView& map, const NormalMapCheck& check,
-                      const std::map<std::string, std::string>& metadata, const MapStatistics& all,
+                      const MapDescription& stated, const MapStatistics& all,
                       FoundConditions& found) {
     using enum MapCondition;
     const bool has_slopes =
         (check.content == MapContent::tangent_normals || check.content == MapContent::xy_normals) &&
         !(all.constant[0] && all.constant[1]);
     if (has_slopes) {
-        const auto said = metadata.find("relief:green");
-        const bool says_up = said != metadata.end() && said->second == "up";
-        const bool says_down = said != metadata.end() && said->second == "down";
-        found.if_so((check.green.green == Green::down && says_up) ||
-                        (check.green.green == Green::up && says_down),
+        found.if_so(stated.green && check.green.green && check.green.green != stated.green,
                     green_contradicted);
         found.if_so(check.green.green == Green::down, green_down);
         found.if_so(!check.green.green, green_unknown);
     }
     if (has_directions(check.content))
-        found.if_so(contradicts_flat_code(map, metadata), flat_contradicted);
+        found.if_so(contradicts_flat_code(map, stated), flat_contradicted);
 }
 
 void find_channels(const ImageView& map, const NormalMapCheck& check, const MapStatistics& all,
@@ -365,31 +371,42 @@ void look_at_surface(const ImageView& map, SampleMeaning meaning, const MapStati
 
 }  // namespace
 
+MapContent judged_content(const ImageView& map, FlatCode flat) {
+    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.channels == 1) return MapContent::gray;
+    const Meaning meaning = meaning_of(map, flat);
+    if (meaning.content != MapContent::other) return meaning.content;
+    NormalMapCheck check;
+    look_at_surface(map, meaning.samples, map_statistics(map, meaning.samples), check);
+    return check.content;
+}
+
 NormalMapCheck check_normal_map(const ImageView& map,
                                 const std::map<std::string, std::string>& metadata,
-                                std::string_view color_tag) {
+                                std::string_view color_tag, std::optional<MapContent> assumed) {
     if (map.empty()) throw InvalidInput("an empty image holds no normals");
     NormalMapCheck check;
     FoundConditions found(check);
     look_at_channels(map, check);
+    const MapDescription stated = read_description(metadata);
     if (map.channels == 1) {
         check.content = MapContent::gray;
         found.if_so(true, MapCondition::not_normals);
         return check;
     }
     if (map.channels >= 3) {
-        check.flat =
-            contradicts_flat_code(map, metadata) ? FlatCode::half : detect_flat_code(map, metadata);
+        check.flat = contradicts_flat_code(map, stated) ? FlatCode::half
+                                                        : stated.flat.value_or(FlatCode::half);
     }
     const Meaning meaning = meaning_of(map, check.flat);
-    check.content = meaning.content;
+    check.content = assumed.value_or(with_stated_space(meaning.content, stated));
     check.curve = meaning.samples.curve;
     const MapStatistics all = map_statistics(map, meaning.samples);
     measure_lengths(map, meaning.samples, all, check);
     look_at_surface(map, meaning.samples, all, check);
     find_meaning(check, meaning.samples, all, map.channels, !color_tag.empty(), found);
     find_texels(check, all, found);
-    find_conventions(map, check, metadata, all, found);
+    find_conventions(map, check, stated, all, found);
     find_channels(map, check, all, found);
     return check;
 }

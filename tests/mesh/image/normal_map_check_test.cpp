@@ -180,12 +180,36 @@ TEST(NormalMapCheck, TellsObjectSpaceXyGreyAndColours) {
     EXPECT_TRUE(check_normal_map(xy).has(z_missing));
     EXPECT_EQ(check_normal_map(xy).green.green, Green::up);
 
+    // Normals of a plane that faces x are no colors.
+    Image side = map_from(hilly_normals(64, 64, 0.5));
+    for (std::size_t i = 0; i < side.sample_count(); i += 3)
+        std::swap(side.as<std::uint8_t>()[i], side.as<std::uint8_t>()[i + 2]);
+    EXPECT_EQ(check_normal_map(side).content, MapContent::object_normals);
+
     EXPECT_EQ(check_normal_map(test::rough(32, 32)).content, MapContent::gray);
     Image colors = make_image(64, 64, 3, 8, ColorSpace::data);
     Random random(1);
     for (std::uint8_t& sample : colors.as<std::uint8_t>())
         sample = static_cast<std::uint8_t>(256.0 * random.unit());
     EXPECT_THAT(conditions_of(check_normal_map(colors)), testing::ElementsAre(not_normals));
+}
+
+TEST(NormalMapCheck, AStatedOrAssumedContentWinsOverTheTexels) {
+    const Image map = map_from(hilly_normals(64, 64, 0.5));
+    EXPECT_EQ(judged_content(map), MapContent::tangent_normals);
+    EXPECT_EQ(check_normal_map(map, {{"relief:content", "normal map, object space"}}).content,
+              MapContent::object_normals);
+    EXPECT_EQ(check_normal_map(map, {}, {}, MapContent::object_normals).content,
+              MapContent::object_normals);
+    Image colors = make_image(64, 64, 3, 8, ColorSpace::data);
+    Random random(1);
+    for (std::uint8_t& sample : colors.as<std::uint8_t>())
+        sample = static_cast<std::uint8_t>(256.0 * random.unit());
+    EXPECT_EQ(judged_content(colors), MapContent::other);
+    EXPECT_FALSE(check_normal_map(colors, {}, {}, MapContent::tangent_normals)
+                     .has(MapCondition::not_normals));
+    EXPECT_EQ(judged_content(make_image(9, 9, 1, 8, ColorSpace::data)), MapContent::gray);
+    EXPECT_EQ(judged_content(make_image(9, 9, 3, 8, ColorSpace::data)), MapContent::gray);
 }
 
 TEST(NormalMapCheck, CountsTexelsThatAreNoNormals) {

@@ -293,7 +293,8 @@ TEST(NormalMap, FlatTexelsHaveCodesOnlyWhereOnePairOfCodesPrevails) {
 TEST(NormalMap, MetadataSaysWhatTheMapHoldsAndIsUnderstoodAgain) {
     EXPECT_THAT(normal_map_metadata({16, Green::down, FlatCode::middle}),
                 UnorderedElementsAre(Pair("relief:content", "normal map, tangent space"),
-                                     Pair("relief:green", "down"), Pair("relief:flat", "32768")));
+                                     Pair("relief:green", "down"), Pair("relief:flat", "32768"),
+                                     Pair("relief:color-space", "data")));
     EXPECT_EQ(normal_map_metadata({16, Green::up, FlatCode::half}).at("relief:flat"), "32767.5");
     EXPECT_EQ(normal_map_metadata({8, Green::up, FlatCode::middle}).at("relief:flat"), "128");
     EXPECT_EQ(normal_map_metadata({32, Green::up, FlatCode::half}).at("relief:flat"), "0.5");

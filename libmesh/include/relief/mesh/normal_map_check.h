@@ -142,13 +142,22 @@ struct NormalMapCheck {
     [[nodiscard]] bool has_problem() const;
 };
 
+/// Judges the content of a map by at most 2^18 regularly spaced texels. Only if these are no
+/// normals of about unit length, all texels are examined for the slopes of a surface.
+///
+/// \param map  any number of channels and bits
+/// \return the same as in check_normal_map() without an assumption
+/// \throws InvalidInput if the image is empty
+MapContent judged_content(const ImageView& map, FlatCode flat = FlatCode::half);
+
 /// Checks a map for all conditions. The map is not changed.
 ///
 /// \param map  any number of channels and bits; it is read in place, one channel at a time is
-/// copied \param metadata  text entries of its file; "relief:green" and "relief:flat" are compared
-/// with
-///         the texels
+///         copied
+/// \param metadata  text entries of its file; "relief:green" and "relief:flat" are compared with
+///         the texels, and a stated space of the normals wins over the one that they seem to have
 /// \param color_tag  the result of color_tag() for its file (image_file.h)
+/// \param assumed  a content that is not judged by the texels
 /// \throws InvalidInput if the image is empty
 ///
 /// Conditions that require a surface (green, alpha) are checked only for tangent-space normals. The
@@ -156,7 +165,8 @@ struct NormalMapCheck {
 /// [Frankot and Chellappa 1988]; here it is only measured.
 NormalMapCheck check_normal_map(const ImageView& map,
                                 const std::map<std::string, std::string>& metadata = {},
-                                std::string_view color_tag = {});
+                                std::string_view color_tag = {},
+                                std::optional<MapContent> assumed = std::nullopt);
 
 /// Converts all conditions, or those of one severity, to findings.
 Report to_report(const NormalMapCheck& check, std::optional<Severity> severity = std::nullopt);

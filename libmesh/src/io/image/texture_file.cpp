@@ -22,6 +22,7 @@
 #include "io/image/row_codec.h"
 #include "io/image/texture_container.h"
 #include "large_memory.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 
@@ -468,9 +469,8 @@ Image read_normal_map_image(const std::filesystem::path& file, Report& report) {
     Image image = read_image(file, ImageUse::data);
     if (image.channels != 2 || !is_texture_extension(lower_extension(file))) return image;
     const std::map<std::string, std::string> metadata = read_image_info(file).metadata;
-    const auto flat = metadata.find("relief:flat");
-    const bool is_middle = flat != metadata.end() && flat->second == "32768";
-    return with_rebuilt_z(image, is_middle ? FlatCode::middle : FlatCode::half, report);
+    const std::optional<FlatCode> flat = read_description(metadata).flat;
+    return with_rebuilt_z(image, flat.value_or(FlatCode::half), report);
 }
 
 GpuTexture read_texture(const std::filesystem::path& file) {

@@ -24,6 +24,7 @@
 #include "io/maps/height_bands.h"
 #include "parallel.h"
 #include "relief/mesh/height_map.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 
@@ -330,14 +331,14 @@ void make_band(BandSource& source, const BumpOptions& options, const BumpFileFor
 
 std::map<std::string, std::string> metadata_of(const BumpFileFormat& format) {
     std::map<std::string, std::string> metadata = format.metadata;
+    MapDescription description = read_description(normal_map_metadata(format.normals));
     if (format.content == BumpContent::slope_moments) {
-        metadata["relief:content"] = "slope moments";
-        metadata["relief:green"] = enum_name(format.normals.green);
-        return metadata;
+        description.kind = MapKind::slope_moments;
+        description.flat.reset();
     }
-    metadata.merge(normal_map_metadata(format.normals));
-    if (format.xy_only) metadata["relief:channels"] = "xy";
-    if (format.alpha == MapAlpha::height) metadata["relief:alpha"] = "height";
+    description.xy_only = format.xy_only;
+    if (format.alpha == MapAlpha::height) description.alpha = AlphaContent::height;
+    metadata.merge(write_description(description, format.normals.bits));
     return metadata;
 }
 
