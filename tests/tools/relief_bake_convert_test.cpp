@@ -125,7 +125,10 @@ TEST(ConvertCommand, GreenIsDetectedFromTheSlopesOnRequest) {
         EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max,
                   degrees_of_16_bit);
     }
-    write_image(workplace / "flat.png", make_image(64, 64, 3, 8, ColorSpace::data));
+    Image flat = make_image(64, 64, 3, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < flat.sample_count(); ++i)
+        flat.as<std::uint8_t>()[i] = i % 3 == 2 ? 255 : 128;
+    write_image(workplace / "flat.png", flat);
     const ProgramResult refused =
         workplace.run("relief-bake convert flat.png out/n.png --input-green auto --green up");
     EXPECT_EQ(refused.exit_code, 1);

@@ -14,6 +14,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/statistics.h"
+#include "support/images.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -354,6 +355,43 @@ TEST(MeshBakeTextures, ColorsAreThoseOfMaterialsOrOfAFileOrNone) {
     EXPECT_EQ(color("--high-color none"), (std::vector<int>{255, 255, 255}));
     EXPECT_EQ(color("--high-color color.png"), (std::vector<int>{188, 188, 255}));
     EXPECT_EQ(workplace.run(strict_line + "--high-color none").exit_code, 2);
+}
+
+TEST(LayerCoding, AlphaIsTheOpacityOfTexelsThatAreFilled) {
+    const std::vector<float> values(9, 1.0F);
+    const std::vector<float> opacity = {0.5F, 0.25F, 1.0F};
+    const std::vector<TexelState> states = {TexelState::baked, TexelState::padded,
+                                            TexelState::empty};
+    const std::vector<std::byte> bytes =
+        encode_layer(values, states, {LayerKind::color, 8, 1.0}, true, 0, IgnoredReport(), opacity);
+    ASSERT_EQ(bytes.size(), 12U);
+    EXPECT_EQ(static_cast<int>(bytes[3]), 128);
+    EXPECT_EQ(static_cast<int>(bytes[7]), 64);
+    EXPECT_EQ(static_cast<int>(bytes[11]), 0);
+}
+
+TEST(MeshBakeTextures, TransparentMaterialsGiveColorsWithAlpha) {
+    const Workplace workplace;
+    write_models(workplace);
+    const auto baked = [&](const std::string& options) {
+        const ProgramResult result =
+            workplace.run(strict_line + "--color-map out/k.png --high-normal-map none " + options);
+        EXPECT_EQ(result.exit_code, 0) << result.error << result.out;
+        return texel<std::uint8_t>(workplace, "out/k.png", 5);
+    };
+    using Bytes = std::vector<std::uint8_t>;
+    write_image(workplace / "color.png", test::image_of<std::uint8_t>(4, {188, 188, 255, 128}));
+    // An opaque material has no alpha, whatever its texture holds.
+    EXPECT_EQ(baked(""), (Bytes{188, 137, 137}));
+    workplace.write("high.mtl", "newmtl stone\nKd 1 0.5 0.25\nd 0.5\nmap_Kd color.png\n");
+    EXPECT_EQ(baked(""), (Bytes{188, 137, 137, 64}));
+    EXPECT_EQ(read_image_info(workplace / "out/k.png").metadata.at("relief:alpha"), "opacity");
+    EXPECT_EQ(baked("--background transparent"), (Bytes{188, 137, 137, 64}));
+    EXPECT_EQ(baked("--high-color none"), (Bytes{255, 255, 255}));
+    workplace.write("high.mtl", "newmtl stone\nKd 1 0.5 0.25\nmap_Kd color.png\nmap_d color.png\n");
+    EXPECT_EQ(baked(""), (Bytes{188, 137, 137, 128}));
+    workplace.write("high.mtl", "newmtl stone\nKd 1 0.5 0.25\n");
+    EXPECT_EQ(baked("--high-color color.png"), (Bytes{188, 188, 255, 128}));
 }
 
 }  // namespace

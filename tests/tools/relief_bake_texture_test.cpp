@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs relief-bake convert with textures as output and input: formats, levels, errors, limits.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -107,6 +108,47 @@ TEST(ConvertToTexture, CheckStatesTheErrorOfEachLevelAgainstTheExactMap) {
     const ProgramResult other = workplace.run("relief-bake check map.png --exact small.png");
     EXPECT_EQ(other.exit_code, 1);
     EXPECT_THAT(other.error, HasSubstr("map.png: has 20 x 12 texels, but small.png has 1 x 1"));
+}
+
+/// The mean error of level 0 that `relief-bake check` prints.
+double mean_error(const Workplace& workplace, const std::string& words) {
+    const ProgramResult result = workplace.run("relief-bake check " + words + " --json");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return json::parse(result.out)["files"][0]["exact"]["levels"][0]["mean"].get<double>();
+}
+
+TEST(CheckExact, AnUnknownDirectionOfGreenIsThatOfTheOtherMap) {
+    const Workplace workplace;
+    write_waves(workplace, "map.png");
+    const double right = [&] {
+        run_texture(workplace, "map.png out/m.ktx2");
+        return mean_error(workplace, "out/m.ktx2 --exact map.png");
+    }();
+    EXPECT_LT(right, 1.0);
+    // The same codes in a file that states nothing: its green may be up or down.
+    write_image(workplace / "silent.png", read_image(workplace / "map.png", ImageUse::data));
+    for (const char* const words :
+         {"--input-green up", "--input-green down", "--input-green up --green down",
+          "--input-green down --green up"}) {
+        for (const char* const file : {"out/a.ktx2", "out/a.tif"}) {
+            run_texture(workplace, fmt::format("silent.png {} {}", file, words));
+            const double error = mean_error(workplace, std::string(file) + " --exact silent.png");
+            EXPECT_LT(error, right + 0.01) << file << " " << words;
+        }
+    }
+    // A file that states its direction against a texture that does not.
+    run_texture(workplace, "map.png out/a.dds --green down");
+    EXPECT_LT(mean_error(workplace, "out/a.dds --exact map.png"), right + 0.01);
+    EXPECT_THAT(workplace.run("relief-bake check out/a.dds --exact map.png").out,
+                HasSubstr("compared with inverted green"));
+    // Neither states it: they are compared as they are, and the result says that they may differ.
+    EXPECT_GT(mean_error(workplace, "out/a.dds --exact silent.png"), 5.0);
+    EXPECT_THAT(workplace.run("relief-bake check out/a.dds --exact silent.png").out,
+                HasSubstr("fit better with inverted green, but none states its direction"));
+    EXPECT_LT(mean_error(workplace, "out/a.dds --exact silent.png --input-green down"),
+              right + 0.01);
+    // Both state it: a wrong direction is an error of the map.
+    EXPECT_GT(mean_error(workplace, "out/a.dds --exact map.png --input-green up"), 5.0);
 }
 
 TEST(ConvertToTexture, FormatsDifferInError) {

@@ -94,6 +94,46 @@ TEST_F(WriteInto, ReplacesTheMapsOfLowItselfAndShowsThemAsTheyAre) {
     EXPECT_THAT(refused.error, HasSubstr("has KHR_texture_transform, which would move the baked"));
 }
 
+TEST_F(WriteInto, TransparentColorsStayTransparent) {
+    place_.write("high.obj",
+                 "mtllib high.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl glass\n"
+                 "f 1 2 3 4\n");
+    place_.write("high.mtl", "newmtl glass\nKd 1 0.5 0.25\nd 0.25\n");
+    const std::string line =
+        "relief-bake mesh out/high.gltf low.obj out/n.png --size 16 --color-map out/c.png "
+        "--write-into ";
+    ASSERT_EQ(place_.run("relief-mesh process high.obj out/high.gltf").exit_code, 0);
+    const auto alpha_of = [&](const std::string& model) {
+        const json material = root(model)["materials"][0];
+        return std::pair(material.value("alphaMode", "OPAQUE"), material.value("alphaCutoff", 0.5));
+    };
+    // An opaque material becomes transparent like those of the high model, and says so.
+    ProgramResult result = place_.run(line + "out/low.gltf");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("1 x opaque material with transparent baked colors (material "
+                                      "0): gets the alpha mode BLEND"));
+    EXPECT_EQ(alpha_of("out/low.gltf"), std::pair(std::string("BLEND"), 0.5));
+    EXPECT_EQ(read_image(place_ / "out/c.png", ImageUse::color).channels, 4);
+    EXPECT_EQ(place_.run("relief-mesh check out/low.gltf --strict").exit_code, 0);
+    // One that is transparent already keeps its mode.
+    result = place_.run(line + "out/low.gltf");
+    EXPECT_EQ(result.out.find("opaque material"), std::string::npos);
+    // Cutouts stay cutouts.
+    json high = root("out/high.gltf");
+    high["materials"][0]["alphaMode"] = "MASK";
+    high["materials"][0]["alphaCutoff"] = 0.125;
+    place_.write("out/high.gltf", high.dump());
+    ASSERT_EQ(place_.run(line + "out/mask.gltf").exit_code, 0);
+    EXPECT_EQ(alpha_of("out/mask.gltf"), std::pair(std::string("MASK"), 0.125));
+    // Opaque materials change nothing.
+    high["materials"][0].erase("alphaMode");
+    high["materials"][0].erase("alphaCutoff");
+    place_.write("out/high.gltf", high.dump());
+    ASSERT_EQ(place_.run(line + "out/opaque.gltf").exit_code, 0);
+    EXPECT_EQ(alpha_of("out/opaque.gltf"), std::pair(std::string("OPAQUE"), 0.5));
+    EXPECT_EQ(read_image(place_ / "out/c.png", ImageUse::color).channels, 3);
+}
+
 TEST_F(WriteInto, EachMaterialGetsItsMap) {
     place_.write("low.obj",
                  "mtllib low.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"

@@ -104,10 +104,49 @@ void check_baked(const MaterialRequest& request, const GltfDocument& document, s
                                   what, set),
                       "change one of them");
     }
-    const bool is_white = glm::vec3(view.base_color) == glm::vec3(1.0F);
+    const bool is_white = request.alpha ? view.base_color == glm::vec4(1.0F)
+                                        : glm::vec3(view.base_color) == glm::vec3(1.0F);
     if (map.slot == GltfTextureSlot::base_color && !is_white) {
         report.add("base color factor of a material with baked colors", "material", material,
                    "multiplies them");
+    }
+}
+
+/// The kinds of maps that a slot accepts.
+std::vector<MapKind> accepted_kinds(GltfTextureSlot slot) {
+    switch (slot) {
+        case GltfTextureSlot::normal:
+            return {MapKind::normal};
+        case GltfTextureSlot::metallic_roughness:
+            return {MapKind::packed};
+        case GltfTextureSlot::occlusion:
+            return {MapKind::occlusion, MapKind::packed};
+        default:
+            return {MapKind::color};
+    }
+}
+
+/// Checks that a map is what glTF prescribes for its slot. A damaged image is an error here, not in
+/// a renderer.
+void check_slot(const MaterialMap& map, const AssumedKinds& assumed) {
+    const std::vector<MapKind> accepted = accepted_kinds(map.slot);
+    const MapDescription stated = read_description(check_kind(map.file, accepted, assumed));
+    if (std::ranges::count(assumed, accepted.front()) > 0) return;
+    const auto refuse = [&](bool is_wrong, const char* problem, const char* option) {
+        if (!is_wrong) return;
+        throw failure(map.file, fmt::format("has {}, as its metadata say", problem),
+                      fmt::format("convert it with relief-bake convert {} OUT.png {}",
+                                  quoted(map.file), option));
+    };
+    if (map.slot == GltfTextureSlot::normal) {
+        refuse(stated.green == Green::down, "green down, but glTF has green up", "--flip green");
+        refuse(stated.flat == FlatCode::middle, "zero at 128, but glTF decodes zero at 127.5",
+               "--zero-code 127.5");
+        refuse(stated.xy_only, "only x and y, but glTF needs z", "--rebuild-z rg");
+    }
+    if (stated.kind == MapKind::packed && stated.detail == "unity") {
+        throw failure(map.file, "is packed for Unity, as its metadata say",
+                      "pack it with relief-bake pack --for gltf");
     }
 }
 
@@ -117,7 +156,7 @@ void store_in_material(GltfDocument& document, std::size_t material, const Mater
     const GltfImageStorage storage =
         request.embeds || is_glb ? GltfImageStorage::embedded : GltfImageStorage::external;
     for (const MaterialMap& map : maps) {
-        read_image_info(map.file);  // A damaged image is an error here, not in a renderer.
+        check_slot(map, request.assumed);
         if (request.are_baked) check_baked(request, document, material, map, report);
         document.set_texture(material, map.slot, map.file, storage, report);
         if (map.slot != GltfTextureSlot::normal) continue;
@@ -134,6 +173,22 @@ GltfDocument read_model_for_maps(const MaterialRequest& request, Report& report)
     if (auto* document = std::get_if<GltfDocument>(&model)) return std::move(*document);
     return about(request.input,
                  [&] { return GltfDocument::from_mesh(std::get<MeshFile>(model), report); });
+}
+
+/// Makes materials show the alpha of their baked colors. If one of them is not opaque, the author
+/// of the model has decided about all.
+void set_alpha(GltfDocument& document, const std::vector<std::size_t>& materials,
+               const BakedAlpha& alpha, Report& report) {
+    const std::vector<GltfMaterial> before = document.view().materials;
+    const bool is_opaque = std::ranges::all_of(
+        materials, [&](std::size_t i) { return before[i].alpha_mode == AlphaMode::opaque; });
+    if (!is_opaque) return;
+    for (const std::size_t material : materials) {
+        document.set_alpha_mode(material, alpha.mode, alpha.cutoff);
+        report.add("opaque material with transparent baked colors", "material", material,
+                   fmt::format("gets the alpha mode {}",
+                               alpha.mode == AlphaMode::mask ? "MASK" : "BLEND"));
+    }
 }
 
 bool has_normal_map(const StoredMaterial& material) {
@@ -186,8 +241,10 @@ MaterialResult store_maps(const MaterialRequest& request, Stages& stages) {
     about(request.input, [&] {
         for (const MaterialMaps& maps : request.materials) {
             bool is_new = false;
-            for (const std::size_t material :
-                 chosen_materials(document, request, maps.material, is_new)) {
+            const std::vector<std::size_t> chosen =
+                chosen_materials(document, request, maps.material, is_new);
+            if (request.alpha) set_alpha(document, chosen, *request.alpha, report);
+            for (const std::size_t material : chosen) {
                 store_in_material(document, material, request, maps.maps, report);
                 result.materials.push_back(
                     {names_of(document.view().materials)[material], is_new, maps.maps});

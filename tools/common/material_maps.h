@@ -10,10 +10,18 @@
 #include <vector>
 
 #include "common/command.h"
+#include "common/map_kind.h"
 #include "common/summary.h"
 #include "relief/mesh/model.h"
 
 namespace relief::tools {
+
+/// The alpha mode of a material with a baked base color.
+struct BakedAlpha {
+    AlphaMode mode = AlphaMode::blend;
+    float cutoff = 0.5F;
+    bool operator==(const BakedAlpha&) const = default;
+};
 
 struct MaterialMap {
     GltfTextureSlot slot = GltfTextureSlot::normal;
@@ -39,6 +47,9 @@ struct MaterialRequest {
     /// tangents, without a transform, and the scale of normals becomes 1.
     bool are_baked = false;
     std::optional<double> normal_scale;
+    /// The baked base color has alpha. If all materials that get it are opaque, they get this mode.
+    std::optional<BakedAlpha> alpha;
+    AssumedKinds assumed;
 };
 
 struct StoredMaterial {

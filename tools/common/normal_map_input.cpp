@@ -20,14 +20,6 @@
 
 namespace relief::tools {
 
-std::optional<Green> recorded_green(const std::map<std::string, std::string>& metadata) {
-    const auto entry = metadata.find("relief:green");
-    if (entry == metadata.end()) return std::nullopt;
-    if (entry->second == "up") return Green::up;
-    if (entry->second == "down") return Green::down;
-    return std::nullopt;
-}
-
 namespace {
 
 std::string green_text(const MapInputOptions& options, const InputMap& map) {
@@ -41,9 +33,9 @@ std::string green_text(const MapInputOptions& options, const InputMap& map) {
 std::string zero_text(const MapInputOptions& options, const InputMap& map) {
     if (options.is_signed) return "zero is 0 (given)";
     if (map.info.bits == 32) return "zero is 0.5";
-    const char* source = options.flat                           ? "given"
-                         : map.metadata.contains("relief:flat") ? "from its metadata"
-                                                                : "the default of glTF";
+    const char* source = options.flat                          ? "given"
+                         : read_description(map.metadata).flat ? "from its metadata"
+                                                               : "the default of glTF";
     return fmt::format("zero is {} of 255 ({})", enum_name(map.flat), source);
 }
 
@@ -105,7 +97,36 @@ void check_channels(const std::filesystem::path& file, int channels) {
                   "relief-bake bump converts height maps");
 }
 
+void check_map_kind(const std::filesystem::path& file, const MapInputOptions& options,
+                    const InputMap& map) {
+    if (options.needs_z) require_z(file, map);
+    const MapInput input = {file, options.accepted, map.info.metadata};
+    if (check_stated_kind(input, options.assumed) || !options.judges_texels) return;
+    if (!map.image.empty()) return check_judged_kind(input, map.image);
+    Image sample = read_sample(file);
+    if (options.is_signed) remove_signs(sample);
+    check_judged_kind(input, sample);
+}
+
 }  // namespace
+
+AddedOption add_green_choice(CLI::App& app, const std::string& name, MapInputOptions& input,
+                             const std::string& description) {
+    Choices<std::optional<Green>> choices = {{"auto", std::nullopt}};
+    for (const auto& [word, green] : enum_choices<Green>())
+        choices.emplace_back(word, green);
+    return add_value(app, name, "up|down|auto", description,
+                     [&input, choices](const std::string& subject, const std::string& text) {
+                         input.green = parse_choice(subject, text, choices);
+                         input.detects_green = !input.green;
+                     });
+}
+
+void require_z(const std::filesystem::path& file, const InputMap& map) {
+    if (map.info.channels < 3 || !read_description(map.info.metadata).xy_only) return;
+    throw failure(file, "has only x and y, as its metadata say",
+                  "compute z with relief-bake convert --rebuild-z rg");
+}
 
 InputMap read_normal_map(const std::filesystem::path& file, const MapInputOptions& options) {
     return open_normal_map(file, options, std::numeric_limits<std::size_t>::max());
@@ -132,7 +153,8 @@ InputMap open_normal_map(const std::filesystem::path& file, const MapInputOption
         });
     }
     map.metadata = map.info.metadata;
-    map.green = options.green ? options.green : recorded_green(map.metadata);
+    check_map_kind(file, options, map);
+    map.green = options.green ? options.green : read_description(map.metadata).green;
     if (options.detects_green) map.green = detected_green(file, map.image);
     if (options.flat) {
         map.flat = *options.flat;

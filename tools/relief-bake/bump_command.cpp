@@ -14,6 +14,7 @@
 #include <string>
 
 #include "commands.h"
+#include "common/map_kind.h"
 #include "common/material_maps.h"
 #include "common/options.h"
 #include "common/summary.h"
@@ -55,6 +56,7 @@ struct BumpRequest {
     bool xy_only = false;
     MapAlpha alpha = MapAlpha::none;
     MapOutputOptions output;
+    AssumedKinds assumed;
 };
 
 /// The library's options, except for those that are chosen from the map.
@@ -116,10 +118,26 @@ std::vector<int> available_depths(const BumpRequest& request, const Job& job) {
     return depths;
 }
 
+/// The share of texels above which colors or partial alpha are noticed.
+constexpr double min_share = 0.01;
+
+/// Checks that the file is a height map. A channel of alpha may be the heights of any map, and a
+/// channel of colors or packed maps confirms that it is one.
+/// \throws FileError
+void check_height_map(const Job& job, const BumpRequest& request, const HeightMapFile& map) {
+    if (request.channel == HeightChannel::alpha) return;
+    MapInput input = {job.input, {MapKind::height}, map.info().metadata};
+    if (request.channel)
+        input.accepted.insert(input.accepted.end(), {MapKind::color, MapKind::packed});
+    const bool is_gray =
+        map.info().channels < 3 || (!map.is_streamed() && map.map().colored_share <= min_share);
+    if (!check_stated_kind(input, request.assumed) && !is_gray)
+        check_judged_kind(input, read_sample(job.input));
+}
+
 /// Reports what the heights leave out: color differences and partial alpha.
 void report_channels(const BumpRequest& request, const HeightMapFile& map,
                      const HeightMapFile::Survey& survey, Report& report) {
-    constexpr double min_share = 0.01;
     if (request.channel) return;
     const bool is_streamed = map.is_streamed();
     const double colored = is_streamed ? survey.colored_share : map.map().colored_share;
@@ -347,6 +365,7 @@ BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& 
                 job.input, {request.channel.value_or(HeightChannel::mean), request.ignore_alpha});
         });
         conversion.input = map.info();
+        check_height_map(job, request, map);
         conversion.is_streamed = map.is_streamed();
         conversion.transparent = map.map().transparent_count();
         choose_from_map(map, job, request, stages, conversion);
@@ -608,6 +627,7 @@ void add_height_options(CLI::App& app, BumpRequest& request) {
                "The height of a color texel; luminance is computed from decoded sRGB. Grayscale "
                "images accept mean, luminance and red, which are the same. Default: mean.")
         .group(group);
+    add_assume_option(app, request.assumed, {MapKind::height}).group(group);
     add_switch(app, "--ignore-alpha", request.ignore_alpha,
                "Use the heights of transparent texels. Default: texels with alpha 0 become flat, "
                "and their colors do not affect the texels around them.")
@@ -752,6 +772,7 @@ MaterialResult write_into_model(const WriteIntoOptions& write_into, const Job& j
     request.materials.push_back({write_into.material, {{GltfTextureSlot::normal, job.output}}});
     request.embeds = write_into.embed;
     request.normal_scale = write_into.scale;
+    request.assumed = {MapKind::normal};  // The options were checked before the conversion.
     return store_maps(request, stages);
 }
 

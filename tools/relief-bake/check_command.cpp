@@ -34,6 +34,7 @@ struct CheckedMap {
     int channels = 0;
     int bits = 0;
     std::string color_tag;  ///< Empty: the file has no color tag.
+    MapDescription stated;  ///< By its metadata.
     bool is_baked = false;  ///< Its file has the record of a bake.
     NormalMapCheck check;
     double milliseconds = 0.0;  ///< Of the check, without reading.
@@ -64,13 +65,20 @@ struct CheckedMap {
 
 /// Reads and checks an image.
 /// \param green  the expected direction of green; absent: that of the file's metadata
-CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> green) {
+CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> green,
+                     const AssumedKinds& assumed) {
     CheckedMap map;
     map.file = file;
     try {
         const Image image = read_normal_map_image(file);
         std::map<std::string, std::string> metadata = read_image_info(file).metadata;
+        map.stated = read_description(metadata);
         if (green) metadata["relief:green"] = enum_name(*green);
+        std::optional<MapContent> content;
+        if (!assumed.empty()) {
+            content = assumed.back() == MapKind::normal ? MapContent::tangent_normals
+                                                        : MapContent::object_normals;
+        }
         map.is_baked = metadata.contains("relief:bake");
         map.color_tag = color_tag(file);
         map.width = image.width;
@@ -78,8 +86,8 @@ CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> gre
         map.channels = image.channels;
         map.bits = image.bits();
         Stages stages(true);
-        map.check =
-            stages.run("check", [&] { return check_normal_map(image, metadata, map.color_tag); });
+        map.check = stages.run(
+            "check", [&] { return check_normal_map(image, metadata, map.color_tag, content); });
         map.milliseconds = stages.milliseconds("check");
     } catch (const FileError& error) {
         map.error = error.what();
@@ -137,6 +145,26 @@ const char* describe(MapContent content) {
         default:
             return "not normals: colors, or several masks";
     }
+}
+
+/// "a normal map in tangent space, green up, zero is 127.5 of 255"; empty if nothing is stated.
+std::string describe(const MapDescription& stated) {
+    std::vector<std::string> parts;
+    if (stated.kind) parts.emplace_back(map_kind_info(*stated.kind).phrase);
+    if (stated.green) parts.push_back(fmt::format("green {}", enum_name(*stated.green)));
+    if (stated.flat) parts.push_back(fmt::format("zero is {} of 255", enum_name(*stated.flat)));
+    if (stated.xy_only) parts.emplace_back("x and y only");
+    if (stated.color_space && *stated.color_space != ColorSpace::data)
+        parts.push_back(*stated.color_space == ColorSpace::srgb ? "sRGB" : "linear light");
+    if (stated.alpha) parts.push_back(fmt::format("{} in alpha", enum_name(*stated.alpha)));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+Json json_of(const MapDescription& stated) {
+    Json json = Json::object();
+    for (const auto& [key, text] : write_description(stated, 8))
+        json[key.substr(key.find(':') + 1)] = text;
+    return json;
 }
 
 /// "mean 0.975, RMS deviation from 1: 0.048, 95.3 % within 0.1"
@@ -294,6 +322,7 @@ Summary summary_of(const CheckedMap& map, bool has_models) {
                 {{"content", name_of(check.content, contents)},
                  {"curve", name_of(check.curve, curves)},
                  {"color_tag", map.color_tag}});
+    summary.add("stated", describe(map.stated), {{"stated", json_of(map.stated)}});
     summary.add("lengths", if_normals(describe(check.lengths)),
                 {{"lengths", lengths_json(check.lengths)}});
     summary.add("decoded", if_normals(is_curved ? describe(check.lengths_uncurved) : ""),
@@ -488,11 +517,11 @@ Summary summary_of(const SurfaceCheck& check) {
 
 // The check of a map against an exact one.
 
-Summary summary_of(const std::filesystem::path& exact, const std::vector<LevelError>& levels) {
+Summary summary_of(const std::filesystem::path& exact, const ExactComparison& comparison) {
     std::vector<std::string> lines;
     Json list = Json::array();
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        const LevelError& level = levels[i];
+    for (std::size_t i = 0; i < comparison.levels.size(); ++i) {
+        const LevelError& level = comparison.levels[i];
         lines.push_back(level_text(i, level));
         list.push_back({{"width", level.width},
                         {"height", level.height},
@@ -501,9 +530,22 @@ Summary summary_of(const std::filesystem::path& exact, const std::vector<LevelEr
                         {"p99", level.error.p99},
                         {"max", level.error.max}});
     }
+    if (comparison.inverts_exact) {
+        lines.emplace_back(
+            "compared with inverted green: only one of the maps states its direction, and so they "
+            "fit");
+    }
+    if (comparison.may_be_inverted) {
+        lines.emplace_back(
+            "the maps fit better with inverted green, but none states its direction (give "
+            "--input-green)");
+    }
     Summary summary;
     summary.add("exact", lines,
-                {{"exact", {{"file", exact.string()}, {"levels", std::move(list)}}}});
+                {{"exact",
+                  {{"file", exact.string()},
+                   {"levels", std::move(list)},
+                   {"inverted_green", comparison.inverts_exact}}}});
     return summary;
 }
 
@@ -513,6 +555,7 @@ struct CheckOptions {
     std::vector<std::filesystem::path> files;
     std::optional<std::filesystem::path> exact;
     std::optional<Green> green;
+    MapInputOptions input;
     bool json = false;
     bool strict = false;
     GeneralOptions general;
@@ -529,23 +572,28 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
     Verdicts verdicts;
     Json files = Json::array();
     std::optional<ExactMap> exact;
-    if (options.exact) exact = read_exact_map(*options.exact);
+    if (options.exact) exact = read_exact_map(*options.exact, options.input.assumed);
+    MapInputOptions input = options.input;
+    if (!input.green && !input.detects_green) input.green = options.green;
     for (const std::filesystem::path& file : options.files) {
-        const CheckedMap map = stages.run("check", "check " + file.string(),
-                                          [&] { return check_map(file, options.green); });
+        const CheckedMap map = stages.run("check", "check " + file.string(), [&] {
+            return check_map(file, options.green, input.assumed);
+        });
         Summary summary = summary_of(map, options.surface.is_wanted());
         bool is_sound = map.is_sound();
         if (options.surface.is_wanted() && map.error.empty()) {
             SurfaceCheckRequest request = options.surface;
             request.verify.map = file;
-            request.verify.input.green = options.green;
+            request.bake.textures.assumed = input.assumed;
+            request.verify.input = input;
+            // The check itself reports the kind.
+            request.verify.input.assumed = {MapKind::normal};
             const SurfaceCheck surface = check_surface(app, request, stages);
             is_sound = is_sound && surface.map.problems.empty();
             summary.add_part("surface", summary_of(surface));
         }
         if (exact && map.error.empty()) {
-            summary.add_part(
-                "", summary_of(exact->file, errors_of_levels(file, *exact, options.green)));
+            summary.add_part("", summary_of(exact->file, compare_levels(file, *exact, input)));
         }
         ++(!map.error.empty() ? verdicts.unreadable
            : is_sound         ? verdicts.sound
@@ -574,6 +622,12 @@ Command add_map_check_command(CLI::App& tool) {
     add_choice(app, "--green", options->green, enum_choices<Green>(),
                "Expected direction of the green channel; slopes that contradict it are a problem. "
                "Default: from the file's metadata, if it has an entry.");
+    add_green_choice(app, "--input-green", options->input,
+                     "Direction of the green channel of MAPS for --exact and --high: up (OpenGL), "
+                     "down (DirectX), or detected from the slopes (auto). Default: --green, else "
+                     "from the file's metadata, else up. A map whose direction is not known is "
+                     "compared with --exact so that they fit.");
+    add_assume_option(app, options->input.assumed, {MapKind::normal, MapKind::object_normal});
     add_path(app, "--exact", options->exact,
              "State the error of each mip level against this map, which has the same size: the "
              "16-bit or float map from which a texture was made.");
@@ -581,12 +635,13 @@ Command add_map_check_command(CLI::App& tool) {
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers of "
         "files), words (the documentation), files [file, sound, error or: width, height, channels, "
-        "bits, content, curve, color_tag, lengths and lengths_uncurved {mean, rms_deviation, "
+        "bits, content, stated {content, green, flat, channels, color-space, alpha}, curve, "
+        "color_tag, lengths and lengths_uncurved {mean, rms_deviation, "
         "within}, green {is, correlation, deviation, confidence, scale} or null, zero_code, seams "
         "[x, y], bits_used, alpha_correlation, trouble (problems) and remarks (notes) [kind, "
         "element, count, first, meaning, remedy], unjudged (without the models) [kind, element, "
         "count, first], milliseconds, megapixels_per_second, exact {file, levels [width, height, "
-        "mean, rms, p99, max]}, surface "
+        "mean, rms, p99, max], inverted_green}, surface "
         "{baked, error and centre {rms, mean, p99, max, texels}, stages {share, rms}, worst, "
         "convention, trouble, remedies, ...}].");
     add_switch(app, "--strict", options->strict,

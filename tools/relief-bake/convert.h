@@ -83,6 +83,11 @@ struct ConvertRequest {
     AlphaChoice alpha = AlphaChoice::keep;
     MapOutputOptions output;
     TextureOptions texture;
+
+    /// Returns whether the output has the alpha of an input that has some.
+    [[nodiscard]] bool keeps_alpha() const {
+        return alpha == AlphaChoice::keep && !(rebuild_z && rebuild_z->x == 3);
+    }
 };
 
 /// The names of choices, for options and summaries.
@@ -123,7 +128,7 @@ struct MapConversion {
     NormalMapFormat format;
     std::optional<TextureEncoding> texture;  ///< Instead of `format`, if the file is a texture.
     std::optional<Green> green;              ///< Absent: unknown.
-    std::optional<std::string> content;      ///< The new "relief:content", if it changes.
+    std::optional<MapKind> kind;             ///< The new kind, if it changes.
     std::vector<WrittenLevel> levels;
     Findings findings;
 };
@@ -169,17 +174,28 @@ std::string level_text(std::size_t level, const LevelError& error);
 /// A map that others are compared with.
 struct ExactMap {
     std::filesystem::path file;
-    Image normals;  ///< y up; flat texels are exactly flat, as convert reads them.
+    Image normals;               ///< y up; flat texels are exactly flat, as convert reads them.
+    std::optional<Green> green;  ///< Of its metadata. Absent: `normals` are read with green up.
 };
-/// \throws FileError if the file cannot be read
-ExactMap read_exact_map(const std::filesystem::path& file);
+/// \throws FileError if the file cannot be read, or holds no normals
+ExactMap read_exact_map(const std::filesystem::path& file, const AssumedKinds& assumed);
+
+struct ExactComparison {
+    std::vector<LevelError> levels;
+    /// The direction of green is known for one of the maps only, and the errors are smaller if it
+    /// is the opposite in the other one: they are compared so.
+    bool inverts_exact = false;
+    /// The direction of green is unknown for both, and the errors would be smaller with opposite
+    /// ones.
+    bool may_be_inverted = false;
+};
 
 /// Compares the levels of a texture, or another map, with an exact map of the same size, whose
 /// levels are filtered as normals. The compared normals are those that shaders decode.
-/// \param green  of `file`; absent: that of its metadata, or else up
-/// \throws FileError if the file cannot be read, or the sizes differ
-std::vector<LevelError> errors_of_levels(const std::filesystem::path& file, const ExactMap& exact,
-                                         std::optional<Green> green);
+/// \param input  the conventions of `file`; absent: those of its metadata
+/// \throws FileError if the file cannot be read or holds no normals, or the sizes differ
+ExactComparison compare_levels(const std::filesystem::path& file, const ExactMap& exact,
+                               const MapInputOptions& input);
 
 /// The text entries of a texture with this direction of green.
 std::map<std::string, std::string> texture_metadata(Green green, TextureFormat format);

@@ -34,7 +34,7 @@ std::string format_text(const MapConversion& conversion) {
     if (conversion.green) return text;
     const std::string known = "green up";
     const std::size_t place = text.find(known);
-    const bool is_object_space = conversion.content == "normal map, object space";
+    const bool is_object_space = conversion.kind == MapKind::object_normal;
     return text.substr(0, place) + (is_object_space ? "object space" : "green unknown") +
            text.substr(place + known.size());
 }
@@ -168,25 +168,13 @@ glm::dvec2 parse_repeat(const std::string& subject, const std::string& text) {
     return {x, parse_number(subject, parts[1], range)};
 }
 
-/// Adds an option that accepts up, down or auto.
-AddedOption add_green(CLI::App& app, const std::string& name, MapInputOptions& input,
-                      const std::string& description) {
-    Choices<std::optional<Green>> choices = {{"auto", std::nullopt}};
-    for (const auto& [word, green] : enum_choices<Green>())
-        choices.emplace_back(word, green);
-    return add_value(app, name, "up|down|auto", description,
-                     [&input, choices](const std::string& subject, const std::string& text) {
-                         input.green = parse_choice(subject, text, choices);
-                         input.detects_green = !input.green;
-                     });
-}
-
 void add_input_options(CLI::App& app, ConvertRequest& request) {
     const std::string group = "Input";
-    add_green(app, "--input-green", request.input,
-              "Direction of the green channel of the input: up (OpenGL), down (DirectX), or "
-              "detected from the slopes like relief-bake check does (auto). Default: from the "
-              "file's metadata, else unknown; only --green and --to-object need it.")
+    add_green_choice(
+        app, "--input-green", request.input,
+        "Direction of the green channel of the input: up (OpenGL), down (DirectX), or "
+        "detected from the slopes like relief-bake check does (auto). Default: from the "
+        "file's metadata, else unknown; only --green and --to-object need it.")
         .group(group);
     add_choice(app, "--input-zero-code", request.input.flat, enum_choices<FlatCode>(),
                "The code that represents zero in the input; see --zero-code. Flat texels are read "
@@ -196,6 +184,7 @@ void add_input_options(CLI::App& app, ConvertRequest& request) {
                "Float samples of the input store the components n from -1 to 1. The output stores "
                "(n + 1) / 2.")
         .group(group);
+    add_assume_option(app, request.input.assumed, {MapKind::normal}).group(group);
     add_choice(app, "--rebuild-z", request.rebuild_z,
                Choices<XyChannels>{{"rg", XyChannels{0, 1}}, {"ag", XyChannels{3, 1}}},
                "Compute z from x and y, which are stored in red and green (rg) or in alpha and "
@@ -268,9 +257,10 @@ void add_detail_options(CLI::App& app, DetailOptions& detail) {
                   detail.repeat = parse_repeat(subject, text);
               })
         .group(group);
-    add_green(app, "--detail-green", detail.input,
-              "Direction of the green channel of the detail. Default: from its metadata, else that "
-              "of the base.")
+    add_green_choice(
+        app, "--detail-green", detail.input,
+        "Direction of the green channel of the detail. Default: from its metadata, else that "
+        "of the base.")
         .group(group);
     add_choice(app, "--detail-zero-code", detail.input.flat, enum_choices<FlatCode>(),
                "The code that represents zero in the detail. Default: as for --input-zero-code.")
@@ -383,6 +373,9 @@ void check_files(const Job& job, const ConvertRequest& request, InputByOutput& i
 
 ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& given) {
     ConvertRequest request = given;
+    request.input.judges_texels = !request.rebuild_z;
+    request.input.needs_z = false;  // Codes can be kept without z.
+    request.detail.input.assumed = request.input.assumed;
     apply_engine(request.output);
     check(app, request);
     MapWork work;

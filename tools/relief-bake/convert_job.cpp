@@ -17,6 +17,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/limits.h"
 #include "relief/mesh/map_convention.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normal_map_file.h"
 #include "relief/mesh/report.h"
@@ -296,15 +297,18 @@ Image encode_channel(const Image& values, int bits) {
 /// Writes the map, its mip levels and their roughness, and adds them to the result.
 class LevelWriter {
   public:
-    LevelWriter(const Job& job, const ConvertRequest& request,
-                const std::map<std::string, std::string>& input_metadata, Stages& stages,
-                Report& report, MapConversion& result)
+    LevelWriter(const Job& job, const ConvertRequest& request, const InputMap& input,
+                Stages& stages, Report& report, MapConversion& result)
         : job_(job),
           request_(request),
-          kept_(kept_metadata(input_metadata)),
+          kept_(kept_metadata(input.metadata)),
+          stated_(read_description(input.metadata)),
           stages_(stages),
           report_(report),
-          result_(result) {}
+          result_(result) {
+        if (input.info.channels == 4 && request.keeps_alpha()) alpha_ = stated_.alpha;
+        if (request.mips.lengths) alpha_ = AlphaContent::length;
+    }
 
     /// Encodes and writes the map, and with --mips all levels. Frees the field on the way.
     void write_field(NormalField& field) {
@@ -324,7 +328,7 @@ class LevelWriter {
 
     /// Converts and writes the map by rows.
     void write_by_rows(const NormalMapSource& source, NormalMapConversion conversion) {
-        conversion.metadata = metadata();
+        conversion.metadata = metadata(conversion.keeps_codes);
         conversion.write = write_options_of(request_.output, job_.output);
         const ConvertedMapFile converted =
             convert_normal_map_file(source, job_.output, conversion, report_,
@@ -386,9 +390,8 @@ class LevelWriter {
         written.roughness_file = file;
         written.mean_roughness = mean_of(roughness);
         stages_.run("write", [&] {
-            write(
-                file, encode_channel(roughness, result_.format.bits),
-                {{"relief:content", "roughness"}, {"relief:roughness", fmt::format("{:g}", base)}});
+            write(file, encode_channel(roughness, result_.format.bits),
+                  roughness_entries(result_.format.bits));
         });
     }
 
@@ -429,8 +432,7 @@ class LevelWriter {
         stages_.run("write", [&] { write_texture(job_.output, texture, options); });
         if (!request_.mips.roughness) return;
         const std::filesystem::path file = level_file(job_.output, 0, true);
-        roughness.metadata = {{"relief:content", "roughness"},
-                              {"relief:roughness", fmt::format("{:g}", *request_.mips.roughness)}};
+        roughness.metadata = roughness_entries(bits_of(roughness.format));
         stages_.run("write", [&] { write_texture(file, roughness, options); });
         for (WrittenLevel& level : result_.levels)
             level.roughness_file = file;
@@ -484,26 +486,40 @@ class LevelWriter {
         write_image(file, image, metadata, write_options_of(request_.output, file), report_);
     }
 
+    [[nodiscard]] std::map<std::string, std::string> roughness_entries(int bits) const {
+        std::map<std::string, std::string> entries =
+            write_description({.kind = MapKind::roughness, .color_space = ColorSpace::data}, bits);
+        entries["relief:roughness"] = fmt::format("{:g}", *request_.mips.roughness);
+        return entries;
+    }
+
     /// The input's metadata, with the entries that changed.
-    [[nodiscard]] std::map<std::string, std::string> metadata() const {
+    /// \param keeps_codes  z is still missing if the input lacks it
+    [[nodiscard]] std::map<std::string, std::string> metadata(bool keeps_codes = false) const {
         NormalMapFormat format = result_.format;
         format.green = result_.green.value_or(Green::up);
-        return with_kept_entries(normal_map_metadata(format));
+        MapDescription description = read_description(normal_map_metadata(format));
+        description.xy_only = keeps_codes && stated_.xy_only;
+        return with_kept_entries(description, format.bits);
     }
 
     [[nodiscard]] std::map<std::string, std::string> texture_entries(TextureFormat format) const {
-        return with_kept_entries(texture_metadata(result_.green.value_or(Green::up), format));
+        return with_kept_entries(
+            read_description(texture_metadata(result_.green.value_or(Green::up), format)),
+            bits_of(format));
     }
 
-    [[nodiscard]] std::map<std::string, std::string> with_kept_entries(
-        std::map<std::string, std::string> entries) const {
-        if (!result_.green) entries.erase("relief:green");
-        if (result_.content) entries["relief:content"] = *result_.content;
+    [[nodiscard]] std::map<std::string, std::string> with_kept_entries(MapDescription description,
+                                                                       int bits) const {
+        description.green = result_.green;
+        description.kind = result_.kind.value_or(stated_.kind.value_or(MapKind::normal));
+        description.alpha = alpha_;
+        std::map<std::string, std::string> entries = write_description(description, bits);
+        const auto is_described = [](const std::string& key) {
+            return std::ranges::count(description_keys(), key) > 0;
+        };
         for (const auto& [key, value] : kept_) {
-            if (key == "relief:content")
-                entries[key] = result_.content.value_or(value);
-            else if (key != "relief:green" && key != "relief:flat")
-                entries.emplace(key, value);
+            if (!is_described(key)) entries.emplace(key, value);
         }
         return entries;
     }
@@ -511,6 +527,8 @@ class LevelWriter {
     const Job& job_;
     const ConvertRequest& request_;
     std::map<std::string, std::string> kept_;
+    MapDescription stated_;              ///< By the input.
+    std::optional<AlphaContent> alpha_;  ///< Of the output, if it is known.
     Stages& stages_;
     Report& report_;
     MapConversion& result_;
@@ -608,8 +626,7 @@ Image decode_input(const ConvertRequest& request, const InputMap& input, MapConv
 void convert_floats(const ConvertRequest& request, InputMap& input, const AxisConversion& axes,
                     MapConversion& result, NormalField& field, Report& report) {
     field.normals = decode_input(request, input, result, report);
-    const bool alpha_is_x = request.rebuild_z && request.rebuild_z->x == 3;
-    if (input.image.channels >= 4 && !alpha_is_x && request.alpha == AlphaChoice::keep)
+    if (input.image.channels >= 4 && request.keeps_alpha())
         field.alpha = channel_of(input.image, 3);
     field.green = axes.green;
     input.image = Image{};
@@ -623,8 +640,8 @@ void convert_floats(const ConvertRequest& request, InputMap& input, const AxisCo
         field.note.clear();
     }
     result.green = field.green;
-    if (request.space.to_tangent) result.content = "normal map, tangent space";
-    if (field.is_object_space) result.content = "normal map, object space";
+    if (request.space.to_tangent) result.kind = MapKind::normal;
+    if (field.is_object_space) result.kind = MapKind::object_normal;
 }
 
 }  // namespace
@@ -669,10 +686,12 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
             format_of(request.output, job.output,
                       {.bits = result.bits_read, .green = Green::up, .flat = input.flat});
     }
-    LevelWriter writer(job, request, input.metadata, stages, report, result);
+    LevelWriter writer(job, request, input, stages, report, result);
     const NormalMapSource source = {job.input, input.image.empty() ? nullptr : &input.image,
                                     input.flat, request.input.is_signed};
-    if (!is_texture(job.output) && keeps_codes(request, input, result.format)) {
+    const bool decodes = is_texture(job.output) || !keeps_codes(request, input, result.format);
+    if (decodes && !request.rebuild_z) require_z(job.input, input);
+    if (!decodes) {
         about(job.input, [&] { convert_codes(request, input, source, axes, writer, result); });
     } else if (needs_whole_map(job, request)) {
         NormalField field;

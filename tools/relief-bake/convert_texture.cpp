@@ -9,6 +9,7 @@
 #include "common/options.h"
 #include "convert.h"
 #include "relief/mesh/block_compression.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/statistics.h"
 
@@ -78,8 +79,7 @@ std::vector<std::byte> encoded(const Image& normals, const std::optional<Image>&
 }
 
 /// Decodes the normals of a level of a texture.
-Image normals_of(const Image& level, TextureFormat format, Green green) {
-    const FlatCode flat = normal_format_of(format).flat;
+Image normals_of(const Image& level, FlatCode flat, Green green) {
     if (level.channels == 2) return decode_xy_map(level, {0, 1}, green, flat);
     return decode_normal_map(level, green, flat);
 }
@@ -90,7 +90,7 @@ Image decoded(const EncodedLevel& level, TextureFormat format, int width, int he
     texture.width = width;
     texture.height = height;
     texture.levels.push_back(level.bytes);
-    return normals_of(decode_texture_level(texture, 0), format, Green::up);
+    return normals_of(decode_texture_level(texture, 0), normal_format_of(format).flat, Green::up);
 }
 
 ErrorStats error_of(const Image& exact, const Image& result) {
@@ -177,31 +177,57 @@ std::string level_text(std::size_t level, const LevelError& error) {
                        error.error.max);
 }
 
-ExactMap read_exact_map(const std::filesystem::path& file) {
-    const InputMap map = read_normal_map(file, {});
-    return {file, decode_normal_map(map.image, map.green.value_or(Green::up), map.flat,
-                                    IgnoredReport(), FlatTexels::exact)};
+ExactMap read_exact_map(const std::filesystem::path& file, const AssumedKinds& assumed) {
+    MapInputOptions conventions;
+    conventions.assumed = assumed;
+    const InputMap map = read_normal_map(file, conventions);
+    return {file,
+            decode_normal_map(map.image, map.green.value_or(Green::up), map.flat, IgnoredReport(),
+                              FlatTexels::exact),
+            map.green};
 }
 
-std::vector<LevelError> errors_of_levels(const std::filesystem::path& file, const ExactMap& exact,
-                                         std::optional<Green> green) {
-    std::vector<Image> levels;
+namespace {
+
+/// The decoded levels of a texture or a map.
+struct DecodedLevels {
+    std::vector<Image> normals;
+    std::optional<Green> green;  ///< Absent: unknown, and read as up.
+};
+
+DecodedLevels decoded_levels(const std::filesystem::path& file, const MapInputOptions& input) {
+    DecodedLevels levels;
     if (is_texture(file)) {
         const GpuTexture texture = read_texture(file);
-        const Green direction =
-            green.value_or(recorded_green(texture.metadata).value_or(Green::up));
+        check_stated_kind({file, input.accepted, texture.metadata}, input.assumed);
+        const MapDescription stated = read_description(texture.metadata);
+        levels.green = input.green ? input.green : stated.green;
+        if (input.detects_green) levels.green = read_normal_map(file, input).green;
+        const FlatCode flat =
+            input.flat.value_or(stated.flat.value_or(normal_format_of(texture.format).flat));
         for (std::size_t i = 0; i < texture.levels.size(); ++i) {
-            levels.push_back(
-                normals_of(decode_texture_level(texture, i), texture.format, direction));
+            levels.normals.push_back(normals_of(decode_texture_level(texture, i), flat,
+                                                levels.green.value_or(Green::up)));
         }
-    } else {
-        MapInputOptions conventions;
-        conventions.green = green;
-        const InputMap given = read_normal_map(file, conventions);
-        levels.push_back(
-            decode_normal_map(given.image, given.green.value_or(Green::up), given.flat));
+        return levels;
     }
-    const Image& largest = levels.front();
+    const InputMap map = read_normal_map(file, input);
+    levels.green = map.green;
+    levels.normals.push_back(decode_normal_map(map.image, map.green.value_or(Green::up), map.flat));
+    return levels;
+}
+
+Image with_inverted_green(Image normals) {
+    map_normal_axes(normals, {{{0, false}, {1, true}, {2, false}}});
+    return normals;
+}
+
+}  // namespace
+
+ExactComparison compare_levels(const std::filesystem::path& file, const ExactMap& exact,
+                               const MapInputOptions& input) {
+    DecodedLevels levels = decoded_levels(file, input);
+    const Image& largest = levels.normals.front();
     if (largest.width != exact.normals.width || largest.height != exact.normals.height) {
         throw failure(
             file,
@@ -209,14 +235,26 @@ std::vector<LevelError> errors_of_levels(const std::filesystem::path& file, cons
                         exact.file.string(), exact.normals.width, exact.normals.height),
             "compare maps of the same size");
     }
-    std::vector<Image> means;
-    if (levels.size() > 1) means = normal_mip_levels(exact.normals);
-    std::vector<LevelError> errors;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        const Image& of_level = i == 0 ? exact.normals : means[i - 1];
-        errors.push_back({levels[i].width, levels[i].height, error_of(of_level, levels[i])});
+    ExactComparison result;
+    Image inverted;
+    if (!exact.green || !levels.green) {
+        // A texture has the green of its exact map, or the inverted one.
+        inverted = with_inverted_green(exact.normals);
+        const bool fits_inverted =
+            error_of(inverted, largest).mean < error_of(exact.normals, largest).mean;
+        const bool is_one_known = exact.green || levels.green;
+        result.inverts_exact = fits_inverted && is_one_known;
+        result.may_be_inverted = fits_inverted && !is_one_known;
     }
-    return errors;
+    const Image& compared = result.inverts_exact ? inverted : exact.normals;
+    std::vector<Image> means;
+    if (levels.normals.size() > 1) means = normal_mip_levels(compared);
+    for (std::size_t i = 0; i < levels.normals.size(); ++i) {
+        const Image& level = levels.normals[i];
+        const Image& of_level = i == 0 ? compared : means[i - 1];
+        result.levels.push_back({level.width, level.height, error_of(of_level, level)});
+    }
+    return result;
 }
 
 TextureEncoding choose_encoding(const TextureOptions& options, const Image& normals) {

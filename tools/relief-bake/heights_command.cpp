@@ -78,6 +78,7 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
     add_switch(app, "--input-signed", request.input.is_signed,
                "Float samples of the input store the components n from -1 to 1, not (n + 1) / 2.")
         .group(input);
+    add_assume_option(app, request.input.assumed, {MapKind::normal}).group(input);
     const std::string group = "Heights";
     add_choice(app, "--kernel", request.integration.kernel, enum_choices<Kernel>(),
                "The kernel with which relief-bake bump will reproduce the normals. central7 is the "
@@ -165,10 +166,13 @@ Image take_stored_heights(HeightsConversion& conversion) {
 }
 
 std::map<std::string, std::string> metadata_of(const HeightsConversion& conversion) {
-    return {{"relief:content", "height map"},
-            {"relief:strength", fmt::format("{:.9g}", conversion.strength)},
-            {"relief:kernel", enum_name(conversion.integration.kernel)},
-            {"relief:wrap", name_of(conversion.integration.wrap)}};
+    std::map<std::string, std::string> entries = {
+        {"relief:strength", fmt::format("{:.9g}", conversion.strength)},
+        {"relief:kernel", enum_name(conversion.integration.kernel)},
+        {"relief:wrap", name_of(conversion.integration.wrap)}};
+    entries.merge(write_description({.kind = MapKind::height, .color_space = ColorSpace::data},
+                                    conversion.bits));
+    return entries;
 }
 
 /// Reports a map that contains much that no height field has.
@@ -319,6 +323,7 @@ Command add_heights_command(CLI::App& tool) {
     CLI::App& app = add_subcommand(
         tool, "heights", "Converts tangent-space normal maps to height maps: the inverse of bump.");
     const auto options = std::make_shared<Options>();
+    options->request.input.accepted = {MapKind::normal};
     add_map_files(app, options->files, "normal map",
                   "The heights are those whose slopes fit the map best (least squares). The "
                   "summary shows how much of the map no height field can represent.",

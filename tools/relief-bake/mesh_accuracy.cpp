@@ -18,6 +18,7 @@
 #include "relief/mesh/bake_check.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 
@@ -151,11 +152,14 @@ double write_error_map(const std::filesystem::path& file, const std::vector<floa
     constexpr std::size_t rows_at_once = 256;
     const double brightest = rounded_up(p99);
     const bool is_picture = extension_of(file) == ".png";
-    const std::map<std::string, std::string> metadata = {
-        {"relief:content", is_picture ? "errors of normals as heat" : "errors of normals, degrees"},
-        {"relief:brightest", fmt::format("{:g}", brightest)}};
     const ImageShape shape = {map.width, map.height, is_picture ? 4 : 1, is_picture ? 8 : 32,
                               is_picture ? ColorSpace::srgb : ColorSpace::data};
+    MapDescription description = {.kind = MapKind::error,
+                                  .detail = is_picture ? "as heat" : "degrees",
+                                  .color_space = shape.color_space};
+    if (is_picture) description.alpha = AlphaContent::coverage;
+    std::map<std::string, std::string> metadata = write_description(description, shape.bits);
+    metadata["relief:brightest"] = fmt::format("{:g}", brightest);
     ImageRowWriter writer(file, shape, metadata);
     const std::size_t texels_at_once = rows_at_once * static_cast<std::size_t>(map.width);
     for (std::size_t first = 0; first < degrees.size(); first += texels_at_once) {

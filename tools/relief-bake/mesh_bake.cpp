@@ -197,15 +197,17 @@ std::vector<MaterialMap> material_maps(const MeshBakeRequest& request, const Map
 
 /// The request to store maps in the model of --write-into, which is made from the low model if it
 /// does not exist.
-MaterialRequest material_request(const MeshBakeRequest& request,
-                                 const std::vector<MapPlan>& plans) {
+MaterialRequest material_request(const MeshBakeRequest& request, const std::vector<MapPlan>& plans,
+                                 const std::optional<BakedAlpha>& alpha) {
     const std::filesystem::path& model = *request.write_into.model;
     const bool exists = std::filesystem::exists(model);
     MaterialRequest wanted;
     wanted.input = exists ? model : request.low;
     wanted.output = model;
     wanted.are_baked = true;
+    wanted.assumed = {MapKind::normal, MapKind::occlusion, MapKind::color};
     wanted.embeds = request.write_into.embed;
+    if (request.layers.has(LayerKind::color)) wanted.alpha = alpha;
     // A map of the whole low model belongs to all of its materials.
     wanted.all_materials = !exists || identity_of(model) == identity_of(request.low);
     for (const MapPlan& plan : plans) {
@@ -251,6 +253,7 @@ void describe_models(const MeshBakeRequest& request, const BakeModels& models, M
     bake.pairs = models.pairs;
     bake.unpaired = models.unpaired;
     bake.textures = models.textures.description();
+    bake.alpha = models.textures.alpha();
     bake.origin = models.origin;
     if (request.layers.has(LayerKind::height))
         bake.texel_size = mean_texel_size(models.low, request.size);
@@ -265,7 +268,7 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
     check_outputs(request, plans.maps, models.files);
     std::optional<MaterialRequest> materials;
     if (request.write_into.model) {
-        materials = material_request(request, plans.maps);
+        materials = material_request(request, plans.maps, models.textures.alpha());
         check_materials(*materials);
     }
     BakeOptions options = bake_options_of(request);
@@ -273,6 +276,7 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
     options.output_from_mesh = output_axes(request, models.world_from_low);
     options.map.layers.position_from_mesh[3] = glm::dvec4(models.origin, 1.0);
     options.materials = models.textures.materials();
+    options.map.layers.opacity = options.map.layers.colors && models.textures.alpha();
     options.cage = models.cage;
     std::optional<Baker> baker;
     stages.run("bake", [&] {
@@ -479,9 +483,10 @@ std::string layer_text(const WrittenLayer& layer) {
     std::string text =
         fmt::format("{}: {}, {}", layer.file.string(), layer_name(coding.kind),
                     coding.bits == 32 ? "float" : fmt::format("{} bit", coding.bits));
-    if (coding.bits == 32) return text;
-    if (coding.is_signed()) text += fmt::format(", {:.6g} to {:.6g}", -coding.range, coding.range);
-    if (coding.kind == LayerKind::color) text += ", sRGB";
+    if (coding.bits != 32 && coding.is_signed())
+        text += fmt::format(", {:.6g} to {:.6g}", -coding.range, coding.range);
+    if (coding.bits != 32 && coding.kind == LayerKind::color) text += ", sRGB";
+    if (layer.has_opacity) text += ", opacity in alpha";
     return text;
 }
 

@@ -35,7 +35,8 @@ struct MeshBake {
     std::vector<BakePair> pairs;  ///< As in BakeModels.
     std::vector<std::string> unpaired;
     NormalMapFormat format;
-    std::string textures;     ///< HighTextures::description()
+    std::string textures;             ///< HighTextures::description()
+    std::optional<BakedAlpha> alpha;  ///< HighTextures::alpha()
     double texel_size = 0.0;  ///< The mean side of a texel in the unit of the mesh; 0: unknown.
     std::vector<BakedMap> maps;
     BakeResult all;                          ///< Sums and extremes over all maps.

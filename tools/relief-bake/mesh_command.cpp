@@ -94,7 +94,7 @@ constexpr LayerInfo all_layers[] = {
      "Write the world positions of the points that rays hit."},
     {LayerKind::color, "--color-map",
      "Write the color of the high meshes: the product of vertex color, material color and "
-     "texture."},
+     "texture. If a material is transparent, the fourth channel is the opacity."},
 };
 
 const LayerInfo& layer_info(LayerKind kind) {
@@ -538,9 +538,9 @@ void add_fit_options(CLI::App& app, MeshBakeRequest& request, const std::string&
 
 void add_high_normal_map_option(CLI::App& app, HighTextureOptions& options) {
     add_high_texture_option(app, "--high-normal-map", options.normal_map,
-                            "Normal map of the high models, green up, which is added to their "
-                            "normals; or none. Default: those of their materials (glTF, MTL's "
-                            "norm).");
+                            "Normal map of the high models, green up unless its metadata say "
+                            "down, which is added to their normals; or none. Default: those of "
+                            "their materials (glTF, MTL's norm).");
 }
 
 void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& description) {
@@ -678,6 +678,8 @@ Command add_mesh_command(CLI::App& tool) {
     add_high_texture_option(app, "--high-color", request.textures.color,
                             "Color texture of the high models for --color-map; or none. Default: "
                             "those of their materials.");
+    add_assume_option(app, request.textures.assumed, {MapKind::normal, MapKind::color})
+        .group("High models");
     add_layer_options(app, request.layers);
     add_map_output_options(app, request.map);
     add_preview_options(app, request.preview);

@@ -22,6 +22,7 @@
 #include "common/options.h"
 #include "common/text.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/texel_coverage.h"
 
 namespace relief::tools {
@@ -384,8 +385,28 @@ double layer_range(LayerKind kind, const LayerOptions& options, const LayerBound
     }
 }
 
-std::map<std::string, std::string> layer_metadata(const LayerCoding& coding) {
-    std::map<std::string, std::string> metadata = {{"relief:content", layer_name(coding.kind)}};
+MapKind kind_of(LayerKind kind) {
+    switch (kind) {
+        case LayerKind::height:
+            return MapKind::height;
+        case LayerKind::occlusion:
+            return MapKind::occlusion;
+        case LayerKind::curvature:
+            return MapKind::curvature;
+        case LayerKind::position:
+            return MapKind::position;
+        case LayerKind::color:
+            break;
+    }
+    return MapKind::color;
+}
+
+/// \param alpha  the content of the alpha channel; absent: there is none
+std::map<std::string, std::string> layer_metadata(const LayerCoding& coding,
+                                                  std::optional<AlphaContent> alpha) {
+    std::map<std::string, std::string> metadata = write_description(
+        {.kind = kind_of(coding.kind), .color_space = coding.color_space(), .alpha = alpha},
+        coding.bits);
     if (coding.bits == 32 || !coding.is_signed()) return metadata;
     metadata["relief:range"] = fmt::format("{}", coding.range);
     metadata["relief:zero"] = fmt::format("{}", coding.zero_code());
@@ -394,12 +415,12 @@ std::map<std::string, std::string> layer_metadata(const LayerCoding& coding) {
 
 std::map<std::string, std::string> map_metadata(const MeshBakeRequest& request, const MapPlan& plan,
                                                 const NormalMapFormat& format) {
-    std::map<std::string, std::string> metadata = normal_map_metadata(format);
+    MapDescription description = read_description(normal_map_metadata(format));
+    if (request.bake.space == VectorSpace::object) description.kind = MapKind::object_normal;
+    if (request.bake.space == VectorSpace::world) description.kind = MapKind::world_normal;
+    if (request.background == Background::transparent) description.alpha = AlphaContent::coverage;
+    std::map<std::string, std::string> metadata = write_description(description, format.bits);
     metadata.merge(bake_metadata(request, plan));
-    if (request.bake.space == VectorSpace::object)
-        metadata["relief:content"] = "normal map, object space";
-    if (request.bake.space == VectorSpace::world)
-        metadata["relief:content"] = "normal map, world space";
     return metadata;
 }
 
@@ -436,8 +457,9 @@ std::vector<WrittenLayer> planned_layers(const MeshBakeRequest& request, const M
         const double range = layer_range(kind, request.layers, bounds);
         // If all values are 0, any range stores them.
         const bool is_usable = range > 0.0 && std::isfinite(range);
-        planned.push_back(
-            {plan.named(file), {kind, bits_of(request.layers, kind), is_usable ? range : 1.0}});
+        planned.push_back({plan.named(file),
+                           {kind, bits_of(request.layers, kind), is_usable ? range : 1.0},
+                           kind == LayerKind::color && layers.opacity});
     }
     return planned;
 }
@@ -445,6 +467,7 @@ std::vector<WrittenLayer> planned_layers(const MeshBakeRequest& request, const M
 struct MapWriter::Files {
     struct LayerFile {
         WrittenLayer layer;
+        bool has_alpha;
         ImageRowWriter rows;
     };
 
@@ -479,8 +502,9 @@ struct MapWriter::Files {
         const std::size_t first = width * static_cast<std::size_t>(rows.first_row);
         for (const auto& file : layers) {
             const LayerCoding& coding = file->layer.coding;
-            file->rows.write(encode_layer(layer_values(coding.kind, rows), rows.states, coding,
-                                          has_alpha, first, report));
+            file->rows.write(encode_layer(
+                layer_values(coding.kind, rows), rows.states, coding, file->has_alpha, first,
+                report, file->layer.has_opacity ? rows.opacity : std::span<float>()));
         }
     }
 };
@@ -500,13 +524,17 @@ MapWriter::MapWriter(const MeshBakeRequest& request, const MapPlan& plan,
                              write_options_of(request.map, plan.output)),
               {}});
     for (const WrittenLayer& layer : layers) {
-        const ImageShape layer_shape{
-            request.size.x, request.size.y,
-            static_cast<int>(layer.coding.channels()) + (has_alpha ? 1 : 0), layer.coding.bits,
-            layer.coding.color_space()};
+        const std::optional<AlphaContent> alpha = layer.has_opacity ? AlphaContent::opacity
+                                                  : has_alpha
+                                                      ? std::optional(AlphaContent::coverage)
+                                                      : std::nullopt;
+        const ImageShape layer_shape{request.size.x, request.size.y,
+                                     static_cast<int>(layer.coding.channels()) + (alpha ? 1 : 0),
+                                     layer.coding.bits, layer.coding.color_space()};
         files_->layers.push_back(std::make_unique<Files::LayerFile>(Files::LayerFile{
-            layer, ImageRowWriter(layer.file, layer_shape, layer_metadata(layer.coding),
-                                  layer_write_options(request.map, layer.file))}));
+            layer, alpha.has_value(),
+            ImageRowWriter(layer.file, layer_shape, layer_metadata(layer.coding, alpha),
+                           layer_write_options(request.map, layer.file))}));
     }
 }
 

@@ -93,6 +93,7 @@ std::string to_string(const BakeRecord& record);
 struct WrittenLayer {
     std::filesystem::path file;
     LayerCoding coding;
+    bool has_opacity = false;  ///< In alpha; only with colors.
 };
 
 /// The layers of a map. Ranges are those of the options, else the largest values that the bake can

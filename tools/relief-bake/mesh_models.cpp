@@ -9,13 +9,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 #include <variant>
 
 #include "common/file_jobs.h"
+#include "common/map_kind.h"
 #include "common/text.h"
 #include "relief/mesh/bake_check.h"
 #include "relief/mesh/execution.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/texture_file.h"
 
 namespace relief::tools {
 namespace {
@@ -116,9 +121,11 @@ std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& fi
     const std::string key = fmt::format("{} {}", file.string(), static_cast<int>(use));
     const auto known = images_.find(key);
     if (known != images_.end()) return known->second;
-    const auto added = std::make_shared<const Image>(read_image(file, use));
+    const auto added = std::make_shared<const Image>(
+        use == ImageUse::data ? read_normal_map_image(file) : read_image(file, use));
     images_[key] = added;
-    if (use == ImageUse::data) metadata_[added.get()] = read_image_info(file).metadata;
+    metadata_[added.get()] = read_image_info(file).metadata;
+    names_[added.get()] = file;
     return added;
 }
 
@@ -142,7 +149,8 @@ std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& mo
     }
     const auto added = std::make_shared<const Image>(read_image(bytes, name, use));
     images_[key] = added;
-    if (use == ImageUse::data) metadata_[added.get()] = read_image_info(bytes, name).metadata;
+    metadata_[added.get()] = read_image_info(bytes, name).metadata;
+    names_[added.get()] = name;
     return added;
 }
 
@@ -153,13 +161,49 @@ SurfaceTexture HighTextures::texture(const std::filesystem::path& model,
             texture.filter, texture.transform};
 }
 
-SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float scale) const {
+SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float scale,
+                                          const AssumedKinds& assumed) const {
     const Image& map = *texture.image;
-    SurfaceNormalMap result{texture, scale, Green::up, FlatCode::half, {}};
-    result.flat = detect_flat_code(map, metadata_.at(&map));
+    const MapInput input = {names_.at(&map), {MapKind::normal}, metadata_.at(&map)};
+    if (!check_stated_kind(input, assumed)) check_judged_kind(input, map);
+    const MapDescription stated = read_description(input.metadata);
+    SurfaceNormalMap result{
+        texture, scale, stated.green.value_or(Green::up), stated.flat.value_or(FlatCode::half), {}};
     if (result.flat == FlatCode::half) result.flat_codes = flat_texel_codes(map);
     return result;
 }
+
+SurfaceTexture HighTextures::color(const SurfaceTexture& texture,
+                                   const AssumedKinds& assumed) const {
+    const Image& map = *texture.image;
+    check_stated_kind({names_.at(&map), {MapKind::color}, metadata_.at(&map)}, assumed);
+    return texture;
+}
+
+void HighTextures::add_alpha(const BakedAlpha& alpha) {
+    if (!alpha_) alpha_ = alpha;
+    if (*alpha_ != alpha) alpha_ = BakedAlpha{AlphaMode::blend, alpha.cutoff};
+}
+
+namespace {
+
+/// Returns whether an image has alpha below 1 in any texel.
+bool has_transparency(const Image& image) {
+    const auto channels = static_cast<std::size_t>(image.channels);
+    if (channels != 2 && channels != 4) return false;
+    return std::visit(
+        [&]<typename Sample>(const std::vector<Sample>& samples) {
+            const Sample full =
+                std::is_floating_point_v<Sample> ? Sample{1} : std::numeric_limits<Sample>::max();
+            for (std::size_t i = channels - 1; i < samples.size(); i += channels) {
+                if (samples[i] < full) return true;
+            }
+            return false;
+        },
+        image.samples);
+}
+
+}  // namespace
 
 void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
                        const MapAppearance& appearance, const HighTextureOptions& options,
@@ -171,10 +215,16 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
         if (source.normal_texture && !options.normal_map) {
             material.normal_map =
                 normal_map(texture(file, appearance, *source.normal_texture, ImageUse::data),
-                           source.normal_scale);
+                           source.normal_scale, options.assumed);
             ++normal_maps_;
         }
-        if (with_colors && !options.color) material.color = glm::vec3(source.base_color);
+        if (with_colors && !options.color) {
+            material.color = glm::vec3(source.base_color);
+            if (source.alpha_mode != AlphaMode::opaque) {
+                material.opacity = source.base_color.w;
+                add_alpha({source.alpha_mode, source.alpha_cutoff});
+            }
+        }
         const bool has_texture = with_colors && !options.color && source.base_color_texture;
         const bool differs_in_texcoords =
             has_texture && source.normal_texture &&
@@ -184,7 +234,8 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
                        "material", i, "is left out");
         } else if (has_texture) {
             material.color_texture =
-                texture(file, appearance, *source.base_color_texture, ImageUse::color);
+                color(texture(file, appearance, *source.base_color_texture, ImageUse::color),
+                      options.assumed);
             ++color_textures_;
         }
         detail.materials.push_back(std::move(material));
@@ -196,11 +247,14 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
     const auto set_textures = [&](HighMaterial& material) {
         if (has_normal_map) {
             const SurfaceTexture texture{.image = image(*options.normal_map, ImageUse::data)};
-            material.normal_map = normal_map(texture, 1.0F);
+            material.normal_map = normal_map(texture, 1.0F, options.assumed);
         }
-        if (has_color)
-            material.color_texture =
-                SurfaceTexture{.image = image(*options.color, ImageUse::color)};
+        if (!has_color) return;
+        material.color_texture =
+            color({.image = image(*options.color, ImageUse::color)}, options.assumed);
+        if (!has_transparency(*material.color_texture->image)) return;
+        material.opacity = 1.0F;
+        add_alpha({AlphaMode::blend, 0.5F});
     };
     for (HighMaterial& material : detail.materials)
         set_textures(material);

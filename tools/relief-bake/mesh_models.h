@@ -40,6 +40,10 @@ class HighTextures {
 
     [[nodiscard]] const std::vector<HighMaterials>& materials() const { return materials_; }
 
+    /// The alpha mode for a material with the baked colors: mask if all transparent materials have
+    /// the same cutoff. Absent: all are opaque.
+    [[nodiscard]] const std::optional<BakedAlpha>& alpha() const { return alpha_; }
+
     /// "1 normal map added to their normals, 2 color textures"; empty if there are none.
     [[nodiscard]] std::string description() const;
 
@@ -50,11 +54,19 @@ class HighTextures {
     std::shared_ptr<const Image> image(const std::filesystem::path& file, ImageUse use);
     SurfaceTexture texture(const std::filesystem::path& model, const MapAppearance& appearance,
                            const GltfTexture& texture, ImageUse use);
-    [[nodiscard]] SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale) const;
+    /// \throws FileError if it is no normal map in tangent space
+    [[nodiscard]] SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale,
+                                              const AssumedKinds& assumed) const;
+    /// \throws FileError if the image states another kind than colors
+    [[nodiscard]] SurfaceTexture color(const SurfaceTexture& texture,
+                                       const AssumedKinds& assumed) const;
+    void add_alpha(const BakedAlpha& alpha);
 
     std::vector<HighMaterials> materials_;
     std::map<std::string, std::shared_ptr<const Image>> images_;  ///< By file, index and use.
     std::map<const Image*, std::map<std::string, std::string>> metadata_;
+    std::map<const Image*, std::filesystem::path> names_;  ///< Files, or images of models.
+    std::optional<BakedAlpha> alpha_;
     std::size_t normal_maps_ = 0;
     std::size_t color_textures_ = 0;
 };

@@ -31,6 +31,7 @@ struct SampleChoice {
 /// A file for all high models, or an empty path for none. Absent: those of their materials.
 struct HighTextureOptions {
     std::optional<std::filesystem::path> normal_map, color;
+    AssumedKinds assumed;
 };
 
 /// The layers that are written beside the normal map.

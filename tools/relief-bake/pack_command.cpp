@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "commands.h"
+#include "common/map_kind.h"
 #include "common/options.h"
 #include "common/summary.h"
 #include "engines.h"
@@ -36,6 +37,7 @@ struct PackRequest {
     std::optional<ChannelInput> occlusion, roughness, smoothness, metalness;
     Engine engine = Engine::gltf;
     int bits = 8;
+    AssumedKinds assumed;
     ReportOptions report;
     GeneralOptions general;
 };
@@ -113,6 +115,13 @@ std::string to_string(const ChannelSource& source) {
     const auto& file = std::get<ChannelFile>(source.input);
     return fmt::format("{} {}{}{}", name_of(source.content), inverted, file.file.string(),
                        file.channel ? fmt::format(", {}", "rgba"[*file.channel]) : "");
+}
+
+/// Returns the kinds of maps that may hold a property. A packed map has several.
+std::vector<MapKind> accepted_kinds(PackedChannel content) {
+    if (content == PackedChannel::occlusion) return {MapKind::occlusion, MapKind::packed};
+    if (content == PackedChannel::metalness) return {MapKind::packed};
+    return {MapKind::roughness, MapKind::packed};
 }
 
 /// Returns whether red, green and blue are equal in every texel.
@@ -209,6 +218,7 @@ Packed pack(const PackRequest& request) {
             std::optional<Image> image;
             int from = 0;
             if (file != nullptr) {
+                check_kind(file->file, accepted_kinds(source.content), request.assumed);
                 image = read_image(file->file, ImageUse::data);
                 from = channel_to_read(*file, *image);
                 if (!first_file) {
@@ -275,7 +285,11 @@ ExitCode run_pack(const CLI::App& app, const PackRequest& request) {
     const Packed packed = stages.run("pack", [&] { return pack(request); });
     const std::string engine = enum_name(request.engine);
     stages.run("write", [&] {
-        write_image(request.output, packed.image, {{"relief:content", "packed maps, " + engine}});
+        write_image(
+            request.output, packed.image,
+            write_description(
+                {.kind = MapKind::packed, .detail = engine, .color_space = ColorSpace::data},
+                request.bits));
     });
     constexpr std::array names = {"red", "green", "blue", "alpha"};
     std::vector<std::string> lines;
@@ -318,6 +332,9 @@ void add_pack_options(CLI::App& app, PackRequest& request) {
     add_choice(app, "--bits", request.bits, Choices<int>{{"8", 8}, {"16", 16}},
                "Bits per channel. Default: 8.")
         .group("Output");
+    add_assume_option(app, request.assumed,
+                      {MapKind::occlusion, MapKind::roughness, MapKind::packed})
+        .group("Maps");
     add_report_options(app, request.report);
     add_general_options(app, request.general);
     set_examples(app, {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",

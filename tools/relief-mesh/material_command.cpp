@@ -37,6 +37,7 @@ struct MaterialCommand {
     bool embed = false;
     bool external = false;
     bool no_tangents = false;
+    AssumedKinds assumed;
     ReportOptions report;
     GeneralOptions general;
 };
@@ -48,6 +49,7 @@ MaterialRequest request_of(const MaterialCommand& command) {
     request.embeds = command.embed;
     request.adds_tangents = !command.no_tangents;
     request.normal_scale = command.scale;
+    request.assumed = command.assumed;
     request.materials.push_back({command.material, {}});
     const auto add = [&](GltfTextureSlot slot, const OptionalFile& file) {
         if (file) request.materials.front().maps.push_back({slot, *file});
@@ -112,6 +114,9 @@ void add_material_options(CLI::App& app, MaterialCommand& command) {
         .group(maps);
     add_path(app, "--emissive", command.emissive,
              "Emitted light in sRGB. A material that emits no light gets the emissive factor 1.")
+        .group(maps);
+    add_assume_option(app, command.assumed,
+                      {MapKind::normal, MapKind::color, MapKind::packed, MapKind::occlusion})
         .group(maps);
     const std::string place = "Where they are stored";
     add_value(app, "--material", "NAME",

@@ -22,6 +22,7 @@
 #include "relief/mesh/bump.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
 #include "relief/shade/reference.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
@@ -124,10 +125,13 @@ void add_normal_options(CLI::App& app, ViewOptions& options) {
         .group(maps_group);
     add_choice(app, "--green", options.green, enum_choices<Green>(),
                "Set the direction of the normal map's green channel: up (OpenGL, glTF) or down "
-               "(DirectX). Default: up.")
+               "(DirectX). Default: from the file's metadata, else up.")
         .group(maps_group);
     add_choice(app, "--normal-space", options.normal_space, enum_choices<NormalSpace>(),
-               "Set the space of the normal map's vectors. Default: tangent.")
+               "Set the space of the normal map's vectors. Default: from the file's metadata, else "
+               "tangent.")
+        .group(maps_group);
+    add_assume_option(app, options.assumed, {MapKind::normal, MapKind::height, MapKind::color})
         .group(maps_group);
     add_number(app, "--normal-scale", "S", options.normal_scale, {-100, 100, ""},
                "Multiply the slopes of normal maps, including those of the model. Default: the "
@@ -344,6 +348,19 @@ void set_normal_map(Scene& scene, const NormalMap& map) {
     }
 }
 
+/// Returns a normal map with the conventions of the options, else of its metadata.
+NormalMap normal_map_of_file(Scene& scene, const std::filesystem::path& file,
+                             const ViewOptions& options) {
+    const MapDescription stated = read_description(
+        check_kind(file, {MapKind::normal, MapKind::object_normal}, options.assumed));
+    NormalMap map;
+    map.texture = add_texture(scene, {file.string(), file});
+    map.green = options.green.value_or(stated.green.value_or(map.green));
+    map.space = options.normal_space.value_or(
+        stated.kind == MapKind::object_normal ? NormalSpace::object : map.space);
+    return map;
+}
+
 void set_bump_map(Scene& scene, const ViewOptions& options) {
     BumpMap map;
     map.texture = add_texture(scene, {options.height_map->string(), *options.height_map});
@@ -484,19 +501,17 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
     if (options.metallic_roughness) set_metallic_roughness(scene, *options.metallic_roughness);
     if (options.diffuse_map) {
         require_texcoords(scene, options, "--diffuse-map", notes);
+        check_kind(*options.diffuse_map, {MapKind::color}, options.assumed);
         set_diffuse_map(scene, *options.diffuse_map);
     }
     if (options.normal_map) {
         require_texcoords(scene, options, "--normal-map", notes);
         const std::filesystem::path& file = *options.normal_map;
-        NormalMap map;
-        map.texture = add_texture(scene, {file.string(), file});
-        map.green = options.green.value_or(map.green);
-        map.space = options.normal_space.value_or(map.space);
-        set_normal_map(scene, map);
+        set_normal_map(scene, normal_map_of_file(scene, file, options));
     }
     if (options.height_map) {
         require_texcoords(scene, options, "--height-map", notes);
+        check_kind(*options.height_map, {MapKind::height}, options.assumed);
         if (options.height_as == HeightUse::bump_map) {
             set_bump_map(scene, options);
         } else {

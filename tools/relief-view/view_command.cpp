@@ -32,6 +32,7 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "relief/shade/renderer.h"
@@ -425,12 +426,9 @@ void check_saved_maps(const ViewOptions& options) {
     if (!options.normal_map) return;
     refuse(options.normal_space && *options.normal_space != NormalSpace::tangent, option,
            "normals of glTF are in tangent space", "convert the map with relief-bake convert");
-    const auto metadata = read_image_info(*options.normal_map).metadata;
-    const auto stated = metadata.find("relief:green");
-    const bool is_down = options.green ? *options.green == Green::down
-                                       : stated != metadata.end() && stated->second == "down";
-    refuse(is_down, option, "glTF has green up",
-           "convert the map with relief-bake convert --flip green");
+    const MapDescription stated = read_description(read_image_info(*options.normal_map).metadata);
+    refuse(options.green.value_or(stated.green.value_or(Green::up)) == Green::down, option,
+           "glTF has green up", "convert the map with relief-bake convert --flip green");
 }
 
 /// Stores the maps of the command line in the saved model.
@@ -439,6 +437,9 @@ void save_maps(const ViewOptions& options) {
     request.input = request.output = *options.save_model;
     request.all_materials = true;
     request.normal_scale = options.normal_scale;
+    // The kinds were checked for the scene. A direction of green that is given is up.
+    request.assumed = options.assumed;
+    if (options.green) request.assumed.push_back(MapKind::normal);
     std::vector<MaterialMap> maps;
     if (options.normal_map) maps.push_back({GltfTextureSlot::normal, *options.normal_map});
     if (options.diffuse_map) maps.push_back({GltfTextureSlot::base_color, *options.diffuse_map});

@@ -21,6 +21,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/map_kind.h"
 #include "common/options.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
@@ -163,6 +164,7 @@ struct ViewOptions {
 
     std::optional<std::filesystem::path> normal_map;
     std::optional<float> normal_scale;
+    AssumedKinds assumed;
     std::optional<Green> green;
     std::optional<NormalSpace> normal_space;
     std::optional<TangentFrame> tangent_frame;

@@ -901,6 +901,7 @@ void add_appearance(const GltfView& view, const std::filesystem::path& model,
         scene.images.push_back(std::move(source));
     }
     scene.materials = materials_from(view, options, scene.images, report);
+    apply_stated_green(scene, report);
 }
 
 }  // namespace

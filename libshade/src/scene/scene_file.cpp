@@ -19,6 +19,7 @@
 #include "files.h"
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/texture_file.h"
 #include "scene/scene_parts.h"
@@ -69,6 +70,43 @@ FlatCode detected_flat_code(const ImageSource& source, const Image& image) {
     if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
         return detect_flat_code(image, read_image_info(std::span(**bytes), source.name).metadata);
     return detect_flat_code(image);
+}
+
+namespace {
+
+/// Returns the text entries of an image; none if it cannot be read, which the decoder reports.
+std::map<std::string, std::string> metadata_of(const ImageSource& source) {
+    try {
+        if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
+            return read_image_info(*file).metadata;
+        if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
+            return read_image_info(std::span(**bytes), source.name).metadata;
+    } catch (const FileError&) {
+    }
+    return {};
+}
+
+}  // namespace
+
+void apply_stated_green(Scene& scene, Report& report) {
+    std::map<std::size_t, bool> is_down;  // By image.
+    const auto apply = [&](std::optional<NormalMap>& map, std::size_t material) {
+        if (!map) return;
+        const std::size_t image = map->texture.image;
+        const auto [known, is_new] = is_down.try_emplace(image, false);
+        if (is_new && scene.images[image].fault.empty()) {
+            known->second = read_description(metadata_of(scene.images[image])).green == Green::down;
+        }
+        if (!known->second) return;
+        map->green = Green::down;
+        report.add("normal map that states green down", "material", material,
+                   "is drawn as it states; other programs expect green up in this file");
+    };
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        apply(scene.materials[i].normal_map, i);
+        if (auto& model = scene.materials[i].metallic_roughness)
+            apply(model->clearcoat_normal_map, i);
+    }
 }
 
 // Files are visited in order of name, so that messages do not depend on the file system.
@@ -225,6 +263,7 @@ Scene scene_from(MeshFile contents, const std::filesystem::path& file, const Sce
     for (std::size_t i = 0; i < contents.materials.size(); ++i) {
         scene.materials.push_back(material_from(contents.materials[i], i, images, report));
     }
+    apply_stated_green(scene, report);
     scene.meshes.push_back(
         with_frames(std::move(contents.mesh), frame_options(file, read), report).mesh);
     scene.instances.push_back({0, glm::mat4(1.0F), scene.meshes.front()->name});

@@ -39,6 +39,10 @@ inline bool is_finite(const glm::mat4& matrix) {
 /// \param owner  begins the message: "camera: "
 void check_field_of_view(const std::string& owner, float vertical_fov);
 
+/// Sets the green direction of normal maps whose files state that it is down. glTF and MTL mean up.
+/// \param report  counts these materials
+void apply_stated_green(Scene& scene, Report& report);
+
 /// Returns half of the height of the picture: in world units if the camera is orthographic, else on
 /// the plane at distance 1.
 inline double half_height(const Camera& camera) {

@@ -143,8 +143,8 @@ std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const ImageView& ma
 FlatCode detect_flat_code(const ImageView& map,
                           const std::map<std::string, std::string>& metadata = {});
 
-/// Returns text entries that describe a map: "relief:content", "relief:green" = "up" or "down",
-/// "relief:flat" = the code of zero: "128", "127.5", "32768", "32767.5", or "0.5" for float.
+/// Returns the text entries of a normal map in tangent space, as from write_description()
+/// (map_description.h): its content, green, code of zero and color space.
 std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format);
 
 // Applies per-texel operations to normals: axis permutations, reconstruction of z, length

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Decides the kind of a map and refuses maps of the wrong kind. The entries of a file win
+/// (map_description.h). Without them, the texels show only whether an image is clearly no normal
+/// map, or is one although heights are expected. --assume overrides both.
+/// Tests: tests/tools/map_kind_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/options.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/map_description.h"
+#include "relief/mesh/normal_map.h"
+
+namespace relief::tools {
+
+/// The kinds that --assume names. Files that are read as one of them are not examined.
+using AssumedKinds = std::vector<MapKind>;
+
+/// Adds --assume KIND. \param kinds  those as which the command reads files
+AddedOption add_assume_option(CLI::App& app, AssumedKinds& assumed, std::vector<MapKind> kinds);
+
+/// A map that a command reads.
+struct MapInput {
+    std::filesystem::path file;
+    /// The kinds that the command accepts. The first one is what --assume must name.
+    std::vector<MapKind> accepted;
+    std::map<std::string, std::string> metadata;
+};
+
+/// Images with fewer texels are not judged by them.
+inline constexpr int min_judged_texels = 64;
+
+/// Checks the kind that the file states.
+/// \return whether it is settled, because the file states a kind or it is assumed
+/// \throws FileError if it is not accepted; the message names the remedy
+bool check_stated_kind(const MapInput& input, const AssumedKinds& assumed);
+
+/// Reads eight evenly spaced bands of 32 rows, by which the kind is judged, or a small image as a
+/// whole. Textures of two channels get z. \throws FileError as read_image() does
+Image read_sample(const std::filesystem::path& file);
+
+/// Checks the kind that the texels show, for a file that does not state it.
+/// \param image  the samples of the file, or evenly spaced ones; floats are (n + 1) / 2
+/// \throws FileError if it is clearly not accepted
+void check_judged_kind(const MapInput& input, const ImageView& image);
+
+/// Checks the kind of a file that is not read otherwise. It is decoded only if it does not state
+/// its kind and that is judged by the texels. \return its text entries
+std::map<std::string, std::string> check_kind(const std::filesystem::path& file,
+                                              const std::vector<MapKind>& accepted,
+                                              const AssumedKinds& assumed);
+
+}  // namespace relief::tools
