@@ -348,11 +348,20 @@ void set_normal_map(Scene& scene, const NormalMap& map) {
     }
 }
 
+/// Checks the kind of a map. Whether a file is missing shows when it is drawn.
+/// \return what the file states
+MapDescription checked_map(const std::filesystem::path& file, const std::vector<MapKind>& accepted,
+                           const ViewOptions& options) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return {};
+    return read_description(check_kind(file, accepted, options.assumed));
+}
+
 /// Returns a normal map with the conventions of the options, else of its metadata.
 NormalMap normal_map_of_file(Scene& scene, const std::filesystem::path& file,
                              const ViewOptions& options) {
-    const MapDescription stated = read_description(
-        check_kind(file, {MapKind::normal, MapKind::object_normal}, options.assumed));
+    const MapDescription stated =
+        checked_map(file, {MapKind::normal, MapKind::object_normal}, options);
     NormalMap map;
     map.texture = add_texture(scene, {file.string(), file});
     map.green = options.green.value_or(stated.green.value_or(map.green));
@@ -501,7 +510,7 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
     if (options.metallic_roughness) set_metallic_roughness(scene, *options.metallic_roughness);
     if (options.diffuse_map) {
         require_texcoords(scene, options, "--diffuse-map", notes);
-        check_kind(*options.diffuse_map, {MapKind::color}, options.assumed);
+        checked_map(*options.diffuse_map, {MapKind::color}, options);
         set_diffuse_map(scene, *options.diffuse_map);
     }
     if (options.normal_map) {
@@ -511,7 +520,7 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
     }
     if (options.height_map) {
         require_texcoords(scene, options, "--height-map", notes);
-        check_kind(*options.height_map, {MapKind::height}, options.assumed);
+        checked_map(*options.height_map, {MapKind::height}, options);
         if (options.height_as == HeightUse::bump_map) {
             set_bump_map(scene, options);
         } else {
