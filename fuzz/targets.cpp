@@ -389,7 +389,7 @@ void effects(Bytes bytes) {
         scene.environment->lights = chance();
         scene.environment->intensity = unit();
     }
-    scene.tone_mapping = static_cast<ToneMapping>(values.next<std::uint8_t>() % 3);
+    scene.tone_mapping = static_cast<ToneMapping>(values.next<std::uint8_t>() % 6);
     validate(scene);
     const FramePlan plan = plan_effects(scene, FrameSettings{});
     for (const DrawPlan& draw : plan.draws) {

@@ -174,7 +174,8 @@ TEST(Completions, BashOffersCommandsOptionsAndWords) {
     EXPECT_EQ(bash_offers(workplace, "relief-bake bump --kernel sob"), "sobel3 sobel5\n");
     EXPECT_EQ(bash_offers(workplace, "relief-bake bump --destair"), "--destaircase\n");
     EXPECT_EQ(bash_offers(workplace, "relief-bake heights --destair"), "\n");
-    EXPECT_EQ(bash_offers(workplace, "relief-view --tone-mapping ''"), "none reinhard aces\n");
+    EXPECT_EQ(bash_offers(workplace, "relief-view --tone-mapping ''"),
+              "none reinhard aces khronos_neutral aces_hill aces_hill_boost\n");
     EXPECT_EQ(bash_offers(workplace, "relief-view --wiref"), "--wireframe\n");
     EXPECT_EQ(bash_offers(workplace, "relief-view --output --w"), "\n");
     EXPECT_EQ(bash_offers(workplace, "relief-view model"), "\n");

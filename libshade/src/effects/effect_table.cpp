@@ -368,6 +368,14 @@ Decision of_tone(Subject s, ToneMapping tone) {
                                                              : "the scene asks for another curve"};
 }
 
+template <ToneMapping Tone>
+EffectRow tone_row(const char* name) {
+    return {.effect = one_value<&F::tone_mapping, Tone>(name, not_srgb),
+            .decide = [](Subject s) { return of_tone(s, Tone); },
+            .choice = "the tone curve is the scene's choice",
+            .hidden_by = finishing_hidden_by};
+}
+
 Decision of_transmission(Subject s) {
     if (!is_physical(s)) return {false, s.name + " is Phong's model"};
     const MetallicRoughness& model = *s.material.metallic_roughness;
@@ -725,15 +733,11 @@ std::vector<EffectRow> picture_rows() {
                      fmt::format("the scene's exposure is {}", s.scene.exposure)};
          },
          .hidden_by = finishing_hidden_by},
-        {.effect =
-             one_value<&F::tone_mapping, ToneMapping::reinhard>("Reinhard tone mapping", not_srgb),
-         .decide = [](Subject s) { return of_tone(s, ToneMapping::reinhard); },
-         .choice = "the tone curve is the scene's choice",
-         .hidden_by = finishing_hidden_by},
-        {.effect = one_value<&F::tone_mapping, ToneMapping::aces>("ACES tone mapping", not_srgb),
-         .decide = [](Subject s) { return of_tone(s, ToneMapping::aces); },
-         .choice = "the tone curve is the scene's choice",
-         .hidden_by = finishing_hidden_by},
+        tone_row<ToneMapping::reinhard>("Reinhard tone mapping"),
+        tone_row<ToneMapping::aces>("ACES tone mapping"),
+        tone_row<ToneMapping::khronos_neutral>("Khronos neutral tone mapping"),
+        tone_row<ToneMapping::aces_hill>("ACES Hill tone mapping"),
+        tone_row<ToneMapping::aces_hill_boost>("boosted ACES Hill tone mapping"),
     };
 }
 

@@ -710,7 +710,10 @@ Steps coding_steps(By f) {
         {"tone",
          "vec3 toned(vec3 radiance) { return radiance; }",
          {{"tone.glsl#reinhard", f.tone_mapping == ToneMapping::reinhard},
-          {"tone.glsl#aces", f.tone_mapping == ToneMapping::aces}}},
+          {"tone.glsl#aces", f.tone_mapping == ToneMapping::aces},
+          {"tone.glsl#khronos_neutral", f.tone_mapping == ToneMapping::khronos_neutral},
+          {"tone.glsl#aces_hill", f.tone_mapping == ToneMapping::aces_hill},
+          {"tone.glsl#aces_hill_boost", f.tone_mapping == ToneMapping::aces_hill_boost}}},
     };
 }
 

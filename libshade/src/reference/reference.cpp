@@ -2,8 +2,8 @@
 // The reference picture, pixel by pixel: the hits of the ray through the center of a pixel are
 // shaded and composed front to back over the skybox, and radiance becomes a picture by exposure,
 // tone mapping and sRGB codes over the background. Linear light, in double; hard cases as in
-// shaders/README.md. Sources: [Porter and Duff 1984] (composition), [Narkowicz 2016] (the fit to
-// the film curve).
+// shaders/README.md. Sources: [Porter and Duff 1984] (composition), [Reinhard et al. 2002],
+// [Narkowicz 2016], [Hill 2017], [Khronos PBR Neutral] (tone curves).
 #include "relief/shade/reference.h"
 #include "scene/scene_parts.h"
 
@@ -353,12 +353,46 @@ Reference render_reference(const Scene& scene, const ReferenceSettings& settings
 
 namespace {
 
-double tone_mapped(double x, ToneMapping mapping) {
+/// Returns a fit to the ACES reference rendering and display transforms, in their own color space
+/// [Hill 2017].
+glm::dvec3 filmic(const glm::dvec3& x) {
+    const glm::dmat3 aces_from_srgb(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823,
+                                    0.01566, 0.83777);
+    const glm::dmat3 srgb_from_aces(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276,
+                                    -0.07367, -0.00605, 1.07602);
+    const glm::dvec3 v = aces_from_srgb * x;
+    return srgb_from_aces *
+           ((v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081));
+}
+
+/// Returns colors as they are up to a peak of 0.76, apart from the reflectance of dielectrics,
+/// which it takes away; brighter ones are compressed and lose their saturation [Khronos PBR
+/// Neutral].
+glm::dvec3 khronos_neutral(glm::dvec3 x) {
+    constexpr double start = 0.8 - 0.04;
+    constexpr double desaturation = 0.15;
+    const double darkest = std::min({x.r, x.g, x.b});
+    x -= darkest < 0.08 ? darkest - 6.25 * darkest * darkest : 0.04;
+    const double peak = std::max({x.r, x.g, x.b});
+    if (peak < start) return x;
+    constexpr double room = 1.0 - start;
+    const double compressed = 1.0 - room * room / (peak + room - start);
+    const double kept = 1.0 / (desaturation * (peak - compressed) + 1.0);
+    return glm::mix(glm::dvec3(compressed), x * (compressed / peak), kept);
+}
+
+glm::dvec3 tone_mapped(const glm::dvec3& x, ToneMapping mapping) {
     switch (mapping) {
         case ToneMapping::reinhard:
             return x / (1.0 + x);
         case ToneMapping::aces:
             return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+        case ToneMapping::khronos_neutral:
+            return khronos_neutral(x);
+        case ToneMapping::aces_hill:
+            return filmic(x);
+        case ToneMapping::aces_hill_boost:
+            return filmic(x / 0.6);
         case ToneMapping::none:
             break;
     }
@@ -369,10 +403,8 @@ double tone_mapped(double x, ToneMapping mapping) {
 glm::dvec3 shown(const glm::dvec3& radiance, const Scene& scene, OutputCoding output) {
     if (output == OutputCoding::linear) return limited(radiance, max_radiance);
     if (output == OutputCoding::clamped) return limited(radiance, 1.0);
-    glm::dvec3 light = limited(radiance * static_cast<double>(scene.exposure), max_radiance);
-    for (int i = 0; i < 3; ++i)
-        light[i] = std::min(tone_mapped(light[i], scene.tone_mapping), 1.0);
-    return light;
+    const glm::dvec3 light = limited(radiance * static_cast<double>(scene.exposure), max_radiance);
+    return limited(tone_mapped(light, scene.tone_mapping), 1.0);
 }
 
 /// Composes a color over the background; neither is multiplied by its alpha.

@@ -28,7 +28,7 @@ FeatureField second(const char* name) {
             }};
 }
 
-constexpr unsigned max_values = 4;
+constexpr unsigned max_values = 6;
 
 /// A set and an upper bound of the pairs that it adds. The bound is its last count, since the
 /// number of new pairs only decreases.
@@ -136,7 +136,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::refraction>("refraction"),
         field<&F::environment_rotation>("environment rotation"),
         field<&F::output, 4>("output"),
-        field<&F::tone_mapping, 3>("tone mapping"),
+        field<&F::tone_mapping, 6>("tone mapping"),
         field<&F::exposure>("exposure"),
     };
     return all;

@@ -12,6 +12,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
 #include "relief/shade/reference.h"
+#include "relief/shade/scene_fields.h"
 #include "shade/reference/traced.h"
 #include "shade/render/draw_support.h"
 #include "support/shapes.h"
@@ -272,6 +273,65 @@ TEST(ReferencePicture, IsExposedAndThenToneMapped) {
     EXPECT_NEAR(shown_light(1e30F, scene), 1.0, 1e-6);
 }
 
+/// Returns the output of one pixel of a color, as light.
+glm::dvec3 shown_color(const glm::vec3& color, ToneMapping curve) {
+    Scene scene;
+    scene.tone_mapping = curve;
+    Image radiance = make_image(1, 1, 4, 32, ColorSpace::linear);
+    radiance.samples = std::vector<float>{color.r, color.g, color.b, 1.0F};
+    const glm::dvec4 coded =
+        test::pixel(reference_picture(radiance, scene, OutputCoding::srgb), 0, 0);
+    glm::dvec3 light(0.0);
+    for (int i = 0; i < 3; ++i)
+        light[i] = static_cast<double>(linear_from_srgb(static_cast<float>(coded[i])));
+    return light;
+}
+
+/// The codes of middle gray, 0.18, in other viewers.
+TEST(ReferencePicture, HasTheMiddleGrayOfOtherViewers) {
+    Scene scene;
+    const std::vector<std::pair<ToneMapping, double>> codes = {
+        {ToneMapping::aces, 0.553},
+        {ToneMapping::aces_hill, 0.3585},
+        {ToneMapping::aces_hill_boost, 0.499},
+        {ToneMapping::khronos_neutral, 0.410}};  // That of 0.18 - 0.04.
+    for (const auto& [curve, code] : codes) {
+        scene.tone_mapping = curve;
+        EXPECT_NEAR(shown(0.18F, scene, OutputCoding::srgb).r, code, 1e-3) << enum_name(curve);
+    }
+}
+
+TEST(ReferencePicture, ByKhronosNeutralKeepsColorsUpToItsStart) {
+    const auto neutral = [](const glm::vec3& color) {
+        return shown_color(color, ToneMapping::khronos_neutral);
+    };
+    // The smallest channel, 0.2, is above 0.08: all lose 0.04.
+    const glm::dvec3 kept = neutral({0.7F, 0.2F, 0.4F});
+    EXPECT_NEAR(kept.r, 0.66, 1e-6);
+    EXPECT_NEAR(kept.g, 0.16, 1e-6);
+    EXPECT_NEAR(kept.b, 0.36, 1e-6);
+    // The peak 1.6 becomes 1 - 0.24^2 / (1.6 + 0.24 - 0.76), and the saturation falls.
+    const glm::dvec3 bright = neutral({1.6F, 0.0F, 0.8F});
+    const double peak = 1.0 - 0.0576 / 1.08;
+    const double share = 1.0 / (0.15 * (1.6 - peak) + 1.0);
+    EXPECT_NEAR(bright.r, peak, 1e-6);
+    EXPECT_NEAR(bright.g, peak * (1.0 - share), 1e-6);
+    EXPECT_NEAR(bright.b, peak * (1.0 - share) + share * 0.5 * peak, 1e-6);
+}
+
+/// By hand for pure red: ACES' own space holds (0.59719, 0.07600, 0.02840).
+TEST(ReferencePicture, ByHillsFitMixesChannelsAsAcesDoes) {
+    const auto fit = [](double x) {
+        return (x * (x + 0.0245786) - 0.000090537) / (x * (0.983729 * x + 0.432951) + 0.238081);
+    };
+    const glm::dvec3 v(fit(0.59719), fit(0.076), fit(0.0284));
+    const glm::dvec3 red = shown_color({1.0F, 0.0F, 0.0F}, ToneMapping::aces_hill);
+    EXPECT_NEAR(red.r, 1.60475 * v.r - 0.53108 * v.g - 0.07367 * v.b, 1e-6);
+    EXPECT_EQ(red.g, 0.0);  // -0.10208 of red is more than the rest.
+    EXPECT_NEAR(red.b, std::max(-0.00327 * v.r - 0.07276 * v.g + 1.07602 * v.b, 0.0), 1e-6);
+    EXPECT_NEAR(shown_color({0.6F, 0.0F, 0.0F}, ToneMapping::aces_hill_boost).r, red.r, 1e-6);
+}
+
 TEST(ReferencePicture, OfLinearLightIsNeitherExposedNorToneMapped) {
     Scene scene;
     scene.exposure = 0.5F;
@@ -305,13 +365,13 @@ TEST(ReferencePicture, LiesOverABackgroundThatIsNeitherExposedNorToneMapped) {
 
 TEST(ReferencePicture, HoldsNothingThatIsNotANumber) {
     Scene scene;
-    for (const ToneMapping mapping :
-         {ToneMapping::none, ToneMapping::reinhard, ToneMapping::aces}) {
+    for (const auto& [name, mapping, label] : enum_names<ToneMapping>) {
+        SCOPED_TRACE(name);
         scene.tone_mapping = mapping;
         EXPECT_EQ(shown(std::numeric_limits<float>::quiet_NaN(), scene, OutputCoding::srgb).r, 0.0);
         EXPECT_EQ(shown(-1.0F, scene, OutputCoding::srgb).r, 0.0);
         EXPECT_NEAR(shown(std::numeric_limits<float>::infinity(), scene, OutputCoding::srgb).r, 1.0,
-                    1e-12);
+                    1e-6);
     }
 }
 

@@ -274,8 +274,10 @@ Scene random_scene(std::uint64_t seed) {
     }
     scene.background = glm::vec4(dice.color(), dice.between(0.0F, 1.0F));
     if (dice.chance(0.4)) scene.exposure = dice.between(0.5F, 2.0F);
-    scene.tone_mapping = one_of(
-        dice, {ToneMapping::none, ToneMapping::none, ToneMapping::reinhard, ToneMapping::aces});
+    scene.tone_mapping =
+        one_of(dice, {ToneMapping::none, ToneMapping::none, ToneMapping::none,
+                      ToneMapping::reinhard, ToneMapping::aces, ToneMapping::khronos_neutral,
+                      ToneMapping::aces_hill, ToneMapping::aces_hill_boost});
     return scene;
 }
 

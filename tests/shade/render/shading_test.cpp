@@ -8,6 +8,7 @@
 
 #include "relief/mesh/report.h"
 #include "relief/shade/reference.h"
+#include "relief/shade/scene_fields.h"
 #include "shade/effects/feature_sets.h"
 #include "shade/render/draw_support.h"
 #include "support/invariants.h"
@@ -241,6 +242,16 @@ double aces(double x) {
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
+/// Returns the light of gray by Hill's fit. The rows of its matrices add up to 1.
+double filmic(double x) {
+    return (x * (x + 0.0245786) - 0.000090537) / (x * (0.983729 * x + 0.4329510) + 0.238081);
+}
+
+/// Returns the light of gray above 0.76 + 0.04 by Khronos PBR Neutral.
+double bright_neutral(double x) {
+    return 1.0 - 0.24 * 0.24 / (x - 0.04 + 0.24 - 0.76);
+}
+
 /// A square that emits this radiance.
 Scene glowing(float radiance) {
     Material material = test::black_material();
@@ -269,12 +280,25 @@ TEST_F(FinishedPicture, IsExposedAndToneMapped) {
             scene.tone_mapping = ToneMapping::aces;
             EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r,
                         code(std::min(aces(light), 1.0)), finished_tolerance);
+            scene.tone_mapping = ToneMapping::aces_hill;
+            EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r,
+                        code(std::clamp(filmic(light), 0.0, 1.0)), finished_tolerance);
+            scene.tone_mapping = ToneMapping::aces_hill_boost;
+            EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r,
+                        code(std::clamp(filmic(light / 0.6), 0.0, 1.0)), finished_tolerance);
+            scene.tone_mapping = ToneMapping::khronos_neutral;
+            const double neutral = light < 0.08  ? 6.25 * light * light
+                                   : light < 0.8 ? light - 0.04
+                                                 : bright_neutral(light);
+            EXPECT_NEAR(pixel(render(scene, settings).image, 4, 4).r, code(neutral),
+                        finished_tolerance);
         }
     }
 }
 
 TEST_F(FinishedPicture, OfInfiniteLightIsWhiteByEveryCurve) {
-    for (const ToneMapping curve : {ToneMapping::none, ToneMapping::reinhard, ToneMapping::aces}) {
+    for (const auto& [name, curve, label] : enum_names<ToneMapping>) {
+        SCOPED_TRACE(name);
         for (const int samples : {1, 4}) {
             Scene scene = glowing(max_reflectance);
             scene.exposure = max_reflectance;

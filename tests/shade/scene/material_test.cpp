@@ -359,7 +359,9 @@ TEST(SceneField, HasATitleAndARangeForPanels) {
 }
 
 TEST(EnumNames, HaveLabelsForPanels) {
-    EXPECT_THAT(enum_labels<ToneMapping>(), testing::ElementsAre("None", "Reinhard", "ACES"));
+    EXPECT_THAT(enum_labels<ToneMapping>(),
+                testing::ElementsAre("None", "Reinhard", "ACES (Narkowicz)", "Khronos PBR Neutral",
+                                     "ACES Filmic (Hill)", "ACES Filmic (Hill, exposure boost)"));
     EXPECT_THAT(enum_labels<Interpolation>(),
                 testing::ElementsAre("Per pixel", "Per vertex (Gouraud)", "Flat"));
 }

@@ -340,7 +340,8 @@ TEST_F(Panel, LightsEnvironmentAndToneCurveChangeThePicture) {
     open_panel("Picture");
     window().click_on("Tone curve");
     const std::uint64_t revision = window().state()["revision"];
-    click("Tone curve: ACES", [&](const json& now) { return now["revision"] > revision; });
+    click("Tone curve: Khronos PBR Neutral",
+          [&](const json& now) { return now["revision"] > revision; });
 }
 
 TEST_F(Panel, MaterialsTakeMapsAndChangeTheirModel) {

@@ -80,7 +80,8 @@ void add_ambient_occlusion(Scene& scene, int rays = 64);
 ///         srgb is not rounded to 8 bits
 /// \throws InvalidInput for OutputCoding::half
 ///
-/// Source of ToneMapping::aces: [Narkowicz 2016].
+/// Sources of tone curves: [Reinhard et al. 2002], [Narkowicz 2016], [Hill 2017] and [Khronos PBR
+/// Neutral].
 Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding output);
 
 }  // namespace relief

@@ -188,11 +188,15 @@ struct Environment {
     float skybox_blur = 0.0F;
 };
 
-/// The curve from radiance times exposure to the picture, by channel.
+/// The curve from radiance times exposure to the picture (shaders/tone.glsl). The names in panels
+/// are those of the glTF Sample Viewer.
 enum class ToneMapping {
-    none,      ///< Values above 1 are clamped.
-    reinhard,  ///< x / (1 + x)
-    aces,      ///< A fit to the film curve of the ACES reference rendering.
+    none,             ///< Values above 1 are clamped.
+    reinhard,         ///< x / (1 + x), by channel.
+    aces,             ///< ACES (Narkowicz): a fit to the film curve of ACES, by channel.
+    khronos_neutral,  ///< Khronos PBR Neutral: keeps the colors of materials, up to 0.76.
+    aces_hill,        ///< ACES Filmic (Hill): a fit that mixes channels, as ACES does.
+    aces_hill_boost,  ///< The same with an exposure of 1 / 0.6.
 };
 
 /// The shadow of the main light: of the first directional light that shines, or if there is none,

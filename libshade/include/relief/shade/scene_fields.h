@@ -22,10 +22,13 @@
 namespace RELIEF_API relief {
 
 template <>
-inline constexpr auto enum_names<ToneMapping> =
-    std::to_array<EnumName<ToneMapping>>({{"none", ToneMapping::none},
-                                          {"reinhard", ToneMapping::reinhard},
-                                          {"aces", ToneMapping::aces, "ACES"}});
+inline constexpr auto enum_names<ToneMapping> = std::to_array<EnumName<ToneMapping>>(
+    {{"none", ToneMapping::none},
+     {"reinhard", ToneMapping::reinhard},
+     {"aces", ToneMapping::aces, "ACES (Narkowicz)"},
+     {"khronos_neutral", ToneMapping::khronos_neutral, "Khronos PBR Neutral"},
+     {"aces_hill", ToneMapping::aces_hill, "ACES Filmic (Hill)"},
+     {"aces_hill_boost", ToneMapping::aces_hill_boost, "ACES Filmic (Hill, exposure boost)"}});
 template <>
 inline constexpr auto enum_names<Interpolation> = std::to_array<EnumName<Interpolation>>(
     {{"per_pixel", Interpolation::per_pixel},
