@@ -172,16 +172,16 @@ void check_angular_map(const Image& image, std::string_view name) {
 
 namespace {
 
-/// Returns the nearest value that a half float can hold; changes are counted.
+/// Returns the nearest value that radiance may have; changes are counted.
 float storable(float value, std::size_t texel, Report& report) {
-    if (std::isfinite(value) && std::abs(value) <= max_half) return value;
+    if (std::isfinite(value) && std::abs(value) <= max_light) return value;
     if (!std::isfinite(value)) {
         report.add("radiance that is not finite", "texel", texel,
                    "counts as 65504 if positive infinity, else as 0");
         return value > 0.0F ? max_half : 0.0F;
     }
-    report.add("radiance beyond half floats", "texel", texel, "is clamped to 65504");
-    return std::copysign(max_half, value);
+    report.add("radiance beyond 1e18", "texel", texel, "is clamped to 1e18");
+    return std::copysign(max_light, value);
 }
 
 }  // namespace
@@ -193,6 +193,12 @@ Image storable_radiance(const Image& image, Report& report) {
     for (std::size_t i = 0; i < samples.size(); ++i)
         samples[i] = storable(samples[i], i / channels, report);
     return linear;
+}
+
+bool fits_half_floats(const Image& radiance) {
+    const auto samples = radiance.as<float>();
+    return std::all_of(samples.begin(), samples.end(),
+                       [](float sample) { return std::abs(sample) <= max_half; });
 }
 
 // The studio

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The images of an environment: six faces of a cube, crosses, and light probes as angular maps;
-/// and radiance that half floats can hold.
+/// and radiance that can be stored.
 ///
 /// Faces are +x -x +y -y +z -z. A face point (s, t) is from -1 to 1 along the image's rows and down
 /// its columns; its direction in world space is, as in OpenGL 3.3 core, table 3.10,
@@ -93,11 +93,15 @@ void check_angular_map(const Image& image, std::string_view name);
 
 inline constexpr float max_half = 65504.0F;
 
-/// Returns the image as linear float, with every sample representable as a half float. An alpha
-/// channel is treated alike, since nothing looks it up.
+/// Returns the image as linear float, with every sample finite and within max_light, so that sums
+/// of them are finite, too. An alpha channel is treated alike, since nothing looks it up.
 ///
-/// \param report  counts texels that are clamped to 65504, the largest half float, and those that
-///                are not finite: infinity counts as 65504, minus infinity and NaN as 0
+/// \param report  counts texels that are clamped to max_light, and those that are not finite:
+///                infinity counts as 65504, the largest half float, since images of half floats
+///                overflow to it; minus infinity and NaN count as 0
 Image storable_radiance(const Image& image, Report& report);
+
+/// Returns true if half floats can hold every sample, rounded.
+bool fits_half_floats(const Image& radiance);
 
 }  // namespace relief

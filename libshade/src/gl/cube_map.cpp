@@ -113,18 +113,24 @@ class SavedState {
     std::array<GLboolean, 4> enabled_{};
 };
 
-/// Returns RGBA16F faces without content, bound to no unit.
+GLenum internal_format(FloatStorage storage) {
+    return storage == FloatStorage::half ? GL_RGBA16F : GL_RGBA32F;
+}
+
+/// Returns faces of floats without content, bound to no unit.
 ///
 /// \param levels  the number of levels from the largest
 /// \throws GpuError if they are larger than the context's limit, or memory runs out
-CubeMap make_empty_cube_map(const Api& api, int size, int levels, std::string_view name) {
+CubeMap make_empty_cube_map(const Api& api, int size, int levels, FloatStorage storage,
+                            std::string_view name) {
     check_cube_size(api, size, name);
-    CubeMap cube{Texture(api), size, levels};
+    CubeMap cube{Texture(api), size, levels, storage};
     api->BindTexture(GL_TEXTURE_CUBE_MAP, cube.texture.name());
     for (int level = 0; level < levels; ++level) {
         const int side = std::max(1, size >> level);
         for (std::size_t face = 0; face < 6; ++face) {
-            api->TexImage2D(cube_face_target(face), level, GL_RGBA16F, side, side, 0, GL_RGBA,
+            api->TexImage2D(cube_face_target(face), level,
+                            static_cast<GLint>(internal_format(storage)), side, side, 0, GL_RGBA,
                             GL_FLOAT, nullptr);
         }
     }
@@ -224,16 +230,19 @@ CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_
     const int size = faces.front().width;
     check_cube_size(api, size, name);
     CubeMap cube{Texture(api), size, level_count(size)};
+    const bool are_codes = is_coded_color(faces.front());
+    std::vector<std::optional<Image>> converted;
+    for (const Image& face : faces) {
+        converted.push_back(are_codes ? converted_for_upload(face)
+                                      : std::optional(storable_radiance(face, report)));
+        if (!are_codes && !fits_half_floats(*converted.back())) cube.storage = FloatStorage::full;
+    }
     api->BindTexture(GL_TEXTURE_CUBE_MAP, cube.texture.name());
     set_cube_sampling(api);  // Before any level, as in make_texture().
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        const Image& face = faces[i];
-        const std::optional<Image> converted = is_coded_color(face)
-                                                   ? converted_for_upload(face)
-                                                   : std::optional(storable_radiance(face, report));
-        const Image& uploaded = converted ? *converted : face;
-        TexelFormat format = texel_format(uploaded, FloatStorage::half);
-        if (!is_coded_color(face)) format.internal = GL_RGBA16F;
+        const Image& uploaded = converted[i] ? *converted[i] : faces[i];
+        TexelFormat format = texel_format(uploaded, cube.storage);
+        if (!are_codes) format.internal = internal_format(cube.storage);
         upload_levels(api, cube_face_target(i), format, uploaded);
     }
     api->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
@@ -303,7 +312,9 @@ CubeMap projected(const Api& api, const Image& image, const Projection& projecti
     const Texture source = make_texture(api, radiance, name, false);
     const CubePainter painter(api, fmt::format("{} to cube map", projection.name), declarations,
                               projection.radiance);
-    CubeMap cube = make_empty_cube_map(api, size, level_count(size), name);
+    const FloatStorage storage =
+        fits_half_floats(radiance) ? FloatStorage::half : FloatStorage::full;
+    CubeMap cube = make_empty_cube_map(api, size, level_count(size), storage, name);
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, source.name());
     api->BindSampler(0, 0);
@@ -382,10 +393,12 @@ void draw_mirror_pictures(const Api& api, const CubeMap& environment, const Cube
 void upload_level(const Api& api, const CubeMap& cube, int level, const std::vector<Image>& faces) {
     api->BindTexture(GL_TEXTURE_CUBE_MAP, cube.texture.name());
     for (std::size_t face = 0; face < 6; ++face) {
-        // The error of blurring, up to two percent, may exceed the largest half float.
         Image stored = faces[face];
-        for (float& sample : stored.as<float>())
-            sample = std::min(sample, max_half);
+        if (cube.storage == FloatStorage::half) {
+            // The error of blurring, up to two percent, may exceed the largest half float.
+            for (float& sample : stored.as<float>())
+                sample = std::min(sample, max_half);
+        }
         api->TexSubImage2D(cube_face_target(face), level, 0, 0, stored.width, stored.height, GL_RGB,
                            GL_FLOAT, stored.as<float>().data());
     }
@@ -397,7 +410,8 @@ void upload_level(const Api& api, const CubeMap& cube, int level, const std::vec
 CubeMap make_prefiltered(const Api& api, const CubeMap& environment) {
     const int size = environment.size >= max_prefiltered_size ? max_prefiltered_size : blurred_size;
     const int levels = level_count(size / min_level_size);
-    CubeMap cube = make_empty_cube_map(api, size, levels, "prefiltered environment");
+    CubeMap cube =
+        make_empty_cube_map(api, size, levels, environment.storage, "prefiltered environment");
     // Level 1 holds the smaller sharp picture until its own content is computed.
     const int blurred_level = size == blurred_size ? 0 : 1;
     draw_mirror_pictures(api, environment, cube, blurred_level + 1);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "gl/api.h"
+#include "gl/resources.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
@@ -25,13 +26,15 @@ struct CubeMap {
     Texture texture;  ///< GL_TEXTURE_CUBE_MAP, complete, linear light at lookup.
     int size = 0;     ///< Texels along a side of a face.
     int levels = 0;   ///< All levels, down to 1x1.
+    /// Of float radiance: half, unless a sample is beyond half floats.
+    FloatStorage storage = FloatStorage::half;
 };
 
 /// Returns a cube map of six images of one size, +x -x +y -y +z -z.
 ///
-/// \return 8-bit color faces as SRGB8 where the images are sRGB; everything else as RGBA16F
-/// \param report  counts texels that are clamped to 65504, the largest half float, and those that
-///                are not finite: infinity counts as 65504, minus infinity and NaN as 0
+/// \return 8-bit color faces as SRGB8 where the images are sRGB; everything else as RGBA16F, or as
+///         RGBA32F if a sample is beyond half floats, so that a sun keeps its energy
+/// \param report  counts texels that are clamped or not finite, as storable_radiance() does
 /// \throws InvalidInput naming the face if there are not six, one is not square, or they differ in
 ///         size or kind
 /// \throws GpuError if they are larger than the context's limit, or memory runs out
@@ -42,7 +45,8 @@ CubeMap make_cube_map(const Api& api, std::span<const Image> faces, std::string_
 ///
 /// \param size  of a face; 0 means a quarter of the panorama's width, rounded up, which keeps its
 ///              resolution at the horizon
-/// \return RGBA16F. Each texel is the mean of a grid of bilinear lookups, 2 x 2 or, if the faces
+/// \return RGBA16F or RGBA32F, as above. Each texel is the mean of a grid of bilinear lookups, 2 x
+/// 2 or, if the faces
 ///         are coarser than the panorama, enough to use every texel. There is no seam where the
 ///         panorama wraps.
 /// \param report  as above
@@ -78,9 +82,10 @@ void check_cube_size(const Api& api, int size, std::string_view name);
 /// 1), alpha = roughness^2, as seen at normal incidence (environment/convolution.h).
 ///
 /// \param environment  with all of its levels
-/// \return RGBA16F, 256 texels along a face and 6 levels, or 128 and 5 if the environment is
-///         smaller than 256; the last level has 8. Level 0 is the sharp reflection. The lookup is
-///         textureLod(cube, mirrored direction, roughness * (levels - 1)), seamless.
+/// \return in the storage of the environment, 256 texels along a face and 6 levels, or 128 and 5 if
+///         the environment is smaller than 256; the last level has 8. Level 0 is the sharp
+///         reflection. The lookup is textureLod(cube, mirrored direction, roughness * (levels -
+///         1)), seamless.
 /// \throws GpuError
 ///
 /// The cost is 0.1 s on two processor cores, which compute all levels but the first. Restores the

@@ -125,7 +125,7 @@ class SceneTexels {
 
 class EnvironmentLookup {
   public:
-    /// \param report  counts samples that half floats cannot hold (storable_radiance)
+    /// \param report  counts samples that are clamped or not finite (storable_radiance)
     /// \throws FileError if an image cannot be read; InvalidInput if images do not fit together
     EnvironmentLookup(const Environment& environment, Report& report);
 

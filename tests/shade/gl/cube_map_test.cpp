@@ -206,16 +206,41 @@ TEST_P(CubeMaps, TheSmallestLevelIsTheMeanOfAll) {
     EXPECT_NEAR(seen[2].x, 0.0F, 1e-3F);
 }
 
-TEST_P(CubeMaps, RadianceThatHalfFloatsCannotHoldIsClampedAndCounted) {
+TEST_P(CubeMaps, KeepRadianceBeyondHalfFloats) {
+    Image panorama = make_image(8, 4, 3, 32, ColorSpace::linear);
+    for (float& sample : panorama.as<float>())
+        sample = 1e6F;
+    std::vector<Image> faces = float_faces_of(4, direction_itself);
+    for (Image& face : faces)
+        std::ranges::fill(face.as<float>(), 1e6F);
+    Report report;
+    for (const CubeMap& cube : {make_cube_map_from_panorama(api(), panorama, "sun", report),
+                                make_cube_map(api(), faces, "sun", report)}) {
+        EXPECT_EQ(cube.storage, FloatStorage::full);
+        const CubeMap blurred = make_prefiltered(api(), cube);
+        for (const float level : {0.0F, 1.0F, 4.0F}) {
+            for (const glm::vec3& seen : look_up(api(), cube, {{1, 0, 0}, {0, 1, 1}}, level))
+                EXPECT_NEAR(seen.x, 1e6F, 10.0F);
+            for (const glm::vec3& seen : look_up(api(), blurred, {{1, 0, 0}, {0, 1, 1}}, level))
+                EXPECT_NEAR(seen.x, 1e6F, 10.0F);
+        }
+    }
+    EXPECT_TRUE(report.empty());
+    // Other radiance takes half of the memory.
+    EXPECT_EQ(make_cube_map(api(), float_faces_of(4, direction_itself), "sky", report).storage,
+              FloatStorage::half);
+}
+
+TEST_P(CubeMaps, RadianceThatCannotBeStoredIsClampedAndCounted) {
     const float inf = std::numeric_limits<float>::infinity();
     Image panorama = make_image(4, 2, 3, 32, ColorSpace::linear);
-    panorama.as<float>()[3] = 1e6F;
+    panorama.as<float>()[3] = 1e20F;
     panorama.as<float>()[6] = inf;
     panorama.as<float>()[9] = -inf;
     panorama.as<float>()[10] = std::nanf("");
     Report report;
     const CubeMap cube = make_cube_map_from_panorama(api(), panorama, "sun", report, 8);
-    EXPECT_EQ(report.count("radiance beyond half floats"), 1U);
+    EXPECT_EQ(report.count("radiance beyond 1e18"), 1U);
     EXPECT_EQ(report.count("radiance that is not finite"), 3U);
     float brightest = 0.0F;
     for (std::size_t face = 0; face < 6; ++face) {
@@ -227,12 +252,12 @@ TEST_P(CubeMaps, RadianceThatHalfFloatsCannotHoldIsClampedAndCounted) {
             brightest = std::max(brightest, sample);
         }
     }
-    EXPECT_GT(brightest, 60000.0F);
+    EXPECT_GT(brightest, 0.9e18F);
     std::vector<Image> faces = float_faces_of(2, direction_itself);
-    faces[4].as<float>()[0] = 70000.0F;
+    faces[4].as<float>()[0] = 2e18F;
     Report of_faces;
     make_cube_map(api(), faces, "sun", of_faces);
-    EXPECT_EQ(of_faces.count("radiance beyond half floats"), 1U);
+    EXPECT_EQ(of_faces.count("radiance beyond 1e18"), 1U);
 }
 
 TEST_P(CubeMaps, FacesThatDoNotFitTogetherAreRefusedByName) {
