@@ -15,15 +15,17 @@ float alpha_product() {
 }
 
 #part mask
-// Fragments with an alpha below the cutoff, or NaN, are discarded.
+// Fragments with an alpha below the cutoff, or NaN, are discarded. This is the last step of a shader:
+// after it, the neighbors of a discarded fragment have no derivatives.
 
 #include "alpha.glsl#product"
 
 uniform float alpha_cutoff;
 
-float alpha_here() {
+float alpha_here() { return 1.0; }
+
+void cut_holes() {
     if (!(alpha_product() >= alpha_cutoff)) discard;
-    return 1.0;
 }
 
 #part blend
@@ -36,6 +38,8 @@ float alpha_here() {
     return alpha > 0.0 ? min(alpha, 1.0) : 0.0;
 }
 
+void cut_holes() {}
+
 #part opacity_texture
 // The red channel of the opacity texture.
 
@@ -43,4 +47,6 @@ float alpha_here() {
 
 uniform sampler2D opacity_texture;
 
-float opacity_texel() { return texture(opacity_texture, texcoord_surface).r; }
+float opacity_lookup = texture(opacity_texture, texcoord_surface).r;
+
+float opacity_texel() { return opacity_lookup; }

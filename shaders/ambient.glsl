@@ -34,8 +34,10 @@ void add_ambient(Surface surface, inout Lighting lighting) {
 uniform sampler2D occlusion_texture;
 uniform float occlusion_strength;
 
+float occlusion_lookup = texture(occlusion_texture, texcoord_surface).r;
+
 float occlusion() {
-    float share = 1.0 + occlusion_strength * (texture(occlusion_texture, texcoord_surface).r - 1.0);
+    float share = 1.0 + occlusion_strength * (occlusion_lookup - 1.0);
     return share * open_share();
 }
 

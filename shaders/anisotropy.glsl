@@ -40,10 +40,12 @@ Anisotropy anisotropy_of(Surface surface) {
 
 uniform sampler2D anisotropy_texture;
 
+vec3 anisotropy_lookup = texture(anisotropy_texture, texcoord_surface).rgb;
+
 vec3 anisotropy_texel() {
-    vec3 texel = texture(anisotropy_texture, texcoord_surface).rgb;
-    vec3 direction = normalized_or(vec3(2.0 * texel.rg - 1.0, 0.0), vec3(1.0, 0.0, 0.0));
-    return vec3(direction.xy, texel.b);
+    vec2 stored = 2.0 * anisotropy_lookup.rg - 1.0;
+    vec3 direction = normalized_or(vec3(stored, 0.0), vec3(1.0, 0.0, 0.0));
+    return vec3(direction.xy, anisotropy_lookup.b);
 }
 
 #part lobe

@@ -11,7 +11,7 @@ uniform float bump_strength;
 
 float height_at(vec2 texcoord) { return texture(bump_texture, texcoord).r; }
 
-vec3 normal_tangent() {
+vec3 normal_of_heights() {
     vec2 size = vec2(textureSize(bump_texture, 0));
     vec2 pixel = max(abs(dFdx(texcoord_surface)), abs(dFdy(texcoord_surface))) * size;
     vec2 reach = max(pixel, vec2(1.0));  // In texels.
@@ -21,3 +21,7 @@ vec3 normal_tangent() {
                      height_at(texcoord_surface - down) - height_at(texcoord_surface + down));
     return vec3(-bump_strength * rise / (2.0 * reach), 1.0);
 }
+
+vec3 bump_normal = normal_of_heights();
+
+vec3 normal_tangent() { return bump_normal; }

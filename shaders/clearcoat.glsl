@@ -44,9 +44,10 @@ uniform sampler2D clearcoat_normal_texture;
 uniform vec3 clearcoat_normal_scale;
 uniform vec3 clearcoat_normal_bias;
 
+vec3 clearcoat_normal_lookup = texture(clearcoat_normal_texture, texcoord_surface).xyz;
+
 vec3 clearcoat_normal(Surface surface) {
-    vec3 bend = texture(clearcoat_normal_texture, texcoord_surface).xyz * clearcoat_normal_scale +
-                clearcoat_normal_bias;
+    vec3 bend = clearcoat_normal_lookup * clearcoat_normal_scale + clearcoat_normal_bias;
     mat3 frame = world_from_tangent();
     vec3 bent_world = bend.x * frame[0] + bend.y * frame[1] + bend.z * frame[2];
     bool bends = dot(bend, bend) > 1e-12 && has_direction(bent_world);
@@ -60,7 +61,9 @@ vec3 clearcoat_normal(Surface surface) {
 
 uniform sampler2D clearcoat_texture;
 
-float clearcoat_texel() { return texture(clearcoat_texture, texcoord_surface).r; }
+float clearcoat_lookup = texture(clearcoat_texture, texcoord_surface).r;
+
+float clearcoat_texel() { return clearcoat_lookup; }
 
 #part roughness_texture
 // The roughness from a texture: green.
@@ -69,9 +72,9 @@ float clearcoat_texel() { return texture(clearcoat_texture, texcoord_surface).r;
 
 uniform sampler2D clearcoat_roughness_texture;
 
-float clearcoat_roughness_texel() {
-    return texture(clearcoat_roughness_texture, texcoord_surface).g;
-}
+float clearcoat_roughness_lookup = texture(clearcoat_roughness_texture, texcoord_surface).g;
+
+float clearcoat_roughness_texel() { return clearcoat_roughness_lookup; }
 
 #part roughness
 // The roughness of the coat.

@@ -16,7 +16,9 @@ vec3 scattering_tint(Surface surface) { return diffuse_texel().rgb * vertex_tint
 
 uniform sampler2D diffuse_texture;
 
-vec4 diffuse_texel() { return texture(diffuse_texture, texcoord_surface); }
+vec4 diffuse_lookup = texture(diffuse_texture, texcoord_surface);
+
+vec4 diffuse_texel() { return diffuse_lookup; }
 
 #part vertex
 // The interpolated vertex color and alpha: exactly white between white vertices, never negative.
@@ -32,4 +34,6 @@ vec4 vertex_tint() { return max(vec4(1.0) + color_from_white, vec4(0.0)); }
 
 uniform sampler2D specular_texture;
 
-vec3 specular_texture_color() { return texture(specular_texture, texcoord_surface).rgb; }
+vec3 specular_lookup = texture(specular_texture, texcoord_surface).rgb;
+
+vec3 specular_texture_color() { return specular_lookup; }

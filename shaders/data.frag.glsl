@@ -11,4 +11,5 @@ out vec4 color;
 void main() {
     float alpha = alpha_here();
     color = vec4(view_color(), alpha);
+    cut_holes();
 }

@@ -16,6 +16,6 @@ vec3 emitted_radiance() { return emission_color; }
 uniform vec3 emission_color;
 uniform sampler2D emission_texture;
 
-vec3 emitted_radiance() {
-    return emission_color * texture(emission_texture, texcoord_surface).rgb;
-}
+vec3 emission_lookup = texture(emission_texture, texcoord_surface).rgb;
+
+vec3 emitted_radiance() { return emission_color * emission_lookup; }

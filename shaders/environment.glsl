@@ -56,7 +56,7 @@ vec2 albedo_factors(float n_dot_v, float roughness) {
     // From the center of the first texel to that of the last.
     vec2 size = vec2(textureSize(environment_brdf, 0));
     vec2 place = (vec2(sqrt(n_dot_v), roughness) * (size - 1.0) + 0.5) / size;
-    return texture(environment_brdf, place).rg;
+    return textureLod(environment_brdf, place, 0.0).rg;
 }
 
 #part brdf

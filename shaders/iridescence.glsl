@@ -20,8 +20,10 @@ uniform float iridescence_thickness;
 uniform float iridescence_thickness_minimum;
 uniform sampler2D film_thickness_texture;
 
+float film_thickness_lookup = texture(film_thickness_texture, texcoord_surface).g;
+
 float film_thickness() {
-    float lacking = 1.0 - texture(film_thickness_texture, texcoord_surface).g;
+    float lacking = 1.0 - film_thickness_lookup;
     return iridescence_thickness -
            lacking * (iridescence_thickness - iridescence_thickness_minimum);
 }
@@ -33,7 +35,9 @@ float film_thickness() {
 
 uniform sampler2D iridescence_texture;
 
-float iridescence_texel() { return texture(iridescence_texture, texcoord_surface).r; }
+float iridescence_lookup = texture(iridescence_texture, texcoord_surface).r;
+
+float iridescence_texel() { return iridescence_lookup; }
 
 #part film
 // The film's reflectance, and its effect on mirrored and on scattered light.

@@ -88,7 +88,9 @@ vec3 dielectric_reflectance() {
 
 uniform sampler2D specular_weight_texture;
 
-float specular_weight_texel() { return texture(specular_weight_texture, texcoord_surface).a; }
+float specular_weight_lookup = texture(specular_weight_texture, texcoord_surface).a;
+
+float specular_weight_texel() { return specular_weight_lookup; }
 
 #part color_texture
 // The color of the reflection from a texture.
@@ -97,7 +99,9 @@ float specular_weight_texel() { return texture(specular_weight_texture, texcoord
 
 uniform sampler2D specular_color_texture;
 
-vec3 specular_color_texel() { return texture(specular_color_texture, texcoord_surface).rgb; }
+vec3 specular_color_lookup = texture(specular_color_texture, texcoord_surface).rgb;
+
+vec3 specular_color_texel() { return specular_color_lookup; }
 
 #part grazing
 // The reflectance at grazing incidence, which the weight lowers; and the reflectance at normal
@@ -133,9 +137,9 @@ uniform float metallic;
 uniform float roughness;
 uniform sampler2D metallic_roughness_texture;
 
-vec2 metallic_and_roughness() {
-    return texture(metallic_roughness_texture, texcoord_surface).bg * vec2(metallic, roughness);
-}
+vec2 metallic_roughness_lookup = texture(metallic_roughness_texture, texcoord_surface).bg;
+
+vec2 metallic_and_roughness() { return metallic_roughness_lookup * vec2(metallic, roughness); }
 
 #part tint
 // The color that multiplies scattered light: the non-metallic share of the base color.

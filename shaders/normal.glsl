@@ -20,9 +20,10 @@ vec3 shading_normal() { return facing() * normalized_or(normal_world, vec3(0.0, 
 #include "vector.glsl#rescaled"
 #include <position>
 
+vec3 across_facet = cross(rescaled(dFdx(position_world)), rescaled(dFdy(position_world)));
+
 vec3 shading_normal() {
-    vec3 across = cross(rescaled(dFdx(position_world)), rescaled(dFdy(position_world)));
-    vec3 normal = normalized_or(rescaled(across), vec3(0.0, 0.0, 1.0));
+    vec3 normal = normalized_or(rescaled(across_facet), vec3(0.0, 0.0, 1.0));
     return dot(normal, to_eye(position_world)) < 0.0 ? -normal : normal;
 }
 

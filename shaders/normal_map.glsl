@@ -11,9 +11,9 @@ uniform sampler2D normal_texture;
 uniform vec3 normal_map_scale;
 uniform vec3 normal_map_bias;
 
-vec3 normal_texel() {
-    return texture(normal_texture, texcoord_surface).xyz * normal_map_scale + normal_map_bias;
-}
+vec3 normal_lookup = texture(normal_texture, texcoord_surface).xyz;
+
+vec3 normal_texel() { return normal_lookup * normal_map_scale + normal_map_bias; }
 
 #part tangent_space
 // The normal in tangent space.

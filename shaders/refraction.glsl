@@ -12,7 +12,10 @@ uniform float refraction_ratio;  // The outside's refractive index over the insi
 
 vec3 with_refraction(Surface surface, vec3 scattered) {
     vec3 bent_world = refract(-surface.view_world, surface.normal_world, refraction_ratio);
-    vec3 through = bent_world == vec3(0.0) ? vec3(0.0) : environment_radiance(bent_world);
+    bool is_reflected = bent_world == vec3(0.0);
+    // The lookup is not in a branch, which would leave neighbors without derivatives.
+    vec3 seen = environment_radiance(is_reflected ? -surface.view_world : bent_world);
+    vec3 through = is_reflected ? vec3(0.0) : seen;
     return scattered * (1.0 - transmission) + through * transmission;
 }
 
@@ -48,12 +51,15 @@ uniform sampler2D behind;  // Radiance multiplied by coverage. Each level has ha
 uniform float blurred_level;  // The level for roughness 1.
 uniform vec3 background_radiance;
 
+// The size of a level. textureSize() takes one level for neighbors whose levels differ (llvmpipe).
+ivec2 behind_size(int level) { return max(textureSize(behind, 0) >> level, ivec2(1)); }
+
 vec4 behind_texel(ivec2 texel, int level) {
-    return texelFetch(behind, clamp(texel, ivec2(0), textureSize(behind, level) - 1), level);
+    return texelFetch(behind, clamp(texel, ivec2(0), behind_size(level) - 1), level);
 }
 
 vec4 behind_at(vec2 place, int level) {
-    vec2 texels = place * vec2(textureSize(behind, level)) - 0.5;
+    vec2 texels = place * vec2(behind_size(level)) - 0.5;
     ivec2 first = ivec2(floor(texels));
     vec2 share = texels - vec2(first);
     return mix(mix(behind_texel(first, level), behind_texel(first + ivec2(1, 0), level), share.x),
@@ -100,7 +106,9 @@ vec3 with_transmission(Surface surface, vec3 scattered) {
 
 uniform sampler2D transmission_texture;
 
-float transmission_texel() { return texture(transmission_texture, texcoord_surface).r; }
+float transmission_lookup = texture(transmission_texture, texcoord_surface).r;
+
+float transmission_texel() { return transmission_lookup; }
 
 #part path
 // The path of light through the surface: where it comes from in the picture behind the surface,
@@ -149,4 +157,6 @@ Path path_through(Surface surface, vec2 picture_size) {
 
 uniform sampler2D thickness_texture;
 
-float thickness_texel() { return texture(thickness_texture, texcoord_surface).g; }
+float thickness_lookup = texture(thickness_texture, texcoord_surface).g;
+
+float thickness_texel() { return thickness_lookup; }

@@ -43,9 +43,9 @@ float sheen_entry(int index) { return sheen_albedo[index / 4][index % 4]; }
 
 uniform sampler2D sheen_roughness_texture;
 
-float sheen_roughness_texel() {
-    return clamp(texture(sheen_roughness_texture, texcoord_surface).a, 0.0, 1.0);
-}
+float sheen_roughness_lookup = texture(sheen_roughness_texture, texcoord_surface).a;
+
+float sheen_roughness_texel() { return clamp(sheen_roughness_lookup, 0.0, 1.0); }
 
 #part albedo_by_texture
 // The table for the roughness at a pixel, between two rows over the root of the texel: row 19 is
@@ -93,7 +93,9 @@ float sheen_width() {
 
 uniform sampler2D sheen_color_texture;
 
-vec3 sheen_color_texel() { return texture(sheen_color_texture, texcoord_surface).rgb; }
+vec3 sheen_color_lookup = texture(sheen_color_texture, texcoord_surface).rgb;
+
+vec3 sheen_color_texel() { return sheen_color_lookup; }
 
 #part lights
 // The light of light sources. n.v is at least 1e-4, since V has a pole at 0.

@@ -35,4 +35,5 @@ void main() {
     vec3 reflected = with_sheen(surface, with_reflection(surface, scattered) + highlights);
     vec3 radiance = with_clearcoat(surface, reflected + emitted_radiance());
     color = vec4(coded(radiance), alpha);
+    cut_holes();
 }

@@ -26,7 +26,7 @@ mat3 world_from_tangent() {
 #include "inputs.glsl#texcoord"
 #include <position>
 
-mat3 world_from_tangent() {
+mat3 derived_frame() {
     vec3 n = normalized_or(normal_world, vec3(0.0, 0.0, 1.0));
     vec3 right_world = rescaled(dFdx(position_world));
     vec3 up_world = dFdy(position_world) * rescaling(dFdx(position_world));
@@ -40,3 +40,7 @@ mat3 world_from_tangent() {
     float turned = sign(area) * sign(dot(n, cross(right_world, up_world)));
     return mat3(tangent, -turned * cross(n, tangent), n);
 }
+
+mat3 frame_of_derivatives = derived_frame();
+
+mat3 world_from_tangent() { return frame_of_derivatives; }

@@ -15,4 +15,5 @@ void main() {
     float alpha = alpha_here();
     vec3 radiance = diffuse_color * diffuse_texel().rgb * vertex_tint().rgb;
     color = vec4(coded(radiance), alpha);
+    cut_holes();
 }

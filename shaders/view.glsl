@@ -81,7 +81,9 @@ vec3 view_color() { return direction_color(normal_texel()); }
 
 uniform sampler2D bump_texture;
 
-vec3 view_color() { return vec3(texture(bump_texture, texcoord_surface).r); }
+float height_lookup = texture(bump_texture, texcoord_surface).r;
+
+vec3 view_color() { return vec3(height_lookup); }
 
 #part overdraw
 // One fragment; the framebuffer adds them up.

@@ -599,7 +599,7 @@ Step second_texcoord_step(By f) {
 Steps alpha_steps(By f) {
     return {
         {"alpha",
-         "float alpha_here() { return 1.0; }",
+         "float alpha_here() { return 1.0; } void cut_holes() {}",
          {{"alpha.glsl#mask",
            f.alpha == AlphaMode::mask,
            {.uniforms = {"opacity", "alpha_cutoff"}}},

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <regex>
 #include <set>
 
 #include "effects/light_rows.h"
@@ -143,6 +145,66 @@ TEST(EmbeddedShaders, AreTheFilesOfTheProject) {
         const std::string text{std::istreambuf_iterator<char>(file), {}};
         EXPECT_EQ(shader.text, text) << shader.name;
         EXPECT_THAT(text, ::testing::StartsWith("// SPDX-License-Identifier: Apache-2.0\n//"));
+    }
+}
+
+/// Returns the names of the functions in which GLSL calls one of some functions; outside of
+/// functions, "".
+std::set<std::string> callers_of(const std::string& text, const std::string& functions) {
+    const std::string code = std::regex_replace(text, std::regex("(//|#)[^\n]*"), "");
+    const std::regex token("\\b(" + functions + ")\\s*\\(|(\\w+)\\s*\\([^(){};]*\\)\\s*\\{|[{}]");
+    std::set<std::string> callers;
+    std::string function;
+    int depth = 0;
+    for (std::sregex_iterator match(code.begin(), code.end(), token), end; match != end; ++match) {
+        const std::string found = match->str();
+        if (found == "}") {
+            --depth;
+        } else if ((*match)[1].matched) {
+            callers.insert(depth == 0 ? "" : function);
+        } else {
+            if (depth == 0) function = (*match)[2];
+            ++depth;
+        }
+    }
+    return callers;
+}
+
+/// A lookup that chooses its mip level takes differences between the pixels of a block of four.
+/// OpenGL 3.3 defines them only where all four come along: not in a branch, after a return that
+/// depends on the pixel, or after a discard. Lookups are therefore the initial values of global
+/// variables, and discarding is the last step.
+TEST(EmbeddedShaders, TakeNoDerivativesWhereNeighborsMayBeElsewhere) {
+    const std::set<std::string> allowed = {
+        "",                      // The initial value of a global variable.
+        "derived_frame",         // Called for such a value.
+        "normal_of_heights",     // Called for such a value.
+        "height_at",             // Called by normal_of_heights().
+        "environment_radiance",  // Called in each pixel by what mirrors, refracts and is seen.
+        "visible_share",         // Called for each light; shadow maps have one level.
+    };
+    std::size_t lookups = 0;
+    for (const EmbeddedShader& shader : embedded_shaders()) {
+        const std::string text(shader.text);
+        for (const std::string& caller : callers_of(text, "texture|dFdx|dFdy|fwidth")) {
+            EXPECT_TRUE(allowed.contains(caller)) << shader.name << ": " << caller;
+            ++lookups;
+        }
+        // The level is the same in all pixels.
+        EXPECT_FALSE(
+            std::regex_search(text, std::regex("textureSize\\((?!\\w+, 0\\))[^)\n]*,[^)]*\\)")))
+            << shader.name;
+        const bool discards = text.find("discard;") != std::string::npos;
+        EXPECT_EQ(discards, shader.name == "alpha.glsl" || shader.name == "overlay.glsl")
+            << shader.name;
+    }
+    EXPECT_GT(lookups, 15U);
+    for (const char* main_shader : {"surface.frag.glsl", "unlit.frag.glsl", "data.frag.glsl"}) {
+        const auto shader =
+            std::find_if(embedded_shaders().begin(), embedded_shaders().end(),
+                         [&](const EmbeddedShader& each) { return each.name == main_shader; });
+        ASSERT_NE(shader, embedded_shaders().end());
+        EXPECT_TRUE(std::string(shader->text).ends_with("    cut_holes();\n}\n")) << main_shader;
     }
 }
 

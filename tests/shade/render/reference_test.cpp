@@ -17,12 +17,15 @@
 #include "shade/effects/feature_sets.h"
 #include "shade/render/draw_support.h"
 #include "shade/render/random_scene.h"
+#include "shade/render/reference_agreement.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
+using test::agreement_tolerance;
+using test::blurred_tolerance;
 using test::pixel;
 
 #ifdef __SANITIZE_ADDRESS__
@@ -30,61 +33,14 @@ constexpr int reference_size = 48;  // The reference is several times slower whe
 #else
 constexpr int reference_size = 96;
 #endif
-/// In codes: half a code of rounding, and the rest for float arithmetic and vertices rounded to
-/// 1/256 pixel.
-constexpr double agreement_tolerance = 1.0;
 /// In codes, for 8-bit textures: llvmpipe decodes sRGB with a polynomial whose error is up to half
 /// a percent, which is half a code, and filters data with weights of 8 bits.
 constexpr double coarse_tolerance = 2.0;
 
-/// In codes, for blurred environments: OpenGL mixes the two maps of the nearest roughness, each
-/// with an error of up to two percent.
-constexpr double blurred_tolerance = 3.5;
-
-/// The largest difference between two pictures and its position.
-struct Worst {
-    double codes = 0.0;
-    int x = 0;
-    int y = 0;
-    int compared = 0;
-};
-
-Worst furthest(const Image& drawn, const Image& expected, const Image& edges) {
-    Worst worst;
-    for (int y = 0; y < drawn.height; ++y) {
-        for (int x = 0; x < drawn.width; ++x) {
-            if (pixel(edges, x, y)[0] > 0.0) continue;
-            ++worst.compared;
-            for (int i = 0; i < 4; ++i) {
-                const double apart =
-                    std::abs(pixel(drawn, x, y)[i] - 255.0 * pixel(expected, x, y)[i]);
-                if (apart > worst.codes) worst = {apart, x, y, worst.compared};
-            }
-        }
-    }
-    return worst;
-}
-
-std::string effects_of(const Scene& scene) {
-    std::string text;
-    for (const DrawPlan& draw : plan_effects(scene, {reference_size, reference_size, 1}).draws)
-        text += "\n    " + describe(draw.features);
-    return text;
-}
-
 class AgainstReference : public test::DrawTest {
   protected:
     void expect_agreement(const Scene& scene, double tolerance = agreement_tolerance) const {
-        Report report;
-        const relief::Reference reference =
-            render_reference(scene, {reference_size, reference_size}, report);
-        const Image expected = reference_picture(reference.radiance, scene, OutputCoding::srgb);
-        const Image drawn =
-            render(scene, {reference_size, reference_size, 1, OutputCoding::srgb}).image;
-        const Worst worst = furthest(drawn, expected, reference.edges);
-        EXPECT_LE(worst.codes, tolerance)
-            << "at " << worst.x << ", " << worst.y << effects_of(scene);
-        EXPECT_GT(worst.compared, reference_size * reference_size / 4) << "edges nearly everywhere";
+        test::expect_agreement(context(), scene, reference_size, tolerance);
     }
 };
 
