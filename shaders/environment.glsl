@@ -66,6 +66,7 @@ vec2 albedo_factors(float n_dot_v, float roughness) {
 #include "environment.glsl#brdf_table"
 #include <grazing>
 #include <film>
+#include <scattering_bounces>
 
 vec3 mirrored_albedo(Surface surface) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
@@ -77,9 +78,10 @@ vec3 mirrored_albedo(Surface surface) {
 vec3 blocked_albedo(Surface surface) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
     vec2 factors = albedo_factors(n_dot_v, surface.roughness);
-    return blocked_by_film(
+    vec3 blocked = blocked_by_film(
         surface, n_dot_v, factors.x + factors.y,
         blocking_f0(surface) * factors.x + grazing_reflectance(surface) * factors.y);
+    return with_blocked_bounces(surface, n_dot_v, factors, blocked);
 }
 
 #part irradiance

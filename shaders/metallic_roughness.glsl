@@ -30,7 +30,10 @@ struct Surface {
     float dielectric_share;  // 1 minus metallic.
     float roughness;
     float alpha_squared;  // The fourth power of roughness.
+    vec3 highlight_gain;  // The factor of highlights that adds the light of further bounces.
 };
+
+#include <highlight_gain>
 
 Surface surface_here() {
     vec3 normal = shading_normal();
@@ -38,9 +41,12 @@ Surface surface_here() {
     vec2 kind = clamp(metallic_and_roughness(), vec2(0.0), vec2(1.0));
     float widened_roughness = widened(max(kind.y, min_roughness));
     float alpha = widened_roughness * widened_roughness;
-    return Surface(normal, position_world, normalized_or(to_eye(position_world), normal),
-                   base * (1.0 - kind.x), mix(dielectric_reflectance(), base, kind.x),
-                   1.0 - kind.x, widened_roughness, alpha * alpha);
+    Surface surface =
+        Surface(normal, position_world, normalized_or(to_eye(position_world), normal),
+                base * (1.0 - kind.x), mix(dielectric_reflectance(), base, kind.x), 1.0 - kind.x,
+                widened_roughness, alpha * alpha, vec3(1.0));
+    surface.highlight_gain = highlight_gain(surface);
+    return surface;
 }
 
 #part surface_colors
@@ -224,5 +230,5 @@ void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_
     float n_dot_v = max(dot(surface.normal_world, surface.view_world), 0.0);
     float mirrored = mirrored_share(surface, light_world, half_world, n_dot_l, n_dot_v);
     lighting.scattered += received * (vec3(1.0) - blocked);
-    lighting.highlights += received * fresnel * mirrored;
+    lighting.highlights += received * fresnel * mirrored * surface.highlight_gain;
 }

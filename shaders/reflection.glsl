@@ -23,13 +23,15 @@ vec3 with_reflection(Surface surface, vec3 scattered) {
 
 #include "environment.glsl#brdf"
 #include "environment.glsl#blurred"
+#include <bounced_light>
 #include <mirror_normal>
 #include <occlusion>
 
 vec3 with_reflection(Surface surface, vec3 scattered) {
     vec3 mirrored_world = reflect(-surface.view_world, mirror_normal(surface));
-    vec3 mirrored = blurred_radiance(mirrored_world, surface.roughness) * occlusion();
-    return scattered + mirrored * mirrored_albedo(surface);
+    vec3 around = blurred_radiance(mirrored_world, surface.roughness) * occlusion();
+    vec3 mirrored = mirrored_albedo(surface);
+    return with_bounced_light(surface, mirrored, scattered + around * mirrored);
 }
 
 #part refraction_only

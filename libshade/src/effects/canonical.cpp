@@ -70,7 +70,7 @@ void settle_model(Features& f) {
         if (f.interpolation == Interpolation::gouraud) f.interpolation = Interpolation::per_pixel;
     } else {
         f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
-        f.transmission = false;
+        f.transmission = f.energy_compensation = false;
     }
     if (f.reflection == ReflectionTerm::none) f.fresnel = FresnelTerm::constant;
 }
@@ -113,6 +113,8 @@ bool is_lit_anyhow(const Features& f) {
 void drop_layers(Features& f) {
     const bool highlights = light_count(f) > 0 && f.view != DebugView::diffuse;
     f.anisotropy &= f.metallic_roughness && (highlights || f.reflection != ReflectionTerm::none);
+    f.energy_compensation &=
+        highlights || f.reflection != ReflectionTerm::none || f.environment_diffuse;
     if (!f.metallic_roughness || !is_lit_anyhow(f)) f.sheen = false;
     if (!f.metallic_roughness || !(is_lit_anyhow(f) || f.emission)) f.clearcoat = false;
     f.sheen_color_texture &= f.sheen;

@@ -60,6 +60,7 @@ Effect lights(const char* name) {
 const char* const no_light = "no light reaches the surface, or it does nothing with it";
 const char* const no_layer = "the material is not metallic-roughness, or nothing shines on it";
 const char* const no_reflectance = "dielectrics reflect the 4% of the index 1.5";
+const char* const no_facets = "the material is not metallic-roughness, or mirrors nothing";
 const char* const no_coat = "there is no coat";
 const char* const no_film = "there is no film";
 const char* const no_normal = "neither light nor reflection shows the normal";
@@ -140,6 +141,13 @@ Decision of_dielectric_reflectance(Subject s) {
     const bool is_metal = model.metallic == 1.0F && !textured;
     return of_material(s, !is_metal, "has an index, weight or color of its own",
                        "is a metal everywhere");
+}
+
+Decision of_energy_compensation(Subject s) {
+    if (!is_physical(s)) return {false, s.name + " is Phong's model"};
+    return of_material(s, compensates_energy(*s.material.metallic_roughness),
+                       "loses light that bounces between its facets",
+                       "is a smooth dielectric, which loses less than 1% of what it mirrors");
 }
 
 /// Anisotropy needs a tangent frame: stored tangents, or texture coordinates to derive them from.
@@ -421,6 +429,8 @@ std::vector<EffectRow> model_rows() {
         {.effect = one_switch<&F::dielectric_reflectance>("dielectric reflectance",
                                                           "the material is not metallic-roughness"),
          .decide = of_dielectric_reflectance},
+        {.effect = one_switch<&F::energy_compensation>("energy compensation", no_facets),
+         .decide = of_energy_compensation},
         {.effect = one_switch<&F::sheen>("sheen", no_layer),
          .decide =
              [](Subject s) {
@@ -452,8 +462,7 @@ std::vector<EffectRow> model_rows() {
                  return of_material(s, has, "encloses a volume", "is thin");
              },
          .choice = "a thin surface does not refract"},
-        {.effect = one_switch<&F::anisotropy>(
-             "anisotropy", "the material is not metallic-roughness, or mirrors nothing"),
+        {.effect = one_switch<&F::anisotropy>("anisotropy", no_facets),
          .decide = of_anisotropy,
          .choice = "the mesh has no tangent frame",
          .neutral = is_isotropic},

@@ -93,7 +93,7 @@ void plan_environment(const Scene& scene, const FrameSettings& settings, FramePl
            plan.blurred_skybox ? "the skybox is blurred" : "a rough material reflects it",
            "no rough material reflects it");
     decide(&FramePlan::environment_brdf, needs.brdf,
-           "a metallic-roughness material reflects the environment",
+           "a metallic-roughness material reflects the environment or lights",
            "no metallic-roughness material reflects it");
     decide(&FramePlan::environment_irradiance, needs.irradiance, "a material scatters its light",
            "no material scatters its light");
@@ -157,7 +157,8 @@ EnvironmentNeeds environment_needs(const FramePlan& plan) {
                        (f.refraction && !has_black_transmission(f));
         needs.blurred |= blurs;
         needs.irradiance |= f.environment_diffuse;
-        needs.brdf |= f.metallic_roughness && (blurs || f.environment_diffuse);
+        needs.brdf |=
+            f.energy_compensation || (f.metallic_roughness && (blurs || f.environment_diffuse));
     }
     return needs;
 }

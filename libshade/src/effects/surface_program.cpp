@@ -253,6 +253,30 @@ Steps dielectric_steps(By f) {
                {.uniforms = {"dielectric_color", "dielectric_weight"}}}}}};
 }
 
+/// Returns the steps of the light that bounces between glTF's facets. Canonical features have it
+/// only where it shows.
+Steps energy_steps(By f, bool lit_in_this_stage) {
+    const bool kept = f.energy_compensation;
+    return {
+        {"highlight_gain",
+         "vec3 highlight_gain(Surface surface) { return vec3(1.0); }",
+         {{"energy_compensation.glsl#highlights",
+           kept && lit_in_this_stage && f.view != DebugView::diffuse,
+           {.uniforms = {"energy_compensation"}, .samplers = {"environment_brdf"}}}}},
+        {"scattering_bounces",
+         "vec3 with_blocked_bounces(Surface surface, float n_dot_v, vec2 factors, vec3 blocked) "
+         "{ return blocked; }",
+         {{"energy_compensation.glsl#scattering",
+           kept && f.environment_diffuse,
+           {.uniforms = {"energy_compensation"}}}}},
+        {"bounced_light",
+         "vec3 with_bounced_light(Surface surface, vec3 mirrored, vec3 radiance) "
+         "{ return radiance; }",
+         {{"energy_compensation.glsl#reflection",
+           kept && f.reflection != ReflectionTerm::none,
+           {.uniforms = {"energy_compensation"}}}}}};
+}
+
 /// Returns the step of the thin film on glTF's facets.
 Steps film_steps(By f) {
     return {{"film",
@@ -764,6 +788,7 @@ Steps lit_steps(By f) {
                     {"shadow_place", "", {{"shadow.glsl#place", lights_here && has_shadow(f)}}},
                     surface_step(f, fragment_needs(f))},
                    dielectric_steps(f),
+                   energy_steps(f, lights_here),
                    film_steps(f),
                    facet_steps(f, lights_here),
                    layer_steps(f),

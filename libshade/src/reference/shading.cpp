@@ -538,6 +538,42 @@ Mirrored with_film(const Context& context, const Microfacets& facets, double cos
             glm::mix(plain.blocked, glm::dvec3(share * largest), facets.film)};
 }
 
+/// Returns the mean of Schlick's factor over the hemisphere.
+glm::dvec3 mean_schlick(const glm::dvec3& f0, double f90) {
+    return f0 + (glm::dvec3(f90) - f0) / 21.0;
+}
+
+/// Returns what facets mirror after the first bounce, and what scattering lacks of it:
+/// [Fdez-Aguera 2019], equations 13 to 18. No directions are left, so these are shares of the light
+/// about the normal.
+///
+/// \param albedo  A and B  \param once  the shares of the first bounce
+Mirrored bounced(const Context& context, const Microfacets& facets, double n_dot_v,
+                 const glm::dvec2& albedo, const Mirrored& once) {
+    if (!compensates_energy(*context.material.metallic_roughness))
+        return {glm::dvec3(0.0), glm::dvec3(0.0)};
+    const auto mean = with_film(
+        context, facets, n_dot_v, 1.0,
+        {mean_schlick(facets.f0, facets.f90), mean_schlick(facets.blocking_f0, facets.f90)});
+    const double lost = 1.0 - albedo.x - albedo.y;
+    const auto share = [&](const glm::dvec3& first, const glm::dvec3& fresnel) {
+        const glm::dvec3 limited = glm::min(fresnel, 1.0);
+        return first * limited * lost / (1.0 - lost * limited);
+    };
+    return {share(once.mirrored, mean.mirrored), share(once.blocked, mean.blocked)};
+}
+
+/// Returns the factor of highlights that adds the light of further bounces [Turquin 2019].
+glm::dvec3 highlight_gain(const Context& context, const Microfacets& facets) {
+    if (!compensates_energy(*context.material.metallic_roughness)) return glm::dvec3(1.0);
+    const Surface& at = context.surface;
+    const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
+    const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
+    const glm::dvec3 f0 =
+        glm::min(with_film(context, facets, n_dot_v, 1.0, {facets.f0, facets.f0}).mirrored, 1.0);
+    return 1.0 + f0 * (1.0 / (albedo.x + albedo.y) - 1.0);
+}
+
 /// Returns pi D V of the material's facets, which may be wider along one axis than along the other.
 /// \param n_dot_l  positive
 double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm::dvec3& half,
@@ -566,9 +602,10 @@ double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm:
            (n_dot_l * stretched(at.view_world, n_dot_v) + n_dot_v * stretched(light, n_dot_l));
 }
 
-/// Returns pi D V f + (1 - f') c, the factor of one light. \param n_dot_l  positive
+/// Returns pi D V f gain + (1 - f') c, the factor of one light.
+/// \param n_dot_l  positive  \param gain  highlight_gain()
 glm::dvec3 scattered_by(const Context& context, const Microfacets& facets, const glm::dvec3& light,
-                        double n_dot_l) {
+                        double n_dot_l, const glm::dvec3& gain) {
     const Surface& at = context.surface;
     const glm::dvec3 half = half_vector(light, at);
     if (half == glm::dvec3(0.0)) return facets.scattering;
@@ -579,7 +616,7 @@ glm::dvec3 scattered_by(const Context& context, const Microfacets& facets, const
                   {glm::mix(facets.f0, glm::dvec3(facets.f90), grazing),
                    glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)});
     return (1.0 - blocked) * facets.scattering +
-           mirrored * facet_lobe(facets, light, half, at, n_dot_l);
+           mirrored * gain * facet_lobe(facets, light, half, at, n_dot_l);
 }
 
 /// Returns the normal that mirrors the environment.
@@ -603,12 +640,14 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
         const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
-        const auto [mirrors, blocked] =
-            with_film(context, facets, n_dot_v, albedo.x + albedo.y,
-                      {facets.f0 * albedo.x + facets.f90 * albedo.y,
-                       facets.blocking_f0 * albedo.x + facets.f90 * albedo.y});
-        light += (1.0 - blocked) * facets.scattering * environment_irradiance(context);
-        light += mirrors * reflected(context, mirror_normal(facets, at), facets.roughness);
+        const Mirrored once = with_film(context, facets, n_dot_v, albedo.x + albedo.y,
+                                        {facets.f0 * albedo.x + facets.f90 * albedo.y,
+                                         facets.blocking_f0 * albedo.x + facets.f90 * albedo.y});
+        const Mirrored later = bounced(context, facets, n_dot_v, albedo, once);
+        light += (1.0 - once.blocked - later.blocked) * facets.scattering *
+                 environment_irradiance(context);
+        light += once.mirrored * reflected(context, mirror_normal(facets, at), facets.roughness);
+        if (later.mirrored != glm::dvec3(0.0)) light += later.mirrored * along_normal(context, 1.0);
     }
     return light;
 }
@@ -722,12 +761,13 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const Hit& hit,
     const Microfacets facets = microfacets_at(context, tint);
     glm::dvec3 radiance =
         occlusion(context) * indirect_light(context, facets) + passing_light(context, facets, hit);
+    const glm::dvec3 gain = highlight_gain(context, facets);
     for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
-        radiance +=
-            light.irradiance * n_dot_l * scattered_by(context, facets, light.light_world, n_dot_l);
+        radiance += light.irradiance * n_dot_l *
+                    scattered_by(context, facets, light.light_world, n_dot_l, gain);
     }
     return with_clearcoat(context, with_sheen(context, radiance) + emitted(context));
 }

@@ -53,6 +53,7 @@ const std::map<std::string_view, Setter>& setters() {
         {"roughness", set_member<&DrawValues::roughness>},
         {"dielectric_color", set_member<&DrawValues::dielectric_color>},
         {"dielectric_weight", set_member<&DrawValues::dielectric_weight>},
+        {"energy_compensation", set_member<&DrawValues::energy_compensation>},
         {"sheen_color", set_member<&DrawValues::sheen_color>},
         {"sheen_alpha", set_member<&DrawValues::sheen_alpha>},
         {"sheen_albedo", set_member<&DrawValues::sheen_albedo>},
@@ -218,6 +219,7 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
         values.roughness = physical->roughness;
         values.dielectric_color = reflectance_of_index(*physical);
         values.dielectric_weight = physical->specular;
+        values.energy_compensation = compensates_energy(*physical) ? 1.0F : 0.0F;
         values.clearcoat = physical->clearcoat;
         values.clearcoat_roughness = physical->clearcoat_roughness;
         set_sheen(values, *physical);

@@ -56,6 +56,7 @@ struct DrawValues {
     float roughness = 1.0F;
     glm::vec3 dielectric_color{0.04F};  ///< Reflectance at normal incidence, without weight.
     float dielectric_weight = 1.0F;
+    float energy_compensation = 0.0F;  ///< 1 if the material compensates_energy().
     glm::vec3 sheen_color{0.0F};
     float sheen_alpha = 1.0F;
     std::array<glm::vec4, 8> sheen_albedo{};  ///< sheen_albedo_table().

@@ -173,6 +173,15 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model) {
     return glm::vec3(f0 * static_cast<double>(model.specular));
 }
 
+bool compensates_energy(const MetallicRoughness& model) {
+    constexpr float smooth = 0.05F;
+    constexpr float low_reflectance = 0.045F;
+    const glm::vec3 f0 = dielectric_reflectance(model);
+    const bool is_dark = std::max({f0.r, f0.g, f0.b}) <= low_reflectance &&
+                         model.metallic == 0.0F && model.iridescence == 0.0F;
+    return !(is_dark && model.roughness <= smooth);
+}
+
 float specular_normalization(const Material& material) {
     const bool normalized = material.specular_model == SpecularModel::blinn_phong_normalized;
     return normalized ? (material.shininess + 2.0F) / 8.0F : 1.0F;

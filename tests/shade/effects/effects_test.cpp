@@ -65,13 +65,14 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
             (c.point_lights + c.spot_lights > 0 ||
              (!c.light_ranges && c.falloff == FalloffTerm::inverse_square)) &&
             (c.emission || !c.emission_texture) && (all_around || !c.occlusion_texture) &&
-            (c.metallic_roughness ||
-             (!c.metallic_roughness_texture && !c.dielectric_reflectance && !c.sheen &&
-              !c.clearcoat && !c.iridescence && !c.transmission)) &&
+            (c.metallic_roughness || (!c.metallic_roughness_texture && !c.dielectric_reflectance &&
+                                      !c.energy_compensation && !c.sheen && !c.clearcoat &&
+                                      !c.iridescence && !c.transmission)) &&
             (c.transmission || (!c.transmission_texture && !c.volume)) &&
             (c.volume || !c.thickness_texture) && (lit || !c.iridescence) && (lit || !c.sheen) &&
             (lit || c.emission || !c.clearcoat) &&
             ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
+            (has_lights(c) || reflects || c.environment_diffuse || !c.energy_compensation) &&
             (c.dielectric_reflectance ||
              (!c.specular_weight_texture && !c.specular_color_texture)) &&
             (c.sheen || (!c.sheen_color_texture && !c.sheen_roughness_texture)) &&

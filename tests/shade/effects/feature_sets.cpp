@@ -78,6 +78,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::unlit>("unlit"),
         field<&F::metallic_roughness>("metallic-roughness"),
         field<&F::dielectric_reflectance>("dielectric reflectance"),
+        field<&F::energy_compensation>("energy compensation"),
         field<&F::sheen>("sheen"),
         field<&F::clearcoat>("clearcoat"),
         field<&F::anisotropy>("anisotropy"),
@@ -274,7 +275,11 @@ Material material_calling_for(const Features& f) {
     const bool scatters = f.diffuse || f.environment_diffuse || f.unlit;
     m.diffuse = scatters ? glm::vec3(0.6F, 0.5F, 0.4F) : glm::vec3(0.0F);
     m.ambient = glm::vec3(0.3F, 0.2F, 0.4F);
-    if (f.metallic_roughness) m.metallic_roughness = {{0.7F, 0.5F, 0.3F}, 0.4F, 0.5F, {}};
+    if (f.metallic_roughness) {
+        // Smooth dielectrics alone do without energy compensation.
+        m.metallic_roughness = {{0.7F, 0.5F, 0.3F}, 0.4F, 0.5F, {}};
+        if (!f.energy_compensation) m.metallic_roughness = {{0.7F, 0.5F, 0.3F}, 0.0F, 0.03F, {}};
+    }
     if (f.dielectric_reflectance) {
         m.metallic_roughness->refractive_index = 1.9F;
         m.metallic_roughness->specular = 0.8F;
@@ -363,6 +368,7 @@ Features attainable(Features f) {
     }
     if (f.metallic_roughness && environment) f.reflection = ReflectionTerm::glossy;
     if (lights && f.environment_diffuse) f.diffuse = true;
+    if (f.dielectric_reflectance || f.iridescence) f.energy_compensation = true;
     if (f.output == OutputCoding::half) f.output = OutputCoding::srgb;
     const bool casts = f.alpha != AlphaMode::blend && !f.transmission && !f.unlit;
     if (f.shadow != ShadowTerm::none) {

@@ -84,6 +84,12 @@ Change with(T MetallicRoughness::*member, std::type_identity_t<T> value) {
         (*model).*member = value;
     };
 }
+/// A dielectric without highlights of its own: light between its facets does not count.
+const Change smooth_dielectric = [](Frame& f) {
+    MetallicRoughness& model = f.material().metallic_roughness.emplace();
+    model.metallic = 0.0F;
+    model.roughness = 0.05F;
+};
 const Change no_metal = with(&MetallicRoughness::metallic, 0.0F);
 const Change denser = with(&MetallicRoughness::refractive_index, 1.501F);
 const Change sheen = with(&MetallicRoughness::sheen_color, {0, 0, 0.001F});
@@ -249,6 +255,26 @@ const std::vector<Boundary> color_boundaries = {
      {no_texcoords},
      {}},
     {"dielectric reflectance", "light", {denser, no_suns}, {}, {ambient}},
+    {"energy compensation", "glTF's model", {}, {}, {physical}},
+    {"energy compensation",
+     "roughness",
+     {smooth_dielectric},
+     {},
+     {with(&MetallicRoughness::roughness, 0.051F)}},
+    {"energy compensation",
+     "metal",
+     {smooth_dielectric},
+     {},
+     {with(&MetallicRoughness::metallic, 0.001F)}},
+    {"energy compensation",
+     "reflectance",
+     {smooth_dielectric},
+     {},
+     {with(&MetallicRoughness::refractive_index, 1.6F)}},
+    {"energy compensation", "a film", {smooth_dielectric}, {}, {filmy}},
+    {"energy compensation", "lights", {physical, ambient}, {no_suns}, {}},
+    {"energy compensation", "an environment", {physical, no_suns, ambient}, {}, {environment}},
+    {"energy compensation", "lit", {physical}, {unlit}, {}},
     {"sheen", "a channel", {no_metal}, {}, {sheen}},
     {"sheen", "ambient light", {sheen, no_suns}, {}, {ambient}},
     {"sheen", "light besides its emission", {sheen, emissive}, {no_suns}, {}},
@@ -721,7 +747,8 @@ const std::vector<Boundary> frame_boundaries = {
     {"blurred skybox", "a skybox", {environment, hazy}, {}, {skybox}},
     {"prefiltered environment", "lit", {physical, environment}, {unlit}, {}},
     {"environment BRDF table", "metallic-roughness", {mirror, environment, rough}, {}, {physical}},
-    {"environment BRDF table", "an environment", {physical}, {}, {environment}},
+    {"environment BRDF table", "an environment", {smooth_dielectric}, {}, {environment}},
+    {"environment BRDF table", "light between facets", {smooth_dielectric}, {}, {metal}},
     {"environment irradiance",
      "an environment that is scattered",
      {},
@@ -855,6 +882,16 @@ TEST(EffectPlan, NamesWhatDecided) {
         {"dielectric reflectance",
          {denser, with(&MetallicRoughness::metallic, 1.0F)},
          "material 'body' is a metal everywhere"},
+        {"energy compensation", {}, "material 'body' is Phong's model"},
+        {"energy compensation",
+         {smooth_dielectric},
+         "material 'body' is a smooth dielectric, which loses less than 1% of what it mirrors"},
+        {"energy compensation",
+         {physical},
+         "material 'body' loses light that bounces between its facets"},
+        {"energy compensation",
+         {physical, no_suns, ambient},
+         "the material is not metallic-roughness, or mirrors nothing"},
         {"sheen", {}, "material 'body' has none"},
         {"sheen", {sheen}, "material 'body' has a sheen color"},
         {"sheen",

@@ -176,6 +176,24 @@ TEST(EnvironmentBrdf, NeverGivesMoreLightThanThereIsAndLosesMoreWhereItIsRougher
     }
 }
 
+/// compensates_energy() leaves these surfaces out.
+TEST(EnvironmentBrdf, LosesLessThanAPercentOnSmoothDielectrics) {
+    const double f0 = 0.045;
+    const double mean = (20.0 * f0 + 1.0) / 21.0;
+    double most = 0.0;
+    for (const double roughness : {0.045, 0.05}) {
+        for (int i = 1; i <= 200; ++i) {
+            const double root = i / 200.0;  // Of n.v.
+            const glm::dvec2 albedo = environment_brdf(root * root, roughness);
+            const double lost = 1.0 - albedo.x - albedo.y;
+            most = std::max({most, mean * lost / (1.0 - mean * lost),
+                             f0 * (1.0 / (albedo.x + albedo.y) - 1.0)});
+        }
+    }
+    EXPECT_LT(most, 0.01);
+    EXPECT_GT(most, 0.009);
+}
+
 TEST(EnvironmentBrdf, TheTableHoldsItFromEndToEndForAnyNumberOfThreads) {
     const Image table = environment_brdf_table(8);
     ASSERT_EQ(table.width, 8);

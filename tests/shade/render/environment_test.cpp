@@ -142,17 +142,49 @@ TEST_F(Environments, ShedWhatTheHemisphereInFrontHolds) {
     EXPECT_NEAR(shown(bright), 3.0, 4e-3);
 }
 
-TEST_F(Environments, ShowInEvenLightWhatFacetsReflectAtAll) {
+/// A white furnace: in even light, a white ball is as bright as the light, at every angle.
+TEST_F(Environments, OfEvenLightAreReflectedWhollyByWhiteSurfaces) {
+    Material white = test::black_material();
+    white.metallic_roughness.emplace();
+    Scene scene = test::scene_of(test::sphere(48, 24), white);
+    scene.environment = computed(16, [](glm::dvec3) { return 1.0; });
+    for (const float metallic : {0.0F, 1.0F}) {
+        for (const float roughness : {0.0F, 0.1F, 0.2F, 0.35F, 0.5F, 0.7F, 0.85F, 1.0F}) {
+            scene.materials[0].metallic_roughness->metallic = metallic;
+            scene.materials[0].metallic_roughness->roughness = roughness;
+            const Image picture = radiance(scene, 48, 48);
+            double darkest = 1.0;
+            double brightest = 1.0;
+            for (int y = 0; y < picture.height; ++y) {
+                for (int x = 0; x < picture.width; ++x) {
+                    const glm::dvec4 color = test::pixel(picture, x, y);
+                    if (color.a == 0.0) continue;
+                    darkest = std::min(darkest, color.x);
+                    brightest = std::max(brightest, color.x);
+                }
+            }
+            EXPECT_GT(darkest, 0.995) << metallic << " " << roughness;
+            EXPECT_LT(brightest, 1.005) << metallic << " " << roughness;
+        }
+    }
+}
+
+/// The first bounce alone is the albedo of the table.
+TEST_F(Environments, OfEvenLightLoseWhatBouncesWithoutEnergyCompensation) {
     Material metal = test::black_material();
     metal.metallic_roughness.emplace();
     Scene scene = test::scene_of(test::facing_square(), metal);
     scene.environment = computed(16, [](glm::dvec3) { return 1.0; });
+    const FrameSettings settings{65, 65, 1, OutputCoding::linear};
     for (const float roughness : {0.1F, 0.5F, 1.0F}) {
         scene.materials[0].metallic_roughness->roughness = roughness;
+        const FramePlan plan = force_effects(scene, settings, plan_effects(scene, settings),
+                                             {{}, {{"energy compensation", false}}});
         // The view is along the normal and f0 is 1. The tolerance covers half floats and the
         // bilinear lookups of the table.
         const glm::dvec2 albedo = environment_brdf(1.0, static_cast<double>(roughness));
-        EXPECT_NEAR(test::pixel(radiance(scene, 65, 65), 32, 32).x, albedo.x + albedo.y, 4e-3)
+        EXPECT_NEAR(test::pixel(render(scene, plan, settings).image, 32, 32).x, albedo.x + albedo.y,
+                    4e-3)
             << roughness;
     }
 }

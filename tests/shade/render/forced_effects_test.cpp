@@ -78,6 +78,10 @@ std::vector<std::pair<const char*, Scene>> scenes() {
     model.iridescence = 0.8F;
     all.emplace_back("layers of metallic-roughness", layered);
 
+    Scene smooth = physical;  // A dielectric whose facets lose next to nothing.
+    smooth.materials[0].metallic_roughness = {{0.8F, 0.5F, 0.3F}, 0.0F, 0.05F, std::nullopt};
+    all.emplace_back("smooth dielectric", smooth);
+
     Scene bare = base_scene();  // Without texture coordinates, textures cannot show.
     bare.meshes[0].edit().texcoords.clear();
     bare.images = textured.images;
@@ -196,6 +200,7 @@ TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
                                "environment rotation",
                                "vertex occlusion",
                                "dielectric reflectance",
+                               "energy compensation",
                                "sheen",
                                "clearcoat",
                                "anisotropy",

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "environment/convolution.h"
 #include "relief/shade/image_compare.h"
 #include "relief/shade/scene_file.h"
 #include "shade/render/draw_support.h"
@@ -179,8 +180,9 @@ TEST_F(NormalMapping, WidensTheHighlightsOfRipplesFinerThanAPixel) {
     material.metallic_roughness->roughness = 0.2F;
     const double sharp = 2.0 / std::pow(0.2, 4.0) - 2.0;
     const double alpha_squared = 2.0 / (sharp / (1.0 + sharp * variance) + 2.0);
-    // pi D V at n = h = l = v: 1 / (4 alpha^2).
-    EXPECT_NEAR(middle(), 0.25 / alpha_squared, 0.01);
+    // pi D V at n = h = l = v: 1 / (4 alpha^2), and the light of further bounces.
+    const glm::dvec2 albedo = environment_brdf(1.0, std::sqrt(std::sqrt(alpha_squared)));
+    EXPECT_NEAR(middle(), 0.25 / alpha_squared / (albedo.x + albedo.y), 0.01);
 }
 
 TEST_F(NormalMapping, LeavesHighlightsAsTheyAreWhereTheMapIsNotMinified) {

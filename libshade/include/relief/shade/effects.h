@@ -57,7 +57,8 @@ struct Features {
     bool dielectric_reflectance = false;
     bool specular_weight_texture = false;
     bool specular_color_texture = false;
-    bool sheen = false;  ///< KHR_materials_sheen
+    bool energy_compensation = false;  ///< Light that bounces between facets is kept.
+    bool sheen = false;                ///< KHR_materials_sheen
     bool sheen_color_texture = false;
     bool sheen_roughness_texture = false;
     bool clearcoat = false;  ///< KHR_materials_clearcoat

@@ -132,6 +132,11 @@ struct MetallicRoughness {
 /// by default.
 glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 
+/// Returns true if the light that bounces between facets is added to what they mirror. False for a
+/// dielectric of roughness 0.05 and less that mirrors up to 4.5% at normal incidence: the light
+/// adds less than 1% to what it mirrors, at grazing angles only.
+bool compensates_energy(const MetallicRoughness& model);
+
 /// A material. All vectors are in world space and of unit length: n (the normal, perturbed by a
 /// normal or bump map), v (to the eye), and for every light i: l (to the light),
 /// h = (l + v) / |l + v| and r = 2 (n.l) n - l. L is the light's irradiance at normal incidence
@@ -172,6 +177,12 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 ///                           + (f0 A + f90 B) reflected(2 (n.v) n - v))
 ///              + emission * emission_texture
 ///
+/// Light that facets mirror onto other facets is lost in f pi D V and in A and B. If
+/// compensates_energy(), it is added: f pi D V is multiplied by 1 + f0 (1 / (A + B) - 1) [Turquin
+/// 2019], and with F = f0 A + f90 B, the mean Fresnel factor a = f0 + (f90 - f0) / 21 and the lost
+/// share M = 1 - A - B, the radiance gets occlusion M F a / (1 - M a) reflected(n), blurred by
+/// roughness 1 [Fdez-Aguera 2019]. The same share, with f0' for f0, is taken from c E(n).
+///
 /// d is dielectric_reflectance(). f' and f0' are f and f0 with the largest channel of d, so that a
 /// colored reflection does not tint the scattered light. A and B are GGX's directional albedo for
 /// f0 and for f90 - f0 at n.v and r (environment_brdf), and the reflected environment is blurred by
@@ -189,8 +200,9 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// A thin film replaces f by mix(f, I(v.h), iridescence) and f' by mix(f', max(I(v.h)),
 /// iridescence), where I is the reflectance of the film on a base of f0: the light of both surfaces
 /// interferes. In the environment's light, f0 A + f90 B and f0' A + f90 B become the same mixtures
-/// with I(n.v) (A + B), and f0 in ambient light that with I(1). The film lies in air, also under a
-/// coat.
+/// with I(n.v) (A + B), and f0 in ambient light that with I(1). Where lost light is added, f0 in
+/// the factor of lights and a become mixtures with I(n.v), which counts as at most 1. The film lies
+/// in air, also under a coat.
 ///
 /// With transmission T, the scattered light is multiplied by 1 - T, and what is behind is added:
 ///
@@ -220,10 +232,11 @@ glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 /// shows only diffuse (or base_color) * tint.
 ///
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
-/// [Hoffman 2013], [Karis, SIGGRAPH 2013], glTF 2.0, appendix B, with KHR_materials_ior,
-/// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
-/// KHR_materials_iridescence, KHR_materials_transmission and KHR_materials_volume, [Estevez and
-/// Kulla 2017] and [Belcour and Barla 2017]. The CPU implementation is reference.h.
+/// [Hoffman 2013], [Karis, SIGGRAPH 2013], [Fdez-Aguera 2019], [Turquin 2019], glTF 2.0, appendix
+/// B, with KHR_materials_ior, KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen,
+/// KHR_materials_anisotropy, KHR_materials_iridescence, KHR_materials_transmission and
+/// KHR_materials_volume, [Estevez and Kulla 2017] and [Belcour and Barla 2017]. The CPU
+/// implementation is reference.h.
 struct Material {
     std::string name;
     Interpolation interpolation = Interpolation::per_pixel;
