@@ -25,11 +25,16 @@ namespace {
 constexpr std::uint32_t none = no_corner;
 constexpr float no_collapse = std::numeric_limits<float>::infinity();
 
-/// The maximum rotation of a triangle in one move: about 78 degrees.
+/// The maximum rotation of a triangle in one move: about 78 degrees. Several moves may add up; see
+/// Collapser::is_near_normals().
 constexpr double min_turn_cosine = 0.2;
 
 /// The same for the adjustment of positions at the end: 45 degrees.
 constexpr double min_fit_cosine = 0.7071067811865476;
+
+/// A vertex is sharp if the normal of one of its triangles differs by more than this angle, 60
+/// degrees, from their mean.
+constexpr double min_smooth_cosine = 0.5;
 
 /// The weight of the squared length, which prefers short edges if costs are otherwise equal.
 constexpr double length_preference = 1e-7;
@@ -123,6 +128,7 @@ constexpr std::uint8_t is_dirty = 1;    ///< The cost must be computed.
 constexpr std::uint8_t is_careful = 2;  ///< The cheapest collapse was refused once, so all checks
                                         ///< are made when the cost is computed.
 constexpr std::uint8_t is_locked = 4;
+constexpr std::uint8_t is_sharp = 8;  ///< See min_smooth_cosine.
 
 struct CornerData {
     std::uint32_t vertex;  ///< `none` in removed triangles.
@@ -162,6 +168,7 @@ class Collapser {
     void add_lines(std::size_t triangle);
     void add_attributes(std::size_t triangle, const glm::dvec3& normal, double doubled_area);
     void prepare_normals();
+    void list_normals();
 
     [[nodiscard]] bool gather(Corner start, Ring& ring) const;
     [[nodiscard]] bool find_ring(std::uint32_t vertex, Ring& ring) const;
@@ -176,7 +183,10 @@ class Collapser {
     [[nodiscard]] bool turns_over(std::uint32_t vertex, Corner corner, const Move& move) const;
     [[nodiscard]] bool turns_texture_over(Corner corner, std::uint32_t wedge_after) const;
     [[nodiscard]] bool has_normal_near(std::uint32_t vertex, const glm::dvec3& cross) const;
+    [[nodiscard]] bool is_near_normals(const glm::dvec3& cross, std::uint32_t a, std::uint32_t b,
+                                       std::uint32_t c) const;
     [[nodiscard]] bool leaves_normals(Corner corner, const Move& move) const;
+    [[nodiscard]] glm::dvec3 input_normal(std::size_t triangle) const;
     [[nodiscard]] bool is_line_at(Corner corner, std::uint32_t wedge) const;
     [[nodiscard]] std::uint32_t wedge_after(const Ring& ring, const Move& move,
                                             std::size_t index) const;
@@ -212,10 +222,10 @@ class Collapser {
     std::vector<double> areas_;   ///< Only with a maximum error.
     std::vector<float> costs_;    ///< The cost of the cheapest collapse.
     std::vector<std::uint8_t> flags_;
-    // Only with a maximum angle of normals:
-    std::vector<glm::dvec3> normals_;          ///< By triangle of the input; 0 without area.
+    std::vector<glm::vec3> mean_normals_;  ///< The sum of the unit normals of the input, or 0.
+    // For sharp vertices; with a maximum angle of normals, for all; otherwise empty:
     std::vector<std::uint32_t> normal_begin_;  ///< By vertex: its first entry in normals_at_.
-    std::vector<std::uint32_t> normals_at_;    ///< The triangles of the input at each vertex.
+    std::vector<glm::vec3> normals_at_;        ///< The normals of the input at each vertex.
     /// By wedge: the sums of weight, and of gradient and offset of each attribute.
     std::vector<double> attribute_sums_;
     std::size_t sums_per_wedge_ = 0;
@@ -255,6 +265,7 @@ Collapser::Collapser(CollapseInput input)
     if (triangles_ <= target_) return;
     quadrics_.resize(vertices);
     errors_.assign(vertices, 0.0);
+    mean_normals_.assign(vertices, glm::vec3(0.0F));
     if (input_.max_error) areas_.assign(vertices, 0.0);
     if (attribute_count_ > 0) {
         sums_per_wedge_ = 1 + 4 * attribute_count_;
@@ -264,13 +275,14 @@ Collapser::Collapser(CollapseInput input)
         add_triangle(t);
     for (std::size_t t = 0; t < triangles; ++t)
         add_lines(t);
-    if (input_.min_normal_cosine) prepare_normals();
+    flags_.assign(vertices, 0);
+    prepare_normals();
     costs_.assign(vertices, no_collapse);
-    flags_.assign(vertices, is_dirty);
     for (std::uint32_t v = 0; v < vertices; ++v) {
         if (topology.is_cut[v]) {
-            flags_[v] = is_locked;
+            flags_[v] |= is_locked;
         } else {
+            flags_[v] |= is_dirty;
             alive_.push_back(v);
         }
     }
@@ -289,6 +301,7 @@ void Collapser::add_triangle(std::size_t triangle) {
     quadric.add(area, normal, -glm::dot(normal, a));
     for (Corner corner = first; corner < first + 3; ++corner) {
         quadrics_[corners_[corner].vertex] += quadric;
+        mean_normals_[corners_[corner].vertex] += glm::vec3(normal);
         if (!areas_.empty()) areas_[corners_[corner].vertex] += area;
     }
     if (sums_per_wedge_ > 0) add_attributes(triangle, normal, doubled_area);
@@ -352,21 +365,50 @@ void Collapser::add_lines(std::size_t triangle) {
     }
 }
 
+/// Returns the unit normal of a triangle before any collapse; 0 without area.
+glm::dvec3 Collapser::input_normal(std::size_t triangle) const {
+    const std::size_t first = 3 * triangle;
+    const glm::dvec3 a = point(corners_[first].vertex);
+    const glm::dvec3 cross =
+        glm::cross(point(corners_[first + 1].vertex) - a, point(corners_[first + 2].vertex) - a);
+    const double length = glm::length(cross);
+    return length > 0.0 ? cross / length : glm::dvec3(0.0);
+}
+
+/// Marks sharp vertices.
 void Collapser::prepare_normals() {
+    std::atomic<bool> has_sharp = false;
+    parallel_for(corners_.size() / 3, group_size, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const glm::dvec3 normal = input_normal(t);
+            if (normal == glm::dvec3(0.0)) continue;
+            for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+                const std::uint32_t vertex = corners_[corner].vertex;
+                const glm::dvec3 mean(mean_normals_[vertex]);
+                if (glm::dot(normal, mean) > min_smooth_cosine * glm::length(mean)) continue;
+                // Other threads may write the same value.
+                std::atomic_ref(flags_[vertex]).store(is_sharp, std::memory_order_relaxed);
+                has_sharp = true;
+            }
+        }
+    });
+    if (has_sharp || input_.min_normal_cosine) list_normals();
+}
+
+void Collapser::list_normals() {
+    const auto is_listed = [&](std::uint32_t vertex) {
+        return input_.min_normal_cosine || (flags_[vertex] & is_sharp) != 0;
+    };
     normal_begin_.assign(input_.positions.size() + 1, 0);
-    for (const CornerData& corner : corners_)
-        ++normal_begin_[corner.vertex + 1];
+    for (const CornerData& corner : corners_) {
+        if (is_listed(corner.vertex)) ++normal_begin_[corner.vertex + 1];
+    }
     std::partial_sum(normal_begin_.begin(), normal_begin_.end(), normal_begin_.begin());
+    normals_at_.resize(normal_begin_.back());
     std::vector<std::uint32_t> end(normal_begin_.begin(), normal_begin_.end() - 1);
-    normals_at_.resize(corners_.size());
-    for (Corner first = 0; first < corners_.size(); first += 3) {
-        const glm::dvec3 a = point(corners_[first].vertex);
-        const glm::dvec3 cross = glm::cross(point(corners_[first + 1].vertex) - a,
-                                            point(corners_[first + 2].vertex) - a);
-        const double length = glm::length(cross);
-        normals_.emplace_back(length > 0.0 ? cross / length : glm::dvec3(0.0));
-        for (Corner corner = first; corner < first + 3; ++corner)
-            normals_at_[end[corners_[corner].vertex]++] = first / 3;
+    for (std::size_t corner = 0; corner < corners_.size(); ++corner) {
+        const std::uint32_t vertex = corners_[corner].vertex;
+        if (is_listed(vertex)) normals_at_[end[vertex]++] = glm::vec3(input_normal(corner / 3));
     }
 }
 
@@ -577,21 +619,34 @@ bool Collapser::turns_texture_over(Corner corner, std::uint32_t wedge_after) con
     return before != 0.0 && !(before * area_from(texcoord(wedge_after)) > 0.0);
 }
 
-/// Returns whether a triangle of the input at a vertex has a normal near that of a cross product.
-/// At a vertex with more than max_valence triangles, a part of them is compared.
+/// Returns whether a triangle of the input at a vertex has a normal within the maximum angle, or
+/// 90 degrees, of a cross product. At a vertex with more than max_valence triangles, a part of them
+/// is compared.
+///
+/// A cross product within 90 degrees of the sum of the normals is within 90 degrees of one of them.
+/// At vertices that are not sharp, only those are accepted.
 bool Collapser::has_normal_near(std::uint32_t vertex, const glm::dvec3& cross) const {
-    const std::uint32_t begin = normal_begin_[vertex];
-    const std::uint32_t end = normal_begin_[vertex + 1];
+    const glm::dvec3 mean(mean_normals_[vertex]);
+    if (!input_.min_normal_cosine && glm::dot(mean, cross) > 0.0) return true;
+    bool has_normal = mean != glm::dvec3(0.0);
+    const std::uint32_t begin = normal_begin_.empty() ? 0 : normal_begin_[vertex];
+    const std::uint32_t end = normal_begin_.empty() ? 0 : normal_begin_[vertex + 1];
     const std::uint32_t step = 1 + (end - begin) / static_cast<std::uint32_t>(max_valence);
-    const double least = *input_.min_normal_cosine * glm::length(cross);
-    bool has_normal = false;
+    const double cosine = std::max(input_.min_normal_cosine.value_or(0.0), 0.0);
+    const double least = cosine * glm::length(cross);
     for (std::uint32_t i = begin; i < end; i += step) {
-        const glm::dvec3& normal = normals_[normals_at_[i]];
+        const glm::dvec3 normal(normals_at_[i]);
         if (normal == glm::dvec3(0.0)) continue;
         if (glm::dot(normal, cross) >= least) return true;
         has_normal = true;
     }
     return !has_normal;
+}
+
+/// Returns whether a triangle is near the input at each of its corners.
+bool Collapser::is_near_normals(const glm::dvec3& cross, std::uint32_t a, std::uint32_t b,
+                                std::uint32_t c) const {
+    return has_normal_near(a, cross) && has_normal_near(b, cross) && has_normal_near(c, cross);
 }
 
 /// Returns whether the normal of a moved triangle differs too much from those of the input.
@@ -600,8 +655,7 @@ bool Collapser::leaves_normals(Corner corner, const Move& move) const {
     const std::uint32_t vc = corners_[previous_in_triangle(corner)].vertex;
     const glm::dvec3 cross =
         glm::cross(point(vb) - point(move.target), point(vc) - point(move.target));
-    return !has_normal_near(move.target, cross) || !has_normal_near(vb, cross) ||
-           !has_normal_near(vc, cross);
+    return !is_near_normals(cross, move.target, vb, vc);
 }
 
 /// Makes all checks that do not concern the cost.
@@ -614,7 +668,7 @@ bool Collapser::is_valid(std::uint32_t vertex, const Ring& ring, const Move& mov
         is_good =
             !turns_over(vertex, corner, move) &&
             !(input_.has_texcoords && turns_texture_over(corner, wedge_after(ring, move, i))) &&
-            !(input_.min_normal_cosine && leaves_normals(corner, move));
+            !leaves_normals(corner, move);
     });
     return is_good && keeps_topology(ring, move);
 }
@@ -955,10 +1009,7 @@ bool Collapser::may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec
         const glm::dvec3 cross_after = glm::cross(b - after, c - after);
         const double lengths = glm::length(cross_before) * glm::length(cross_after);
         if (!(glm::dot(cross_before, cross_after) > min_fit_cosine * lengths)) return false;
-        if (input_.min_normal_cosine &&
-            (!has_normal_near(vertex, cross_after) || !has_normal_near(vb, cross_after) ||
-             !has_normal_near(vc, cross_after)))
-            return false;
+        if (!is_near_normals(cross_after, vertex, vb, vc)) return false;
     }
     return true;
 }

@@ -60,7 +60,7 @@ struct CollapseInput {
     /// the points.
     std::optional<double> max_error;
     /// The minimum cosine of the angle between the normal of a triangle that changes and the
-    /// nearest normal of the input's triangles at each of its vertices.
+    /// nearest normal of the input's triangles at each of its vertices. 0 if absent or negative.
     std::optional<double> min_normal_cosine;
 };
 

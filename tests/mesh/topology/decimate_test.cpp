@@ -603,6 +603,48 @@ TEST(Decimate, NeitherTheOrderOfTrianglesNorTheThreadsMatter) {
     set_thread_limit(0);
 }
 
+TEST(Decimate, NoTriangleIsInvertedOnTori) {
+    // Each move rotates a triangle by less than 90 degrees, but several moves add up.
+    for (const auto& [slices, sides] : {std::pair(223, 223), std::pair(20, 250), std::pair(20, 70),
+                                        std::pair(140, 10), std::pair(80, 70)}) {
+        for (const float tube_radius : {0.4F, 0.25F, 0.8F}) {
+            const Mesh torus = make_torus(tube_radius, slices, sides);
+            if (tube_radius != 0.4F && torus.triangles.size() > 20000) continue;
+            for (const bool fits : {true, false}) {
+                DecimateOptions options;
+                options.triangles = std::max<std::size_t>(torus.triangles.size() / 100, 40);
+                options.fit_positions = fits;
+                Report report;
+                const FramedMesh small = decimated(torus, options, report);
+                EXPECT_LT(max_corner_angle(torus, small), std::numbers::pi / 2.0)
+                    << slices << " x " << sides << ", " << tube_radius << ", " << fits;
+                EXPECT_EQ(report.count("number of triangles out of reach"), 0U);
+            }
+        }
+    }
+}
+
+TEST(Decimate, NoTriangleIsInvertedAtSharpEdges) {
+    // Thin plates with folds: the mean normal at their rims says little about the sides.
+    std::mt19937 random(9);
+    const auto noise = [&] { return static_cast<float>(random()) / 4294967296.0F - 0.5F; };
+    for (const float thickness : {0.2F, 0.02F, 0.002F}) {
+        Mesh plate = make_sphere(48, 32);
+        plate.normals.clear();
+        plate.tangents.clear();
+        plate.texcoords.clear();
+        for (glm::vec3& p : plate.positions)
+            p = {p.x + 0.02F * noise(), thickness * p.y, p.z};
+        DecimateOptions options;
+        options.triangles = 60;
+        for (const bool fits : {true, false}) {
+            options.fit_positions = fits;
+            const FramedMesh small = decimated(plate, options);
+            EXPECT_LE(max_corner_angle(plate, small), std::numbers::pi / 2.0 + 1e-6) << thickness;
+        }
+    }
+}
+
 TEST(Decimate, AMaximumAngleOfNormalsHolds) {
     const Mesh torus = make_torus(0.4F, 64, 32);
     DecimateOptions options;

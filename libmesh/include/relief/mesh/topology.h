@@ -70,8 +70,9 @@ struct DecimateOptions {
 ///
 /// Boundaries, texture seams, and borders between colors and materials are feature lines: they are
 /// simplified along themselves and never torn or crossed, and their junctions are kept. Closed
-/// meshes stay closed, no triangle is inverted in space or in the texture, and separate components
-/// neither merge nor vanish. The target number of triangles is met to within one unless that would
+/// meshes stay closed, no triangle is inverted in the texture or in space (at each corner of a
+/// triangle that changes, one of the input's triangles is within 90 degrees), and separate
+/// components neither merge nor vanish. The target number of triangles is met to within one unless that would
 /// violate these rules. The same input gives the same bits for any order of triangles. The time is
 /// linear for all shapes, except for sorting.
 ///
