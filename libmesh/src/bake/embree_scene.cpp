@@ -5,6 +5,7 @@
 #include "bake/embree_scene.h"
 
 #include <embree3/rtcore.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,8 +13,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <new>
+#include <string>
 #include <tuple>
 #include <utility>
+
+#include "relief/mesh/report.h"
 
 namespace relief {
 
@@ -310,6 +315,32 @@ void cast_any(RayPacket& packet, std::size_t count, const Call& call) {
         });
 }
 
+/// Throws if Embree reported an error. \param device  null for an error of rtcNewDevice()
+void check_error(RTCDevice device, const std::string& action) {
+    switch (const RTCError error = rtcGetDeviceError(device)) {
+        case RTC_ERROR_NONE:
+            return;
+        case RTC_ERROR_OUT_OF_MEMORY:
+            throw std::bad_alloc();
+        case RTC_ERROR_UNSUPPORTED_CPU:
+            throw Error(fmt::format("Embree {}: this processor lacks the instruction set", action));
+        default:
+            throw Error(fmt::format("Embree {}: error {}", action, static_cast<int>(error)));
+    }
+}
+
+/// \throws Error if the processor, or the configuration in RELIEF_EMBREE, is not supported
+RTCDevice new_device() {
+    const char* const configuration = std::getenv("RELIEF_EMBREE");
+    RTCDevice device = rtcNewDevice(configuration);
+    if (device != nullptr) return device;
+    const std::string action =
+        configuration == nullptr ? "cannot start"
+                                 : fmt::format("cannot start with RELIEF_EMBREE={}", configuration);
+    check_error(nullptr, action);
+    throw Error("Embree " + action);
+}
+
 using SortedCorners = std::array<std::tuple<double, double, double>, 3>;
 
 /// Returns the key that orders triangles by the positions of their corners.
@@ -326,7 +357,7 @@ SortedCorners sorted_corners(const Corners& corners) {
 EmbreeScene::EmbreeScene(const EmbreeSpace& space, SceneBuild build, TriangleOrder order)
     : space_(space),
       order_(std::move(order)),
-      device_(rtcNewDevice(std::getenv("RELIEF_EMBREE"))),
+      device_(new_device()),
       scene_(rtcNewScene(device_)),
       build_(build),
       rays_at_once_(rays_at_once()) {
@@ -373,6 +404,7 @@ void EmbreeScene::add(std::uint32_t name, std::span<const glm::vec<3, Number>> p
 
 void EmbreeScene::build() {
     rtcCommitScene(scene_);
+    check_error(device_, "cannot build the scene");
 }
 
 std::array<glm::dvec3, 3> EmbreeScene::corners(const MetTriangle& met) const {

@@ -87,6 +87,7 @@ class EmbreeScene {
     /// For tests, the environment variable RELIEF_EMBREE configures Embree's device ("isa=avx2"),
     /// and RELIEF_RAY_PACKET is the number of rays per call of Embree: 1, 4, 8 or 16; the default
     /// is 16 for find_nearest() and 1 for find_any(). The constructor reads both.
+    /// \throws Error if the processor lacks the instructions that RELIEF_EMBREE asks for
     EmbreeScene(const EmbreeSpace& space, SceneBuild build, TriangleOrder order = {});
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
@@ -100,6 +101,7 @@ class EmbreeScene {
              std::span<const glm::uvec3> triangles);
 
     /// Must be called once, after all meshes are added and before the first query.
+    /// \throws std::bad_alloc; Error if Embree fails
     void build();
 
     /// Puts a ray into a lane of a packet. Rays that are not finite hit nothing, nor do rays from

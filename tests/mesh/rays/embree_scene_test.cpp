@@ -9,12 +9,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <list>
 #include <random>
 #include <set>
+#include <string>
 
 #include "bake/triangle_clusters.h"
+#include "relief/mesh/report.h"
 
 namespace relief {
 namespace {
@@ -353,6 +356,17 @@ TEST(EmbreeScene, FindsTheNearestTriangleOfEachRayThatItIsAskedFor) {
     EXPECT_EQ(packet.distance[2], 0.25);
     EXPECT_FALSE(packet.hits(3)) << "ends above the first";
     EXPECT_FALSE(packet.hits(4)) << "was not asked for";
+}
+
+TEST(EmbreeScene, AConfigurationThatEmbreeRefusesIsAnError) {
+    const char* const given = std::getenv("RELIEF_EMBREE");
+    const std::string before = given == nullptr ? "" : given;
+    ::setenv("RELIEF_EMBREE", "threads=many", 1);
+    EXPECT_THROW(EmbreeScene(space, SceneBuild::fast), Error);
+    if (given == nullptr)
+        ::unsetenv("RELIEF_EMBREE");
+    else
+        ::setenv("RELIEF_EMBREE", before.c_str(), 1);
 }
 
 TEST(EmbreeScene, EndsOfRaysAreExact) {
