@@ -199,6 +199,8 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
             },
             findings);
     });
+    if (result.texels_baked + result.texels_missed == 0)
+        throw InvalidInput("the low mesh covers no texel of the map (see `outside`)");
     py::dict baked;
     baked["normals"] = arrays.normals;
     baked["heights"] = arrays.heights;

@@ -139,6 +139,82 @@ TEST_F(BakeFit, OtherUnitsAreAnErrorUnlessAllowed) {
     EXPECT_EQ(bake().exit_code, 0);
 }
 
+/// A bent tube, whose normals differ if it is scaled or moved.
+std::string bent_tube(int columns, const Placement& at = {}) {
+    std::string text;
+    const int rows = columns / 2;
+    for (int row = 0; row <= rows; ++row) {
+        for (int column = 0; column <= columns; ++column) {
+            const double along = 2.0 * std::numbers::pi * column / columns;
+            const double around = 2.0 * std::numbers::pi * row / rows;
+            const double ring = 1.0 + 0.3 * std::cos(around);
+            text += fmt::format(
+                "v {} {} {}\nvt {} {}\n", at.x + at.scale * ring * std::cos(along),
+                at.y + at.scale * ring * std::sin(along), at.z + at.scale * 0.3 * std::sin(around),
+                static_cast<double>(column) / columns, 1.0 - static_cast<double>(row) / rows);
+        }
+    }
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 1; column <= columns; ++column) {
+            const int a = row * (columns + 1) + column;
+            const int b = a + columns + 1;
+            text += fmt::format("f {0}/{0} {3}/{3} {2}/{2} {1}/{1}\n", a, b, b + 1, a + 1);
+        }
+    }
+    return text;
+}
+
+TEST_F(BakeFit, AScaleOrAShiftWithinTheBoxesIsAFinding) {
+    workplace.write("low.obj", bent_tube(24));
+    workplace.write("high.obj", bent_tube(48));
+    const std::string strict = "--strict --max-missed 100 ";
+    EXPECT_EQ(bake(strict).exit_code, 0);
+    for (const auto& [high, text] :
+         {std::pair(Placement{.scale = 2.54}, "high model of another size (model 0): is about 2.5"),
+          {{.scale = 3.28}, "is the high model in feet and the low one in meters?"},
+          {{.x = 0.3}, "high model in another place (model 0): is moved by (0.3, "}}) {
+        workplace.write("high.obj", bent_tube(48, high));
+        const ProgramResult result = workplace.run(
+            "relief-bake mesh high.obj low.obj out/map.png --size 32 --max-missed 100 --report "
+            "out/report.json");
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.out, HasSubstr(text));
+        EXPECT_EQ(bake(strict).exit_code, 3);
+        const json report = json::parse(workplace.read("out/report.json"));
+        EXPECT_NEAR(report["agreement"]["correction"]["scale"].get<double>(), high.scale, 0.1);
+    }
+    workplace.write("high.obj", bent_tube(48, {.scale = 2.54}));
+    EXPECT_THAT(workplace
+                    .run("relief-bake mesh high.obj low.obj out/map.png --size 32 --max-missed 100 "
+                         "--allow-size-mismatch")
+                    .out,
+                Not(HasSubstr("high model of another size")));
+}
+
+TEST_F(BakeFit, AMapWithoutACoveredTexelIsAnError) {
+    const std::string corners = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n";
+    workplace.write_square("high.obj");
+    workplace.write("low.obj", corners + "vt 2 0\nvt 3 0\nvt 3 1\nvt 2 1\nf 1/1 2/2 3/3 4/4\n");
+    expect_nothing_written("",
+                           "low.obj: covers no texel of the map: its texture coordinates are (2, "
+                           "0) to (3, 1), outside of the unit square (give --outside repeat, or "
+                           "<UDIM> in the map's name; nothing is written)");
+    expect_nothing_written("--max-missed 100", "covers no texel of the map");
+    EXPECT_EQ(bake("--outside repeat").exit_code, 0);
+    workplace.write("low.obj", corners + "vt 0.5 0.5\nf 1/1 2/1 3/1 4/1\n");
+    expect_nothing_written("", "to (0.5, 0.5), without any area (unwrap it");
+    // One of two materials covers texels.
+    workplace.write("low.obj", corners +
+                                   "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl A\nf 1/1 2/2 3/3\n"
+                                   "usemtl B\nf 1/1 3/1 4/1\n");
+    workplace.write("out/report.json", "");
+    const ProgramResult result = workplace.run(
+        "relief-bake mesh high.obj low.obj 'out/<material>.png' --size 16 --report "
+        "out/report.json");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("1 x map without a covered texel"));
+}
+
 TEST_F(BakeFit, RotatedAxesAreAFindingAndACause) {
     workplace.write("low.obj", ellipsoid(16, 0.3, 1, 0.3));
     workplace.write("high.obj", ellipsoid(48, 0.3, 0.3, 1));

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -109,12 +110,15 @@ void bake_all(const MeshBakeRequest& request, const Baker& baker, const BakeMode
               MapPlans plans, const BakeOptions& options, Stages& stages, MeshBake& bake) {
     MapProgress progress(stages, plans.maps.size());
     std::vector<std::unique_ptr<PendingMap>> pending;
+    std::size_t covered = 0;  // Texels of all maps.
     for (MapPlan& plan : plans.maps) {
         pending.push_back(std::make_unique<PendingMap>(request, baker, std::move(plan), options,
                                                        progress, bake.format));
         const BakedMap& map = pending.back()->map();
         check_missed(request, models, map.plan.name(), map.result);
+        covered += map.result.texels_baked + map.result.texels_missed;
     }
+    if (covered == 0) throw uncovered_error(request, models.low);
     for (const std::unique_ptr<PendingMap>& map : pending) {
         bake.maps.push_back(map->finish(bake.findings));
         add_result(bake.all, bake.maps.back().result);
@@ -287,6 +291,7 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
             check_missed_early(request, models, *baker, map_options(options, plan), plan.name());
     });
     bake.fit = baker->fit();
+    bake.agreement = baker->agreement();
     MeshBakeRequest settled = request;  // With the selected samples.
     if (request.measures_errors()) {
         stages.run("choose", [&] {
@@ -552,6 +557,22 @@ Json missed_json(const BakeResult& result, const glm::dvec3& origin) {
             {"measuring_rays", result.measuring_rays}};
 }
 
+Json agreement_json(const BakeAgreement& agreement) {
+    const auto degrees = [](double angle) { return angle * 180.0 / std::numbers::pi; };
+    Json json = {{"rays", agreement.samples},
+                 {"missed", agreement.missed},
+                 {"from_behind", agreement.from_behind},
+                 {"median_distance", agreement.median_distance},
+                 {"mean_degrees", degrees(agreement.mean_angle)}};
+    if (const std::optional<BakeCorrection>& correction = agreement.correction) {
+        json["correction"] = {{"scale", correction->scale},
+                              {"shift", point_json(correction->shift)},
+                              {"median_distance", correction->median_distance},
+                              {"mean_degrees", degrees(correction->mean_angle)}};
+    }
+    return json;
+}
+
 /// The bounding boxes in world space, their gap and the ratio of their sizes.
 Json boxes_json(const BakeFit& fit, const glm::dvec3& origin) {
     const auto box_json = [&](const Bounds& box) -> Json {
@@ -666,6 +687,7 @@ Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const S
                  {"high_triangles", bake.high_triangles},
                  {"low_triangles", bake.low_triangles},
                  {"boxes", boxes_json(bake.fit, bake.origin)},
+                 {"agreement", agreement_json(bake.agreement)},
                  {"pairs", json_list(bake.pairs, pair_json)}});
     summary.add(
         "rays",

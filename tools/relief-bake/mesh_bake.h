@@ -41,6 +41,7 @@ struct MeshBake {
     std::vector<BakedMap> maps;
     BakeResult all;                          ///< Sums and extremes over all maps.
     BakeFit fit;                             ///< Baker::fit()
+    BakeAgreement agreement;                 ///< Baker::agreement()
     glm::dvec3 origin{0.0};                  ///< As in BakeModels.
     std::optional<BakeComparison> accuracy;  ///< If errors were measured before the bake.
     std::optional<MaterialResult> stored;    ///< The materials of --write-into.

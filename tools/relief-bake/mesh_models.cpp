@@ -470,6 +470,33 @@ void check_missed(const MeshBakeRequest& request, const BakeModels& models, cons
         throw missed_error(request, models, map, result, "");
 }
 
+FileError uncovered_error(const MeshBakeRequest& request, const Mesh& low) {
+    glm::vec2 min(std::numeric_limits<float>::infinity());
+    glm::vec2 max = -min;
+    for (const glm::uvec3& triangle : low.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            const glm::vec2& texcoord = low.texcoords[triangle[i]];
+            if (!std::isfinite(texcoord.x) || !std::isfinite(texcoord.y)) continue;
+            min = glm::min(min, texcoord);
+            max = glm::max(max, texcoord);
+        }
+    }
+    if (!(min.x <= max.x)) {
+        return failure(request.low, "covers no texel of the map: no texture coordinates are finite",
+                       "unwrap it in a modeling program; nothing is written");
+    }
+    const bool is_outside = !request.bake.map.placement.repeat &&
+                            (min.x < 0.0F || min.y < 0.0F || max.x > 1.0F || max.y > 1.0F);
+    return failure(
+        request.low,
+        fmt::format("covers no texel of the map: its texture coordinates are ({:.4g}, {:.4g}) to "
+                    "({:.4g}, {:.4g}){}",
+                    min.x, min.y, max.x, max.y,
+                    is_outside ? ", outside of the unit square" : ", without any area"),
+        is_outside ? "give --outside repeat, or <UDIM> in the map's name; nothing is written"
+                   : "unwrap it in a modeling program; nothing is written");
+}
+
 void check_missed_early(const MeshBakeRequest& request, const BakeModels& models,
                         const Baker& baker, const BakeMapOptions& map, const std::string& name) {
     const double limit = request.missed_limit() + estimate_margin;

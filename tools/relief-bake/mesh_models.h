@@ -122,6 +122,9 @@ std::string describe_fit(const MeshBakeRequest& request, const BakeModels& model
 void check_missed(const MeshBakeRequest& request, const BakeModels& models, const std::string& map,
                   const BakeResult& result);
 
+/// The error if the low model covers no texel of any map.
+FileError uncovered_error(const MeshBakeRequest& request, const Mesh& low);
+
 /// Estimates on a reduced map, before the bake, whether too many texels are missed.
 /// \throws FileError like check_missed(), if the estimate is 5 percent points above the limit
 void check_missed_early(const MeshBakeRequest& request, const BakeModels& models,

@@ -467,11 +467,17 @@ BakeDistances BakeParts::largest_distances() const {
 struct Baker::Implementation {
     template <typename High>
     Implementation(std::span<High> high, const Mesh& mesh, const BakeOptions& given, Report& report)
-        : options(given), low(mesh, options, report), parts(high, low, options, report) {}
+        : options(given),
+          low(mesh, options, report),
+          parts(high, low, options, report),
+          agreement(agreement_of(parts, low, options)) {
+        report_agreement(agreement, options, report);
+    }
 
     BakeOptions options;
     LowSurface low;
     BakeParts parts;
+    BakeAgreement agreement;
 };
 
 Baker::Baker(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,
@@ -504,6 +510,10 @@ BakeDistances Baker::distances() const {
 
 BakeFit Baker::fit() const {
     return implementation_->parts.fit();
+}
+
+const BakeAgreement& Baker::agreement() const {
+    return implementation_->agreement;
 }
 
 LayerBounds Baker::bounds(const BakeLayers& layers) const {
@@ -555,6 +565,9 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     result.clipped_outside = counts.clipped_outside.summary();
     result.clipped_inside = counts.clipped_inside.summary();
     result.measuring_rays = counts.measuring_rays;
+    const bool is_whole = range.first == 0 && range.last == map.height;
+    if (is_whole && counts.baked + counts.missed == 0)
+        report.add("map without a covered texel", "map", 0, "is empty");
     if (counts.baked > 0) {
         result.min_height = counts.min_height;
         result.max_height = counts.max_height;

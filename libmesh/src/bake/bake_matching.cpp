@@ -13,6 +13,8 @@
 #include <set>
 #include <string_view>
 
+#include "bake/bake_work.h"
+
 namespace relief {
 namespace {
 
@@ -28,7 +30,13 @@ constexpr std::array unit_pairs = {
     UnitPair{39.370079, "inches", "meters"},      UnitPair{100.0, "centimeters", "meters"},
     UnitPair{304.8, "millimeters", "feet"},       UnitPair{1000.0, "millimeters", "meters"}};
 
-/// Returns the units that would explain a ratio of sizes; empty if there are none.
+std::string pair_name_of(const BakePartName& part, BakeSide side) {
+    const std::optional<std::string> name = pair_name(part.object, side);
+    return name ? *name : pair_name(part.file, side).value_or("");
+}
+
+}  // namespace
+
 std::string unit_cause(double size_ratio) {
     const double ratio = std::max(size_ratio, 1.0 / size_ratio);
     for (const UnitPair& pair : unit_pairs) {
@@ -40,13 +48,6 @@ std::string unit_cause(double size_ratio) {
     }
     return "";
 }
-
-std::string pair_name_of(const BakePartName& part, BakeSide side) {
-    const std::optional<std::string> name = pair_name(part.object, side);
-    return name ? *name : pair_name(part.file, side).value_or("");
-}
-
-}  // namespace
 
 std::optional<std::string> pair_name(const std::string& name, BakeSide side) {
     constexpr std::string_view separators = "_-. ";

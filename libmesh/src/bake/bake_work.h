@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bake/high_surface.h"
@@ -106,6 +107,17 @@ class BakeParts {
     std::vector<std::unique_ptr<SeenSurface>> surfaces_;
     std::vector<std::uint32_t> part_of_triangle_;  ///< Empty if there is only one part.
 };
+
+/// Measures the agreement of the surfaces with a few rays, and searches for a correction if they do
+/// not agree.
+BakeAgreement agreement_of(const BakeParts& parts, const LowSurface& low,
+                           const BakeOptions& options);
+
+/// Reports surfaces that do not agree; see Baker::agreement().
+void report_agreement(const BakeAgreement& agreement, const BakeOptions& options, Report& report);
+
+/// Returns the units that would explain a ratio of sizes, as a question; empty if there are none.
+std::string unit_cause(double size_ratio);
 
 /// The input that all rows of a map share.
 struct BakeWork {

@@ -102,15 +102,15 @@ double RayScene::distance_from(const glm::dvec3& point, double enough) const {
     return embree_.distance_from(point, enough);
 }
 
-namespace {
-
-constexpr double relative_step = 4e-6;  // Of the scene's size.
-constexpr int max_steps = 256;          // Layers of surface that a walk passes.
-
 Ray from_outside(const ProjectionLine& line) {
     return {line.point + line.outside * line.outward, -line.outward, 0.0,
             line.outside + line.inside};
 }
+
+namespace {
+
+constexpr double relative_step = 4e-6;  // Of the scene's size.
+constexpr int max_steps = 256;          // Layers of surface that a walk passes.
 
 constexpr std::size_t point_count = 16384;
 constexpr double margin = 1.5;

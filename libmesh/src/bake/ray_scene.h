@@ -104,6 +104,9 @@ struct ProjectionLine {
     double inside = 0.0;      ///< Length on the inner side.
 };
 
+/// Returns the ray from the outer end of a line to its inner end.
+Ray from_outside(const ProjectionLine& line);
+
 /// The surface point that a line projects to.
 struct ProjectedPoint {
     RayHit hit;           ///< Seen from the outer end.

@@ -363,6 +363,33 @@ struct BakeFit {
 };
 BakeFit compare_boxes(std::span<const Mesh> high, const Mesh& low);
 
+/// A scale and a shift of the high meshes that explain why they do not agree with the low mesh.
+struct BakeCorrection {
+    double scale = 1.0;            ///< The size of the high meshes divided by that of the low mesh.
+    glm::dvec3 shift{0.0};         ///< From the center of the low mesh to that of the high meshes.
+    double median_distance = 0.0;  ///< As in BakeAgreement, if the high meshes are corrected.
+    double mean_angle = 0.0;
+};
+
+/// The agreement of the high and low surfaces, measured by the rays of 1024 points that are spread
+/// over the area of the low mesh. It depends slightly on the order of the low triangles.
+struct BakeAgreement {
+    std::size_t samples = 0;  ///< The number of rays; 0 if the low mesh has no area.
+    std::size_t missed = 0;   ///< The number of rays without a result.
+    /// The number of rays that hit only back faces, or a back face with BackFaces::take.
+    std::size_t from_behind = 0;
+    /// The distance of the high surface from the low mesh along the ray. A missed ray counts with
+    /// its length.
+    double median_distance = 0.0;
+    /// The mean angle between the triangles of both, in radians, over the rays with a result. Back
+    /// faces and larger angles count as 90 degrees.
+    double mean_angle = 0.0;
+    double half_diagonal = 0.0;  ///< Of the low mesh's box, to compare distances with.
+    /// Present if the surfaces differ by more than 8 degrees and 1% of `half_diagonal`, and the
+    /// correction leaves at most a quarter of the distance and 3/4 of the angle.
+    std::optional<BakeCorrection> correction;
+};
+
 /// The maximum ratio of the diagonals of two boxes; beyond it, the meshes probably have different
 /// units.
 inline constexpr double max_size_ratio = 10.0;
@@ -461,6 +488,12 @@ class Baker {
     /// The comparison of the bounding boxes; with parts, of the boxes of all parts together.
     [[nodiscard]] BakeFit fit() const;
 
+    /// The agreement of the surfaces. If they do not agree, the report of the constructor has one
+    /// of the findings "high model of another size" (unless BakeOptions::allow_size_mismatch is
+    /// set), "high model in another place" and "surfaces that do not agree" (35 degrees and 5% of
+    /// the half diagonal).
+    [[nodiscard]] const BakeAgreement& agreement() const;
+
     /// Upper bounds of the values of the requested layers; 0 for the others.
     [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
 
@@ -468,10 +501,10 @@ class Baker {
     ///
     /// \param take  receives bands of rows from the top, on the calling thread, and may change
     ///         them. Row counts are multiples of 64, except for the last band
-    /// \param report  counts texels that are missed, have no frame, face away from the baked
-    ///         surface, or are covered by several triangles; triangles that cover no texel; rays
-    ///         without a direction, which use the face normal; and high vertices without a normal,
-    ///         which use the face normal
+    /// \param report  counts a whole map without a covered texel; texels that are missed, have no
+    ///         frame, face away from the baked surface, or are covered by several triangles;
+    ///         triangles that cover no texel; rays without a direction, which use the face normal;
+    ///         and high vertices without a normal, which use the face normal
     /// \param execution  threads, progress and cancellation; the map does not depend on it
     /// \throws InvalidInput if a size or an option is out of range, or a triangle does not exist;
     ///         Cancelled
