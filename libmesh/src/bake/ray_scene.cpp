@@ -110,6 +110,7 @@ Ray from_outside(const ProjectionLine& line) {
 namespace {
 
 constexpr double relative_step = 4e-6;  // Of the scene's size.
+constexpr double tie_step = 4e-12;      // The same; beyond all hits that tie with one.
 constexpr int max_steps = 256;          // Layers of surface that a walk passes.
 
 constexpr std::size_t point_count = 16384;
@@ -266,13 +267,14 @@ std::vector<std::size_t> Projection::find_from_outside(std::span<const Projectio
     return ambiguous;
 }
 
-/// Visits the triangles along a line one after another, from its point outwards or inwards.
+/// Visits the triangles along a line one after another, from its point outwards or inwards. Of hits
+/// that tie, one is visited.
 struct Projection::Walk {
     const RayScene& scene;
     const ProjectionLine& line;
     double sign;  ///< 1 outwards, -1 inwards.
     double far;
-    double step;
+    double step;  ///< Beyond hits that tie.
     double at = 0.0;
     std::size_t rays = 0;
 
@@ -294,7 +296,9 @@ struct Projection::Walk {
 };
 
 std::size_t Projection::walk(const ProjectionLine& line, ProjectedPoint& point) const {
-    Walk inwards{scene_, line, -1.0, line.inside, step_};
+    // No step is longer, because folds of needles may be closer to each other than any tolerance.
+    const double step = tie_step * scene_.half_size();
+    Walk inwards{scene_, line, -1.0, line.inside, step};
     std::optional<ProjectedPoint> first_inwards;
     bool lies_outside = false;  // The nearest triangle inwards faces the point.
     for (auto hit = inwards.next(); hit; hit = inwards.next()) {
@@ -303,12 +307,20 @@ std::size_t Projection::walk(const ProjectionLine& line, ProjectedPoint& point) 
         first_inwards = inwards.seen(*hit);
         break;
     }
-    Walk outwards{scene_, line, 1.0, line.outside, step_};
+    Walk outwards{scene_, line, 1.0, line.outside, step};
     std::optional<ProjectedPoint> left, left_within;
     int depth = lies_outside ? 0 : 1;  // The number of solids that contain the point.
     bool may_enter = !lies_outside;
+    double last = -std::numeric_limits<double>::infinity();
+    bool has_entered = false;  // At the last crossing.
     for (auto hit = outwards.next(); hit; hit = outwards.next()) {
         const bool enters = hit->faces_origin;
+        // Coincident sheets are one crossing, and solids that touch are one solid. An exit soon
+        // after an entry is the other side of a thin solid.
+        const bool is_same = hit->distance < last + step_ && (enters || !has_entered);
+        if (is_same) continue;
+        last = hit->distance;
+        has_entered = enters;
         if (enters && !may_enter) break;
         depth = enters ? depth + 1 : std::max(depth - 1, 0);
         if (enters) continue;

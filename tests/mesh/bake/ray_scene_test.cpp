@@ -3,8 +3,10 @@
 // a stack of sheets.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -33,6 +35,116 @@ Mesh placed_at(Mesh mesh, double scale, const glm::dvec3& by) {
     for (glm::vec3& position : mesh.positions)
         position = glm::vec3(glm::dvec3(position) * scale + by);
     return mesh;
+}
+
+/// A closed surface around the origin with one vertex at each pole, and outward triangles. Those at
+/// the poles are `slices` / 2 pi times as long as wide; with bumps, they are folded like a star.
+Mesh closed_sphere(int slices, int stacks, double bumps) {
+    Mesh mesh;
+    const auto put = [&](double polar, double longitude) {
+        const double radius = 1.0 + bumps * std::sin(12.0 * longitude) * std::sin(12.0 * polar);
+        mesh.positions.emplace_back(radius * glm::dvec3(std::sin(polar) * std::sin(longitude),
+                                                        std::cos(polar),
+                                                        std::sin(polar) * std::cos(longitude)));
+    };
+    put(0.0, 0.0);
+    for (int row = 1; row < stacks; ++row) {
+        for (int i = 0; i < slices; ++i)
+            put(std::numbers::pi * row / stacks, 2.0 * std::numbers::pi * i / slices);
+    }
+    put(std::numbers::pi, 0.0);
+    const auto at = [&](int row, int i) {
+        const int vertex = row == 0        ? 0
+                           : row == stacks ? slices * (stacks - 1) + 1
+                                           : 1 + (row - 1) * slices + i % slices;
+        return static_cast<std::uint32_t>(vertex);
+    };
+    for (int row = 0; row < stacks; ++row) {
+        for (int i = 0; i < slices; ++i) {
+            if (row < stacks - 1)
+                mesh.triangles.emplace_back(at(row, i), at(row + 1, i), at(row + 1, i + 1));
+            if (row > 0)
+                mesh.triangles.emplace_back(at(row, i), at(row + 1, i + 1), at(row, i + 1));
+        }
+    }
+    return mesh;
+}
+
+TEST(RayScene, NoRayPassesBetweenNeedles) {
+    // Needles of 1000:1 at the poles, and of 20:1 elsewhere. Rays in random bundles run from
+    // outside to the center, through places inside of triangles, on edges and at vertices.
+    const Mesh sphere = closed_sphere(6284, 8, 0.0);
+    const RayScene scene = scene_of(sphere);
+    std::mt19937 random(4);
+    for (int bundle = 0; bundle < 1500; ++bundle) {
+        RayPacket packet;
+        std::array<Ray, RayPacket::size> rays;
+        const std::size_t first = random() % sphere.triangles.size();
+        for (std::size_t lane = 0; lane < rays.size(); ++lane) {
+            const glm::uvec3& t = sphere.triangles[(first + lane) % sphere.triangles.size()];
+            const glm::dvec3 a(sphere.positions[t.x]);
+            const double second = bundle % 3 == 2 ? 0.0 : 0.5 + 0.5 * number(random);
+            const double third =
+                bundle % 3 == 0 ? (1.0 - second) * (0.5 + 0.5 * number(random)) : 0.0;
+            const glm::dvec3 place = a + second * (glm::dvec3(sphere.positions[t.y]) - a) +
+                                     third * (glm::dvec3(sphere.positions[t.z]) - a);
+            const glm::dvec3 center =
+                0.2 * glm::dvec3(number(random), number(random), number(random));
+            const glm::dvec3 direction = glm::normalize(center - place);
+            const double before = 0.1 + 5.0 * std::abs(number(random));
+            rays[lane] = {place - before * direction, direction, 0.0,
+                          before + glm::distance(place, center)};
+            scene.set(packet, lane, rays[lane]);
+        }
+        RayPacket blocked = packet;
+        scene.find(packet, rays.size());
+        scene.find_any(blocked, rays.size());
+        for (std::size_t lane = 0; lane < rays.size(); ++lane) {
+            ASSERT_TRUE(packet.hits(lane)) << bundle << " " << lane;
+            ASSERT_TRUE(blocked.is_blocked(lane)) << bundle << " " << lane;
+            ASSERT_TRUE(scene.nearest(rays[lane]).is_hit()) << bundle << " " << lane;
+            EXPECT_TRUE(scene.hit(packet, lane).faces_origin) << bundle << " " << lane;
+        }
+    }
+}
+
+/// Returns whether the inner half of a line hits a front face.
+bool has_front_inwards(const RayScene& scene, const ProjectionLine& line) {
+    Ray ray{line.point, -line.outward, 0.0, line.inside};
+    for (int crossing = 0; crossing < 100; ++crossing) {
+        const RayHit hit = scene.nearest(ray);
+        if (!hit.is_hit() || hit.faces_origin) return hit.is_hit();
+        ray.near = hit.distance + 1e-13;
+    }
+    return false;
+}
+
+TEST(Projection, FindsTheFoldsOfNeedlesHoweverNearTheyAre) {
+    // At the poles, folds of needles of 160:1 are closer to each other than 1e-8.
+    std::mt19937 random(5);
+    const Mesh star = closed_sphere(1000, 40, 0.2);
+    const RayScene scene = scene_of(star);
+    std::vector<ProjectionLine> lines;
+    for (int i = 0; i < 20000; ++i) {
+        const double polar = std::pow(10.0, 3.5 * number(random) - 4.5);
+        const double longitude = std::numbers::pi * number(random);
+        const glm::dvec3 outward(std::sin(polar) * std::sin(longitude), std::cos(polar),
+                                 std::sin(polar) * std::cos(longitude));
+        const double height =
+            std::pow(10.0, 3.0 * number(random) - 8.0) * (i % 2 == 0 ? 1.0 : -1.0);
+        const glm::dvec3 tilt(number(random), number(random), number(random));
+        lines.push_back({(1.0 + height) * outward, glm::normalize(outward + tilt), 0.05, 0.05});
+    }
+    std::vector<ProjectedPoint> points(lines.size());
+    Projection(scene, BackFaces::skip).find(lines, points);
+    std::size_t fronts = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (!has_front_inwards(scene, lines[i])) continue;
+        ++fronts;
+        EXPECT_TRUE(points[i].hit.is_hit()) << i;
+        EXPECT_TRUE(points[i].hit.faces_origin) << i;
+    }
+    EXPECT_GT(fronts, 4000U);
 }
 
 TEST(RayScene, HitsAPlaneWhereTheRayMeetsItAtEveryScale) {
