@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "relief/mesh/mesh.h"
+
 namespace relief::test {
 
 /// The expected outcome of one step for a hard input.
@@ -28,6 +30,7 @@ struct HardCase {
     std::string what;    ///< The input, in a sentence for the page.
     std::string source;  ///< The source that describes the case.
     std::vector<Expectation> expectations;
+    std::function<Mesh()> mesh{};  ///< The input if it is a mesh, otherwise empty.
 };
 
 /// All rows. Meshes and their normals come first.

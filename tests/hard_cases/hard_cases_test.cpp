@@ -6,13 +6,11 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
-#include <limits>
-#include <random>
 #include <set>
 
 #include "hard_cases/hard_cases.h"
 #include "hard_cases/mesh_case.h"
+#include "hard_cases/random_meshes.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
@@ -57,111 +55,6 @@ TEST(HardCasesTable, HasARowForEveryWordOfCheck) {
     for (const MeshConditionInfo& condition : mesh_conditions())
         EXPECT_NE(all.find("x " + std::string(condition.word) + ","), std::string::npos)
             << condition.word;
-}
-
-/// Random values. The standard distributions differ between libraries, so the class has its own.
-/// The order of calls determines the values; braced initializers keep it.
-class Dice {
-  public:
-    explicit Dice(std::uint32_t seed) : generator_(seed) {}
-
-    std::uint32_t below(std::uint32_t limit) {
-        return static_cast<std::uint32_t>(generator_()) % limit;
-    }
-    bool one_in(std::uint32_t n) { return below(n) == 0; }
-
-    /// Returns a multiple of 1/4 from -1 to 1, so that values often coincide and cancel.
-    float common() { return 0.25F * static_cast<float>(below(9)) - 1.0F; }
-
-    /// Returns a value from -1 to 1 with random digits.
-    float any_digits() { return static_cast<float>(generator_()) * 0x1p-31F - 1.0F; }
-
-    float special() {
-        constexpr float values[] = {-0.0F,
-                                    0x1p-149F,
-                                    -0x1.8p-130F,
-                                    1e-38F,
-                                    -1e-25F,
-                                    1e-18F,
-                                    1e6F,
-                                    -1e20F,
-                                    1e25F,
-                                    std::numeric_limits<float>::max(),
-                                    -std::numeric_limits<float>::max(),
-                                    std::numeric_limits<float>::infinity(),
-                                    std::numeric_limits<float>::quiet_NaN()};
-        return values[below(std::size(values))];
-    }
-
-    /// \param rarity  one value in `rarity` is special
-    float value(std::uint32_t rarity, bool is_common) {
-        if (one_in(rarity)) return special();
-        return is_common ? common() : any_digits();
-    }
-
-  private:
-    std::mt19937 generator_;
-};
-
-/// The choice of random values for one mesh.
-struct Temper {
-    std::uint32_t rarity;
-    bool is_common;
-    float position_scale;
-    float position_offset;
-    float texture_scale;
-    float texture_offset;
-    float normal_scale;
-};
-
-Temper temper(Dice& dice) {
-    constexpr float scales[] = {1, 1, 1, 1, 1e-30F, 1e-18F, 1e18F, 1e30F};
-    constexpr float offsets[] = {0, 0, 0, 1e6F};
-    const auto scale = [&] { return scales[dice.below(std::size(scales))]; };
-    const auto offset = [&] { return offsets[dice.below(std::size(offsets))]; };
-    const std::uint32_t rarity = dice.one_in(2) ? 1U << 30 : dice.one_in(2) ? 40 : 6;
-    return {rarity, dice.one_in(2), scale(), offset(), scale(), offset(), scale()};
-}
-
-void add_vertex(Mesh& mesh, const Temper& temper, Dice& dice) {
-    const auto draw = [&] { return dice.value(temper.rarity, temper.is_common); };
-    mesh.positions.push_back(temper.position_scale * glm::vec3{draw(), draw(), draw()} +
-                             temper.position_offset);
-    mesh.normals.push_back(temper.normal_scale * glm::vec3{draw(), draw(), draw()});
-    mesh.texcoords.push_back(temper.texture_scale * glm::vec2{draw(), draw()} +
-                             temper.texture_offset);
-    if (mesh.positions.size() == 1 || !dice.one_in(2)) return;
-    const std::uint32_t other = dice.below(static_cast<std::uint32_t>(mesh.positions.size() - 1));
-    if (!dice.one_in(3)) mesh.positions.back() = mesh.positions[other];
-    if (!dice.one_in(3)) mesh.normals.back() = mesh.normals[other];
-    if (!dice.one_in(3)) mesh.texcoords.back() = mesh.texcoords[other];
-}
-
-void add_triangle(Mesh& mesh, Dice& dice) {
-    const auto count = static_cast<std::uint32_t>(mesh.positions.size());
-    glm::uvec3 triangle{dice.below(count), dice.below(count), dice.below(count)};
-    if (!mesh.triangles.empty() && !dice.one_in(3)) {
-        // The triangle shares an edge with the last one, in either direction. Sometimes it is the
-        // same triangle.
-        const glm::uvec3& last = mesh.triangles.back();
-        triangle = dice.one_in(3) ? glm::uvec3(last.x, last.y, triangle.z)
-                                  : glm::uvec3(last.z, last.y, triangle.z);
-        if (dice.one_in(8)) triangle = {last.y, last.z, last.x};
-    }
-    mesh.triangles.push_back(triangle);
-}
-
-Mesh hostile_mesh(std::uint32_t seed) {
-    Dice dice(seed);
-    const Temper how = temper(dice);
-    Mesh mesh;
-    const std::uint32_t vertices = 1 + dice.below(12);
-    for (std::uint32_t v = 0; v < vertices; ++v)
-        add_vertex(mesh, how, dice);
-    const std::uint32_t triangles = dice.below(25);
-    for (std::uint32_t t = 0; t < triangles; ++t)
-        add_triangle(mesh, dice);
-    return mesh;
 }
 
 constexpr std::uint32_t mesh_count = 10000;

@@ -105,7 +105,7 @@ const std::vector<NormalWeight>& all_weights() {
 
 MeshCase::MeshCase(std::string name, std::string what, std::string source,
                    std::function<Mesh()> make)
-    : row_{std::move(name), std::move(what), std::move(source), {}}, make_(std::move(make)) {}
+    : row_{std::move(name), std::move(what), std::move(source), {}, make}, make_(std::move(make)) {}
 
 MeshCase& MeshCase::checked(const std::vector<std::pair<MeshCondition, std::size_t>>& found) {
     std::map<std::string, std::size_t> expected;

@@ -132,7 +132,8 @@ class FanMesh {
     FanMesh(const Mesh& mesh, const HardEdges& hard_edges)
         : mesh_(mesh), welded_(welded_triangles(mesh.triangles, weld_positions(mesh.positions))) {
         normals_ = normals_or_zero(mesh.positions, mesh.triangles);
-        const SmoothFans fans = smooth_fans(mesh.positions.size(), welded_, normals_, hard_edges);
+        const SmoothFans fans =
+            smooth_fans({mesh.positions, mesh.triangles, welded_, normals_}, hard_edges);
         fans_.resize(mesh.triangles.size());
         for (std::size_t corner = 0; corner < fans.fan_of_corner.size(); ++corner)
             fans_[corner / 3][static_cast<int>(corner % 3)] = fans.fan_of_corner[corner];

@@ -569,6 +569,43 @@ FanMesh mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
     return mesh;
 }
 
+/// Gives the corners of triangles without a normal the normal of another corner at their vertex, so
+/// that they split no vertex, or else at their position: the first one by value.
+///
+/// \param open  the corners of these triangles, ascending. Those without another keep their normal
+/// \param welded  the triangles with the indices of welded vertices
+/// \return for each vertex, whether its open corners got a normal; empty if there are none
+std::vector<bool> borrow_normals(std::span<const Corner> open, std::size_t vertex_count,
+                                 TriangleSpan triangles, std::span<const glm::uvec3> welded,
+                                 std::span<glm::vec3> normals) {
+    if (open.empty()) return {};
+    constexpr glm::vec3 none(0.0F);
+    std::vector<glm::vec3> at_vertex(vertex_count, none);
+    std::vector<glm::vec3> at_position(vertex_count, none);
+    auto next_open = open.begin();
+    for (Corner corner = 0; corner < normals.size(); ++corner) {
+        if (next_open != open.end() && *next_open == corner) {
+            ++next_open;
+            continue;
+        }
+        for (glm::vec3* const first :
+             {&at_vertex[vertex_of(corner, triangles)], &at_position[vertex_of(corner, welded)]}) {
+            if (*first == none || comes_before(glm::dvec3(normals[corner]), glm::dvec3(*first)))
+                *first = normals[corner];
+        }
+    }
+    std::vector<bool> has_normal(vertex_count, false);
+    for (const Corner corner : open) {
+        const std::uint32_t vertex = vertex_of(corner, triangles);
+        const glm::vec3& here = at_vertex[vertex];
+        const glm::vec3& normal = here != none ? here : at_position[vertex_of(corner, welded)];
+        if (normal == none) continue;
+        normals[corner] = normal;
+        has_normal[vertex] = true;
+    }
+    return has_normal;
+}
+
 }  // namespace
 
 CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
@@ -577,10 +614,11 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
     check_triangles(triangles, positions.size());
     check(hard_edges, triangles.size());
     const Groups shared = sharing_vertices(positions, options.weld_tolerance);
+    const std::vector<glm::uvec3> welded = over_places(triangles, positions.size(), shared);
+    const std::vector<glm::vec3> of_triangles = normals_or_zero(positions, triangles);
     const FanMesh fans =
-        mesh_of(smooth_fans(positions.size(), over_places(triangles, positions.size(), shared),
-                            normals_or_zero(positions, triangles), hard_edges),
-                positions, triangles);
+        mesh_of(smooth_fans({positions, triangles, welded, of_triangles}, hard_edges), positions,
+                triangles);
     std::vector<glm::vec3> normals(fans.positions.size());
     const AveragingResult averaged =
         weight ? averaged_normals(fans.positions, fans.triangles, *weight, options.arithmetic,
@@ -588,16 +626,22 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
                : averaged_normals_by_choice(fans.positions, fans.triangles, options.arithmetic,
                                             fans.fans, normals);
 
-    report_triangles(positions, triangles, averaged.odd_triangles,
-                     "does not contribute to vertex normals", report);
-    for (const auto& [vertex, kind] : averaged.problems)
-        report_vertex(kind, fans.vertex[vertex], report);
     CornerNormals result;
     result.by_area = averaged.by_area;
     result.normals.reserve(3 * triangles.size());
-    for (const glm::uvec3& triangle : fans.triangles) {
-        for (int i = 0; i < 3; ++i)
-            result.normals.push_back(normals[triangle[i]]);
+    std::vector<Corner> open;
+    for (Corner corner = 0; corner < 3 * triangles.size(); ++corner) {
+        if (of_triangles[triangle_of(corner)] == glm::vec3(0.0F)) open.push_back(corner);
+        result.normals.push_back(normals[vertex_of(corner, fans.triangles)]);
+    }
+    const std::vector<bool> has_normal =
+        borrow_normals(open, positions.size(), triangles, welded, result.normals);
+    report_triangles(positions, triangles, averaged.odd_triangles,
+                     "does not contribute to vertex normals", report);
+    for (const auto& [vertex, kind] : averaged.problems) {
+        // A vertex with only such triangles can get a normal of another one at its position.
+        if (kind == PlaceKind::no_valid_triangle && has_normal[fans.vertex[vertex]]) continue;
+        report_vertex(kind, fans.vertex[vertex], report);
     }
     return result;
 }

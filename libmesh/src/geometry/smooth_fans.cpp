@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edges from each position to its neighbors are sorted by neighbor, and corners that share a
-// smooth edge are joined. The decision at an edge depends only on its two triangles, so it is the
-// same at both ends and for any order of triangles.
+// smooth edge are joined. The decision at an edge depends only on the normals of its triangles, so
+// it is the same for any order of triangles and vertices.
+//
+// A triangle without a normal has no edges of its own. If two of its corners are at one position,
+// its two remaining sides are one edge, and the triangles there are neighbors already. If all three
+// are at different positions, it lies on a line, and its longest side coincides with the two
+// others: seen from an end of the longest side, both sides of the triangle are one edge.
 //
 // A crease angle is inferred by sorting edges by the angle between their triangles: it separates
 // hard from smooth edges with the fewest errors. Edges with one triangle or with more than two are
@@ -9,8 +14,10 @@
 #include "geometry/smooth_fans.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -80,9 +87,8 @@ class Aliases {
 
 class FansAtPosition {
   public:
-    FansAtPosition(std::span<const glm::uvec3> triangles, std::span<const glm::vec3> normals,
-                   const HardEdges& hard_edges)
-        : triangles_(triangles), normals_(normals), hard_edges_(hard_edges) {}
+    FansAtPosition(const FanInput& input, const HardEdges& hard_edges)
+        : input_(input), hard_edges_(hard_edges) {}
 
     /// Fans of the corners at this position, by index among them.
     DisjointSets& find(std::span<const Corner> corners) {
@@ -102,107 +108,127 @@ class FansAtPosition {
     }
 
   private:
+    /// Gathers the edges of triangles with a normal, and joins the corners of all others.
     void gather_spokes() {
         spokes_.clear();
-        seen_through_.clear();
+        same_edges_.clear();
+        std::optional<std::uint32_t> without_normal;
         for (std::uint32_t i = 0; i < corners_.size(); ++i) {
-            const std::uint32_t triangle = triangle_of(corners_[i]);
+            const Corner corner = corners_[i];
+            const std::uint32_t triangle = triangle_of(corner);
+            const std::uint32_t next = vertex_of(next_in_triangle(corner), input_.welded);
+            const std::uint32_t previous = vertex_of(previous_in_triangle(corner), input_.welded);
+            if (input_.normals[triangle] == glm::vec3(0.0F)) {
+                if (is_at_end_of_line(corner)) same_edges_.add(next, previous);
+                fans_.join(i, without_normal.value_or(i));
+                without_normal = i;
+                continue;
+            }
             const std::uint32_t group =
                 hard_edges_.smoothing_groups.empty() ? 0 : hard_edges_.smoothing_groups[triangle];
-            const std::uint32_t next = vertex_of(next_in_triangle(corners_[i]), triangles_);
-            const std::uint32_t previous = vertex_of(previous_in_triangle(corners_[i]), triangles_);
             spokes_.push_back({next, i, group});
             spokes_.push_back({previous, i, group});
-            if (normal_at(spokes_.back()) == glm::vec3(0.0F)) seen_through_.add(next, previous);
         }
-        if (!seen_through_.empty()) {
-            seen_through_.settle();
+        if (!same_edges_.empty()) {
+            same_edges_.settle();
             for (Spoke& spoke : spokes_)
-                spoke.neighbor = seen_through_.of(spoke.neighbor);
+                spoke.neighbor = same_edges_.of(spoke.neighbor);
         }
         std::sort(spokes_.begin(), spokes_.end(), spoke_comes_before);
     }
 
+    /// Tests whether the corner of a triangle without a normal is at an end of its longest side,
+    /// and its corners are at three positions.
+    [[nodiscard]] bool is_at_end_of_line(Corner corner) const {
+        const std::uint32_t triangle = triangle_of(corner);
+        const glm::uvec3& welded = input_.welded[triangle];
+        if (welded.x == welded.y || welded.y == welded.z || welded.z == welded.x) return false;
+        std::array<glm::dvec3, 3> at{};
+        for (std::size_t i = 0; i < at.size(); ++i)
+            at[i] = input_.positions[input_.triangles[triangle][static_cast<int>(i)]];
+        // Not finite if a position is not.
+        std::size_t middle = 0;
+        double longest = -1.0;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            const glm::dvec3 side = at[(i + 2) % 3] - at[(i + 1) % 3];
+            const double square = glm::dot(side, side);
+            if (!std::isfinite(square)) return false;
+            // Two sides round to the same length if the third is tiny.
+            if (square < longest || (square == longest && !comes_before(at[i], at[middle])))
+                continue;
+            middle = i;
+            longest = square;
+        }
+        return corner % 3 != middle;
+    }
+
     [[nodiscard]] const glm::vec3& normal_at(const Spoke& spoke) const {
-        return normals_[triangle_of(corners_[spoke.corner])];
+        return input_.normals[triangle_of(corners_[spoke.corner])];
     }
 
-    void join(const Spoke& a, const Spoke& b) { fans_.join(a.corner, b.corner); }
-
-    void join_along_edge(std::span<const Spoke> spokes) {
-        sound_.clear();
-        for (const Spoke& spoke : spokes) {
-            if (normal_at(spoke) != glm::vec3(0.0F)) sound_.push_back(spoke);
-        }
-        if (sound_.size() < spokes.size()) join_seen_through(spokes);
-        if (sound_.size() == 2)
-            join_if_smooth(sound_[0], sound_[1]);
-        else if (sound_.size() > 2)
-            join_around();
-    }
-
-    /// A triangle without a normal joins the neighbor with the smallest normal by value, or the
-    /// other triangles without a normal.
-    void join_seen_through(std::span<const Spoke> spokes) {
-        const auto by_normal = [&](const Spoke& a, const Spoke& b) {
-            return comes_before(glm::dvec3(normal_at(a)), glm::dvec3(normal_at(b)));
-        };
-        const Spoke& host = sound_.empty()
-                                ? spokes.front()
-                                : *std::min_element(sound_.begin(), sound_.end(), by_normal);
-        for (const Spoke& spoke : spokes) {
-            if (normal_at(spoke) == glm::vec3(0.0F)) join(spoke, host);
-        }
+    void join_along_edge(std::span<Spoke> spokes) {
+        if (spokes.size() == 2)
+            join_if_smooth(spokes[0], spokes[1]);
+        else if (spokes.size() > 2)
+            join_around(spokes);
     }
 
     void join_if_smooth(const Spoke& a, const Spoke& b) {
         if (!hard_edges_.crease_angle ||
             angle_between(glm::dvec3(normal_at(a)), glm::dvec3(normal_at(b))) <=
                 *hard_edges_.crease_angle + limit_slack)
-            join(a, b);
+            fans_.join(a.corner, b.corner);
     }
 
     /// All normals at one edge lie on a circle, so only adjacent ones, and the last and the first,
-    /// are compared.
-    void join_around() {
-        const glm::dvec3 ahead(normal_at(sound_.front()));
+    /// are compared. The circle begins at the first normal by value.
+    void join_around(std::span<Spoke> spokes) {
+        std::sort(spokes.begin(), spokes.end(), [&](const Spoke& a, const Spoke& b) {
+            return comes_before(glm::dvec3(normal_at(a)), glm::dvec3(normal_at(b)));
+        });
+        const glm::dvec3 ahead(normal_at(spokes.front()));
         glm::dvec3 aside(0.0);
-        for (const Spoke& spoke : sound_) {
+        for (const Spoke& spoke : spokes) {
             const glm::dvec3 off = in_plane(glm::dvec3(normal_at(spoke)), ahead);
             if (glm::dot(off, off) > glm::dot(aside, aside)) aside = off;
         }
         aside = direction_or_zero(aside);
-        const auto angle = [&](const Spoke& spoke) {
+        around_.clear();
+        for (const Spoke& spoke : spokes) {
             const glm::dvec3 normal(normal_at(spoke));
-            return portable::atan2(glm::dot(normal, aside), glm::dot(normal, ahead));
-        };
-        std::sort(sound_.begin(), sound_.end(),
-                  [&](const Spoke& a, const Spoke& b) { return angle(a) < angle(b); });
-        for (std::size_t i = 0; i < sound_.size(); ++i)
-            join_if_smooth(sound_[i], sound_[(i + 1) % sound_.size()]);
+            around_.push_back(
+                {portable::atan2(glm::dot(normal, aside), glm::dot(normal, ahead)), spoke});
+        }
+        std::stable_sort(around_.begin(), around_.end(),
+                         [](const SpokeAt& a, const SpokeAt& b) { return a.angle < b.angle; });
+        for (std::size_t i = 0; i < around_.size(); ++i)
+            join_if_smooth(around_[i].spoke, around_[(i + 1) % around_.size()].spoke);
     }
 
-    std::span<const glm::uvec3> triangles_;
-    std::span<const glm::vec3> normals_;
+    struct SpokeAt {
+        double angle;
+        Spoke spoke;
+    };
+
+    const FanInput& input_;
     const HardEdges& hard_edges_;
     std::span<const Corner> corners_;
     DisjointSets fans_;
     std::vector<Spoke> spokes_;
-    std::vector<Spoke> sound_;  ///< Spokes of one edge whose triangles have a normal.
-    Aliases seen_through_;      ///< Neighbors on both sides of a triangle without a normal.
+    std::vector<SpokeAt> around_;
+    Aliases same_edges_;  ///< Neighbors in the same direction.
 };
 
 }  // namespace
 
-SmoothFans smooth_fans(std::size_t position_count, std::span<const glm::uvec3> triangles,
-                       std::span<const glm::vec3> normals, const HardEdges& hard_edges) {
+SmoothFans smooth_fans(const FanInput& input, const HardEdges& hard_edges) {
     constexpr std::size_t grain = 4096;
-    const CornersByVertex corners(position_count, triangles);
+    const CornersByVertex corners(input.positions.size(), input.welded);
     SmoothFans fans;
-    fans.fan_of_corner.resize(3 * triangles.size());
+    fans.fan_of_corner.resize(3 * input.triangles.size());
     // Each fan is represented by one of its corners first, and gets an index afterwards.
-    parallel_for(position_count, grain, [&](std::size_t begin, std::size_t end) {
-        FansAtPosition at(triangles, normals, hard_edges);
+    parallel_for(input.positions.size(), grain, [&](std::size_t begin, std::size_t end) {
+        FansAtPosition at(input, hard_edges);
         for (std::size_t v = begin; v < end; ++v) {
             const std::span<const Corner> here = corners.at(v);
             DisjointSets& found = at.find(here);
@@ -210,7 +236,7 @@ SmoothFans smooth_fans(std::size_t position_count, std::span<const glm::uvec3> t
                 fans.fan_of_corner[here[i]] = here[found.find(i)];
         }
     });
-    std::vector<std::uint32_t> number(3 * triangles.size());
+    std::vector<std::uint32_t> number(3 * input.triangles.size());
     for (std::size_t c = 0; c < number.size(); ++c) {
         if (fans.fan_of_corner[c] == c) number[c] = static_cast<std::uint32_t>(fans.count++);
     }
@@ -229,13 +255,16 @@ struct EdgeSide {
     Corner corner;
 };
 
-std::vector<EdgeSide> sides_of(std::span<const glm::uvec3> welded) {
+/// Sides of the triangles with a normal, sorted by edge.
+std::vector<EdgeSide> sides_of(std::span<const glm::uvec3> welded,
+                               std::span<const glm::vec3> normals) {
     std::vector<EdgeSide> sides;
     sides.reserve(3 * welded.size());
     for (Corner corner = 0; corner < 3 * welded.size(); ++corner) {
+        if (normals[triangle_of(corner)] == glm::vec3(0.0F)) continue;
         const std::uint32_t a = vertex_of(corner, welded);
         const std::uint32_t b = vertex_of(next_in_triangle(corner), welded);
-        if (a != b) sides.push_back({std::min(a, b), std::max(a, b), corner});
+        sides.push_back({std::min(a, b), std::max(a, b), corner});
     }
     std::sort(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
         if (a.low != b.low) return a.low < b.low;
@@ -252,10 +281,10 @@ struct JudgedEdge {
 
 class EdgeJudge {
   public:
-    EdgeJudge(const Mesh& mesh, std::span<const glm::uvec3> welded)
-        : mesh_(mesh), welded_(welded), normals_(normals_or_zero(mesh.positions, mesh.triangles)) {}
+    EdgeJudge(const Mesh& mesh, std::span<const glm::uvec3> welded,
+              std::span<const glm::vec3> normals)
+        : mesh_(mesh), welded_(welded), normals_(normals) {}
 
-    /// The angle is NaN if a triangle has no area.
     [[nodiscard]] JudgedEdge judge(const EdgeSide& a, const EdgeSide& b) const {
         const double angle = degrees_between(glm::dvec3(normals_[triangle_of(a.corner)]),
                                              glm::dvec3(normals_[triangle_of(b.corner)]));
@@ -274,7 +303,7 @@ class EdgeJudge {
 
     const Mesh& mesh_;
     std::span<const glm::uvec3> welded_;
-    std::vector<glm::vec3> normals_;
+    std::span<const glm::vec3> normals_;
 };
 
 /// Finds the crease angle that misclassifies the fewest edges.
@@ -311,8 +340,9 @@ InferredCreases inferred_creases(const Mesh& mesh) {
     if (mesh.normals.empty()) throw InvalidInput("the mesh has no normals to tell hard edges by");
     const std::vector<glm::uvec3> welded =
         welded_triangles(mesh.triangles, weld_positions(mesh.positions));
-    const std::vector<EdgeSide> sides = sides_of(welded);
-    const EdgeJudge judge(mesh, welded);
+    const std::vector<glm::vec3> normals = normals_or_zero(mesh.positions, mesh.triangles);
+    const std::vector<EdgeSide> sides = sides_of(welded, normals);
+    const EdgeJudge judge(mesh, welded, normals);
     InferredCreases found;
     std::vector<JudgedEdge> edges;
     for (std::size_t begin = 0; begin < sides.size();) {
@@ -320,10 +350,7 @@ InferredCreases inferred_creases(const Mesh& mesh) {
         while (end < sides.size() && sides[end].low == sides[begin].low &&
                sides[end].high == sides[begin].high)
             ++end;
-        if (end - begin == 2) {
-            const JudgedEdge edge = judge.judge(sides[begin], sides[begin + 1]);
-            if (edge.angle >= 0.0) edges.push_back(edge);
-        }
+        if (end - begin == 2) edges.push_back(judge.judge(sides[begin], sides[begin + 1]));
         begin = end;
     }
     found.edges = edges.size();

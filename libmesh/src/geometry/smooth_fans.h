@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "relief/mesh/buffers.h"
 #include "relief/mesh/normals.h"
 
 namespace relief {
@@ -18,6 +19,14 @@ struct SmoothFans {
     std::size_t count = 0;
 };
 
+/// A mesh with the positions at which its vertices are welded.
+struct FanInput {
+    StridedSpan<const glm::vec3> positions;
+    TriangleSpan triangles;
+    std::span<const glm::uvec3> welded;  ///< The triangles with the indices of welded vertices.
+    std::span<const glm::vec3> normals;  ///< One unit normal per triangle, or zero.
+};
+
 /// Corners at one position belong to one fan if smooth edges from that position (see HardEdges)
 /// join their triangles, directly or through other triangles. Triangles that share only the
 /// position belong to different fans (a bow-tie, the tips of two cones).
@@ -26,12 +35,10 @@ struct SmoothFans {
 /// is within the limit, directly or through other triangles at the edge. The normals of neighbors
 /// with inconsistent winding are opposite, so the edge between them counts as hard.
 ///
-/// Triangles without a normal do not join neighbors that would not be joined without them. They
-/// belong to the fan of one of their neighbors.
-///
-/// \param triangles  indices of positions: vertices at the same position have the same index
-/// \param normals    one unit normal per triangle; zero for a triangle without a normal
-SmoothFans smooth_fans(std::size_t position_count, std::span<const glm::uvec3> triangles,
-                       std::span<const glm::vec3> normals, const HardEdges& hard_edges);
+/// Triangles without a normal (zero) join no others. If the corners of one are at three positions,
+/// on a line, the triangles along its longest side and along its other sides share an edge at both
+/// ends of the longest side. The corners of all triangles without a normal at one position form a
+/// fan of their own.
+SmoothFans smooth_fans(const FanInput& input, const HardEdges& hard_edges);
 
 }  // namespace relief

@@ -136,6 +136,22 @@ TEST(CornerNormals, ASliverWithoutAreaIsLookedThrough) {
     }
 }
 
+TEST(CornerNormals, CollapsedTrianglesChangeNothing) {
+    const Mesh sphere = test::sphere(8, 4);
+    Mesh collapsed = sphere;
+    // At the pole and at an edge, each vertex of the pole is at the same position.
+    for (std::uint32_t v = 0; v < 8; ++v) {
+        collapsed.triangles.insert(collapsed.triangles.begin(), {v + 1, v, v + 10});
+        collapsed.triangles.emplace_back(v + 10, v + 10, v + 20);
+    }
+    for (const double crease : {20.0, 40.0, 60.0}) {
+        const auto expected = creased(sphere, crease);
+        const auto normals = creased(collapsed, crease);
+        for (std::size_t c = 0; c < expected.size(); ++c)
+            ASSERT_EQ(normals[c + 3 * 8], expected[c]) << crease << ", corner " << c;
+    }
+}
+
 TEST(CornerNormals, SmoothingGroupsKeepToThemselvesAndOffIsFlat) {
     const Mesh sheet = folded_sheet(40.0);
     Report report;
