@@ -309,6 +309,11 @@ double largest_value(PlyType type) {
     }
 }
 
+bool is_corner_list(const PlyProperty& property) {
+    return property.count_type &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
 struct PlyData {
     Mesh mesh;
     Polygons polygons;
@@ -332,6 +337,8 @@ class PlyElements {
                 read_vertices(element);
             } else if (element.name == "face") {
                 read_faces(element);
+            } else if (element.name == "tristrips") {
+                read_strips(element);
             } else {
                 skip(element);
             }
@@ -392,8 +399,18 @@ class PlyElements {
                     "the surplus is ignored");
     }
 
+    /// Adds a corner to the face that is read.
+    void add_corner(double index) {
+        if (!(index >= 0.0 && index <= 4294967295.0 && index == std::floor(index))) {
+            throw FileError(file_, fmt::format("face {} names vertex {}",
+                                               data_.polygons.corner_counts.size(), index));
+        }
+        data_.polygons.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+
     void read_vertices(const PlyElement& element);
     void read_faces(const PlyElement& element);
+    void read_strips(const PlyElement& element);
     void read_corners(const PlyProperty& property);
     void read_corner_texcoords(const PlyProperty& property);
 
@@ -446,14 +463,8 @@ void PlyElements<Values>::read_vertices(const PlyElement& element) {
 template <typename Values>
 void PlyElements<Values>::read_corners(const PlyProperty& property) {
     const std::uint64_t length = list_length(property);
-    for (std::uint64_t i = 0; i < length; ++i) {
-        const double index = values_.next(property.type);
-        if (!(index >= 0.0 && index <= 4294967295.0 && index == std::floor(index))) {
-            throw FileError(file_, fmt::format("face {} names vertex {}",
-                                               data_.polygons.corner_counts.size(), index));
-        }
-        data_.polygons.corners.push_back(static_cast<std::uint32_t>(index));
-    }
+    for (std::uint64_t i = 0; i < length; ++i)
+        add_corner(values_.next(property.type));
     data_.polygons.corner_counts.push_back(static_cast<std::uint32_t>(length));
 }
 
@@ -479,12 +490,8 @@ void PlyElements<Values>::read_corner_texcoords(const PlyProperty& property) {
 
 template <typename Values>
 void PlyElements<Values>::read_faces(const PlyElement& element) {
-    const auto is_corners = [](const PlyProperty& property) {
-        return property.count_type &&
-               (property.name == "vertex_indices" || property.name == "vertex_index");
-    };
     const auto corners =
-        std::find_if(element.properties.begin(), element.properties.end(), is_corners);
+        std::find_if(element.properties.begin(), element.properties.end(), is_corner_list);
     if (corners == element.properties.end()) {
         throw FileError(file_, "its faces have no list of vertex indices");
     }
@@ -504,6 +511,42 @@ void PlyElements<Values>::read_faces(const PlyElement& element) {
                 read_corner_texcoords(property);
             } else {
                 skip_property(property);
+            }
+        }
+        end_element(element, i);
+    }
+}
+
+/// Reads strips of triangles. Every second triangle of a strip is reversed; -1 begins another
+/// strip.
+template <typename Values>
+void PlyElements<Values>::read_strips(const PlyElement& element) {
+    ProgressStage stage("strips", element.count);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        stage.at(i);
+        for (const PlyProperty& property : element.properties) {
+            if (!is_corner_list(property)) {
+                skip_property(property);
+                continue;
+            }
+            std::array<double, 2> last{};
+            std::size_t place = 0;
+            const std::uint64_t length = list_length(property);
+            for (std::uint64_t k = 0; k < length; ++k) {
+                const double index = values_.next(property.type);
+                if (index == -1.0) {
+                    place = 0;
+                    continue;
+                }
+                if (place >= 2) {
+                    const bool is_reversed = place % 2 != 0;
+                    add_corner(last[is_reversed ? 1 : 0]);
+                    add_corner(last[is_reversed ? 0 : 1]);
+                    add_corner(index);
+                    data_.polygons.corner_counts.push_back(3);
+                }
+                last = {last[1], index};
+                ++place;
             }
         }
         end_element(element, i);
@@ -559,6 +602,10 @@ MeshFile read_ply(const std::filesystem::path& file, const glm::dvec3& origin, R
         unify_corners(data, file);
     }
     data.mesh.name = file.stem().string();
+    if (data.polygons.corners.empty() && !data.mesh.positions.empty()) {
+        throw FileError(file,
+                        fmt::format("has no triangle, only {} points", data.mesh.positions.size()));
+    }
     add_triangles(data.mesh, data.polygons, file, report);
     MeshFile result;
     result.mesh = std::move(data.mesh);

@@ -41,6 +41,22 @@ TEST_F(Ply, AsciiIsReadLineByLine) {
     EXPECT_EQ(report_.count("line with more values than the header names"), 2U);
 }
 
+TEST_F(Ply, StripsBecomeTriangles) {
+    const Mesh mesh = read(
+                          "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty "
+                          "float y\nproperty float z\nelement tristrips 1\nproperty list int int "
+                          "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
+                          "8 0 1 2 3 -1 0 1 3\n")
+                          .mesh;
+    EXPECT_THAT(mesh.triangles,
+                ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(2, 1, 3), glm::uvec3(0, 1, 3)));
+}
+
+TEST_F(Ply, PointsAreNamed) {
+    EXPECT_THAT(error_of(ascii_vertices + "end_header\n0 0 0\n1 0 0\n0 1 0\n"),
+                HasSubstr("has no triangle, only 3 points"));
+}
+
 TEST_F(Ply, DataBehindTheLastElementIsReported) {
     const std::string complete = ascii_vertices + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     EXPECT_EQ(read(complete + "\n \n").mesh.triangles.size(), 1U);
