@@ -229,7 +229,8 @@ std::uint64_t parse_bytes(const std::string& subject, const std::string& text) {
 void add_limit_options(CLI::App& app) {
     add_value(app, "--max-memory", "SIZE",
               "Use at most this much memory: 600M, 4G. Larger images and models are refused before "
-              "they are read. Default: 3/4 of the machine's memory for one image or array.",
+              "they are read. Default: 3/4 of the machine's memory for one image or array, and for "
+              "all contents of a file 256 MiB or 256 times its bytes.",
               [](const std::string& subject, const std::string& text) {
                   InputLimits limits = input_limits();
                   limits.memory = parse_bytes(subject, text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The limits of the process, and the memory of the machine: the physical memory, or less if a
-// control group (version 2) limits the process.
+// The limits of the process, the memory of the machine (the physical memory, or less if a control
+// group of version 2 limits the process), and the budget of a file.
 #include "relief/mesh/limits.h"
 
 #include <fmt/format.h>
@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <limits>
 
 #include "large_memory.h"
+#include "memory_budget.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -81,6 +83,36 @@ void require_pixels(const std::filesystem::path& file, int width, int height) {
     if (limit == 0 || pixels <= limit) return;
     throw FileError(
         file, fmt::format("has {} x {} texels, but the limit is {} texels", width, height, limit));
+}
+
+// The budget of a file.
+
+namespace {
+
+/// Draco and meshopt reach a factor of about 100 on regular meshes, and the floats of quantized
+/// attributes another one of 2.
+constexpr std::uint64_t memory_per_byte = 256;
+constexpr std::uint64_t min_budget = std::uint64_t{256} << 20;
+
+}  // namespace
+
+MemoryBudget::MemoryBudget(std::uint64_t file_bytes) : file_bytes_(file_bytes) {
+    const std::uint64_t memory = memory_limit;
+    limit_ =
+        std::max(memory > 0 ? memory : min_budget, saturated_product(file_bytes, memory_per_byte));
+}
+
+bool MemoryBudget::fits(std::uint64_t count, std::uint64_t size) {
+    if (__builtin_add_overflow(taken_, saturated_product(count, size), &taken_))
+        taken_ = std::numeric_limits<std::uint64_t>::max();
+    return taken_ <= limit_;
+}
+
+void MemoryBudget::refuse(const std::string& name) const {
+    throw InvalidInput(fmt::format(
+        "{}: the contents of the file up to here take {:.1f} MiB of memory, but a file of {} bytes "
+        "may take only {:.1f} (--max-memory raises this limit)",
+        name, mebibytes(taken_), file_bytes_, mebibytes(limit_)));
 }
 
 }  // namespace relief

@@ -16,9 +16,14 @@ struct InputLimits {
     /// The most bytes of one image or one array of a model, as it is in memory. Computations on it
     /// need a few times as much. 0: three quarters of the memory of the machine, or of its control
     /// group.
+    ///
+    /// It also limits all contents of one file that can be much larger in memory than the file:
+    /// arrays without data, compressed data, and copies of shared data. 0: 256 MiB for these. Files
+    /// of more than a 256th of the limit may take 256 times their bytes.
     std::uint64_t memory = 0;
     /// The most texels of an image. 0: a whole image may have as many as `memory` holds, and there
-    /// is no limit for images that are read by rows.
+    /// is no limit for images that are read by rows. If it is set, textures that zstd compresses
+    /// may have as many, however small their files are.
     std::uint64_t pixels = 0;
     /// True if buffers, materials and images that a model names may lie outside of its folder.
     /// Symbolic links in the folder are followed in any case.

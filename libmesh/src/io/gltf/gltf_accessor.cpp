@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -201,19 +202,19 @@ std::string raw_elements(const GltfContents& contents, std::size_t accessor) {
     return std::string(packed_elements(contents, accessor).bytes());
 }
 
+namespace {
+
+/// Converts packed elements. \throws InvalidInput if the accessor has another number of components
 template <typename Vector>
-std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor) {
-    const Json& json = contents.root["accessors"][accessor];
+std::vector<Vector> floats_of(const Json& json, std::size_t accessor, std::string_view elements) {
     const ElementLayout layout = element_layout(json);
     if (layout.components != static_cast<std::size_t>(Vector::length()) ||
         text_in(json, "type").starts_with("MAT")) {
         throw InvalidInput(fmt::format("accessors[{}] is of type {}, but VEC{} is needed", accessor,
                                        text_in(json, "type"), Vector::length()));
     }
-    const PackedElements packed = packed_elements(contents, accessor);
-    const std::string_view elements = packed.bytes();
     if (layout.component_type == gltf_code::float32) return copied<Vector>(elements);
-    std::vector<Vector> result(size_in(json, "count"));
+    std::vector<Vector> result(elements.size() / layout.size);
     const bool is_fraction = bool_in(json, "normalized");
     switch (layout.component_type) {
         case gltf_code::int8:
@@ -235,10 +236,52 @@ std::vector<Vector> float_elements(const GltfContents& contents, std::size_t acc
     return result;
 }
 
+/// Returns some elements, tightly packed. Reads no others, unless the accessor is sparse.
+std::string chosen_elements(const GltfContents& contents, const Json& json, std::size_t accessor,
+                            std::span<const std::uint32_t> chosen) {
+    const std::size_t size = element_layout(json).size;
+    std::string result(chosen.size() * size, '\0');
+    PackedElements packed;
+    std::string_view bytes;
+    std::size_t stride = size;
+    if (json.contains("bufferView") && !json.contains("sparse")) {
+        bytes = view_bytes(contents, json);
+        const Json& view = contents.root["bufferViews"][size_in(json, "bufferView")];
+        stride = size_in(view, "byteStride", size);
+    } else {
+        packed = packed_elements(contents, accessor);
+        bytes = packed.bytes();
+    }
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        std::memcpy(result.data() + i * size, bytes.data() + chosen[i] * stride, size);
+    return result;
+}
+
+}  // namespace
+
+template <typename Vector>
+std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor) {
+    const Json& json = contents.root["accessors"][accessor];
+    return floats_of<Vector>(json, accessor, packed_elements(contents, accessor).bytes());
+}
+
+template <typename Vector>
+std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor,
+                                   std::span<const std::uint32_t> chosen) {
+    const Json& json = contents.root["accessors"][accessor];
+    return floats_of<Vector>(json, accessor, chosen_elements(contents, json, accessor, chosen));
+}
+
 template std::vector<glm::vec1> float_elements(const GltfContents&, std::size_t);
 template std::vector<glm::vec2> float_elements(const GltfContents&, std::size_t);
 template std::vector<glm::vec3> float_elements(const GltfContents&, std::size_t);
 template std::vector<glm::vec4> float_elements(const GltfContents&, std::size_t);
+template std::vector<glm::vec2> float_elements(const GltfContents&, std::size_t,
+                                               std::span<const std::uint32_t>);
+template std::vector<glm::vec3> float_elements(const GltfContents&, std::size_t,
+                                               std::span<const std::uint32_t>);
+template std::vector<glm::vec4> float_elements(const GltfContents&, std::size_t,
+                                               std::span<const std::uint32_t>);
 
 std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::size_t accessor) {
     const ElementLayout layout = index_layout(contents, accessor);
@@ -327,39 +370,29 @@ std::vector<glm::uvec3> plain_triangles(std::size_t vertex_count, std::size_t mo
     return triangles;
 }
 
-void check_counts(const GltfContents& contents, const Json& primitive, std::size_t vertex_count) {
-    for (const auto& [name, accessor] : primitive["attributes"].items()) {
-        const std::size_t count =
-            size_in(contents.root["accessors"][accessor.get<std::size_t>()], "count");
-        if (count != vertex_count) {
-            throw InvalidInput(fmt::format("there are {} elements of {}, but {} of POSITION", count,
-                                           name, vertex_count));
-        }
-    }
-    for (const Json& target : array_in(primitive, "targets")) {
-        for (const auto& [name, accessor] : target.items()) {
-            const std::size_t count =
-                size_in(contents.root["accessors"][accessor.get<std::size_t>()], "count");
-            if (count != vertex_count) {
-                throw InvalidInput(
-                    fmt::format("a morph target has {} elements of {}, but there "
-                                "are {} of POSITION",
-                                count, name, vertex_count));
-            }
-        }
-    }
+/// Returns whether triangles use so few of the vertices that sorting their corners is cheaper than
+/// arrays of all vertices.
+bool use_few(const std::vector<glm::uvec3>& triangles, std::size_t vertex_count) {
+    return triangles.size() < vertex_count / 128;
 }
 
 /// The vertices that the triangles use; nullopt if they use all.
 std::optional<std::vector<std::uint32_t>> used_vertices(const std::vector<glm::uvec3>& triangles,
                                                         std::size_t vertex_count) {
+    std::vector<std::uint32_t> used;
+    if (use_few(triangles, vertex_count)) {
+        for (const glm::uvec3& t : triangles)
+            used.insert(used.end(), {t.x, t.y, t.z});
+        std::sort(used.begin(), used.end());
+        used.erase(std::unique(used.begin(), used.end()), used.end());
+        return used;
+    }
     std::vector<bool> is_used(vertex_count, false);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         check_cancelled(t);
         for (int k = 0; k < 3; ++k)
             is_used[triangles[t][k]] = true;
     }
-    std::vector<std::uint32_t> used;
     for (std::uint32_t i = 0; i < vertex_count; ++i) {
         if (is_used[i]) used.push_back(i);
     }
@@ -367,23 +400,27 @@ std::optional<std::vector<std::uint32_t>> used_vertices(const std::vector<glm::u
     return used;
 }
 
-/// Returns an attribute as floats; empty if it is absent.
+/// Returns an attribute as floats, for all vertices or the used ones; empty if it is absent.
 template <typename Vector>
 std::vector<Vector> attribute(const GltfContents& contents, const Json& primitive,
-                              const std::string& name) {
+                              const std::string& name,
+                              const std::optional<std::vector<std::uint32_t>>& used = {}) {
     const auto accessor = index_in(primitive["attributes"], name.c_str());
-    return accessor ? float_elements<Vector>(contents, *accessor) : std::vector<Vector>();
+    if (!accessor) return {};
+    return used ? float_elements<Vector>(contents, *accessor, *used)
+                : float_elements<Vector>(contents, *accessor);
 }
 
 /// Returns the vertex colors; RGB gets alpha 1.
-std::vector<glm::vec4> colors(const GltfContents& contents, const Json& primitive) {
+std::vector<glm::vec4> colors(const GltfContents& contents, const Json& primitive,
+                              const std::optional<std::vector<std::uint32_t>>& used) {
     const auto accessor = index_in(primitive["attributes"], "COLOR_0");
     if (!accessor) return {};
     if (text_in(contents.root["accessors"][*accessor], "type") != "VEC3") {
-        return attribute<glm::vec4>(contents, primitive, "COLOR_0");
+        return attribute<glm::vec4>(contents, primitive, "COLOR_0", used);
     }
     std::vector<glm::vec4> result;
-    for (const auto& rgb : attribute<glm::vec3>(contents, primitive, "COLOR_0")) {
+    for (const auto& rgb : attribute<glm::vec3>(contents, primitive, "COLOR_0", used)) {
         result.emplace_back(rgb, 1.0F);
     }
     return result;
@@ -409,6 +446,16 @@ bool is_small(const GltfContents& contents, const Json& primitive) {
 /// Returns the same triangles, over the used vertices only.
 std::vector<glm::uvec3> compacted(GltfTriangles all) {
     if (!all.used) return std::move(all.triangles);
+    if (use_few(all.triangles, all.vertex_count)) {
+        const std::vector<std::uint32_t>& used = *all.used;
+        for (glm::uvec3& triangle : all.triangles) {
+            for (int k = 0; k < 3; ++k) {
+                const auto found = std::lower_bound(used.begin(), used.end(), triangle[k]);
+                triangle[k] = static_cast<std::uint32_t>(found - used.begin());
+            }
+        }
+        return std::move(all.triangles);
+    }
     std::vector<std::uint32_t> place(all.vertex_count, 0);
     for (std::uint32_t i = 0; i < all.used->size(); ++i)
         place[(*all.used)[i]] = i;
@@ -419,6 +466,29 @@ std::vector<glm::uvec3> compacted(GltfTriangles all) {
 }
 
 }  // namespace
+
+void check_counts(const GltfContents& contents, const Json& primitive, std::size_t vertex_count) {
+    for (const auto& [name, accessor] : primitive["attributes"].items()) {
+        const std::size_t count =
+            size_in(contents.root["accessors"][accessor.get<std::size_t>()], "count");
+        if (count != vertex_count) {
+            throw InvalidInput(fmt::format("there are {} elements of {}, but {} of POSITION", count,
+                                           name, vertex_count));
+        }
+    }
+    for (const Json& target : array_in(primitive, "targets")) {
+        for (const auto& [name, accessor] : target.items()) {
+            const std::size_t count =
+                size_in(contents.root["accessors"][accessor.get<std::size_t>()], "count");
+            if (count != vertex_count) {
+                throw InvalidInput(
+                    fmt::format("a morph target has {} elements of {}, but there "
+                                "are {} of POSITION",
+                                count, name, vertex_count));
+            }
+        }
+    }
+}
 
 const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id) {
     const Json& meshes = array_in(contents.root, "meshes");
@@ -476,21 +546,22 @@ Mesh GltfDocument::mesh(GltfPrimitiveId id, int texcoord_set) const {
         mesh.name = text_in(contents.root["meshes"][id.mesh], "name");
         GltfTriangles triangles;
         const std::string texcoord = fmt::format("TEXCOORD_{}", texcoord_set);
+        std::optional<std::vector<std::uint32_t>> used;
         const auto read = [&]<typename Vector>(std::vector<Vector>& values, std::string name) {
-            return [&, name] { values = attribute<Vector>(contents, primitive, name); };
+            return [&, name] { values = attribute<Vector>(contents, primitive, name, used); };
         };
-        parallel_tasks(
-            {[&] { triangles = read_triangles(contents, id); }, read(mesh.positions, "POSITION"),
-             read(mesh.normals, "NORMAL"), read(mesh.tangents, "TANGENT"),
-             read(mesh.texcoords, texcoord), [&] { mesh.colors = colors(contents, primitive); }},
-            is_small(contents, primitive));
-        if (triangles.used) {
-            keep_only(*triangles.used, mesh.positions);
-            keep_only(*triangles.used, mesh.normals);
-            keep_only(*triangles.used, mesh.tangents);
-            keep_only(*triangles.used, mesh.texcoords);
-            keep_only(*triangles.used, mesh.colors);
+        std::vector<std::function<void()>> tasks = {
+            read(mesh.positions, "POSITION"), read(mesh.normals, "NORMAL"),
+            read(mesh.tangents, "TANGENT"), read(mesh.texcoords, texcoord),
+            [&] { mesh.colors = colors(contents, primitive, used); }};
+        const auto read_indices = [&] { triangles = read_triangles(contents, id); };
+        if (shares_vertices(contents, primitive)) {
+            read_indices();
+            used = triangles.used;
+        } else {
+            tasks.insert(tasks.begin(), read_indices);
         }
+        parallel_tasks(tasks, is_small(contents, primitive));
         mesh.triangles = compacted(std::move(triangles));
         if (!mesh.triangles.empty()) {
             const auto material = index_in(primitive, "material");

@@ -10,6 +10,7 @@
 #include <glm/ext/vector_float1.hpp>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -71,6 +72,12 @@ std::string raw_elements(const GltfContents& contents, std::size_t accessor);
 template <typename Vector>
 std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor);
 
+/// Returns some elements, in the order of `chosen`, whose numbers must be below the count. Costs
+/// nothing for the others, unless the accessor is sparse.
+template <typename Vector>
+std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor,
+                                   std::span<const std::uint32_t> chosen);
+
 /// Returns all elements as indices. \throws InvalidInput if they are not scalar unsigned integers
 std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::size_t accessor);
 
@@ -81,6 +88,9 @@ const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id);
 
 /// See GltfDocument::describe().
 std::string describe_primitive(const GltfContents& contents, GltfPrimitiveId id);
+
+/// \throws InvalidInput if an attribute or a morph target has another number of elements
+void check_counts(const GltfContents& contents, const Json& primitive, std::size_t vertex_count);
 
 /// Returns true if other primitives have the same POSITION.
 bool shares_vertices(const GltfContents& contents, const Json& primitive);

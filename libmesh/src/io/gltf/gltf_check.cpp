@@ -187,6 +187,8 @@ constexpr Rule rules[] = {
     {"bufferView+KHR_meshopt_compression", "count", Kind::integer, {}, required},
     {"bufferView+KHR_meshopt_compression", "mode", Kind::string, {}, required},
     {"bufferView+KHR_meshopt_compression", "filter", Kind::string},
+    {"node+MSFT_lod", "ids", Kind::indices, "nodes", required},
+    {"material+MSFT_lod", "ids", Kind::indices, "materials", required},
     {"node+EXT_mesh_gpu_instancing", "attributes", Kind::index_map, "accessors"},
     {"glTF+EXT_structural_metadata", "propertyTables", Kind::objects, "propertyTable"},
     {"propertyTable", "properties", Kind::object_map, "propertyTable.property"},
@@ -390,6 +392,12 @@ void walk(Json& object, std::string_view type, const ValuePath& place, Visitor& 
     throw InvalidInput(fmt::format("{} {}", place.text(), problem));
 }
 
+/// Numbers that are read are unsigned; those of documents that were made may be signed.
+bool is_whole(const Json& value) {
+    return value.is_number_unsigned() ||
+           (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+}
+
 class Checker : public Visitor {
   public:
     explicit Checker(const Json& root) {
@@ -410,7 +418,7 @@ class Checker : public Visitor {
     }
 
     void index(const ValuePath& place, std::string_view target, Json& value) override {
-        if (!value.is_number_unsigned()) fail(place, "is not an index");
+        if (!is_whole(value)) fail(place, "is not an index");
         const std::size_t count = counts_.find(target)->second;
         if (value.get<std::uint64_t>() >= count) {
             fail(place, fmt::format("is {}, but there are only {} {}", value.get<std::uint64_t>(),
@@ -443,7 +451,7 @@ class Checker : public Visitor {
                 return value.is_boolean() ? nullptr : "true or false";
             case Kind::integer:
                 // Offsets and lengths are added: this limit keeps sums far from overflow.
-                return value.is_number_unsigned() && value.get<std::uint64_t>() < (1ULL << 53U)
+                return is_whole(value) && value.get<std::uint64_t>() < (1ULL << 53U)
                            ? nullptr
                            : "a whole number";
             case Kind::number:
@@ -670,9 +678,6 @@ void check_accessors(const Json& root) {
         const std::size_t count = size_in(accessor, "count");
         if (accessor.contains("bufferView")) {
             check_elements(root, name, accessor, count, element_layout(accessor).size);
-        } else if (count > max_zero_elements) {
-            fail_gltf("{} has no data for {} elements, more than {}", name, count,
-                      max_zero_elements);
         }
         check_sparse(root, accessor, name);
     }

@@ -27,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include "memory_budget.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
 
@@ -138,6 +139,8 @@ struct GltfContents {
     std::size_t added_buffer = static_cast<std::size_t>(-1);
     /// Accessors that were added for primitives with shared accessors, by a hash of their elements.
     std::multimap<std::size_t, std::size_t> shared_accessors;
+    /// The memory that the contents may take. Unlimited if the document was not read.
+    MemoryBudget budget;
     /// Number of primitives that use an accessor as POSITION, counted after reading. The set of
     /// sharing primitives must not change while primitives are processed one by one.
     std::vector<std::uint32_t> position_uses;
@@ -181,15 +184,18 @@ bool has_extension(const Json& root, std::string_view name);
 /// may hold indices that visit_references() does not see.
 bool has_unknown_extension(const Json& root);
 
-/// Largest count of an accessor without data (all zeros), for which no bytes of the file limit the
-/// count.
-inline constexpr std::size_t max_zero_elements = std::size_t{1} << 24U;
-
 /// Checks a whole document. Afterwards every index, offset, length and count in it is valid.
 ///
 /// \throws InvalidInput with the location, value and limit, or the name of a required extension
 ///         that relief does not support
 void check_gltf(const Json& root);
+
+/// Draws from the budget what the document takes as plain arrays and instances: accessors without
+/// data, each primitive, instance, skin and animation channel, and the bytes of embedded images.
+/// Accessors and buffer views that several of them share count for each.
+///
+/// \throws InvalidInput naming the first that exceeds the budget
+void take_contents(GltfContents& contents);
 
 /// Reports values that have no meaning: colors and weights that are not finite or out of range,
 /// joints that a skin does not have, rotations without unit length, and integer positions and

@@ -157,6 +157,12 @@ GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents
     return result;
 }
 
+/// Returns whether the bytes of a buffer are in another file than its document.
+bool is_other_file(const Json& buffer) {
+    const Json* uri = find(buffer, "uri");
+    return uri != nullptr && !is_data_uri(uri->get_ref<const std::string&>());
+}
+
 /// Reports images whose file is missing or outside the folder. Images are not decoded.
 void check_images(const GltfContents& contents, Report& report) {
     const Json& images = array_in(contents.root, "images");
@@ -204,6 +210,7 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
         contents.file = std::filesystem::absolute(file);
         check_gltf(contents.root);
         contents.extra_chunks = std::move(container.extra_chunks);
+        std::uint64_t file_bytes = container.bytes.size();
         const Json& buffers = array_in(contents.root, "buffers");
         const auto placeholders = meshopt_placeholders(contents.root, container.has_binary);
         for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -211,10 +218,13 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
                 contents.buffers.emplace_back().is_placeholder = true;
             } else {
                 contents.buffers.push_back(read_buffer(buffers[i], i, contents, container, file));
+                if (is_other_file(buffers[i])) file_bytes += contents.buffers.back().size;
             }
         }
+        contents.budget = MemoryBudget(file_bytes);
         unpack_meshopt(contents);
         unpack_draco(contents, report);
+        take_contents(contents);
         check_values(contents, report);
         check_images(contents, report);
         count_position_uses(contents);

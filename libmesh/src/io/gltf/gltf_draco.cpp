@@ -279,6 +279,9 @@ const DracoMesh& Unpacking::decoded(std::size_t view) {
         const std::string_view bytes = contents_.buffers[size_in(json, "buffer")].bytes();
         last_mesh_.emplace(bytes.substr(size_in(json, "byteOffset"), size_in(json, "byteLength")));
         last_view_ = view;
+        // A view that several primitives use in turn is decoded each time.
+        contents_.budget.take(last_mesh_->vertex_count(), sizeof(glm::vec3),
+                              [&] { return fmt::format("bufferViews[{}]", view); });
     }
     return *last_mesh_;
 }
@@ -296,6 +299,8 @@ std::size_t Unpacking::fill(std::size_t accessor, Source source, const std::stri
         contents_.root["accessors"].push_back(std::move(copy));
         accessor = contents_.root["accessors"].size() - 1;
     }
+    contents_.budget.take(elements.size(), 1,
+                          [&] { return fmt::format("accessors[{}]", accessor); });
     const std::size_t size = element_layout(contents_.root["accessors"][accessor]).size;
     const std::size_t view = add_elements(contents_, size, elements, target);
     Json& json = contents_.root["accessors"][accessor];

@@ -334,10 +334,11 @@ void unfilter(const PackedView& view, std::string& elements) {
     }
 }
 
-std::string unpacked_bytes(const PackedView& view, std::size_t length) {
+std::string unpacked_bytes(const PackedView& view, std::size_t length, MemoryBudget& budget) {
     check_stride(view);
     check_length(view, length);
     require_memory(length, 1);
+    budget.take(length, 1, [] { return "its data"; });
     std::string elements(length, '\0');
     if (length == 0) return elements;
     if (!decode_view(view, elements)) fail_gltf("its data is damaged");
@@ -359,7 +360,7 @@ void unpack_view(GltfContents& contents, std::size_t number, const char* extensi
     const std::size_t length = size_in(contents.root["bufferViews"][number], "byteLength");
     std::string elements;
     try {
-        elements = unpacked_bytes(packed_view(contents, packed), length);
+        elements = unpacked_bytes(packed_view(contents, packed), length, contents.budget);
     } catch (const InvalidInput& error) {
         fail_gltf("bufferViews[{}].extensions.{}: {}", number, extension, error.what());
     }

@@ -16,6 +16,8 @@
 #include "io/image/row_codec.h"
 #include "io/image/texture_container.h"
 #include "large_memory.h"
+#include "memory_budget.h"
+#include "relief/mesh/limits.h"
 #include "relief/mesh/report.h"
 #include "relief/version.h"
 
@@ -112,6 +114,23 @@ void read_entries(Bytes data, const std::filesystem::path& name, GpuTexture& tex
     }
 }
 
+/// Checks that a file stands for an image in proportion to its bytes, because zstd reaches any
+/// factor. An explicit limit of pixels takes the place of this one.
+void require_in_proportion(const GpuTexture& header, std::uint64_t file_bytes,
+                           const std::filesystem::path& name) {
+    if (input_limits().pixels > 0) return;
+    const ImageInfo info = image_info_of(header);
+    const std::uint64_t bytes = static_cast<std::uint64_t>(info.width) *
+                                static_cast<std::uint64_t>(info.height) *
+                                static_cast<std::uint64_t>(info.channels * info.bits / 8);
+    const std::uint64_t limit = MemoryBudget(file_bytes).limit();
+    if (bytes <= limit) return;
+    throw FileError(
+        name, fmt::format("announces {} x {} texels, which take {} MiB of memory, but a file of {} "
+                          "bytes may take only {} (--max-memory or --max-pixels raises this limit)",
+                          info.width, info.height, bytes >> 20U, file_bytes, limit >> 20U));
+}
+
 /// Checks that the bytes of a level can hold its texels. \param stored  of the compressed level
 void check_compressed_size(std::uint64_t stored, std::uint64_t size, std::size_t level,
                            const std::filesystem::path& name) {
@@ -197,6 +216,38 @@ std::vector<std::byte> dfd_of(const GpuTexture& texture) {
     return bytes;
 }
 
+/// Checks that the descriptor of a file describes the texels that the Vulkan format names. Ranges
+/// of values, positions of samples, primaries and sizes of planes are free.
+void check_descriptor(Bytes file, const GpuTexture& texture, const std::filesystem::path& name) {
+    constexpr std::size_t head_bytes = 28, sample_bytes = 16;
+    const auto begin = little<std::uint32_t>(file, 48);
+    const auto length = little<std::uint32_t>(file, 52);
+    if (!is_in_file(begin, length, file.size()) || length < head_bytes)
+        throw FileError(name, "has no format descriptor");
+    const std::vector<std::byte> expected = dfd_of(texture);
+    const Bytes found = file.subspan(begin, length);
+    const auto differs = [&](std::size_t offset, std::uint32_t mask) {
+        return ((little<std::uint32_t>(found, offset) ^ little<std::uint32_t>(expected, offset)) &
+                mask) != 0;
+    };
+    const auto refuse = [&](const char* what) {
+        throw FileError(name, fmt::format("its format descriptor contradicts {} by {}",
+                                          vulkan_name(vulkan_number(texture)), what));
+    };
+    if (differs(4, 0xFFFFFFFF)) throw FileError(name, "has no format descriptor of Khronos");
+    if (differs(12, 0xFF)) refuse("another color model");
+    // A format without a variant in sRGB may have any transfer function but that of sRGB.
+    constexpr std::uint32_t srgb = 2;
+    const bool is_srgb = (little<std::uint32_t>(found, 12) >> 16U & 0xFFU) == srgb;
+    if (is_srgb != texture.is_srgb) refuse("another transfer function");
+    if (differs(16, 0xFFFFFFFF)) refuse("blocks of another size");
+    if (length < expected.size() || little<std::uint32_t>(found, 8) >> 16U != expected.size() - 4)
+        refuse("another number of channels");
+    for (std::size_t at = head_bytes; at < expected.size(); at += sample_bytes) {
+        if (differs(at, 0xFFFFFFFF)) refuse("other channels");
+    }
+}
+
 // Writing.
 
 std::vector<std::byte> entries_of(const GpuTexture& texture) {
@@ -274,6 +325,8 @@ TextureContainer open_ktx2(Bytes bytes, const std::filesystem::path& name) {
     container.header.width = static_cast<int>(width);
     container.header.height = static_cast<int>(height);
     require_image_fits(image_info_of(container.header), name);
+    if (container.is_zstd) require_in_proportion(container.header, bytes.size(), name);
+    check_descriptor(bytes, container.header, name);
     const std::uint32_t levels = std::max(number(40), 1U);
     if (levels > 31 || std::max(width, height) >> (levels - 1) == 0) {
         throw FileError(

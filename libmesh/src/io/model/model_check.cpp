@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 
@@ -107,11 +112,82 @@ bool wants_tangents(const std::vector<MtlMaterial>& materials) {
     return !has_textures;
 }
 
+std::size_t hash_of(const Mesh& mesh) {
+    std::size_t hash = 0;
+    const auto add = [&](const auto& values) {
+        const std::string_view bytes(reinterpret_cast<const char*>(values.data()),
+                                     values.size() * sizeof(values.front()));
+        hash = hash * 31 + std::hash<std::string_view>()(bytes);
+    };
+    add(mesh.positions);
+    add(mesh.triangles);
+    return hash;
+}
+
+/// Compares bits, so that a mesh with NaN equals its copy.
+bool are_equal(const Mesh& a, const Mesh& b) {
+    const auto equal = [](const auto& x, const auto& y) {
+        return x.size() == y.size() &&
+               (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x.front())) == 0);
+    };
+    return equal(a.positions, b.positions) && equal(a.normals, b.normals) &&
+           equal(a.tangents, b.tangents) && equal(a.texcoords, b.texcoords) &&
+           equal(a.colors, b.colors) && equal(a.triangles, b.triangles);
+}
+
+/// The parts of a document whose meshes differ. Primitives often share all of their data, and
+/// reading it again costs little beside a diagnosis.
+class PartsByMesh {
+  public:
+    explicit PartsByMesh(const GltfDocument& document) : document_(document) {}
+
+    /// Returns the number of an equal part, or adds this one.
+    std::optional<std::size_t> equal_part(GltfPrimitiveId id, const Mesh& mesh,
+                                          bool wants_tangents) {
+        // Tangents may belong to a texture coordinate set that is not in the mesh.
+        const std::vector<int> sets = document_.texcoord_sets(id);
+        if (!mesh.tangents.empty() && !sets.empty() && sets != std::vector{0}) {
+            ++count_;
+            return std::nullopt;
+        }
+        const std::size_t hash = hash_of(mesh);
+        const auto [begin, end] = parts_.equal_range(hash);
+        for (auto it = begin; it != end; ++it) {
+            const Part& part = it->second;
+            if (part.wants_tangents != wants_tangents || !are_equal(document_.mesh(part.id), mesh))
+                continue;
+            ++count_;
+            return part.number;
+        }
+        parts_.emplace(hash, Part{id, wants_tangents, count_++});
+        return std::nullopt;
+    }
+
+  private:
+    struct Part {
+        GltfPrimitiveId id;
+        bool wants_tangents = false;
+        std::size_t number = 0;
+    };
+
+    const GltfDocument& document_;
+    std::unordered_multimap<std::size_t, Part> parts_;
+    std::size_t count_ = 0;
+};
+
 void add_parts(CheckedModel& model, const GltfDocument& document, bool for_baking) {
     const std::vector<GltfMaterial> materials = document.view().materials;
+    PartsByMesh known(document);
     for (const GltfPrimitiveId id : document.triangle_primitives()) {
         const Mesh mesh = document.mesh(id);
-        add_part(model, document.describe(id), mesh, {wants_tangents(mesh, materials), for_baking});
+        const Use use{wants_tangents(mesh, materials), for_baking};
+        if (const auto equal = known.equal_part(id, mesh, use.tangents)) {
+            CheckedPart copy = model.parts[*equal];
+            copy.name = document.describe(id);
+            model.parts.push_back(std::move(copy));
+            continue;
+        }
+        add_part(model, document.describe(id), mesh, use);
         model.parts.back().tangents = check_tangents(document, id, mesh);
     }
 }

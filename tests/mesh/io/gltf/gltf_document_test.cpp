@@ -486,13 +486,9 @@ TEST_F(GltfDocumentTest, DeepJsonAndSharedOrCyclicNodesAreRefused) {
     EXPECT_THAT(error_of(root, triangle_bytes()), HasSubstr("nodes[1] is its own ancestor"));
 }
 
-TEST_F(GltfDocumentTest, AccessorsWithoutDataAreZerosWithinALimit) {
+TEST_F(GltfDocumentTest, AccessorsWithoutDataAreZeros) {
     json root = triangle_json();
     root["accessors"][0].erase("bufferView");
-    root["accessors"][0]["count"] = 20'000'000;
-    EXPECT_THAT(error_of(root, triangle_bytes()),
-                HasSubstr("accessors[0] has no data for 20000000"));
-    root["accessors"][0]["count"] = 3;
     write_gltf_file(folder_ / "a.glb", root, triangle_bytes());
     EXPECT_EQ(read(folder_ / "a.glb").mesh({0, 0}).positions[1], glm::vec3(0.0F));
 }

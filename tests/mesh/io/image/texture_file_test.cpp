@@ -16,6 +16,7 @@
 
 #include "base/files.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/limits.h"
 #include "relief/mesh/report.h"
 #include "relief/version.h"
 #include "support/images.h"
@@ -158,6 +159,55 @@ TEST(Ktx2File, TheDescriptorsOfOtherFormats) {
     EXPECT_EQ(number(bytes, 152 + 28), 63U << 16U | 0x40U << 24U);
     EXPECT_EQ(number(bytes, 152 + 36), 0x80000000U);
     EXPECT_EQ(number(bytes, 152 + 40), 0x7FFFFFFFU);
+}
+
+TEST(Ktx2File, ADescriptorThatContradictsTheFormatIsRefused) {
+    write_texture(temporary("bc5.ktx2"), texture_of(TextureFormat::bc5));
+    const auto bytes = bytes_of(temporary("bc5.ktx2"));
+    const std::size_t descriptor = number(bytes, 48);
+    const auto error = [&](std::size_t offset, unsigned char value) {
+        auto changed = bytes;
+        changed[offset] = static_cast<std::byte>(value);
+        try {
+            read_image(std::span<const std::byte>(changed), "x.ktx2", ImageUse::data);
+        } catch (const FileError& refusal) {
+            return std::string(refusal.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(error(descriptor + 12, 131),
+              "x.ktx2: its format descriptor contradicts the Vulkan format 141 by another color "
+              "model");
+    EXPECT_THAT(error(descriptor + 14, 2), HasSubstr("another transfer function"));
+    EXPECT_THAT(error(descriptor + 16, 0), HasSubstr("blocks of another size"));
+    EXPECT_THAT(error(descriptor + 10, 40), HasSubstr("another number of channels"));
+    EXPECT_THAT(error(descriptor + 31, 4), HasSubstr("other channels"));
+    EXPECT_THAT(error(52, 0), HasSubstr("has no format descriptor"));
+    // Primaries, the sizes of planes and the ranges of samples are free.
+    EXPECT_EQ(error(descriptor + 13, 0), "no error");
+    EXPECT_EQ(error(descriptor + 20, 0), "no error");
+    EXPECT_EQ(error(descriptor + 40, 0), "no error");
+}
+
+TEST(Ktx2File, ASmallFileOfZstdMustNotStandForGigabytes) {
+    write_texture(temporary("bc5.ktx2"), texture_of(TextureFormat::bc5), {.zstd_level = 1});
+    auto bytes = bytes_of(temporary("bc5.ktx2"));
+    set_number(bytes, 20, 9000);
+    set_number(bytes, 24, 9000);
+    const auto error = [&] {
+        return message_of<FileError>(
+            [&] { read_image(std::span<const std::byte>(bytes), "x.ktx2", ImageUse::data); });
+    };
+    EXPECT_THAT(error(), HasSubstr("x.ktx2: announces 9000 x 9000 texels, which take 308 MiB of "
+                                   "memory, but a file of "));
+    EXPECT_THAT(error(), HasSubstr("may take only 256 (--max-memory or --max-pixels raises this "
+                                   "limit)"));
+    for (const InputLimits& limits :
+         {InputLimits{.memory = 1U << 30}, InputLimits{.pixels = 81'000'000}}) {
+        set_input_limits(limits);
+        EXPECT_THAT(error(), HasSubstr("but its texels need 81000000")) << "the limit is higher";
+    }
+    set_input_limits({});
 }
 
 TEST(DdsFile, TheBytesOfABc7File) {

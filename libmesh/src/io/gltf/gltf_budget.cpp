@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The memory that the contents of a document take once they are decoded. A document of some hundred
+// bytes can stand for gigabytes: by accessors without data, and by references to the same data from
+// many primitives, nodes, skins, channels and images. All are counted here, before anything is
+// decoded. Tests: tests/mesh/io/gltf/gltf_budget_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/gltf/gltf_accessor.h"
+#include "io/gltf/gltf_contents.h"
+
+namespace relief {
+namespace {
+
+class ContentCount {
+  public:
+    explicit ContentCount(GltfContents& contents)
+        : root_(contents.root), budget_(contents.budget) {}
+
+    void take_all() {
+        take_accessors();
+        take_primitives();
+        take_instances();
+        take_skins();
+        take_channels();
+        take_images();
+    }
+
+  private:
+    [[nodiscard]] const Json& accessor(std::size_t number) const {
+        return root_["accessors"][number];
+    }
+
+    [[nodiscard]] std::size_t count_of(std::size_t number) const {
+        return size_in(accessor(number), "count");
+    }
+
+    /// Elements that no bytes of the file stand for.
+    void take_accessors() {
+        const Json& accessors = array_in(root_, "accessors");
+        for (std::size_t i = 0; i < accessors.size(); ++i) {
+            if (accessors[i].contains("bufferView") && !accessors[i].contains("sparse")) continue;
+            budget_.take(count_of(i), element_layout(accessors[i]).size,
+                         [&] { return fmt::format("accessors[{}]", i); });
+        }
+    }
+
+    void take_primitives() {
+        const Json& meshes = array_in(root_, "meshes");
+        for (std::size_t i = 0; i < meshes.size(); ++i) {
+            const Json& primitives = meshes[i]["primitives"];
+            for (std::size_t k = 0; k < primitives.size(); ++k)
+                take_primitive(primitives[k], i, k);
+        }
+    }
+
+    /// The arrays of a primitive: floats and indices of 32 bits, for the vertices that it uses.
+    void take_primitive(const Json& primitive, std::size_t mesh, std::size_t number) {
+        const auto name = [&] { return fmt::format("meshes[{}].primitives[{}]", mesh, number); };
+        const auto position = index_in(primitive["attributes"], "POSITION");
+        if (!position) return;
+        const auto indices = index_in(primitive, "indices");
+        const std::size_t vertices = count_of(*position);
+        const std::size_t corners = indices ? count_of(*indices) : vertices;
+        const bool is_list = size_in(primitive, "mode", gltf_code::triangles) <= 4;
+        budget_.take(corners, is_list ? sizeof(std::uint32_t) : 3 * sizeof(std::uint32_t), name);
+        const std::size_t used = std::min(vertices, corners);
+        const auto take_attributes = [&](const Json& attributes) {
+            for (const auto& [semantic, index] : attributes.items()) {
+                const Json& values = accessor(index.get<std::size_t>());
+                budget_.take(used, element_layout(values).components * sizeof(float), name);
+            }
+        };
+        take_attributes(primitive["attributes"]);
+        for (const Json& target : array_in(primitive, "targets"))
+            take_attributes(target);
+    }
+
+    /// A matrix, a name and what drawing needs, for each primitive of a node and each of its
+    /// instances.
+    void take_instances() {
+        constexpr std::size_t bytes_per_instance = 512;
+        const Json& nodes = array_in(root_, "nodes");
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const auto mesh = index_in(nodes[i], "mesh");
+            if (!mesh) continue;
+            std::size_t instances = 1;
+            if (const Json* attributes =
+                    find(nodes[i], "extensions", "EXT_mesh_gpu_instancing", "attributes")) {
+                for (const auto& [name, index] : attributes->items())
+                    instances = std::max(instances, count_of(index.get<std::size_t>()));
+            }
+            const std::size_t primitives = root_["meshes"][*mesh]["primitives"].size();
+            budget_.take(instances, bytes_per_instance * primitives,
+                         [&] { return fmt::format("nodes[{}]", i); });
+        }
+    }
+
+    void take_skins() {
+        const Json& skins = array_in(root_, "skins");
+        for (std::size_t i = 0; i < skins.size(); ++i) {
+            const auto matrices = index_in(skins[i], "inverseBindMatrices");
+            if (!matrices) continue;
+            budget_.take(count_of(*matrices), sizeof(glm::mat4),
+                         [&] { return fmt::format("skins[{}]", i); });
+        }
+    }
+
+    void take_channels() {
+        const Json& animations = array_in(root_, "animations");
+        for (std::size_t i = 0; i < animations.size(); ++i) {
+            const Json& samplers = animations[i]["samplers"];
+            const Json& channels = animations[i]["channels"];
+            for (std::size_t k = 0; k < channels.size(); ++k) {
+                const auto name = [&] { return fmt::format("animations[{}].channels[{}]", i, k); };
+                const Json& sampler = samplers[size_in(channels[k], "sampler")];
+                budget_.take(count_of(size_in(sampler, "input")), sizeof(float), name);
+                budget_.take(count_of(size_in(sampler, "output")), sizeof(glm::vec4), name);
+            }
+        }
+    }
+
+    void take_images() {
+        const Json& images = array_in(root_, "images");
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            const auto view = index_in(images[i], "bufferView");
+            if (!view) continue;
+            budget_.take(size_in(root_["bufferViews"][*view], "byteLength"), 1,
+                         [&] { return fmt::format("images[{}]", i); });
+        }
+    }
+
+    const Json& root_;
+    MemoryBudget& budget_;
+};
+
+}  // namespace
+
+void take_contents(GltfContents& contents) {
+    ContentCount(contents).take_all();
+}
+
+}  // namespace relief
