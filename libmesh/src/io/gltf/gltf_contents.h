@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -202,6 +203,22 @@ void take_contents(GltfContents& contents);
 /// directions without KHR_mesh_quantization. Replaces wrong bounds of positions.
 void check_values(GltfContents& contents, Report& report);
 
+// The rule of validity for all documents that are written
+
+/// Checks that the document can be read again, that all indices of its triangles name vertices, and
+/// that its vertices have finite values.
+///
+/// \throws InvalidInput with the location and the remedy
+void require_valid(const GltfContents& contents);
+
+/// Replaces values of a primitive that glTF forbids. The corners of triangles with a non-finite
+/// position become one vertex, so that the triangle has no area and draws nothing. Non-finite and
+/// zero normals become (0,0,1), non-finite tangents (1,0,0,1), other non-finite components of
+/// attributes 0, and those of colors 1.
+///
+/// \param report  counts the triangles and the attributes
+void repair_values(GltfContents& contents, GltfPrimitiveId id, Report& report);
+
 // Additions (bytes, buffer views, accessors) and removal of extensions
 
 /// Reserves capacity for bytes that will be appended.
@@ -233,6 +250,10 @@ std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std
 /// Updates min and max, if the accessor has them. If elements are not finite, the old bounds stay,
 /// because JSON cannot hold them.
 void update_bounds(Json& accessor, const std::string& elements);
+
+/// Sets the bounds that glTF requires for positions: those of the finite coordinates, or 0 if there
+/// are none.
+void set_bounds(Json& accessor, std::span<const glm::vec3> positions);
 
 /// Removes an extension from an object that may have it.
 void erase_extension(Json& holder, const char* extension);

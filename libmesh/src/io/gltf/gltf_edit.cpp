@@ -14,6 +14,8 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "io/gltf/gltf_accessor.h"
 #include "relief/mesh/report.h"
@@ -160,6 +162,24 @@ void update_bounds(Json& accessor, const std::string& elements) {
     if (accessor.contains("max")) accessor["max"] = most;
 }
 
+void set_bounds(Json& accessor, std::span<const glm::vec3> positions) {
+    Json least = Json::array();
+    Json most = Json::array();
+    for (int k = 0; k < 3; ++k) {
+        float low = std::numeric_limits<float>::infinity();
+        float high = -low;
+        for (const glm::vec3& position : positions) {
+            if (!std::isfinite(position[k])) continue;
+            low = std::min(low, position[k]);
+            high = std::max(high, position[k]);
+        }
+        least.push_back(low <= high ? low : 0.0F);
+        most.push_back(low <= high ? high : 0.0F);
+    }
+    accessor["min"] = std::move(least);
+    accessor["max"] = std::move(most);
+}
+
 void erase_extension(Json& holder, const char* extension) {
     if (find(holder, "extensions", extension) == nullptr) return;
     holder["extensions"].erase(extension);
@@ -205,14 +225,6 @@ std::size_t add_values(GltfContents& contents, const std::vector<Element>& eleme
                         target);
 }
 
-/// Sets the bounds that glTF requires for positions, if they are finite.
-void set_bounds(Json& accessor, const Mesh& mesh) {
-    const Bounds bounds = bounds_of(mesh);
-    if (bounds.empty()) return;
-    accessor["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
-    accessor["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};
-}
-
 Json attributes_of(GltfContents& contents, const Mesh& mesh) {
     Json attributes = Json::object();
     const auto add = [&](const char* name, const auto& values, const char* type) {
@@ -221,7 +233,7 @@ Json attributes_of(GltfContents& contents, const Mesh& mesh) {
             add_values(contents, values, type, gltf_code::float32, gltf_code::array_buffer);
     };
     add("POSITION", mesh.positions, "VEC3");
-    set_bounds(contents.root["accessors"].back(), mesh);
+    set_bounds(contents.root["accessors"].back(), mesh.positions);
     add("NORMAL", mesh.normals, "VEC3");
     if (!mesh.normals.empty()) add("TANGENT", mesh.tangents, "VEC4");
     add("TEXCOORD_0", mesh.texcoords, "VEC2");

@@ -115,7 +115,8 @@ std::size_t FrameReplacement::carried(std::size_t accessor) {
     if (const auto done = carried_.find(accessor); done != carried_.end()) return done->second;
     Json json = contents_.root["accessors"][accessor];
     const std::size_t size = element_layout(json).size;
-    const std::string old_elements = raw_elements(contents_, accessor);
+    const PackedElements packed = packed_elements(contents_, accessor);
+    const std::string_view old_elements = packed.bytes();
     std::string elements(sources_.size() * size, '\0');
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         std::memcpy(elements.data() + i * size, old_elements.data() + sources_[i] * size, size);
@@ -130,11 +131,8 @@ std::size_t FrameReplacement::carried(std::size_t accessor) {
 template <typename Vector>
 bool is_stored(const GltfContents& contents, std::size_t accessor,
                const std::vector<std::uint32_t>& sources, const std::vector<Vector>& wanted) {
-    const std::vector<Vector> stored = float_elements<Vector>(contents, accessor);
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (std::memcmp(&stored[sources[i]], &wanted[i], sizeof(Vector)) != 0) return false;
-    }
-    return true;
+    const std::vector<Vector> stored = float_elements<Vector>(contents, accessor, sources);
+    return std::memcmp(stored.data(), wanted.data(), stored.size() * sizeof(Vector)) == 0;
 }
 
 /// Replaces an attribute. Without values it is removed. Unchanged values are left for carry_all();
@@ -168,13 +166,8 @@ void FrameReplacement::replace(const char* name, const std::vector<Vector>& valu
     json["type"] = fmt::format("VEC{}", Vector::length());
     const std::string elements(reinterpret_cast<const char*>(values.data()),
                                values.size() * sizeof(Vector));
-    if (std::string_view(name) == "POSITION") {
-        json["min"] = json["max"] = Json();  // glTF requires them; update_bounds() replaces them.
-        update_bounds(json, elements);
-        if (json["min"].is_null()) {  // A coordinate is not finite.
-            json.erase("min");
-            json.erase("max");
-        }
+    if constexpr (Vector::length() == 3) {
+        if (std::string_view(name) == "POSITION") set_bounds(json, values);
     }
     const std::size_t number = add(std::move(json), elements, gltf_code::array_buffer);
     primitive()["attributes"][name] = number;
@@ -303,13 +296,8 @@ std::vector<glm::vec3> displacements(const GltfContents& contents, const Json& t
                                      const char* name, const GltfTriangles& triangles) {
     const auto accessor = index_in(target, name);
     if (!accessor) return {};
-    std::vector<glm::vec3> all = float_elements<glm::vec3>(contents, *accessor);
-    if (!triangles.used) return all;
-    std::vector<glm::vec3> used;
-    used.reserve(triangles.used->size());
-    for (const std::uint32_t vertex : *triangles.used)
-        used.push_back(all[vertex]);
-    return used;
+    return triangles.used ? float_elements<glm::vec3>(contents, *accessor, *triangles.used)
+                          : float_elements<glm::vec3>(contents, *accessor);
 }
 
 /// Returns the mesh before vertices were split: the original vertices come first, in order.
@@ -527,9 +515,12 @@ std::size_t GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& frame
     GltfContents& contents = contents_->data;
     if (array_in(primitive_json(contents, id), "targets").empty()) {
         replace_frames(contents, id, framed);
+        repair_values(contents, id, report);
         return framed.mesh.positions.size();
     }
-    return MorphReplacement(contents, id, framed, options, report).run();
+    const std::size_t vertices = MorphReplacement(contents, id, framed, options, report).run();
+    repair_values(contents, id, report);
+    return vertices;
 }
 
 }  // namespace relief

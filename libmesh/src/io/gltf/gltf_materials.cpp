@@ -8,8 +8,10 @@
 #include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "files.h"
+#include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
@@ -123,6 +125,52 @@ std::size_t texture_entry(Json& root, std::size_t image, const Json* sampler) {
     return textures.size() - 1;
 }
 
+std::size_t texcoord_set_of(const Json& info) {
+    const std::size_t set = size_in(info, "texCoord");
+    const Json* transform = find(info, "extensions", "KHR_texture_transform");
+    return transform == nullptr ? set : size_in(*transform, "texCoord", set);
+}
+
+/// Gives the primitives of a material the texture coordinates that glTF requires for a texture. The
+/// point (0, 0) of all vertices takes no bytes.
+/// \throws InvalidInput if no primitive of the material has texture coordinates
+void require_texcoords(GltfContents& contents, std::size_t material, std::size_t set,
+                       Report& report) {
+    Json& root = contents.root;
+    if (!root.contains("meshes")) return;
+    const std::string name = fmt::format("TEXCOORD_{}", set);
+    std::vector<GltfPrimitiveId> without;
+    std::size_t with = 0;
+    for (std::size_t i = 0; i < root["meshes"].size(); ++i) {
+        const Json& primitives = root["meshes"][i]["primitives"];
+        for (std::size_t k = 0; k < primitives.size(); ++k) {
+            const Json& attributes = primitives[k]["attributes"];
+            if (index_in(primitives[k], "material") != material) continue;
+            if (attributes.contains(name))
+                ++with;
+            else if (attributes.contains("POSITION"))
+                without.push_back({i, k});
+        }
+    }
+    if (with == 0 && !without.empty()) {
+        fail_gltf("{}: has no texture coordinates{} (unwrap the model first)",
+                  describe_primitive(contents, without.front()),
+                  set == 0 ? "" : fmt::format(" in set {}", set));
+    }
+    for (const GltfPrimitiveId id : without) {
+        Json& primitive = root["meshes"][id.mesh]["primitives"][id.primitive];
+        const std::size_t position = size_in(primitive["attributes"], "POSITION");
+        Json& accessors = root["accessors"];
+        accessors.push_back({{"componentType", gltf_code::float32},
+                             {"count", accessors[position]["count"]},
+                             {"type", "VEC2"}});
+        primitive["attributes"][name] = accessors.size() - 1;
+        report.add(fmt::format("{} without texture coordinates for a map",
+                               describe_primitive(contents, id)),
+                   "material", material, "shows one texel of it");
+    }
+}
+
 /// Reports properties that hide a new texture, or that change where it is.
 void report_slot(const Json& material, std::size_t index, GltfTextureSlot slot, const Json& info,
                  Report& report) {
@@ -167,9 +215,12 @@ void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
     Json& root = contents.root;
     const std::size_t count = array_in(root, "materials").size();
     if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
-    const std::size_t new_image = image_entry(contents, image, storage, report);
     Json& json = root["materials"][material];
     const SlotMember member = member_of(slot);
+    const Json* const before =
+        member.parent == nullptr ? find(json, member.key) : find(json, member.parent, member.key);
+    require_texcoords(contents, material, before == nullptr ? 0 : texcoord_set_of(*before), report);
+    const std::size_t new_image = image_entry(contents, image, storage, report);
     Json& parent = member.parent == nullptr ? json : json[member.parent];
     Json& info = parent[member.key];
     if (const auto old = index_in(info, "index")) {

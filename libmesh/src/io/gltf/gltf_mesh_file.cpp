@@ -89,26 +89,6 @@ std::vector<Value> picked(const std::vector<Value>& values,
     return result;
 }
 
-/// Sets the bounds that glTF requires for positions. A coordinate without finite values gets 0,
-/// because JSON has no other number for it.
-void set_bounds(Json& accessor, const std::vector<glm::vec3>& positions) {
-    Json least = Json::array();
-    Json most = Json::array();
-    for (int k = 0; k < 3; ++k) {
-        float low = std::numeric_limits<float>::infinity();
-        float high = -low;
-        for (const glm::vec3& position : positions) {
-            if (!std::isfinite(position[k])) continue;
-            low = std::min(low, position[k]);
-            high = std::max(high, position[k]);
-        }
-        least.push_back(low <= high ? low : 0.0F);
-        most.push_back(low <= high ? high : 0.0F);
-    }
-    accessor["min"] = least;
-    accessor["max"] = most;
-}
-
 /// Normalizes normals for glTF, because OBJ allows any length. Normals that are unit within glTF's
 /// tolerance keep their bits; zero and non-finite ones stay.
 std::vector<glm::vec3> unit_normals(std::vector<glm::vec3> normals) {
@@ -189,6 +169,14 @@ void DocumentBuilder::add_texture(Json& holder, const char* key, const char* tex
                                   const std::optional<std::filesystem::path>& image,
                                   const MtlMaterial& material, std::size_t index) {
     if (!image) return;
+    if (file_.mesh.texcoords.empty()) {
+        if (report_ != nullptr) {
+            report_->add(fmt::format("{} of material '{}' without texture coordinates", texture,
+                                     material.name),
+                         "material", index, "left out");
+        }
+        return;
+    }
     std::error_code ignored;
     const bool may_read = material.may_read(*image);
     if (may_read &&
@@ -281,7 +269,11 @@ GltfContents gltf_from_mesh(const MeshFile& file, Report* report) {
                             *range.material, file.materials.size()));
         }
     }
-    return DocumentBuilder(file, report).build();
+    GltfContents contents = DocumentBuilder(file, report).build();
+    const std::size_t primitives = contents.root["meshes"][0]["primitives"].size();
+    for (std::size_t i = 0; report != nullptr && i < primitives; ++i)
+        repair_values(contents, {0, i}, *report);
+    return contents;
 }
 
 }  // namespace

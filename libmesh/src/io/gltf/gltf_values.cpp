@@ -39,13 +39,19 @@ class ValueChecker {
             for (const Json& primitive : mesh["primitives"]) {
                 for (const auto& [name, accessor] : primitive["attributes"].items())
                     check_attribute(name, accessor.get<std::size_t>());
+                for (const Json& target : array_in(primitive, "targets")) {
+                    if (const auto position = index_in(target, "POSITION"))
+                        check_attribute("POSITION", *position);
+                }
             }
         }
         const Json& nodes = array_in(contents_.root, "nodes");
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             check_rotation(nodes[i], i);
             check_joints(nodes[i], i);
+            check_levels(nodes[i], i);
         }
+        check_transforms();
     }
 
   private:
@@ -61,8 +67,8 @@ class ValueChecker {
             report_.add("integer vectors without KHR_mesh_quantization", "accessor", accessor,
                         "are kept as they are");
         }
+        if (kind == "POSITION") check_bounds(accessor, is_float);
         if (!is_float) return;
-        if (kind == "POSITION") check_bounds(accessor);
         if (kind == "COLOR") {
             check_floats(accessor, "non-finite color",
                          [](float value) { return std::isfinite(value); });
@@ -104,15 +110,17 @@ class ValueChecker {
         std::array<float, 3> min, max;
     };
 
-    void check_bounds(std::size_t accessor) {
+    void check_bounds(std::size_t accessor, bool is_float) {
         Json& json = contents_.root["accessors"][accessor];
+        if (text_in(json, "type") != "VEC3") return;
         const auto is_vector = [&](const char* key) {
             const Json* value = find(json, key);
             return value != nullptr && value->is_array() && value->size() == 3 &&
                    std::all_of(value->begin(), value->end(),
                                [](const Json& one) { return one.is_number(); });
         };
-        if (text_in(json, "type") != "VEC3" || !is_vector("min") || !is_vector("max")) return;
+        if (!is_vector("min") || !is_vector("max")) return add_bounds(json, accessor, is_float);
+        if (!is_float) return;
         constexpr float infinity = std::numeric_limits<float>::infinity();
         Bounds3 actual{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
         visit<float>(accessor, [&](float value, std::size_t i) {
@@ -136,6 +144,20 @@ class ValueChecker {
         json["max"] = actual.max;
         if (is_decompressed(json)) return;
         report_.add("wrong bounds of positions", "accessor", accessor, "are recomputed");
+    }
+
+    void add_bounds(Json& json, std::size_t accessor, bool is_float) {
+        try {
+            if (is_float) {
+                set_bounds(json, float_elements<glm::vec3>(contents_, accessor));
+            } else {
+                json["min"] = json["max"] = Json::array();
+                update_bounds(json, raw_elements(contents_, accessor));
+            }
+        } catch (const InvalidInput&) {
+            return;  // An accessor that cannot be read is an error where it is used.
+        }
+        report_.add("positions without bounds", "accessor", accessor, "get them");
     }
 
     [[nodiscard]] bool is_decompressed(const Json& accessor) const {
@@ -163,6 +185,41 @@ class ValueChecker {
                 report_.add("joint that its skin does not have", "node", number,
                             "is kept as it is");
                 return;
+            }
+        }
+    }
+
+    /// Renderers that look for the coarsest level would not end.
+    void check_levels(const Json& node, std::size_t number) {
+        const Json* levels = find(node, "extensions", "MSFT_lod", "ids");
+        if (levels == nullptr) return;
+        const Json& nodes = contents_.root["nodes"];
+        for (const Json& id : *levels) {
+            const auto level = id.get<std::size_t>();
+            if (level == number) {
+                report_.add("node that is its own level of detail", "node", number,
+                            "is kept as it is");
+            } else if (find(nodes[level], "extensions", "MSFT_lod") != nullptr) {
+                report_.add("level of detail that has levels itself", "node", level,
+                            "is kept as it is");
+            }
+        }
+    }
+
+    /// Lengths in world space are squared in float.
+    void check_transforms() {
+        const Json& nodes = array_in(contents_.root, "nodes");
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            for (const char* key : {"matrix", "translation", "scale"}) {
+                const Json* values = find(nodes[i], key);
+                if (values == nullptr) continue;
+                constexpr double limit = 1e18;
+                const bool is_usable = std::all_of(
+                    values->begin(), values->end(),
+                    [](const Json& value) { return std::abs(value.get<double>()) <= limit; });
+                if (is_usable) continue;
+                report_.add("transform with numbers beyond 1e18", "node", i, "is kept as it is");
+                break;
             }
         }
     }

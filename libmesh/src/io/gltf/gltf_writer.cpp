@@ -610,6 +610,11 @@ void write_json(const std::filesystem::path& file, const GltfContents& contents)
 
 void GltfDocument::write(const std::filesystem::path& file) const {
     const GltfContents& contents = contents_->data;
+    try {
+        require_valid(contents);
+    } catch (const InvalidInput& error) {
+        throw FileError(file, fmt::format("cannot be written: {}", error.what()));
+    }
     const std::string extension = lower_extension(file);
     if (extension == ".glb") {
         write_glb(file, contents);

@@ -63,6 +63,7 @@ class GltfMorph : public testing::Test {
                                       {"componentType", sizeof(Value) == 1 ? 5121 : 5126},
                                       {"count", values.size()},
                                       {"type", type}});
+        if constexpr (sizeof(Value) == 12) set_bounds(root_["accessors"].back(), values);
         return root_["accessors"].size() - 1;
     }
     /// Processes the primitive of the document and reads the written file.

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every glTF file that a command writes with exit code 0 is accepted by `relief-mesh check`, and by
+// the Khronos validator as well as its input is (if RELIEF_GLTF_VALIDATOR names the folder of the
+// npm package gltf-validator, and there is node). Without success, the old file stays.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/shared_data.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ProgramResult;
+using test::Workplace;
+
+/// The commands that write models: words before IN and behind OUT.
+struct WritingCommand {
+    const char* name;
+    const char* options;
+};
+
+constexpr std::array commands = {
+    WritingCommand{"process", ""},
+    WritingCommand{"process", "--normals keep"},
+    WritingCommand{"decimate", "--ratio 0.5"},
+    WritingCommand{"subdivide", "--levels 1"},
+    WritingCommand{"material", "--normal data/scenes/bricks-normal.png"},
+};
+
+std::vector<fs::path> models_below(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const std::string extension = entry.path().extension().string();
+        for (const char* known : {".gltf", ".glb", ".obj", ".ply", ".stl", ".off"}) {
+            if (extension == known) files.push_back(entry.path());
+        }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+bool is_gltf(const fs::path& file) {
+    return file.extension() == ".gltf" || file.extension() == ".glb";
+}
+
+class ValidOutputs : public testing::Test {
+  protected:
+    void run_all(const std::vector<fs::path>& models) {
+        for (const fs::path& model : models) {
+            for (const WritingCommand& command : commands)
+                run(command, model);
+        }
+        validate();
+    }
+    int written_ = 0;
+
+  private:
+    void run(const WritingCommand& command, const fs::path& model) {
+        const std::string out = fmt::format("out/{}.glb", written_);
+        workplace_.write(out, "old");
+        const std::string line = fmt::format("relief-mesh {} '{}' {} {}", command.name,
+                                             model.string(), out, command.options);
+        const ProgramResult result = workplace_.run(line);
+        if (result.exit_code != 0) {
+            EXPECT_EQ(result.exit_code, 1) << line << "\n" << result.error;
+            EXPECT_EQ(workplace_.read(out), "old") << line;
+            return;
+        }
+        const ProgramResult check = workplace_.run("relief-mesh check " + out);
+        EXPECT_EQ(check.exit_code, 0) << line << "\n" << check.error;
+        const std::string baseline =
+            is_gltf(model) ? fmt::format("--baseline '{}' ", model.string()) : std::string();
+        pairs_ += fmt::format(" {}'{}'", baseline, (workplace_ / out).string());
+        ++written_;
+    }
+
+    void validate() {
+        const char* module = std::getenv("RELIEF_GLTF_VALIDATOR");
+        if (module == nullptr) return;
+        const ProgramResult result = workplace_.run(
+            fmt::format("node scripts/validate-gltf.mjs --module '{}'{}", module, pairs_));
+        EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
+    }
+
+    const Workplace workplace_;
+    std::string pairs_;
+};
+
+TEST_F(ValidOutputs, OfBrokenAndHostileModels) {
+    RELIEF_NEEDS_SHARED(broken, "data/broken/gltf");
+    RELIEF_NEEDS_SHARED(hostile, "data/hostile");
+    RELIEF_NEEDS_SHARED(more_hostile, "data/hostile2");
+    std::vector<fs::path> models;
+    for (const fs::path& folder : {broken, hostile, more_hostile}) {
+        for (fs::path& file : models_below(folder))
+            models.push_back(std::move(file));
+    }
+    run_all(models);
+    EXPECT_GT(written_, 50);
+}
+
+TEST_F(ValidOutputs, OfRealModels) {
+    RELIEF_NEEDS_SHARED(folder, "data/models");
+    run_all(models_below(folder));
+    EXPECT_GT(written_, 100);
+}
+
+}  // namespace
+}  // namespace relief::tools
