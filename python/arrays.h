@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -20,6 +21,7 @@
 
 #include "relief/mesh/buffers.h"
 #include "relief/mesh/enum_names.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
@@ -36,11 +38,25 @@ void add_images(py::module_& module);
 void add_bake(py::module_& module);
 void add_scenes(py::module_& module);
 
-/// Calls `work` without the GIL, so that other Python threads run meanwhile.
+/// Receives the progress of a call, with the GIL. An exception ends the call.
+using TellProgress = std::function<void(const Progress::State& state)>;
+
+/// The same as without_gil() for work without a result.
+void run_without_gil(const std::function<void()>& work, const TellProgress& tell = {});
+
+/// Calls `work` without the GIL on another thread, so that this and other Python threads run
+/// meanwhile. This thread calls `tell` and the progress function of the Execution, and runs signal
+/// handlers: Ctrl+C ends the call with KeyboardInterrupt.
 template <typename Work>
-auto without_gil(Work&& work) {
-    const py::gil_scoped_release release;
-    return std::forward<Work>(work)();
+auto without_gil(Work&& work, const TellProgress& tell = {}) {
+    using Result = std::invoke_result_t<Work>;
+    if constexpr (std::is_void_v<Result>) {
+        run_without_gil(work, tell);
+    } else {
+        std::optional<Result> result;
+        run_without_gil([&] { result.emplace(work()); }, tell);
+        return std::move(*result);
+    }
 }
 
 // Input arrays.

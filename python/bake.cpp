@@ -176,7 +176,7 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
 
     Report findings;
     BakeFit fit;
-    const BakeResult result = without_gil([&] {
+    const auto work = [&] {
         const Baker baker(meshes.span, low, options, findings);
         fit = baker.fit();
         return baker.bake(
@@ -191,13 +191,11 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
                 std::transform(rows.states.begin(), rows.states.end(),
                                states + width * static_cast<std::size_t>(rows.first_row),
                                [](TexelState state) { return static_cast<std::uint8_t>(state); });
-                const py::gil_scoped_acquire acquire;  // Ctrl+C and `progress` end the bake.
-                if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-                if (progress)
-                    (*progress)(static_cast<double>(rows.first_row + rows.row_count) /
-                                options.map.height);
             },
             findings);
+    };
+    const BakeResult result = without_gil(work, [&](const Progress::State& state) {
+        if (progress && state.stage == "baking") (*progress)(state.part.value_or(0.0));
     });
     if (result.texels_baked + result.texels_missed == 0)
         throw InvalidInput("the low mesh covers no texel of the map (see `outside`)");

@@ -81,7 +81,7 @@ SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color&
         Report unused;
         FrameOptions options;
         options.normals = NormalWeight::angle;
-        copy = with_frames(std::move(copy), options, unused).mesh;
+        copy = without_gil([&] { return with_frames(std::move(copy), options, unused).mesh; });
     }
     copy.material_ranges = {
         {.triangle_count = static_cast<std::uint32_t>(copy.triangles.size()), .material = 0}};
@@ -96,10 +96,10 @@ SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color&
 struct ViewRequest {
     std::optional<std::pair<int, int>> size;
     int samples = 4;
-    std::string output;
+    std::string output = "srgb";
     std::optional<std::tuple<double, double, double>> camera;  ///< Degrees, degrees, factor.
     std::optional<double> fov_degrees;
-    std::string backend;
+    std::string backend = "auto";
 };
 
 Camera camera_of(const Scene& scene, const ViewRequest& view, float aspect) {
@@ -115,9 +115,7 @@ Camera camera_of(const Scene& scene, const ViewRequest& view, float aspect) {
                   static_cast<float>(factor));
 }
 
-Image draw(const SceneObject& object, const ViewRequest& view, Report& report) {
-    constexpr auto backends = std::to_array<EnumName<Backend>>(
-        {{"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}});
+FrameSettings settings_of(const SceneObject& object, const ViewRequest& view) {
     constexpr auto codings =
         std::to_array<EnumName<OutputCoding>>({{"srgb", OutputCoding::srgb},
                                                {"linear", OutputCoding::linear},
@@ -137,18 +135,39 @@ Image draw(const SceneObject& object, const ViewRequest& view, Report& report) {
     }
     settings.samples = view.samples;
     settings.output = value_of<OutputCoding>(view.output, "output", codings);
-    const Backend backend = value_of<Backend>(view.backend, "backend", backends);
-    Scene scene = object.scene;  // Meshes and images are shared.
-    const Camera camera = camera_of(
-        scene, view, static_cast<float>(settings.width) / static_cast<float>(settings.height));
+    return settings;
+}
+
+/// A scene with all of its lights, and its camera.
+struct LitScene {
+    Scene scene;  ///< Its meshes and images are shared.
+    Camera camera;
+};
+
+/// Adds the default lights to a scene without a light.
+LitScene lit_scene(const SceneObject& object, const ViewRequest& view,
+                   const FrameSettings& settings) {
+    LitScene lit{object.scene, camera_of(object.scene, view,
+                                         static_cast<float>(settings.width) /
+                                             static_cast<float>(settings.height))};
+    const Scene& scene = lit.scene;
     const bool has_light = !scene.directional_lights.empty() || !scene.point_lights.empty() ||
                            !scene.spot_lights.empty() ||
                            (scene.environment && scene.environment->lights);
-    if (!has_light) add_default_lights(scene, camera);
+    if (!has_light) add_default_lights(lit.scene, lit.camera);
+    return lit;
+}
+
+Image draw(const SceneObject& object, const ViewRequest& view, Report& report) {
+    constexpr auto backends = std::to_array<EnumName<Backend>>(
+        {{"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}});
+    const FrameSettings settings = settings_of(object, view);
+    const Backend backend = value_of<Backend>(view.backend, "backend", backends);
+    const LitScene lit = lit_scene(object, view, settings);
     const Context context(backend);
-    Renderer renderer(context, scene, settings, report);
-    Image picture = renderer.draw(camera).image;
-    if (scene.background.a == 1.0F) drop_alpha(picture);
+    Renderer renderer(context, lit.scene, settings, report);
+    Image picture = renderer.draw(lit.camera).image;
+    if (lit.scene.background.a == 1.0F) drop_alpha(picture);
     return picture;
 }
 
@@ -165,7 +184,11 @@ py::array py_render(const SceneObject& scene, std::optional<std::pair<int, int>>
 }
 
 py::list py_effects(const SceneObject& object) {
-    const FramePlan plan = without_gil([&] { return plan_effects(object.scene, FrameSettings{}); });
+    const FramePlan plan = without_gil([&] {
+        const ViewRequest view;
+        const FrameSettings settings = settings_of(object, view);
+        return plan_effects(lit_scene(object, view, settings).scene, settings);
+    });
     py::list draws;
     for (const DrawPlan& draw : plan.draws) {
         py::list effects;
@@ -237,7 +260,8 @@ void add_scenes(py::module_& module) {
              "`size` is (width, height). `output` is srgb (uint8), linear or clamped (float32).\n"
              "`camera` is (azimuth, elevation, distance factor), in degrees.")
         .def("effects", &py_effects,
-             "Return for each draw which effects the scene needs, and why the others are off.");
+             "Return for each draw which effects render() uses, and why the others are off.\n\n"
+             "A scene without a light has the default lights, as in render().");
 }
 
 }  // namespace relief::python

@@ -7,6 +7,7 @@ passed as `report` receives findings as dictionaries. docs/python.md is a tutori
 """
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import json
 import os
@@ -137,7 +138,7 @@ def bake(
 
     The low mesh needs texture coordinates. The options are those of `relief-bake mesh`; several high meshes are
     copied, a single one is not. Encode the normals with encode_normals(). `progress` is called with the finished
-    fraction; an exception of it, or Ctrl+C, ends the bake.
+    fraction after each band of 64 rows; an exception of it ends the bake.
     """
     return Baked(**_relief.bake(
         high, low, size, layers=list(layers), space=space, rays=rays, hardness=hardness, cage=cage, offset=offset,
@@ -164,6 +165,22 @@ def _tool(name: str) -> str:
     return found
 
 
+def _output_of(command: list[str]) -> tuple[int, bytes, bytes]:
+    """Exit code, standard output and standard error of a command, which any exception, as Ctrl+C, ends."""
+    with subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        try:
+            while True:
+                # Without a timeout, communicate() waits a quarter of a second after Ctrl+C.
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    out, error = process.communicate(timeout=0.05)
+                    return process.returncode, out, error
+        except BaseException:
+            process.terminate()  # The tool removes its temporary files.
+            process.wait()
+            raise
+
+
 def run(tool: str, *arguments: str | os.PathLike[str], report: bool = False) -> Any:
     """Run a command-line tool on files: run("relief-mesh", "check", "vase.glb", "--json").
 
@@ -175,12 +192,11 @@ def run(tool: str, *arguments: str | os.PathLike[str], report: bool = False) -> 
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "report.json"
         extra = ["--report", str(file)] if report else []
-        done = subprocess.run(
-            [_tool(tool), *words, *extra], stdin=subprocess.DEVNULL, capture_output=True, check=False)
-        output = done.stdout.decode("utf-8", "replace")
-        if done.returncode != 0:
-            message = done.stderr.decode("utf-8", "replace").strip()
-            raise ToolError(message or f"{tool}: exit code {done.returncode}", done.returncode, output)
+        exit_code, out, error = _output_of([_tool(tool), *words, *extra])
+        output = out.decode("utf-8", "replace")
+        if exit_code != 0:
+            message = error.decode("utf-8", "replace").strip()
+            raise ToolError(message or f"{tool}: exit code {exit_code}", exit_code, output)
         if report:
             return json.loads(file.read_text(encoding="utf-8"))
     return json.loads(output) if "--json" in words else output

@@ -85,12 +85,12 @@ class Tutorial(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             (root / "data").symlink_to(SOURCES / "data")
-            (root / "out").mkdir()
             (root / "tutorial.py").write_text(tutorial(), encoding="utf-8")
             done = subprocess.run([sys.executable, "tutorial.py"], cwd=root, capture_output=True, text=True,
                                   check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(done.stdout.splitlines()[0], "(3038, 3) (5760, 3, 4)")
             self.assertIn("expected float32 of shape (n, 3)", done.stdout)
+            self.assertRegex(done.stdout, r"\(320, 320, 3\) \[.*'normal map'.*'directional lights'.*\]")
             names = {file.name for file in (root / "out").iterdir()}
             self.assertEqual(names, {"bricks.ktx2", "bricks.png", "urn.png", "vase-bricks.glb", "vase-python.png", "vase-python.glb"})

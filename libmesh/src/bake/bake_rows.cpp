@@ -14,6 +14,7 @@
 #include "geometry/direction.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "progress_stage.h"
 
 namespace relief {
 namespace {
@@ -146,6 +147,7 @@ class Piece {
 
     void flush() {
         if (lines_.empty()) return;
+        check_cancelled();
         points_.resize(lines_.size());
         const Projection projection(surface_->high.scene(), work_.options.back_faces);
         counts_.rays += projection.find(lines_, points_);

@@ -3,6 +3,7 @@
 // of clusters, and for the hits in each cluster whose box a ray hits. Tests:
 // tests/mesh/rays/embree_scene_test.cpp.
 #include "bake/embree_scene.h"
+#include "progress_stage.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -403,7 +404,15 @@ void EmbreeScene::add(std::uint32_t name, std::span<const glm::vec<3, Number>> p
 }
 
 void EmbreeScene::build() {
+    if (current_progress != nullptr) {
+        const auto goes_on = [](void* progress, double) {
+            return !static_cast<const Progress*>(progress)->is_cancelled();
+        };
+        rtcSetSceneProgressMonitorFunction(scene_, goes_on, current_progress);
+    }
     rtcCommitScene(scene_);
+    rtcSetSceneProgressMonitorFunction(scene_, nullptr, nullptr);
+    check_cancelled();
     check_error(device_, "cannot build the scene");
 }
 

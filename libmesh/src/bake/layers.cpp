@@ -122,6 +122,7 @@ std::vector<double> Occlusion::open_shares(const RayScene& scene,
     const double start = relative_start * scene.half_size();
     const double far = distance_.value_or(scene.half_size());
     for (std::size_t i = 0; i < points.size(); ++i) {
+        check_cancelled();  // A point has up to 65536 rays.
         const OcclusionPlace& point = points[i];
         const bool is_usable = glm::dot(point.normal, point.face) >= min_cosine;
         if (!is_usable) {

@@ -33,6 +33,7 @@
 #include "geometry/weld.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "progress_stage.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -545,9 +546,12 @@ FanMesh mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
     std::vector<FanVertex> vertices;
     vertices.reserve(fans.fan_of_corner.size());
     for (std::size_t c = 0; c < fans.fan_of_corner.size(); ++c) {
+        check_cancelled(c);
         vertices.emplace_back(fans.fan_of_corner[c], vertex_of(static_cast<Corner>(c), triangles));
     }
+    check_cancelled();
     std::sort(vertices.begin(), vertices.end());
+    check_cancelled();
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
     FanMesh mesh;
@@ -561,6 +565,7 @@ FanMesh mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
     mesh.fans = groups_of(first_of_fan);
     mesh.triangles.resize(triangles.size());
     for (std::size_t c = 0; c < fans.fan_of_corner.size(); ++c) {
+        check_cancelled(c);
         const FanVertex wanted(fans.fan_of_corner[c], vertex_of(static_cast<Corner>(c), triangles));
         const auto found = std::lower_bound(vertices.begin(), vertices.end(), wanted);
         mesh.triangles[c / 3][static_cast<int>(c % 3)] =

@@ -27,6 +27,7 @@
 #include "geometry/weld.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "progress_stage.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
@@ -238,6 +239,7 @@ SmoothFans smooth_fans(const FanInput& input, const HardEdges& hard_edges) {
     });
     std::vector<std::uint32_t> number(3 * input.triangles.size());
     for (std::size_t c = 0; c < number.size(); ++c) {
+        check_cancelled(c);
         if (fans.fan_of_corner[c] == c) number[c] = static_cast<std::uint32_t>(fans.count++);
     }
     for (std::uint32_t& fan : fans.fan_of_corner)
@@ -261,6 +263,7 @@ std::vector<EdgeSide> sides_of(std::span<const glm::uvec3> welded,
     std::vector<EdgeSide> sides;
     sides.reserve(3 * welded.size());
     for (Corner corner = 0; corner < 3 * welded.size(); ++corner) {
+        check_cancelled(corner);
         if (normals[triangle_of(corner)] == glm::vec3(0.0F)) continue;
         const std::uint32_t a = vertex_of(corner, welded);
         const std::uint32_t b = vertex_of(next_in_triangle(corner), welded);

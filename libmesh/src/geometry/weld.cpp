@@ -259,6 +259,7 @@ Cells cells_of(StridedSpan<const glm::vec3> positions, double size) {
     Cells cells;
     cells.index.reserve(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
+        check_cancelled(i);
         if (!is_finite(positions[i])) continue;
         CellKey key;
         for (std::size_t k = 0; k < 3; ++k)
@@ -277,6 +278,7 @@ Cells cells_of(StridedSpan<const glm::vec3> positions, double size) {
 bool any_near(StridedSpan<const glm::vec3> positions, std::span<const std::uint32_t> some,
               std::span<const std::uint32_t> others, double tolerance) {
     return std::any_of(some.begin(), some.end(), [&](std::uint32_t a) {
+        check_cancelled();
         return std::any_of(others.begin(), others.end(), [&](std::uint32_t b) {
             return glm::distance(glm::dvec3(positions[a]), glm::dvec3(positions[b])) <= tolerance;
         });
@@ -313,6 +315,7 @@ std::vector<std::uint32_t> weld_near_positions(StridedSpan<const glm::vec3> posi
     }
     const std::vector<CellKey> onwards = offsets_onwards();
     for (std::size_t c = 0; c < cells.keys.size(); ++c) {
+        check_cancelled();
         const std::vector<std::uint32_t>& here = cells.vertices[c];
         for (const CellKey& offset : onwards) {
             const CellKey& key = cells.keys[c];

@@ -18,6 +18,7 @@
 #include "geometry/texture_gradient.h"
 #include "geometry/weld.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "topology/diagnose_parts.h"
 
 namespace relief {
@@ -157,6 +158,7 @@ DiagnosedMesh::DiagnosedMesh(const Mesh& diagnosed)
 
 void diagnose_triangles(const DiagnosedMesh& diagnosed, Tally& tally) {
     for (std::size_t t = 0; t < diagnosed.shapes.size(); ++t) {
+        check_cancelled(t);
         switch (diagnosed.shapes[t]) {
             case TriangleShape::sound:
                 break;
@@ -184,6 +186,7 @@ enum class Use : std::uint8_t { none, without_area, with_area };
 std::vector<Use> uses_of(const DiagnosedMesh& diagnosed) {
     std::vector<Use> uses(diagnosed.classes.size(), Use::none);
     for (std::size_t t = 0; t < diagnosed.triangles.size(); ++t) {
+        check_cancelled(t);
         const Use use = has_area(diagnosed.shapes[t]) ? Use::with_area : Use::without_area;
         for (int i = 0; i < 3; ++i) {
             Use& most = uses[diagnosed.triangles[t][i]];
@@ -198,6 +201,7 @@ std::vector<Use> uses_of(const DiagnosedMesh& diagnosed) {
 void diagnose_vertices(const DiagnosedMesh& diagnosed, Tally& tally) {
     const std::vector<Use> uses = uses_of(diagnosed);
     for (std::size_t v = 0; v < diagnosed.classes.size(); ++v) {
+        check_cancelled(v);
         const Use use = uses[diagnosed.classes[v]];
         if (!is_finite(diagnosed.mesh.positions[v]))
             tally.add(MeshCondition::vertex_not_finite, v);
@@ -212,11 +216,13 @@ void diagnose_texture(const DiagnosedMesh& diagnosed, Tally& tally) {
     const Mesh& mesh = diagnosed.mesh;
     if (mesh.texcoords.empty()) return;
     for (std::size_t v = 0; v < mesh.texcoords.size(); ++v) {
+        check_cancelled(v);
         if (!is_finite(mesh.texcoords[v])) tally.add(MeshCondition::texture_not_finite, v);
     }
     const std::vector<Gradient> gradients =
         gradient_kinds(mesh.positions, mesh.texcoords, mesh.triangles);
     for (std::size_t t = 0; t < gradients.size(); ++t) {
+        check_cancelled(t);
         if (!has_area(diagnosed.shapes[t])) continue;
         if (gradients[t] == Gradient::none) tally.add(MeshCondition::texture_degenerate, t);
         if (gradients[t] == Gradient::mirrored) tally.add(MeshCondition::texture_mirrored, t);
@@ -247,6 +253,7 @@ struct Facing {
 std::vector<Facing> facings_of(const DiagnosedMesh& diagnosed) {
     std::vector<Facing> facings(diagnosed.mesh.positions.size());
     for (std::size_t t = 0; t < diagnosed.shapes.size(); ++t) {
+        check_cancelled(t);
         if (diagnosed.shapes[t] != TriangleShape::sound) continue;
         for (int i = 0; i < 3; ++i) {
             const std::uint32_t vertex = diagnosed.mesh.triangles[t][i];
@@ -266,6 +273,7 @@ std::vector<Facing> facings_of(const DiagnosedMesh& diagnosed) {
 void diagnose_normals(const DiagnosedMesh& diagnosed, Tally& tally) {
     const std::vector<Facing> facings = facings_of(diagnosed);
     for (std::size_t v = 0; v < diagnosed.mesh.normals.size(); ++v) {
+        check_cancelled(v);
         const glm::vec3& normal = diagnosed.mesh.normals[v];
         if (!is_finite(normal)) {
             tally.add(MeshCondition::normal_not_finite, v);
@@ -298,6 +306,7 @@ void diagnose_slant(const Mesh& mesh, std::size_t vertex, Tally& tally) {
 
 void diagnose_tangents(const Mesh& mesh, Tally& tally) {
     for (std::size_t v = 0; v < mesh.tangents.size(); ++v) {
+        check_cancelled(v);
         const glm::vec4& tangent = mesh.tangents[v];
         if (!is_finite(tangent)) {
             tally.add(MeshCondition::tangent_not_finite, v);
@@ -367,6 +376,7 @@ void diagnose_places(const Mesh& mesh, Diagnosis& diagnosis, Tally& tally) {
 std::vector<glm::uvec3> drawn_triangles(const DiagnosedMesh& diagnosed) {
     std::vector<glm::uvec3> triangles = diagnosed.mesh.triangles;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        check_cancelled(t);
         if (!has_area(diagnosed.shapes[t])) triangles[t] = glm::uvec3(triangles[t].x);
     }
     return triangles;

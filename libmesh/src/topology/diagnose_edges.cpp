@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "parallel.h"
+#include "progress_stage.h"
 #include "topology/diagnose_parts.h"
 
 namespace relief {
@@ -218,6 +219,7 @@ void count_edge(Edge edge, std::size_t triangle, Tally& tally) {
 void diagnose_edges(const DiagnosedMesh& diagnosed, Tally& tally) {
     const FoundEdges found = find_edges(diagnosed);
     for (std::size_t t = 0; t < found.copies.size(); ++t) {
+        check_cancelled(t);
         if (found.copies[t] == Copy::repeated) tally.add(MeshCondition::triangle_repeated, t);
         if (found.copies[t] == Copy::backed) tally.add(MeshCondition::triangle_two_sided, t);
     }

@@ -22,6 +22,7 @@
 #include "geometry/direction.h"
 #include "geometry/weld.h"
 #include "portable_math.h"
+#include "progress_stage.h"
 #include "relief/mesh/report.h"
 #include "topology/topology.h"
 
@@ -53,6 +54,7 @@ Vertex vertex_at(const Topology& topology, Corner corner) {
 std::vector<Halfedge> add_edges(SurfaceMesh& mesh, const Topology& topology) {
     std::vector<Halfedge> halfedges(topology.opposite.size());
     for (Corner corner = 0; corner < halfedges.size(); ++corner) {
+        check_cancelled(corner);
         const Corner beyond = topology.opposite[corner];
         if (beyond != no_corner && beyond < corner) continue;
         halfedges[corner] = mesh.new_edge(vertex_at(topology, corner),
@@ -66,6 +68,7 @@ std::vector<Halfedge> add_edges(SurfaceMesh& mesh, const Topology& topology) {
 void add_faces(SurfaceMesh& mesh, const Topology& topology,
                const std::vector<Halfedge>& halfedges) {
     for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
+        check_cancelled(t);
         const SurfaceMesh::FaceHandle face = mesh.new_face();
         const auto first = static_cast<Corner>(3 * t);
         mesh.set_halfedge_handle(face, halfedges[first]);
@@ -82,6 +85,7 @@ void add_faces(SurfaceMesh& mesh, const Topology& topology,
 void link_boundaries(SurfaceMesh& mesh, const Topology& topology,
                      const std::vector<Halfedge>& halfedges) {
     for (Corner corner = 0; corner < halfedges.size(); ++corner) {
+        check_cancelled(corner);
         if (topology.opposite[corner] != no_corner) continue;
         // Walks around the vertex at which the outer side arrives, to the edge where its fan ends.
         Corner arriving = previous_in_triangle(corner);
@@ -147,11 +151,15 @@ LoopPoints loop_points(const Topology& topology, std::span<const glm::dvec3> poi
     const std::vector<Halfedge> halfedges = build(mesh, topology, points);
     const auto plain = [](const OpenMesh::Vec3d& p) { return glm::dvec3(p[0], p[1], p[2]); };
     LoopPoints result;
-    for (const auto& vertex : mesh.vertices())
+    for (const auto& vertex : mesh.vertices()) {
+        check_cancelled(result.at_vertices.size());
         result.at_vertices.push_back(plain(moved_vertex(mesh, vertex)));
+    }
     std::vector<glm::dvec3> middles;
-    for (const auto& edge : mesh.edges())
+    for (const auto& edge : mesh.edges()) {
+        check_cancelled(middles.size());
         middles.push_back(plain(middle_of_edge(mesh, edge)));
+    }
     for (const Halfedge halfedge : halfedges)
         result.on_edges.push_back(
             middles[static_cast<std::size_t>(mesh.edge_handle(halfedge).idx())]);
@@ -187,6 +195,7 @@ EdgeNumbers number_edges(std::size_t vertex_count, std::span<const glm::uvec3> t
                                   [&](std::size_t t) { return is_cut[t]; });
     std::vector<std::pair<std::uint32_t, Corner>> edges;  // Pairs of larger vertex and corner.
     for (std::uint32_t v = 0; v < vertex_count; ++v) {
+        check_cancelled(v);
         edges.clear();
         for (const Corner corner : corners.at(v)) {
             const Corner previous = previous_in_triangle(corner);
@@ -226,6 +235,7 @@ Cut cut_of(const Level& level, Report& report) {
     cut.is_cut.assign(level.mesh.triangles.size(), false);
     for (const std::uint32_t t : cut.topology.source_triangle)
         cut.is_cut[t] = true;
+    check_cancelled();
     cut.edges = number_edges(level.points.size(), level.mesh.triangles, cut.is_cut);
     cut.class_edges = number_edges(
         level.points.size(), welded_triangles(level.mesh.triangles, level.classes), cut.is_cut);
@@ -264,12 +274,14 @@ std::vector<glm::dvec3> moved_points(const Level& level, const Cut& cut) {
         at_classes.add(topology.position_vertex[v], loop.at_vertices[v]);
     Means on_edges(cut.class_edges.ends.size());
     for (std::size_t corner = 0; corner < loop.on_edges.size(); ++corner) {
+        check_cancelled(corner);
         const std::size_t mesh_corner = 3 * topology.source_triangle[corner / 3] + corner % 3;
         on_edges.add(cut.class_edges.of_corner[mesh_corner], loop.on_edges[corner]);
     }
 
     std::vector<glm::dvec3> moved = level.points;
     for (std::size_t v = 0; v < level.points.size(); ++v) {
+        check_cancelled(v);
         if (at_classes.has(level.classes[v])) moved[v] = at_classes.at(level.classes[v]);
     }
     moved.resize(level.points.size() + cut.edges.ends.size());
@@ -316,6 +328,7 @@ void cut_triangles(Mesh& mesh, const Cut& cut, std::size_t vertex_count) {
     triangles.reserve(4 * mesh.triangles.size());
     std::vector<std::uint32_t> first_of(mesh.triangles.size() + 1, 0);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        check_cancelled(t);
         const glm::uvec3& old = mesh.triangles[t];
         if (is_kept[t]) triangles.push_back(old);
         if (cut.is_cut[t]) {
@@ -348,7 +361,9 @@ void subdivide_once(Level& level, Report& report) {
     const Cut cut = cut_of(level, report);
     const std::size_t vertex_count = level.points.size();
     std::vector<glm::dvec3> points = moved_points(level, cut);
+    check_cancelled();
     level.classes = next_classes(level, cut);
+    check_cancelled();
     level.points = std::move(points);
     add_middles(level.mesh.texcoords, cut.edges);
     add_middles(level.mesh.texcoords_2, cut.edges);

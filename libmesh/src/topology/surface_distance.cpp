@@ -21,6 +21,7 @@
 
 #include "geometry/direction.h"
 #include "parallel.h"
+#include "progress_stage.h"
 #include "relief/mesh/topology.h"
 
 namespace relief {
@@ -224,6 +225,7 @@ Surface::Surface(const Mesh& mesh) : mesh_(mesh) {
 void Surface::gather_corners() {
     corners_.resize(triangles_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        check_cancelled(t);
         for (int i = 0; i < 3; ++i)
             corners_[t][static_cast<std::size_t>(i)] = mesh_.positions[triangles_[t][i]];
     }
@@ -255,7 +257,9 @@ std::vector<std::uint32_t> order_along_curve(const Mesh& mesh, std::size_t count
         for (std::size_t i = begin; i < end; ++i)
             keys[i] = {curve_key(center(i) - low, longest), static_cast<std::uint32_t>(i)};
     });
+    check_cancelled();
     std::sort(keys.begin(), keys.end());
+    check_cancelled();
     std::vector<std::uint32_t> order;
     order.reserve(count);
     for (const auto& key : keys)
@@ -282,6 +286,7 @@ double Surface::slab_length(std::size_t more) const {
         longest = std::max(longest, glm::length(extent_of(corners(t)).edge));
     const auto count = [&](double length) {
         double sum = 0.0;
+        check_cancelled();
         for (std::size_t t = 0; t < size(); ++t)
             sum += std::ceil(glm::length(extent_of(corners(t)).edge) / length);
         return sum;
@@ -358,8 +363,10 @@ void Surface::sort_slabs() {
 void Surface::divide(std::size_t more) {
     const double length = slab_length(more);
     slabs_.clear();
-    for (std::uint32_t t = 0; t < size(); ++t)
+    for (std::uint32_t t = 0; t < size(); ++t) {
+        check_cancelled(t);
         add_slabs(t, length);
+    }
     sort_slabs();
     prisms_.clear();
     prism_of_node_.clear();
@@ -370,6 +377,7 @@ void Surface::build() {
     leaves_ = std::bit_ceil((items() + leaf_size - 1) / leaf_size);
     boxes_.assign(2 * leaves_, Box());
     for (std::size_t i = 0; i < items(); ++i) {
+        check_cancelled(i);
         Box& box = boxes_[leaves_ + i / leaf_size];
         const Box of_item = box_of(i);
         box.add(of_item.low);
@@ -401,6 +409,7 @@ void Surface::build_prisms() {
     };
     std::vector<Piece> pieces;
     for (std::size_t leaves = 1; leaves <= std::min(max_leaves, leaves_); leaves *= 2) {
+        check_cancelled();
         for (std::size_t first = 0; first < leaves_; first += leaves) {
             const auto begin = is_thin.begin() + static_cast<std::ptrdiff_t>(first);
             if (std::find(begin, begin + static_cast<std::ptrdiff_t>(leaves), 1) ==
@@ -536,6 +545,7 @@ void measure_samples(const Surface& from, const Surface& to, std::size_t most,
             Work work = 0;
             std::uint32_t guess = 0;
             for (std::size_t i = begin; i < end; ++i) {
+                check_cancelled();
                 const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
                 const auto found = std::lower_bound(areas.begin(), areas.end(), at * stats.area);
                 const auto t =
@@ -660,6 +670,7 @@ Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t 
             Work work = 0;
             std::uint32_t guess = 0;
             for (std::size_t v = begin; v < end; ++v) {
+                check_cancelled();
                 if (!is_used[v]) continue;
                 if (v % step != 0) {
                     ++largest.omitted;
@@ -708,6 +719,7 @@ void measure_maximum(const Surface& from, const Surface& to, Work work, Distance
             Largest largest{of_all, 0};
             InteriorSearch search{to, 0, allowed * (end - begin)};
             for (std::size_t t = begin; t < end; ++t) {
+                check_cancelled();
                 std::array<Probe, 3> piece;
                 const Corners corners = from.corners(t);
                 for (std::size_t i = 0; i < 3; ++i)

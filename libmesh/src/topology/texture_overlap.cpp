@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "geometry/direction.h"
+#include "progress_stage.h"
 #include "topology/diagnose_parts.h"
 
 namespace relief {
@@ -184,6 +185,7 @@ void Raster::for_spans(const Corners& corners, const Visit& visit) {
     const int first_row = std::max(0, static_cast<int>(std::ceil(low - 0.5)));
     const int last_row = std::min(side_ - 1, static_cast<int>(std::floor(high - 0.5)));
     for (int row = first_row; row <= last_row; ++row) {
+        check_cancelled();
         const double y = row + 0.5;
         double begin = 0.5;
         double end = side_ - 0.5;
@@ -216,6 +218,7 @@ TextureOverlap texture_overlap(std::span<const glm::vec2> texcoords,
     Raster raster(overlap.raster, triangles.size());
     const glm::dvec2 scale = static_cast<double>(overlap.raster) / (box.max - box.min);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        check_cancelled(t);
         std::optional<Corners> corners = corners_of(texcoords, triangles[t]);
         if (!corners) continue;
         for (glm::dvec2& corner : *corners)

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "geometry/direction.h"
+#include "progress_stage.h"
 #include "topology/topology.h"
 
 namespace relief {
@@ -31,6 +32,7 @@ void for_each_edge(std::size_t vertex_count, std::span<const glm::uvec3> triangl
     const CornersByVertex corners(vertex_count, triangles);
     std::vector<EdgeUse> uses;
     for (std::uint32_t v = 0; v < vertex_count; ++v) {
+        check_cancelled(v);
         uses.clear();
         for (const Corner corner : corners.at(v)) {
             const Corner previous = previous_in_triangle(corner);
@@ -81,6 +83,7 @@ void TopologyMaker::choose_triangles() {
     welded_.reserve(mesh_.triangles.size());
     result_.source_triangle.reserve(mesh_.triangles.size());
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+        check_cancelled(i);
         const std::uint32_t t = order_.empty() ? i : order_[i];
         const glm::uvec3& triangle = mesh_.triangles[t];
         const bool finite = is_finite(mesh_.positions[triangle.x]) &&
@@ -146,6 +149,7 @@ void TopologyMaker::find_vertices() {
     result_.position_vertex.reserve(mesh_.positions.size());
     result_.triangles.assign(welded_.size(), glm::uvec3(no_corner));
     for (Corner corner = 0; corner < 3 * welded_.size(); ++corner) {
+        check_cancelled(corner);
         if (vertex_of(corner, result_.triangles) == no_corner) give_vertex(corner);
     }
 }

@@ -442,6 +442,7 @@ void add_vertices(const Mesh& mesh, const glm::dvec3& origin, std::string& text)
     const bool has_alpha = std::any_of(mesh.colors.begin(), mesh.colors.end(),
                                        [](const glm::vec4& color) { return color.a != 1.0F; });
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        check_cancelled(i);
         const glm::vec3& p = mesh.positions[i];
         if (origin == glm::dvec3(0.0)) {
             fmt::format_to(out, "v {} {} {}", p.x, p.y, p.z);
@@ -456,11 +457,16 @@ void add_vertices(const Mesh& mesh, const glm::dvec3& origin, std::string& text)
         }
         text += '\n';
     }
-    for (const glm::vec2& t : mesh.texcoords) {
+    for (std::size_t i = 0; i < mesh.texcoords.size(); ++i) {
+        check_cancelled(i);
+        const glm::vec2& t = mesh.texcoords[i];
         fmt::format_to(out, "vt {} {}\n", t.x, 1.0 - static_cast<double>(t.y));
     }
-    for (const glm::vec3& n : mesh.normals)
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+        check_cancelled(i);
+        const glm::vec3& n = mesh.normals[i];
         fmt::format_to(out, "vn {} {} {}\n", n.x, n.y, n.z);
+    }
 }
 
 void add_faces(const Mesh& mesh, const MaterialRange& range, std::string& text) {
@@ -468,6 +474,7 @@ void add_faces(const Mesh& mesh, const MaterialRange& range, std::string& text) 
     const bool has_texcoords = !mesh.texcoords.empty();
     const bool has_normals = !mesh.normals.empty();
     for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
+        check_cancelled(i);
         if (!mesh.smoothing_groups.empty()) {
             const std::uint32_t group = mesh.smoothing_groups[range.first_triangle + i];
             if (i == 0 || group != mesh.smoothing_groups[range.first_triangle + i - 1])
