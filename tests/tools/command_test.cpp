@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -31,6 +32,24 @@ struct WrongUsage {
     const char* error;
 };
 
+TEST(AllTools, ExplainThatNoThreadCanBeStarted) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "Sanitizers need threads of their own.";
+#endif
+    const Workplace workplace;
+    // The limit does not apply to root.
+    std::filesystem::permissions(workplace / "", std::filesystem::perms::all);
+    std::filesystem::permissions(workplace / "out", std::filesystem::perms::all);
+    const std::string user = ::geteuid() == 0 ? "setpriv --reuid=65533 --clear-groups " : "";
+    const ProgramResult result = workplace.run(
+        user + "prlimit --nproc=1 relief-bake mesh data/urn-high.ply data/urn-low.obj out/map.png");
+    if (result.error.find("Permission denied") != std::string::npos)
+        GTEST_SKIP() << "Another user cannot run the tools here.";
+    EXPECT_EQ(result.error,
+              "relief-bake: error: no thread can be started: pthread_create has failed: Resource "
+              "temporarily unavailable (raise the limit of processes, ulimit -u)\n");
+}
+
 TEST(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
     const Workplace workplace;
     const std::vector<WrongUsage> rows = {
@@ -52,6 +71,14 @@ TEST(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
          "(for several inputs, give a folder: -o out/)"},
         {"relief-mesh process a.obj b.obj --normal flat",
          "relief-mesh: error: --normal: unknown option (did you mean --normals?)"},
+        {"relief-bake bump a.png b.png --flat half",
+         "relief-bake: error: --flat: is now called --zero-code (give --zero-code 127.5 for half, "
+         "128 for middle)"},
+        {"relief-bake convert a.png b.png --input-flat=middle",
+         "relief-bake: error: --input-flat: is now called --input-zero-code (give "
+         "--input-zero-code 127.5 for half, 128 for middle)"},
+        {"relief-mesh process a.obj b.obj --flat",
+         "relief-mesh: error: --flat: unknown option (see relief-mesh process --help)"},
         {"relief-mesh process a.obj b.obj -x",
          "relief-mesh: error: -x: unknown option (see relief-mesh process --help)"},
         {"relief-mesh process a.obj b.obj --normals",

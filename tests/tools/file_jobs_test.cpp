@@ -134,6 +134,15 @@ TEST(FileJobs, UdimNamesComeInPairsAndHaveTiles) {
               name + ": there is no such tile (tiles are numbered 1001 and on)");
 }
 
+TEST(FileJobs, OutputsHaveNoUnknownPlaceholders) {
+    EXPECT_EQ(refusal({{"w.png", "n_<tile>.png"}, {}}),
+              "n_<tile>.png: <tile> is not a placeholder");
+    EXPECT_EQ(refusal({{"w.png"}, "n.<udim>.png"}), "n.<udim>.png: <udim> is not a placeholder");
+    EXPECT_EQ(jobs_text(jobs({{"w.png", "n_<2>.png"}, {}})), "w.png -> n_<2>.png");
+    EXPECT_EQ(jobs_text(jobs({{"w.png", "n_<b.png"}, {}})), "w.png -> n_<b.png");
+    EXPECT_EQ(jobs_text(jobs({{"w<tile>.png"}, "out/"})), "w<tile>.png -> out/w<tile>.png");
+}
+
 class FileLists : public testing::Test {
   protected:
     FileLists() {
@@ -170,6 +179,39 @@ TEST_F(FileLists, MayBeMixedWithNames) {
     ASSERT_EQ(report["files"].size(), 2U);
     EXPECT_EQ(report["files"][0]["file"], "b c.obj");
     EXPECT_EQ(report["files"][1]["file"], "a.obj");
+}
+
+TEST_F(FileLists, BeginWithAByteOrderMarkOfUtf8) {
+    place_.write("list.txt",
+                 "\xEF\xBB\xBF"
+                 "a.obj\r\n");
+    const ProgramResult result =
+        place_.run("relief-mesh process @list.txt -o out/ --format glb --quiet");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(place_.outputs(), "a.glb");
+}
+
+TEST_F(FileLists, InUtf16AreRefused) {
+    place_.write("list.txt", std::string("\xFF\xFE"
+                                         "a\0.\0o\0b\0j\0",
+                                         12));
+    const ProgramResult result = place_.run("relief-mesh process @list.txt -o out/");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.first_error_line(),
+              "relief-mesh: error: @list.txt: is a list in UTF-16 (save it as UTF-8)");
+}
+
+TEST_F(FileLists, LeaveFoldersOutWithAWarning) {
+    std::filesystem::create_directories(place_ / "models/inner");
+    place_.write_square("models/inner/c.obj");
+    const ProgramResult result =
+        place_.run("find models | relief-mesh process - -o out/ --format glb --quiet");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error,
+              "relief-mesh: warning: -: models is a folder and is left out\n"
+              "relief-mesh: warning: -: models/inner is a folder and is left out\n");
+    EXPECT_EQ(place_.outputs(), "c.glb");
+    EXPECT_EQ(place_.run("relief-mesh process models/inner -o out/").exit_code, 2);
 }
 
 TEST_F(FileLists, AreRefusedIfTheyListNothing) {

@@ -378,6 +378,8 @@ TEST(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
     workplace.write("noise.glb", "this is no glTF");
     workplace.write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
     write_two_primitives(workplace, "pair");
+    workplace.write("square.mtl", "newmtl wall\n");
+    std::filesystem::create_symlink("square.mtl", workplace / "link.json");
     expect_refusals(
         workplace, "relief-mesh", "old.glb",
         {{"relief-mesh process missing.obj out/old.glb", 1, "missing.obj: "},
@@ -420,6 +422,8 @@ TEST(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
           "--report ./out/new.glb: is also the input or the output"},
          {"relief-mesh process square.obj out/new.gltf --report out/new.bin", 2,
           "--report out/new.bin: is the name of a model or an image (use .json)"},
+         {"relief-mesh process square.obj out/new.glb --report link.json", 2,
+          "--report link.json: is a link to "},
          {"relief-mesh info missing.obj", 1, "missing.obj: "},
          {"relief-mesh info noise.glb --json", 1, "noise.glb: "},
          {"relief-mesh info", 2, "IN is missing (see relief-mesh info --help)"}});

@@ -131,6 +131,28 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
     EXPECT_EQ(workplace.read("out/b.ply"), workplace.read("out/c.ply"));
 }
 
+TEST(DecimateCommand, TakesTheRatioAsPercentToo) {
+    const Workplace workplace;
+    ASSERT_EQ(workplace.run("relief-mesh decimate data/vase.obj out/a.ply --ratio 25%").exit_code,
+              0);
+    ASSERT_EQ(workplace.run("relief-mesh decimate data/vase.obj out/b.ply --ratio 0.25").exit_code,
+              0);
+    EXPECT_EQ(workplace.read("out/a.ply"), workplace.read("out/b.ply"));
+}
+
+TEST(DecimateCommand, SaysIfTheInputIsWithinTheLimitOfTriangles) {
+    const Workplace workplace;
+    const ProgramResult one =
+        workplace.run("relief-mesh decimate data/urn-low.obj out/a.glb --triangles 5000");
+    EXPECT_THAT(one.out, HasSubstr("result    720 triangles, "));
+    EXPECT_THAT(one.out, HasSubstr(" (the input is within --triangles)\n"));
+    const ProgramResult two = workplace.run(
+        "relief-mesh decimate data/urn-low.obj data/vase.obj -o out/ --format glb --triangles "
+        "5000");
+    EXPECT_THAT(two.out, HasSubstr("out/urn-low.glb: 720 -> 720 triangles (within --triangles), "));
+    EXPECT_THAT(two.out, HasSubstr("out/vase.glb: 5760 -> 5000 triangles, "));
+}
+
 TEST(DecimateCommand, NoGapOpensBetweenMaterials) {
     const Workplace workplace;
     write_sheet(workplace, "sheet.obj", 24);
@@ -404,6 +426,9 @@ TEST(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
           "--triangles 0: not between 1 and "},
          {"relief-mesh decimate square.obj out/old.glb --ratio 1.5", 2,
           "--ratio 1.5: not between 0 and 1"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 150%", 2,
+          "--ratio 150%: not between 0 and 100 %"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio %", 2, "--ratio %: not a number"},
          {"relief-mesh decimate square.obj out/old.glb --max-error -1", 2,
           "--max-error -1: not at least 0"},
          {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --max-normal-error 0", 2,

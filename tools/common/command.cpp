@@ -9,12 +9,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -85,11 +88,38 @@ const CLI::App& parsed_command(const CLI::App& root) {
     return parsed.empty() ? root : *parsed.front();
 }
 
+/// An option that an earlier version had.
+struct RenamedOption {
+    std::string_view before;
+    std::string_view now;
+    std::string_view values;  ///< The new values, if those have changed too.
+};
+
+constexpr std::array renamed_options = {
+    RenamedOption{"--flat", "--zero-code", "127.5 for half, 128 for middle"},
+    RenamedOption{"--input-flat", "--input-zero-code", "127.5 for half, 128 for middle"},
+    RenamedOption{"--detail-flat", "--detail-zero-code", "127.5 for half, 128 for middle"},
+};
+
+/// Returns the error of an option that has another name in this command.
+std::optional<UsageError> renamed(const std::vector<std::string>& options,
+                                  std::string_view option) {
+    for (const RenamedOption& row : renamed_options) {
+        if (row.before != option || std::ranges::find(options, row.now) == options.end()) continue;
+        return UsageError(fmt::format("{}: is now called {}", row.before, row.now),
+                          fmt::format("give {} {}", row.now, row.values));
+    }
+    return std::nullopt;
+}
+
 /// Returns the error of an unknown option or command, or an excess file.
 UsageError unexpected(const CLI::App& app, const std::string& argument) {
     const bool is_option = argument.size() > 1 && argument.front() == '-';
     const std::vector<std::string> commands = command_names(app);
     const std::string word = argument.substr(0, argument.find('='));
+    if (is_option) {
+        if (const auto error = renamed(option_names(app), word)) return *error;
+    }
     const std::vector<std::string> suggestions =
         near_names(word, is_option ? option_names(app) : commands);
     const std::string remedy =
@@ -185,6 +215,13 @@ int flushed(const CLI::App& root, int code) {
     if (!is_summary && !is_quiet) throw FileError("standard output", problem);
     if (!is_quiet) print_message(root, "warning", "standard output: " + problem);
     return is_summary ? code : static_cast<int>(ExitCode::failed);
+}
+
+/// Adds the remedy to the error of oneTBB if no thread can be started.
+std::string with_remedy(const std::string& error) {
+    if (!error.starts_with("pthread_create")) return error;
+    return fmt::format("no thread can be started: {} (raise the limit of processes, ulimit -u)",
+                       error);
 }
 
 /// Parses the arguments and runs the command.
@@ -435,7 +472,7 @@ int run_tool(const Tool& tool, const std::vector<std::string>& given, std::FILE*
         if (error.code() == std::errc::broken_pipe) return static_cast<int>(ExitCode::failed);
         return report_failure(root, error.what());
     } catch (const std::exception& error) {
-        return report_failure(root, error.what());
+        return report_failure(root, with_remedy(error.what()));
     }
 }
 

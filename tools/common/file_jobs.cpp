@@ -8,10 +8,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <regex>
 #include <set>
 
 #include "common/command.h"
@@ -89,6 +91,7 @@ JobList pair_of(const FileWords& words) {
             fmt::format("{} files: inputs and output are ambiguous", words.files.size()),
             "for several inputs, give a folder: -o out/");
     }
+    check_placeholders(words.files[1], std::array{tile_word});
     return in_tiles({words.files[0], words.files[1]});
 }
 
@@ -103,6 +106,7 @@ JobList single(const FileWords& words, const std::string& kind) {
     if (output.extension().empty())
         throw UsageError(fmt::format("-o {}: has no extension", *words.output),
                          "the name of a folder ends in /");
+    check_placeholders(output, std::array{tile_word});
     return in_tiles({words.files[0], output});
 }
 
@@ -175,6 +179,18 @@ fs::path with_word(const fs::path& file, std::string_view word, const std::strin
 
 bool names_word(const fs::path& file, std::string_view word) {
     return file.filename().string().find(word) != std::string::npos;
+}
+
+void check_placeholders(const fs::path& file, std::span<const std::string_view> known) {
+    const std::string name = file.filename().string();
+    static const std::regex placeholder("<[A-Za-z]+>");
+    for (std::sregex_iterator match(name.begin(), name.end(), placeholder), end; match != end;
+         ++match) {
+        const std::string word = match->str();
+        if (std::ranges::find(known, word) != known.end()) continue;
+        throw UsageError(fmt::format("{}: {} is not a placeholder", file.string(), word),
+                         fmt::format("use {}, or another name", fmt::join(known, " or ")));
+    }
 }
 
 JobList jobs_of(const FileWords& words, const std::string& kind,

@@ -15,6 +15,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,13 @@ std::filesystem::path with_word(const std::filesystem::path& file, std::string_v
 
 /// Returns whether the name of a file contains a word. Folders do not count.
 bool names_word(const std::filesystem::path& file, std::string_view word);
+
+/// Checks the name of a file to write, as the user gave it, for words in angle brackets, "<tile>",
+/// which would become a part of the name.
+///
+/// \param known  the placeholders of the command
+/// \throws UsageError if there is another one
+void check_placeholders(const std::filesystem::path& file, std::span<const std::string_view> known);
 
 /// The file arguments of a command line.
 struct FileWords {

@@ -168,14 +168,24 @@ std::string text_of_standard_input() {
     return text;
 }
 
-/// Adds the names of a list: one a line, or ended by NUL as `find -print0` prints them.
-void add_names(const std::string& list, const std::string& text,
+/// Adds the names of a list: one a line, or ended by NUL as `find -print0` prints them. Folders,
+/// which `find` lists too, are left out with a warning.
+void add_names(const CLI::App& app, const std::string& list, std::string_view text,
                std::vector<std::filesystem::path>& names) {
-    const char end = text.find('\0') == std::string::npos ? '\n' : '\0';
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+        throw UsageError(list + ": is a list in UTF-16", "save it as UTF-8");
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    const char end = text.find('\0') == std::string_view::npos ? '\n' : '\0';
     const std::size_t before = names.size();
     for (std::string name : split(text, end)) {
         if (end == '\n' && name.ends_with('\r')) name.pop_back();
-        if (!name.empty()) names.emplace_back(std::move(name));
+        if (name.empty()) continue;
+        std::error_code ignored;
+        if (std::filesystem::is_directory(name, ignored))
+            warn(app, fmt::format("{}: {} is a folder and is left out", list, name));
+        else
+            names.emplace_back(std::move(name));
     }
     if (names.size() == before) throw UsageError(list + ": lists no file");
 }
@@ -184,13 +194,13 @@ void add_names(const std::string& list, const std::string& text,
 
 AddedOption add_files(CLI::App& app, const std::string& name,
                       std::vector<std::filesystem::path>& target, const std::string& description) {
-    const auto callback = [&target](const CLI::results_t& values) {
+    const auto callback = [&app, &target](const CLI::results_t& values) {
         target.clear();
         for (const std::string& value : values) {
             if (value == standard_stream) {
-                add_names(value, text_of_standard_input(), target);
+                add_names(app, value, text_of_standard_input(), target);
             } else if (value.starts_with('@') && value.size() > 1) {
-                add_names(value, read_file(value.substr(1)), target);
+                add_names(app, value, read_file(value.substr(1)), target);
             } else if (value.empty()) {
                 throw UsageError("'': not a file name");
             } else {

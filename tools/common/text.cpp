@@ -225,10 +225,15 @@ void check(const ReportOptions& options, const std::vector<std::filesystem::path
     if (!options.file) return;
     if (*options.file == standard_stream) return reserve_out_for_report();
     check_distinct("--report", *options.file, files);
-    if (has_model_extension(*options.file) || has_image_extension(*options.file)) {
-        throw UsageError(
-            fmt::format("--report {}: is the name of a model or an image", options.file->string()),
-            "use .json");
+    const std::filesystem::path target = identity_of(*options.file);  // A link is followed.
+    for (const std::filesystem::path& file : {*options.file, target}) {
+        if (!has_model_extension(file) && !has_image_extension(file)) continue;
+        const std::string place = std::filesystem::is_symlink(*options.file)
+                                      ? fmt::format("is a link to {}, ", target.string())
+                                      : "is ";
+        throw UsageError(fmt::format("--report {}: {}the name of a model or an image",
+                                     options.file->string(), place),
+                         "use .json");
     }
     require_folder_of(*options.file);
     const FileReplacement can_be_made(*options.file);  // Throws if not; removed at once.

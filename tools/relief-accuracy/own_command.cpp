@@ -160,7 +160,7 @@ std::vector<std::string> height_findings(const HeightMapFile& map, const AssetRe
         add_non_finite(map.map().heights, report);
     }
     Findings findings;
-    findings.add("", report);
+    findings.add("", report, map.info().width);
     return findings.lines();
 }
 
@@ -208,7 +208,7 @@ std::vector<AssetExperiment> measure_normals(const AssetInput& input, const Asse
     std::vector<AssetExperiment> all = {measure_asset_normals(
         normals, stored, options, options.run.is_quick ? quick_texels : texels_to_measure)};
     Findings findings;
-    findings.add("", report);
+    findings.add("", report, normals.width);
     all.front().experiment.input_findings = findings.lines();
     return all;
 }

@@ -209,7 +209,10 @@ BakeMapOptions map_options(const BakeOptions& options, const MapPlan& plan) {
 
 void check_map_names(const MeshBakeRequest& request) {
     const std::filesystem::path& output = request.output;
+    constexpr std::array placeholders = {tile_word, material_word};
+    check_placeholders(output, placeholders);
     for (const auto& [kind, file] : request.layers.files) {
+        check_placeholders(file, placeholders);
         for (const std::string_view word : {material_word, tile_word}) {
             if (names_word(file, word) == names_word(output, word)) continue;
             throw UsageError(fmt::format("{}: {} must be in the names of all files, or of none",

@@ -89,6 +89,8 @@ struct Reshaped {
     double corner_angle = 0.0;         ///< What --max-normal-error limits, in degrees.
     std::vector<std::string> omitted;  ///< Content that the output format cannot store.
     Findings findings;
+    /// The input has at most as many triangles as --triangles, so that nothing was removed.
+    bool is_small = false;
 };
 
 /// A mesh without attributes, before and after a change.
@@ -106,6 +108,7 @@ struct Reshaping {
     NormalMode normals = NormalMode::keep;
     TriangleChange change;
     Measuring measuring = Measuring::off;
+    std::optional<int> max_triangles{};  ///< --triangles
 };
 
 /// Reads, changes and writes a model.
@@ -128,6 +131,9 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     });
     for (const PartReport& part : done.changed.reports)
         done.findings.add(part.part, part.report);
+    done.is_small =
+        reshaping.max_triangles &&
+        done.changed.triangles_read <= static_cast<std::size_t>(*reshaping.max_triangles);
     if (reshaping.measuring == Measuring::on)
         done.distance = stages.run("measure", [&] {
             std::vector<SurfaceDistance> distances;
@@ -182,8 +188,9 @@ Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
                     counted(changed.vertices_read, "vertex", "vertices")),
         {{"triangles_read", changed.triangles_read}, {"vertices_read", changed.vertices_read}});
     summary.add("result",
-                fmt::format("{}, {}", counted(changed.triangles_written, "triangle"),
-                            counted(changed.vertices_written, "vertex", "vertices")),
+                fmt::format("{}, {}{}", counted(changed.triangles_written, "triangle"),
+                            counted(changed.vertices_written, "vertex", "vertices"),
+                            done.is_small ? " (the input is within --triangles)" : ""),
                 {{"triangles_written", changed.triangles_written},
                  {"vertices_written", changed.vertices_written}});
     if (done.distance) add_distance(summary, *done.distance, done.corner_angle);
@@ -196,8 +203,9 @@ Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
 
 std::string line_of(const Job& job, const Reshaped& done, const Stages& stages) {
     return fmt::format(
-        "{}: {} -> {}, {}, {}{}, {}", job.output.string(), done.changed.triangles_read,
+        "{}: {} -> {}{}, {}, {}{}, {}", job.output.string(), done.changed.triangles_read,
         counted(done.changed.triangles_written, "triangle"),
+        done.is_small ? " (within --triangles)" : "",
         counted(done.changed.vertices_written, "vertex", "vertices"), done.findings.count_text(),
         done.omitted.empty() ? "" : fmt::format(", left out: {}", fmt::join(done.omitted, ", ")),
         duration(stages.milliseconds()));
@@ -260,11 +268,12 @@ ExitCode reshape_all(const CLI::App& app, const ReshapeRequest& request, const J
 /// \param options  the command's options for the report
 /// \throws UsageError, FileError; then no file is written
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const TriangleChange& change,
-                 Measuring measuring, const Json& options) {
+                 Measuring measuring, const Json& options,
+                 std::optional<int> max_triangles = std::nullopt) {
     const JobList list = model_jobs_of(request.words, request.format);
     check_files(request, list);
     set_thread_limit(request.general.threads);
-    const Reshaping reshaping{command_name(app), request.normals, change, measuring};
+    const Reshaping reshaping{command_name(app), request.normals, change, measuring, max_triangles};
     const Json head = {
         {"tool", "relief-mesh " + command_name(app)}, {"version", version()}, {"options", options}};
     return list.is_single() ? reshape_one(app, request, list.jobs.front(), reshaping, head)
@@ -317,6 +326,13 @@ AttributeWeights parse_weights(const std::string& subject, const std::string& te
             parse_number(here, part.substr(equals + 1), {0.0, Range().max, ""});
     }
     return weights;
+}
+
+/// Parses "0.5" or "50%".
+double parse_ratio(const std::string& subject, const std::string& text) {
+    if (!text.ends_with('%')) return parse_number(subject, text, {0.0, 1.0, ""});
+    const std::string_view percent = std::string_view(text).substr(0, text.size() - 1);
+    return parse_number(subject, percent, {0.0, 100.0, "%"}) / 100.0;
 }
 
 void check_limits(const DecimateCommand& command) {
@@ -378,7 +394,7 @@ ExitCode decimate(const CLI::App& app, const DecimateCommand& command) {
     };
     const bool reports = !command.request.general.quiet || command.request.report.file;
     return reshape(app, command.request, change, reports ? Measuring::on : Measuring::off,
-                   options_json(command));
+                   options_json(command), command.triangles);
 }
 
 void add_decimate_options(CLI::App& app, DecimateCommand& command) {
@@ -394,8 +410,10 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
                       parse_integer(subject, text, 1, std::numeric_limits<int>::max());
               })
         .group(limits);
-    add_number(app, "--ratio", "R", command.ratio, {0.0, 1.0, ""},
-               "Stop at this fraction of the triangles, 0 to 1.")
+    add_value(app, "--ratio", "R", "Stop at this fraction of the triangles: 0 to 1, or 0% to 100%.",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.ratio = parse_ratio(subject, text);
+              })
         .group(limits);
     add_number(app, "--max-error", "E", command.max_error, {0.0, Range().max, ""},
                "Stop while no point of IN is farther than E from OUT, and no point of OUT farther "

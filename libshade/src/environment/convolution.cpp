@@ -597,10 +597,11 @@ void check(std::span<const Image> faces) {
         const auto samples = faces[face].as<float>();
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (std::isfinite(samples[i])) continue;
-            throw InvalidInput(
-                fmt::format("irradiance: face {} holds {} in texel {}, which is not finite",
-                            cube_face_names.at(face), samples[i],
-                            i / static_cast<std::size_t>(faces[0].channels)));
+            const std::size_t texel = i / static_cast<std::size_t>(faces[0].channels);
+            const auto side = static_cast<std::size_t>(faces[0].width);
+            throw InvalidInput(fmt::format(
+                "irradiance: face {} holds {} in column {}, row {}, which is not finite",
+                cube_face_names.at(face), samples[i], texel % side, texel / side));
         }
     }
 }

@@ -416,7 +416,11 @@ std::vector<std::string> SceneTextures::decode_all(const std::vector<ImageSource
 void SceneTextures::upload(const std::vector<ImageSource>& sources) {
     ProgressStage stage("uploading images", decoded_.size());
     for (const auto& [key, image] : decoded_) {
-        images_.at(key) = cache_->add(sources[key.first], key.second, image);
+        try {
+            images_.at(key) = cache_->add(sources[key.first], key.second, image);
+        } catch (const InvalidInput& error) {
+            throw FileError(sources[key.first].name, error.what());
+        }
         stage.advance(1);
     }
     decoded_.clear();

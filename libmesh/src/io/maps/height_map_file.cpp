@@ -50,10 +50,10 @@ HeightMap HeightBandReader::read(int rows) {
         const auto texel = hole - map.transparent.begin();
         throw FileError(
             file_.path(),
-            fmt::format("the texel ({}, {}) is transparent, which is understood only in "
-                        "maps that fit into {} MiB",
-                        texel % info.width, first + texel / info.width,
-                        file_.choice().max_memory >> 20));
+            fmt::format(
+                "the texel in column {}, row {} is transparent, which is understood only in "
+                "maps that fit into {} MiB",
+                texel % info.width, first + texel / info.width, file_.choice().max_memory >> 20));
     }
     return map;
 }
