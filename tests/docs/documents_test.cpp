@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Documents against the program. Every command in --help pages, README.md, ARCHITECTURE.md,
-// docs/*.md and conformance/*.md runs in a folder laid out like a built checkout, with its own
-// out/. Scripts must exist and be executable, but do not run, because they set up whole machines.
-// REFERENCES.md lists exactly the sources that the code cites as [Author Year].
+// docs/*.md and conformance/*.md runs in a folder that has what a fresh clone has, and nothing
+// else: a document makes its own out/. Scripts must exist and be executable, but do not run,
+// because they set up whole machines. REFERENCES.md lists exactly the sources that the code cites
+// as [Author Year].
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -39,11 +40,19 @@ bool is_shell(const std::string& language) {
     return language == "console" || language == "sh" || language == "shell" || language == "bash";
 }
 
+bool starts_with_any(const std::string& command, const std::vector<std::string>& starts) {
+    return std::any_of(starts.begin(), starts.end(),
+                       [&](const std::string& start) { return command.starts_with(start); });
+}
+
+/// Returns whether a command prepares the folder for others.
+bool is_preparation(const std::string& command) {
+    return starts_with_any(command, {"mkdir ", "cp "});
+}
+
 bool calls_relief(const std::string& command) {
-    for (const char* start : {"relief-", "build/release/bin/relief-", "scripts/", "./scripts/"}) {
-        if (command.starts_with(start)) return true;
-    }
-    return false;
+    return starts_with_any(command,
+                           {"relief-", "build/release/bin/relief-", "scripts/", "./scripts/"});
 }
 
 /// Joins a line that ends in a backslash with the lines that follow.
@@ -75,7 +84,8 @@ std::vector<ShownCommand> shown_commands(const std::string& page) {
         const bool prompted = text.starts_with("$ ");
         has_prompts = has_prompts || prompted;
         if (prompted) text = trimmed(text.substr(2));
-        if (!calls_relief(text) || !(prompted || (in_shell && !has_prompts))) continue;
+        if (!calls_relief(text) && !is_preparation(text)) continue;
+        if (!prompted && (!in_shell || has_prompts)) continue;
         const int first = number;
         commands.push_back({first, with_continuations(text, lines, number)});
     }
@@ -97,21 +107,25 @@ TEST(ShownCommands, StandBehindAPromptOrInAShellBlock) {
         "git clone somewhere\n"                 //
         "  $ scripts/demo --fast\n"             // 6
         "```\n"                                 //
+        "```sh\n"                               //
+        "mkdir -p out\n"                        // 9
+        "```\n"                                 //
         "```cpp\n"                              //
         "relief-mesh in code\n"                 //
         "```\n"                                 //
         "```console\n"                          //
-        "$ relief-view a.obj \\\n"              // 12
+        "$ relief-view a.obj \\\n"              // 15
         "      --output b.png\n"                //
-        "relief-view: error: said so\n"         // 14: output that looks like a command
+        "relief-view: error: said so\n"         // 17: output that looks like a command
         "```\n");
-    ASSERT_EQ(commands.size(), 4U);
+    ASSERT_EQ(commands.size(), 5U);
     EXPECT_EQ(commands[0].line, 2);
     EXPECT_EQ(commands[0].text, "relief-mesh info a.obj");
     EXPECT_EQ(commands[1].text, "build/release/bin/relief-bake bump");
     EXPECT_EQ(commands[2].text, "scripts/demo --fast");
-    EXPECT_EQ(commands[3].line, 12);
-    EXPECT_EQ(commands[3].text, "relief-view a.obj --output b.png");
+    EXPECT_EQ(commands[3].text, "mkdir -p out");
+    EXPECT_EQ(commands[4].line, 15);
+    EXPECT_EQ(commands[4].text, "relief-view a.obj --output b.png");
 }
 
 TEST(ShownCommands, KnowWhichScriptTheyCall) {
@@ -263,6 +277,10 @@ void expect_to_run(const Page& page, const Workplace& workplace, bool is_silent)
                 << script << " is missing or not executable";
             continue;
         }
+        if (is_preparation(command)) {
+            EXPECT_EQ(workplace.run(command).exit_code, 0);
+            continue;
+        }
         if (first_pages().at(command) != page.name && !is_needed_later(page, i)) continue;
         const ProgramResult result = run_or_copy(command, workplace);
         EXPECT_EQ(result.exit_code, 0) << result.error;
@@ -281,8 +299,17 @@ class FastWorkplace : public Workplace {
     FastWorkplace() { shrink_bricks(); }
 };
 
-TEST_P(Document, ShowsCommandsThatRun) {
-    expect_to_run(document_page(GetParam()), FastWorkplace(), false);
+/// What a fresh clone has. Tools are in PATH, as after scripts/install.
+class FreshClone : public FastWorkplace {
+  public:
+    FreshClone() {
+        fs::remove_all(*this / "build");
+        fs::remove(*this / "out");
+    }
+};
+
+TEST_P(Document, ShowsCommandsThatRunInAFreshClone) {
+    expect_to_run(document_page(GetParam()), FreshClone(), false);
 }
 
 std::string test_name(const testing::TestParamInfo<std::string>& page) {

@@ -76,6 +76,16 @@ std::vector<double> numbers_after(const std::string& output, const std::string& 
     return numbers;
 }
 
+/// Returns the first commands of README.md, which begin by making the output folder.
+std::string first_commands() {
+    const std::string readme = read_bytes(source_directory() / "README.md");
+    const std::string start = "```sh\n";
+    const std::size_t begin = readme.find(start + "mkdir ");
+    if (begin == std::string::npos) return "";
+    const std::size_t first = begin + start.size();
+    return readme.substr(first, readme.find("```", first) - first);
+}
+
 /// The installed tree, moved after the installation, and the examples built against it.
 class Installed : public testing::Test {
   protected:
@@ -199,6 +209,17 @@ TEST_F(Installed, ToolsAndProgramsFindTheModuleInTheMovedTree) {
                 HasSubstr("green: up\n"));
 }
 
+TEST_F(Installed, SamplesRunTheFirstCommandsOfTheReadme) {
+    const TemporaryDirectory empty;
+    const std::string commands = first_commands();
+    ASSERT_THAT(commands, HasSubstr("relief-view"));
+    expect_success("set -e\nPATH='" + tree().string() + "/bin':\"$PATH\"\ncp -r '" +
+                       tree().string() + "/share/relief/data' .\n" + commands,
+                   empty.path());
+    for (const char* file : {"out/bricks-normal.png", "out/vase.glb", "out/vase.png"})
+        EXPECT_TRUE(std::filesystem::exists(empty / file)) << file;
+}
+
 TEST_F(Installed, PkgConfigNamesTheSameProgram) {
     const std::string example = (source_directory() / "examples/normals_and_tangents.cpp").string();
     expect_success("PKG_CONFIG_PATH='" + tree().string() +
@@ -242,6 +263,13 @@ TEST(Packages, HaveTheirFilesOnly) {
          {"include/relief/version.h", "include/relief/mesh/normals.h", "lib/librelief_mesh.a",
           "lib/cmake/relief/relief-config.cmake", "lib/pkgconfig/relief-mesh.pc"})
         EXPECT_TRUE(files["development"].contains(file)) << file;
+    const std::string readme = read_bytes(source_directory() / "README.md");
+    static const std::regex sample(R"(\bdata/[a-z-]+(\.[a-z]+)?(?=[ \n]))");
+    for (std::sregex_iterator at(readme.begin(), readme.end(), sample), end; at != end; ++at) {
+        const std::string name = "share/relief/" + at->str();
+        const auto found = files["tools"].lower_bound(name);
+        EXPECT_TRUE(found != files["tools"].end() && found->starts_with(name)) << name;
+    }
     for (const std::string& file : files["tools"])
         EXPECT_FALSE(file.ends_with(".a") || file.ends_with(".h") || file.ends_with(".cpp"))
             << file;

@@ -21,6 +21,10 @@ namespace {
 constexpr std::size_t page_columns = 100;
 constexpr std::size_t text_column = 30;
 
+/// What the examples of a page need.
+constexpr const char* examples_note =
+    "The samples data/ are in share/relief/data of the installation. Make the folder out/ first.";
+
 /// CLI11's name of the group of options without a group.
 constexpr const char* general_group = "Options";
 
@@ -135,7 +139,9 @@ class HelpPages : public CLI::FormatterBase {
         std::vector<std::string> lines = found->second;
         constexpr std::size_t short_list = 4;
         if (is_short(app) && lines.size() > short_list) lines.resize(short_list);
-        return fmt::format("\nExamples:\n  {}\n", fmt::join(lines, "\n  "));
+        std::string text = fmt::format("\nExamples:\n  {}\n", fmt::join(lines, "\n  "));
+        if (!is_short(app)) text += fmt::format("\n{}\n", examples_note);
+        return text;
     }
 
     /// "One of a, b, c. " if the value name does not list the words.
@@ -373,7 +379,7 @@ std::string manual_page(const Json& tool, const Json& command, const std::string
         page += ".SH EXAMPLES\n.nf\n";
         for (const Json& example : command.at("examples"))
             page += roff(example.get<std::string>()) + "\n";
-        page += ".fi\n";
+        page += fmt::format(".fi\n.PP\n{}\n", roff(examples_note));
     }
     if (&tool != &command) page += fmt::format(".SH SEE ALSO\n\\fB{}\\fR(1)\n", roff(tool_name));
     return page;

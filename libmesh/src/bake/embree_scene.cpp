@@ -3,7 +3,6 @@
 // of clusters, and for the hits in each cluster whose box a ray hits. Tests:
 // tests/mesh/rays/embree_scene_test.cpp.
 #include "bake/embree_scene.h"
-#include "progress_stage.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -19,6 +18,7 @@
 #include <tuple>
 #include <utility>
 
+#include "progress_stage.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
