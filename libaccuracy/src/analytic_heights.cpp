@@ -37,8 +37,8 @@ HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2&
     HeightSample sum;
     for (const HeightWave& wave : waves) {
         const double angle = glm::dot(wave.frequency, place) + wave.phase;
-        sum.height += wave.amplitude * std::sin(angle);
-        sum.slope += wave.amplitude * std::cos(angle) * wave.frequency;
+        sum.height += wave.amplitude * portable::sin(angle);
+        sum.slope += wave.amplitude * portable::cos(angle) * wave.frequency;
     }
     return sum;
 }
@@ -79,9 +79,11 @@ std::vector<HeightWave> tiling_waves(int width, int height, int count, double sh
     std::vector<HeightWave> waves;
     while (waves.size() < static_cast<std::size_t>(count)) {
         const double direction = random.between(0.0, 2.0 * std::numbers::pi);
-        const double length = shortest * std::pow(longest / shortest, random.between(0.0, 1.0));
+        const double length =
+            shortest * portable::pow(longest / shortest, random.between(0.0, 1.0));
         const glm::dvec2 times = glm::round(
-            glm::dvec2(std::cos(direction) * width, std::sin(direction) * height) / length);
+            glm::dvec2(portable::cos(direction) * width, portable::sin(direction) * height) /
+            length);
         const glm::dvec2 frequency = 2.0 * std::numbers::pi * times / glm::dvec2(width, height);
         const double steepness = glm::length(frequency);
         if (steepness == 0.0 || 2.0 * std::numbers::pi / steepness < shortest) continue;
@@ -142,10 +144,10 @@ std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {
     for (int i = 0; i < waves_in_all; ++i) {
         const double direction = random.between(0.0, 2.0 * std::numbers::pi);
         const double length =
-            recipe.shortest * std::pow(1.7 * size / recipe.shortest, random.between(0.0, 1.0));
+            recipe.shortest * portable::pow(1.7 * size / recipe.shortest, random.between(0.0, 1.0));
         const double steepness = 2.0 * std::numbers::pi / length;
         const glm::dvec2 frequency =
-            steepness * glm::dvec2(std::cos(direction), std::sin(direction));
+            steepness * glm::dvec2(portable::cos(direction), portable::sin(direction));
         waves.push_back({recipe.rms_slope * std::sqrt(2.0 / waves_in_all) / steepness, frequency,
                          random.between(0.0, 2.0 * std::numbers::pi)});
     }
@@ -218,9 +220,10 @@ FieldFunction mixed(int width, int height, const FieldRecipe& recipe) {
                                                       recipe.rms_slope, recipe.seed + 1);
     return [=](const glm::dvec2& place) -> HeightSample {
         const double angle = 2.0 * std::numbers::pi * place.x / width;
-        const double s = 0.5 - 0.5 * std::cos(angle);
+        const double s = 0.5 - 0.5 * portable::cos(angle);
         const double mask = s * s;
-        const double steepness = 2.0 * s * 0.5 * std::sin(angle) * 2.0 * std::numbers::pi / width;
+        const double steepness =
+            2.0 * s * 0.5 * portable::sin(angle) * 2.0 * std::numbers::pi / width;
         HeightSample result = evaluate_waves(wide, place);
         const HeightSample detail = evaluate_waves(fine, place);
         result.height += mask * detail.height;

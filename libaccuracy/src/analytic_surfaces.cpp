@@ -41,13 +41,14 @@ PlacedPoint on_ellipsoid(const glm::dvec3& axes, double s, double t) {
     constexpr double pole_to_pole = std::numbers::pi - 2.0 * from_pole;
     const double polar = from_pole + t * pole_to_pole;
     const double around = 2.0 * std::numbers::pi * s;
-    const glm::dvec3 direction(std::sin(polar) * std::cos(around),
-                               std::sin(polar) * std::sin(around), std::cos(polar));
-    const glm::dvec3 east(-std::sin(around), std::cos(around), 0.0);
-    const glm::dvec3 down(std::cos(polar) * std::cos(around), std::cos(polar) * std::sin(around),
-                          -std::sin(polar));
+    const glm::dvec3 direction(portable::sin(polar) * portable::cos(around),
+                               portable::sin(polar) * portable::sin(around), portable::cos(polar));
+    const glm::dvec3 east(-portable::sin(around), portable::cos(around), 0.0);
+    const glm::dvec3 down(portable::cos(polar) * portable::cos(around),
+                          portable::cos(polar) * portable::sin(around), -portable::sin(polar));
     return {axes * direction, glm::normalize(direction / axes),
-            axes * east * (2.0 * std::numbers::pi * std::sin(polar)), axes * down * pole_to_pole};
+            axes * east * (2.0 * std::numbers::pi * portable::sin(polar)),
+            axes * down * pole_to_pole};
 }
 
 constexpr double torus_minor = 0.4;
@@ -55,13 +56,14 @@ constexpr double torus_minor = 0.4;
 PlacedPoint on_torus(double s, double t) {
     const double around = 2.0 * std::numbers::pi * s;
     const double across = 2.0 * std::numbers::pi * t;
-    const glm::dvec3 out(std::cos(around), std::sin(around), 0.0);
-    const glm::dvec3 normal = std::cos(across) * out + std::sin(across) * glm::dvec3(0.0, 0.0, 1.0);
-    const glm::dvec3 on(-std::sin(around), std::cos(around), 0.0);
+    const glm::dvec3 out(portable::cos(around), portable::sin(around), 0.0);
+    const glm::dvec3 normal =
+        portable::cos(across) * out + portable::sin(across) * glm::dvec3(0.0, 0.0, 1.0);
+    const glm::dvec3 on(-portable::sin(around), portable::cos(around), 0.0);
     return {out + torus_minor * normal, normal,
-            on * 2.0 * std::numbers::pi * (1.0 + torus_minor * std::cos(across)),
+            on * 2.0 * std::numbers::pi * (1.0 + torus_minor * portable::cos(across)),
             2.0 * std::numbers::pi * torus_minor *
-                (std::cos(across) * glm::dvec3(0.0, 0.0, 1.0) - std::sin(across) * out)};
+                (portable::cos(across) * glm::dvec3(0.0, 0.0, 1.0) - portable::sin(across) * out)};
 }
 
 /// The surface z = sum of c[i][j] x^i y^j.
@@ -72,12 +74,18 @@ struct Cubic {
         double z = 0.0;
         double along_x = 0.0;
         double along_y = 0.0;
-        for (int i = 0; i < 4; ++i) {
-            for (int j = 0; i + j < 4; ++j) {
-                const double factor = c[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-                z += factor * std::pow(x, i) * std::pow(y, j);
-                if (i > 0) along_x += factor * i * std::pow(x, i - 1) * std::pow(y, j);
-                if (j > 0) along_y += factor * j * std::pow(x, i) * std::pow(y, j - 1);
+        const std::array powers_of_x = {1.0, x, x * x, x * x * x};
+        const std::array powers_of_y = {1.0, y, y * y, y * y * y};
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; i + j < 4; ++j) {
+                const double factor = c[i][j];
+                z += factor * powers_of_x[i] * powers_of_y[j];
+                if (i > 0)
+                    along_x +=
+                        factor * static_cast<double>(i) * powers_of_x[i - 1] * powers_of_y[j];
+                if (j > 0)
+                    along_y +=
+                        factor * static_cast<double>(j) * powers_of_x[i] * powers_of_y[j - 1];
             }
         }
         return {{x, y, z},
@@ -421,7 +429,8 @@ Mesh cubic_fan(int valence, std::uint32_t seed) {
     for (std::uint32_t i = 0; i < angles.size(); ++i) {
         const double distance = random.between(0.05, 0.2);
         mesh.positions.emplace_back(
-            cubic.at(distance * std::cos(angles[i]), distance * std::sin(angles[i])).position);
+            cubic.at(distance * portable::cos(angles[i]), distance * portable::sin(angles[i]))
+                .position);
         mesh.triangles.emplace_back(0, i + 1, (i + 1) % angles.size() + 1);
     }
     return mesh;

@@ -83,7 +83,8 @@ constexpr double equal_cost_factor = 1.1;
 
 const Candidate* knee_of(const std::vector<Candidate>& all, double floor) {
     const auto product = [&](const Candidate& one) {
-        return std::pow(std::hypot(one.error, floor), 3.0) * one.cost;
+        const double error = std::hypot(one.error, floor);
+        return error * error * error * one.cost;
     };
     // If nothing was timed, all products are 0 and the error decides.
     const auto is_better = [&](const Candidate& a, const Candidate& b) {

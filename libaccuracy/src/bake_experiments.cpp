@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "experiment_driver.h"
+#include "portable_math.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
@@ -31,30 +32,32 @@ struct SphereAngles {
 };
 
 SphereAngles angles_of(const glm::dvec3& p) {
-    return {std::atan2(p.x, p.z), std::atan2(std::hypot(p.x, p.z), p.y)};
+    return {portable::atan2(p.x, p.z), portable::atan2(std::sqrt(p.x * p.x + p.z * p.z), p.y)};
 }
 
 double radius_at(const SphereAngles& a) {
-    return 1.0 +
-           bump_height * std::sin(waves_around * a.longitude) * std::sin(waves_around * a.polar);
+    return 1.0 + bump_height * portable::sin(waves_around * a.longitude) *
+                     portable::sin(waves_around * a.polar);
 }
 
 glm::dvec3 direction_at(const SphereAngles& a) {
-    return {std::sin(a.polar) * std::sin(a.longitude), std::cos(a.polar),
-            std::sin(a.polar) * std::cos(a.longitude)};
+    return {portable::sin(a.polar) * portable::sin(a.longitude), portable::cos(a.polar),
+            portable::sin(a.polar) * portable::cos(a.longitude)};
 }
 
 /// Normalizes the gradient of |p| - radius: outward - d radius / d polar * p_polar
 /// - d radius / d longitude / sin polar * p_longitude, divided by the radius.
 glm::dvec3 normal_at(const SphereAngles& a) {
-    const double sine = std::max(std::sin(a.polar), 1e-9);
-    const glm::dvec3 polar_wards(std::cos(a.polar) * std::sin(a.longitude), -std::sin(a.polar),
-                                 std::cos(a.polar) * std::cos(a.longitude));
-    const glm::dvec3 east(std::cos(a.longitude), 0.0, -std::sin(a.longitude));
-    const double by_polar = bump_height * waves_around * std::sin(waves_around * a.longitude) *
-                            std::cos(waves_around * a.polar);
-    const double by_longitude = bump_height * waves_around * std::cos(waves_around * a.longitude) *
-                                std::sin(waves_around * a.polar);
+    const double sine = std::max(portable::sin(a.polar), 1e-9);
+    const glm::dvec3 polar_wards(portable::cos(a.polar) * portable::sin(a.longitude),
+                                 -portable::sin(a.polar),
+                                 portable::cos(a.polar) * portable::cos(a.longitude));
+    const glm::dvec3 east(portable::cos(a.longitude), 0.0, -portable::sin(a.longitude));
+    const double by_polar = bump_height * waves_around * portable::sin(waves_around * a.longitude) *
+                            portable::cos(waves_around * a.polar);
+    const double by_longitude = bump_height * waves_around *
+                                portable::cos(waves_around * a.longitude) *
+                                portable::sin(waves_around * a.polar);
     const double radius = radius_at(a);
     return glm::normalize(direction_at(a) - by_polar / radius * polar_wards -
                           by_longitude / (radius * sine) * east);

@@ -12,6 +12,8 @@
 #include <limits>
 #include <span>
 
+#include "portable_math.h"
+
 namespace relief {
 namespace {
 
@@ -76,8 +78,8 @@ std::optional<double> fitted_order(const std::vector<CurvePoint>& points) {
     double sum_xx = 0.0;
     double sum_xy = 0.0;
     for (const CurvePoint& point : points) {
-        const double x = std::log(point.x);
-        const double y = std::log(point.error);
+        const double x = portable::log(point.x);
+        const double y = portable::log(point.error);
         if (!std::isfinite(x) || !std::isfinite(y)) continue;
         count += 1.0;
         sum_x += x;

@@ -12,6 +12,7 @@
 
 #include "environment/environment_images.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 
@@ -75,9 +76,9 @@ glm::dvec3 waves_and_lights(const glm::dvec3& direction_world) {
                                       glm::normalize(glm::dvec3(0.1, -0.6, -0.5))};
     glm::dvec3 radiance(0.3);
     for (const Wave& wave : waves)
-        radiance += wave.strength * std::sin(glm::dot(wave.frequency, direction_world));
+        radiance += wave.strength * portable::sin(glm::dot(wave.frequency, direction_world));
     for (const glm::dvec3& light : lights)
-        radiance += 0.4 * std::exp(900.0 * (glm::dot(light, direction_world) - 1.0));
+        radiance += 0.4 * portable::exp(900.0 * (glm::dot(light, direction_world) - 1.0));
     return glm::clamp(radiance, 0.0, 1.0);
 }
 
@@ -110,7 +111,7 @@ Scene mirror_ball(Environment environment, double roughness) {
     scene.environment = std::move(environment);
     Camera camera;
     camera.world_from_view[3] = glm::vec4(0.0F, 0.0F, static_cast<float>(eye_distance), 1.0F);
-    camera.vertical_fov = static_cast<float>(2.0 * std::atan(half_side));
+    camera.vertical_fov = static_cast<float>(2.0 * portable::atan2(half_side, 1.0));
     scene.camera = camera;
     return scene;
 }

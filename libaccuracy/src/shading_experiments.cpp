@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "experiment_parts.h"
+#include "portable_math.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "rendered_methods.h"
@@ -116,7 +117,7 @@ constexpr std::array highlight_choices = {
 constexpr const char* metal_name = "GGX";
 
 double exponent_of(double roughness) {
-    return 2.0 / std::pow(roughness, 4.0) - 2.0;
+    return 2.0 / (roughness * roughness * roughness * roughness) - 2.0;
 }
 
 /// Lights before and behind the torus, so that some highlights are near grazing angles; no ambient
@@ -228,7 +229,7 @@ Image bumpy_normals() {
     Image normals = make_image(wave_texels, wave_texels, 3, 32, ColorSpace::data);
     const std::span<float> to = normals.as<float>();
     const auto slope = [](double u, double v, double fast, double slow) {
-        return 0.22 * std::cos(2.0 * std::numbers::pi * (fast * u + slow * v));
+        return 0.22 * portable::cos(2.0 * std::numbers::pi * (fast * u + slow * v));
     };
     for (int y = 0; y < wave_texels; ++y) {
         for (int x = 0; x < wave_texels; ++x) {
@@ -259,7 +260,7 @@ Scene plane(const Image& map, bool is_antialiased, double away) {
     // Repeat the map instead of moving the camera, so that the plane always fills the image.
     for (glm::vec2& texcoord : scene.meshes.front().edit().texcoords)
         texcoord *= static_cast<float>(away);
-    scene.camera->vertical_fov = 2.0F * std::atan(0.25F);
+    scene.camera->vertical_fov = static_cast<float>(2.0 * portable::atan2(0.25, 1.0));
     return scene;
 }
 

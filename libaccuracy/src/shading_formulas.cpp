@@ -11,6 +11,7 @@
 #include <memory>
 #include <numbers>
 
+#include "portable_math.h"
 #include "reference/reference_parts.h"
 
 namespace relief {
@@ -79,9 +80,10 @@ struct Fit {
     explicit Fit(std::complex<double> index)
         : f0(static_cast<float>(reference::fresnel(index, 1.0))) {
         constexpr double at = 1.0 / 7.0;
-        const double there = f0 + (1.0 - f0) * std::pow(1.0 - at, 5.0);
-        excess = static_cast<float>((there - reference::fresnel(index, at)) /
-                                    (at * std::pow(1.0 - at, 6.0)));
+        constexpr double away = 1.0 - at;
+        constexpr double fifth = away * away * away * away * away;
+        const double there = f0 + (1.0 - f0) * fifth;
+        excess = static_cast<float>((there - reference::fresnel(index, at)) / (at * fifth * away));
     }
     float f0;
     float excess = 0.0F;
@@ -141,8 +143,9 @@ std::vector<FormulaMethod> fresnel_methods(std::complex<double> index,
         method_of("Schlick", "Schlick's", cosines, schlick),
         method_of("Schlick, power of two", "Schlick's", cosines,
                   [fit](float cosine) {
-                      return fit.f0 +
-                             (1.0F - fit.f0) * std::exp2((-5.55473F * cosine - 6.98316F) * cosine);
+                      const float power = (-5.55473F * cosine - 6.98316F) * cosine;
+                      const double two_to_power = portable::exp(std::numbers::ln2 * power);
+                      return fit.f0 + (1.0F - fit.f0) * static_cast<float>(two_to_power);
                   }),
         method_of("Schlick, right at 82 degrees", "Schlick's and a third number", cosines,
                   [schlick, fit](float cosine) {
@@ -172,7 +175,7 @@ std::vector<float> cosines_of_angles(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         const double angle =
             0.5 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count - 1);
-        cosines.push_back(static_cast<float>(std::max(std::cos(angle), 0.0)));
+        cosines.push_back(static_cast<float>(std::max(portable::cos(angle), 0.0)));
     }
     cosines.back() = 0.0F;
     return cosines;
@@ -340,11 +343,11 @@ double exact_radiance(const glm::vec3& interpolated) {
 
 NormalSamples::NormalSamples(double degrees, int side) {
     // The corners are on a circle around +z, 120 degrees apart; their distance is sqrt(3) sine.
-    const double sine = 2.0 * std::sin(glm::radians(degrees) * 0.5) / std::numbers::sqrt3;
+    const double sine = 2.0 * portable::sin(glm::radians(degrees) * 0.5) / std::numbers::sqrt3;
     std::array<glm::dvec3, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
         const double turn = 2.0 * std::numbers::pi * static_cast<double>(i) / 3.0;
-        corners.at(i) = {sine * std::cos(turn), sine * std::sin(turn),
+        corners.at(i) = {sine * portable::cos(turn), sine * portable::sin(turn),
                          std::sqrt(1.0 - sine * sine)};
     }
     for (int y = 0; y < side; ++y) {

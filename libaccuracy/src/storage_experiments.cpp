@@ -17,6 +17,7 @@
 #include "experiment_parts.h"
 #include "octahedral_code.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/block_compression.h"
 #include "relief/mesh/normal_map.h"
@@ -485,7 +486,7 @@ std::vector<glm::dvec3> even_directions(std::size_t count) {
         const double turn = golden_angle * static_cast<double>(i);
         const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
         const double radius = std::sqrt(1.0 - z * z);
-        directions.emplace_back(radius * std::cos(turn), radius * std::sin(turn), z);
+        directions.emplace_back(radius * portable::cos(turn), radius * portable::sin(turn), z);
     }
     return directions;
 }
@@ -496,8 +497,9 @@ SampleFrames even_frames(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         const double turn = golden_angle * static_cast<double>(i);
         const double spin = std::numbers::sqrt2 * turn;
-        const glm::dvec3 along(-std::sin(turn), std::cos(turn), 0.0);
-        tangents.push_back(std::cos(spin) * along + std::sin(spin) * glm::cross(normals[i], along));
+        const glm::dvec3 along(-portable::sin(turn), portable::cos(turn), 0.0);
+        tangents.push_back(portable::cos(spin) * along +
+                           portable::sin(spin) * glm::cross(normals[i], along));
     }
     return sample_frames(normals, tangents);
 }

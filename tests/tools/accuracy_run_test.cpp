@@ -55,6 +55,17 @@ TEST(AccuracyRun, ErrorsAloneAreTheSameEachTimeAndForAnyThreads) {
     EXPECT_EQ(workplace.outputs(), "") << "nothing is written unless asked for";
 }
 
+TEST(AccuracyRun, ErrorsAreTheSameWithoutFusedMultiplication) {
+    const Workplace workplace;
+    const std::string line = "relief-accuracy run storage --quick --no-times --json";
+    const ProgramResult first = workplace.run(line);
+    // glibc then chooses functions for processors without it.
+    const ProgramResult second =
+        workplace.run("GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4 " + line);
+    EXPECT_EQ(second.exit_code, 0) << second.error;
+    EXPECT_EQ(second.out, first.out);
+}
+
 TEST(AccuracyRun, InterruptedWhileItMeasuresLeavesNoHalfReport) {
     const Workplace workplace;
     // The rounds take longer than the time to the signal, and the folder is created first.

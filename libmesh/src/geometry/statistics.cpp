@@ -14,6 +14,7 @@
 #include <numbers>
 
 #include "geometry/error_accumulator.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -47,7 +48,7 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
     const double cosine = glm::dot(a, b);
     if (!std::isfinite(sine) || !std::isfinite(cosine) || (sine == 0.0 && cosine == 0.0))
         return std::numeric_limits<double>::quiet_NaN();
-    return std::atan2(sine, cosine) * 180.0 / std::numbers::pi;
+    return portable::atan2(sine, cosine) * 180.0 / std::numbers::pi;
 }
 
 std::size_t ErrorStats::bin_of(double degrees) {
