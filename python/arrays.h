@@ -7,9 +7,11 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
@@ -126,6 +128,17 @@ py::array_t<typename Vector::value_type> array_of(std::vector<Vector>&& values) 
     return array_of<typename Vector::value_type>(std::move(values), {size, Vector::length()});
 }
 
+// File names.
+
+/// A file name from a str, bytes or an object with __fspath__.
+struct FileName : std::filesystem::path {
+    using std::filesystem::path::path;
+    FileName& operator=(std::filesystem::path name) {
+        std::filesystem::path::operator=(std::move(name));
+        return *this;
+    }
+};
+
 // Images.
 
 /// Copies an array of uint8, uint16 or float32 and shape (height, width) or (height, width,
@@ -174,3 +187,23 @@ void append(const Report& report, const FindingList& list);
 py::dict to_dict(const ErrorStats& errors, const char* element);
 
 }  // namespace relief::python
+
+/// Converts file names as pybind11 does for std::filesystem::path, but an exception that __fspath__
+/// raises, such as KeyboardInterrupt, is passed on instead of becoming a TypeError.
+template <>
+struct pybind11::detail::type_caster<relief::python::FileName> {
+    PYBIND11_TYPE_CASTER(relief::python::FileName, const_name("os.PathLike"));
+
+    bool load(handle source, bool convert) {
+        const object text = reinterpret_steal<object>(PyOS_FSPath(source.ptr()));
+        if (!text) {
+            if (PyErr_ExceptionMatches(PyExc_TypeError) == 0) throw error_already_set();
+            PyErr_Clear();
+            return false;
+        }
+        type_caster<std::filesystem::path> path;
+        if (!path.load(text, convert)) return false;
+        value = cast_op<std::filesystem::path&>(path);
+        return true;
+    }
+};

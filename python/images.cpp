@@ -8,8 +8,6 @@
 #include <map>
 #include <memory>
 
-#include <pybind11/stl/filesystem.h>
-
 #include "arrays.h"
 #include "mesh_type.h"
 #include "relief/mesh/block_compression.h"
@@ -81,7 +79,7 @@ NormalMapFormat format_of(int bits, const std::string& green, const std::string&
             .dither = value_of<Dither>(dither, "dither")};
 }
 
-py::tuple py_read_image(const std::filesystem::path& file) {
+py::tuple py_read_image(const FileName& file) {
     ImageInfo info;
     Image image = without_gil([&] {
         info = read_image_info(file);
@@ -90,9 +88,8 @@ py::tuple py_read_image(const std::filesystem::path& file) {
     return py::make_tuple(array_of(std::move(image)), info.metadata);
 }
 
-void py_write_image(const std::filesystem::path& file, const py::object& image,
-                    const std::string& color_space, const Metadata& metadata, bool half,
-                    const FindingList& report) {
+void py_write_image(const FileName& file, const py::object& image, const std::string& color_space,
+                    const Metadata& metadata, bool half, const FindingList& report) {
     const Image copy =
         image_of(image, "image", value_of<ColorSpace>(color_space, "color_space", color_spaces));
     Report findings;
@@ -104,10 +101,9 @@ void py_write_image(const std::filesystem::path& file, const py::object& image,
     append(findings, report);
 }
 
-void py_write_texture(const std::filesystem::path& file, const py::list& levels,
-                      const std::string& format, const std::string& quality, bool srgb,
-                      const Metadata& metadata, std::optional<int> zstd,
-                      const FindingList& report) {
+void py_write_texture(const FileName& file, const py::list& levels, const std::string& format,
+                      const std::string& quality, bool srgb, const Metadata& metadata,
+                      std::optional<int> zstd, const FindingList& report) {
     GpuTexture texture;
     texture.format = value_of<TextureFormat>(format, "format");
     texture.is_srgb = srgb;

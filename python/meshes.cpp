@@ -10,8 +10,6 @@
 #include <numbers>
 #include <variant>
 
-#include <pybind11/stl/filesystem.h>
-
 #include "arrays.h"
 #include "mesh_type.h"
 #include "relief/mesh/diagnose.h"
@@ -231,8 +229,7 @@ std::tuple<double, double, double> tuple_of(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
-MeshObject py_read_mesh(const std::filesystem::path& file, const std::string& space,
-                        const FindingList& report) {
+MeshObject py_read_mesh(const FileName& file, const std::string& space, const FindingList& report) {
     constexpr auto spaces = std::to_array<EnumName<ModelSpace>>(
         {{"object", ModelSpace::object}, {"world", ModelSpace::world}});
     const ModelSpace chosen = value_of<ModelSpace>(space, "space", spaces);
@@ -251,8 +248,7 @@ MeshObject py_read_mesh(const std::filesystem::path& file, const std::string& sp
     return mesh;
 }
 
-void py_write_mesh(const std::filesystem::path& file, const MeshObject& mesh,
-                   const FindingList& report) {
+void py_write_mesh(const FileName& file, const MeshObject& mesh, const FindingList& report) {
     Report findings;
     without_gil([&] {
         MeshFile file_mesh{.mesh = mesh, .materials = {}, .origin = mesh.origin};

@@ -6,8 +6,6 @@
 #include <numbers>
 #include <tuple>
 
-#include <pybind11/stl/filesystem.h>
-
 #include "arrays.h"
 #include "mesh_type.h"
 #include "relief/shade/effects.h"
@@ -37,7 +35,7 @@ struct SceneObject {
 };
 
 /// Loads a scene with the background that relief-view draws.
-SceneObject load(const std::filesystem::path& file, const FindingList& report) {
+SceneObject load(const FileName& file, const FindingList& report) {
     Report findings;
     SceneObject loaded = without_gil([&] {
         SceneGraph graph = load_scene_graph(file, SceneOptions{}, findings);

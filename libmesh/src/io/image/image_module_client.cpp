@@ -23,6 +23,7 @@
 #include "files.h"
 #include "io/image/decoder_process.h"
 #include "large_memory.h"
+#include "progress_stage.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -394,6 +395,7 @@ class ModuleSink final : public RowSink {
     }
 
     void write_to_module(const std::byte* rows, std::size_t count) {
+        check_cancelled();
         std::string reason;
         const auto first = static_cast<std::int64_t>(next_);
         const auto end = first + static_cast<std::int64_t>(count);

@@ -17,6 +17,7 @@
 #include "io/image/texture_container.h"
 #include "large_memory.h"
 #include "memory_budget.h"
+#include "progress_stage.h"
 #include "relief/mesh/limits.h"
 #include "relief/mesh/report.h"
 #include "relief/version.h"
@@ -276,11 +277,24 @@ std::vector<std::byte> zstd_bytes(Bytes level, int quality) {
     };
     const std::unique_ptr<ZSTD_CCtx, Free> context(ZSTD_createCCtx());
     if (!context) throw std::bad_alloc();
+    const auto check = [](std::size_t result) {
+        if (ZSTD_isError(result) != 0) throw std::bad_alloc();
+    };
+    check(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, quality));
+    check(ZSTD_CCtx_setPledgedSrcSize(context.get(), level.size()));
     std::vector<std::byte> bytes(ZSTD_compressBound(level.size()));
-    const std::size_t size = ZSTD_compressCCtx(context.get(), bytes.data(), bytes.size(),
-                                               level.data(), level.size(), quality);
-    if (ZSTD_isError(size) != 0) throw std::bad_alloc();
-    bytes.resize(size);
+    ZSTD_outBuffer out{bytes.data(), bytes.size(), 0};
+    // Parts let a cancellation end the slow levels.
+    constexpr std::size_t part = 1 << 17;
+    for (std::size_t begin = 0; begin < level.size(); begin += part) {
+        check_cancelled();
+        const std::size_t end = std::min(begin + part, level.size());
+        ZSTD_inBuffer in{level.data() + begin, end - begin, 0};
+        const bool is_last = end == level.size();
+        check(
+            ZSTD_compressStream2(context.get(), &out, &in, is_last ? ZSTD_e_end : ZSTD_e_continue));
+    }
+    bytes.resize(out.pos);
     return bytes;
 }
 
