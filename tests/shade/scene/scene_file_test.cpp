@@ -497,7 +497,10 @@ TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
     EXPECT_EQ(material.normal_map->scale, 0.5F);
     EXPECT_EQ(material.normal_map->green, Green::up);
     EXPECT_EQ(report.count("texture transform of its own"), 1U) << "emission, the third source";
-    EXPECT_EQ(report.count("missing image"), 1U);
+    EXPECT_EQ(report.count("missing image 'missing.png', emissiveTexture, normalTexture, "
+                           "occlusionTexture, baseColorTexture, metallicRoughnessTexture of "
+                           "material 'glass'"),
+              1U);
     EXPECT_EQ(report.findings().size(), 2U);
 }
 

@@ -163,6 +163,51 @@ bool is_other_file(const Json& buffer) {
     return uri != nullptr && !is_data_uri(uri->get_ref<const std::string&>());
 }
 
+/// Adds the keys of the textures below `json` that show an image: "baseColorTexture", and those of
+/// material extensions.
+/// \param shows  for each texture, whether it shows the image
+void add_texture_keys(const Json& json, const std::vector<bool>& shows,
+                      std::vector<std::string>& keys) {
+    if (!json.is_object()) return;
+    for (const auto& [key, value] : json.items()) {
+        const bool is_texture = value.is_object() && key.ends_with("exture");
+        const Json* const index = is_texture ? find(value, "index") : nullptr;
+        if (index != nullptr && index->is_number_unsigned()) {
+            const auto texture = index->get<std::size_t>();
+            if (texture < shows.size() && shows[texture]) keys.push_back(key);
+        }
+        add_texture_keys(value, shows, keys);
+    }
+}
+
+/// Returns the uses of an image: ", baseColorTexture of material 'wall'"; "" if there is none.
+std::string image_uses(const Json& root, std::size_t image) {
+    const auto names_image = [&](const Json& object) {
+        const Json* const source = object.is_object() ? find(object, "source") : nullptr;
+        return source != nullptr && *source == image;
+    };
+    const auto shows_image = [&](const Json& texture) {
+        const Json* const extensions = find(texture, "extensions");
+        return names_image(texture) ||
+               (extensions != nullptr &&
+                std::any_of(extensions->begin(), extensions->end(), names_image));
+    };
+    std::vector<bool> shows;
+    for (const Json& texture : array_in(root, "textures"))
+        shows.push_back(shows_image(texture));
+    std::string uses;
+    const Json& materials = array_in(root, "materials");
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        std::vector<std::string> keys;
+        add_texture_keys(materials[i], shows, keys);
+        const std::string name = text_in(materials[i], "name");
+        if (keys.empty()) continue;
+        uses += fmt::format(", {} of material {}", fmt::join(keys, ", "),
+                            name.empty() ? fmt::format("{}", i) : "'" + name + "'");
+    }
+    return uses;
+}
+
 /// Reports images whose file is missing or outside the folder. Images are not decoded.
 void check_images(const GltfContents& contents, Report& report) {
     const Json& images = array_in(contents.root, "images");
@@ -182,7 +227,8 @@ void check_images(const GltfContents& contents, Report& report) {
         if (!path && !uri.empty()) {
             report.add("image outside the document's folder", "image", i, "kept by name, not read");
         } else if (!path || !std::filesystem::is_regular_file(staged_file(*path), ignored)) {
-            report.add("missing image", "image", i, "kept by name");
+            report.add(fmt::format("missing image '{}'{}", uri, image_uses(contents.root, i)),
+                       "image", i, "kept by name");
         }
     }
 }

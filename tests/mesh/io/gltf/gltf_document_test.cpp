@@ -570,6 +570,26 @@ TEST_F(GltfDocumentTest, QuantisedModelsLieWhereTheFloatOnesDo) {
     EXPECT_LT(glm::length(a.max - b.max), 1e-3F);
 }
 
+TEST_F(GltfDocumentTest, MissingImagesAreNamedWithTheirMaterialsAndTextures) {
+    json root = triangle_json();
+    root["images"] = {{{"uri", "gone.png"}}, {{"uri", "lost.png"}}};
+    root["textures"] = {{{"source", 0}},
+                        {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}},
+                        {{"source", 1}}};
+    root["materials"] = {
+        {{"name", "wall"},
+         {"pbrMetallicRoughness",
+          {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 1}}}}}},
+        {{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatTexture", {{"index", 0}}}}}}}}};
+    write_gltf_file(folder_ / "a.glb", root, triangle_bytes());
+    (void)read(folder_ / "a.glb");
+    EXPECT_EQ(report_.count("missing image 'gone.png', baseColorTexture, "
+                            "metallicRoughnessTexture of material 'wall', clearcoatTexture of "
+                            "material 1"),
+              1U);
+    EXPECT_EQ(report_.count("missing image 'lost.png'"), 1U);
+}
+
 TEST_F(GltfDocumentTest, ImagesInFilesAreCopiedAlongOrPutInside) {
     json root = triangle_json();
     root["images"] = {
@@ -580,7 +600,7 @@ TEST_F(GltfDocumentTest, ImagesInFilesAreCopiedAlongOrPutInside) {
     std::ofstream(folder_ / "in/sub/my image.png", std::ios::binary) << png;
     write_gltf_file(folder_ / "in/a.glb", root, triangle_bytes());
     const GltfDocument document = read(folder_ / "in/a.glb");
-    EXPECT_EQ(report_.count("missing image"), 1U);
+    EXPECT_EQ(report_.count("missing image 'gone.png'"), 1U);
     EXPECT_EQ(report_.count("image outside the document's folder"), 1U);
     // In the original folder, all names stay valid. From another one, "../out.png" would not.
     document.write(folder_ / "in/b.gltf");
