@@ -61,6 +61,41 @@ TEST(ParseEffects, ReadsABaseAndNames) {
               "--effects: '+' does not force an effect");
 }
 
+TEST_F(EffectOptions, SharedReasonsAreExplainedOnce) {
+    std::string materials;
+    std::string mesh = "mtllib many.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    constexpr int count = 6;
+    for (int i = 0; i < count; ++i) {
+        const std::string name = "paint" + std::to_string(i);
+        materials += "newmtl " + name + "\nKd 0.5 0.5 0.5\n" +
+                     (i == 0   ? "Ks 1 1 1\nNs 20\n"
+                      : i == 1 ? "Ke 1 0 0\n"
+                               : "");
+        mesh += "usemtl " + name + "\nf 1 2 3\n";
+    }
+    workplace_.write("many.mtl", materials);
+    workplace_.write("many.obj", mesh);
+    const ProgramResult result = workplace_.run("relief-view many.obj --explain-effects");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto times = [&](const std::string& text) {
+        std::size_t found = 0;
+        for (std::size_t at = result.out.find(text); at != std::string::npos;
+             at = result.out.find(text, at + 1))
+            ++found;
+        return found;
+    };
+    // Three kinds of materials: shiny, glowing, and four that are alike.
+    EXPECT_THAT(result.out, HasSubstr("draws     all 6\n"));
+    EXPECT_EQ(times("\ndraw "), 3U);
+    EXPECT_THAT(result.out, HasSubstr("(and 3 draws alike)"));
+    EXPECT_EQ(times("environment tint"), 1U);
+    EXPECT_EQ(times("the scene has no environment"), 2U) << "of the frame, and of all draws";
+    EXPECT_EQ(times("on   diffuse"), 1U) << "on in all draws";
+    EXPECT_EQ(times("on   emission"), 1U);
+    EXPECT_EQ(times("material 'paint1' shines"), 1U);
+    EXPECT_LE(std::count(result.out.begin(), result.out.end(), '\n'), 60);
+}
+
 TEST_F(EffectOptions, ForceNeutralEffectsWithoutAChangeAndTakeOutOthersWithOne) {
     const Image planned = picture("--shininess 8");
     EXPECT_EQ(compare(picture("--shininess 8 --effects all"), planned).max, 0.0);

@@ -34,9 +34,8 @@ std::string material_name(const Scene& scene, const DrawPlan& draw) {
 
 using Table = std::vector<EffectReason>;
 
-/// A line for each effect that is on. Effects that are off share a line: those with the same
-/// reason, or all of them, without reasons.
-std::vector<std::string> table_lines(const Table& reasons, bool explains_off) {
+/// A line for each effect that is on. Effects that are off for the same reason share a line.
+std::vector<std::string> table_lines(const Table& reasons) {
     std::size_t width = 0;
     for (const EffectReason& reason : reasons) {
         if (reason.on) width = std::max(width, reason.effect.size());
@@ -48,16 +47,15 @@ std::vector<std::string> table_lines(const Table& reasons, bool explains_off) {
             lines.push_back(fmt::format("on   {:<{}}  {}", reason.effect, width, reason.reason));
             continue;
         }
-        const std::string why = explains_off ? ": " + reason.reason : "";
-        const auto same = std::ranges::find(off, why, &decltype(off)::value_type::first);
+        const auto same = std::ranges::find(off, reason.reason, &decltype(off)::value_type::first);
         if (same == off.end()) {
-            off.emplace_back(why, reason.effect);
+            off.emplace_back(reason.reason, reason.effect);
         } else {
             same->second += ", " + reason.effect;
         }
     }
     for (const auto& [why, effects] : off)
-        lines.push_back(fmt::format("off  {}{}", effects, why));
+        lines.push_back(fmt::format("off  {}: {}", effects, why));
     return lines;
 }
 
@@ -115,11 +113,83 @@ Table joined(Table rows, const Table& more) {
     return rows;
 }
 
+bool same_row(const EffectReason& a, const EffectReason& b) {
+    return a.effect == b.effect && a.on == b.on && a.reason == b.reason;
+}
+
 bool same_table(const Table& a, const Table& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const EffectReason& x, const EffectReason& y) {
-                          return x.effect == y.effect && x.on == y.on && x.reason == y.reason;
-                      });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_row);
+}
+
+bool has_row(const Table& table, const EffectReason& row) {
+    return std::any_of(table.begin(), table.end(),
+                       [&](const EffectReason& other) { return same_row(other, row); });
+}
+
+void replace_all(std::string& text, const std::string& old, const std::string& with) {
+    for (std::size_t at = text.find(old); at != std::string::npos;
+         at = text.find(old, at + with.size()))
+        text.replace(at, old.size(), with);
+}
+
+/// Returns the rows of a draw with the names of its material and mesh replaced, so that the reasons
+/// of different draws can be the same.
+Table without_names(Table table, const Scene& scene, const DrawPlan& draw) {
+    const std::size_t mesh = scene.instances[draw.instance].mesh;
+    const std::string unnamed_mesh = fmt::format("mesh '{}'", scene.meshes[mesh]->name);
+    for (EffectReason& row : table) {
+        replace_all(row.reason, material_label(scene, draw.range.material), "the material");
+        replace_all(row.reason, unnamed_mesh, "the mesh");
+        replace_all(row.reason, mesh_label(scene, mesh), "the mesh");
+    }
+    return table;
+}
+
+/// Draws whose rows differ by names only.
+struct DrawGroup {
+    std::vector<std::size_t> draws;
+    Table table;  ///< Without the names of materials and meshes.
+    Table shown;  ///< With the names, unless they differ between the draws.
+};
+
+std::vector<DrawGroup> draw_groups(const Scene& scene, const FramePlan& plan) {
+    std::vector<DrawGroup> groups;
+    for (std::size_t i = 0; i < plan.draws.size(); ++i) {
+        const DrawPlan& draw = plan.draws[i];
+        Table named = joined(draw.reasons, input_rows(scene, draw));
+        Table table = without_names(named, scene, draw);
+        const auto group = std::find_if(groups.begin(), groups.end(), [&](const DrawGroup& other) {
+            return same_table(other.table, table);
+        });
+        if (group == groups.end()) {
+            groups.push_back({{i}, std::move(table), std::move(named)});
+            continue;
+        }
+        group->draws.push_back(i);
+        if (!same_table(group->shown, named)) group->shown = group->table;
+    }
+    return groups;
+}
+
+/// Returns the rows that all groups have; none for a single group.
+Table shared_rows(const std::vector<DrawGroup>& groups) {
+    Table shared;
+    if (groups.size() < 2) return shared;
+    for (const EffectReason& row : groups.front().table) {
+        const bool is_shared =
+            std::all_of(groups.begin(), groups.end(),
+                        [&](const DrawGroup& group) { return has_row(group.table, row); });
+        if (is_shared) shared.push_back(row);
+    }
+    return shared;
+}
+
+/// Adds a heading with the lines of a table.
+void add_table(Summary& summary, const char* name, std::string heading, const Table& table) {
+    std::vector<std::string> lines = {std::move(heading)};
+    const std::vector<std::string> rows = table_lines(table);
+    lines.insert(lines.end(), rows.begin(), rows.end());
+    summary.add(name, lines);
 }
 
 }  // namespace
@@ -129,35 +199,34 @@ std::string draw_heading(const Scene& scene, const DrawPlan& draw) {
                        material_name(scene, draw), counted(draw.range.triangle_count, "triangle"));
 }
 
+namespace {
+
+/// Adds the rows that all draws share once, and for each group of draws the others.
+void add_draws(Summary& summary, const Scene& scene, const FramePlan& plan) {
+    const std::vector<DrawGroup> groups = draw_groups(scene, plan);
+    const Table shared = shared_rows(groups);
+    if (!shared.empty())
+        add_table(summary, "draws", fmt::format("all {}", plan.draws.size()), shared);
+    for (const DrawGroup& group : groups) {
+        Table own;
+        for (std::size_t i = 0; i < group.table.size(); ++i) {
+            if (!has_row(shared, group.table[i])) own.push_back(group.shown[i]);
+        }
+        const std::size_t more = group.draws.size() - 1;
+        add_table(summary, "draw",
+                  draw_heading(scene, plan.draws[group.draws.front()]) +
+                      (more > 0 ? fmt::format(" (and {} alike)", counted(more, "draw")) : ""),
+                  own);
+    }
+}
+
+}  // namespace
+
 Summary effect_summary(const Scene& scene, const FramePlan& plan) {
     Summary summary;
-    summary.add("frame", table_lines(joined(plan.reasons, pass_rows(plan)), true),
+    summary.add("frame", table_lines(joined(plan.reasons, pass_rows(plan))),
                 {{"frame", list_of(plan.reasons)}, {"passes", list_of(planned_passes(plan))}});
-    std::vector<Table> tables;
-    for (const DrawPlan& draw : plan.draws)
-        tables.push_back(joined(draw.reasons, input_rows(scene, draw)));
-    // The reasons of what is off would fill pages if draws differ.
-    const bool explains_off = std::all_of(tables.begin(), tables.end(), [&](const Table& table) {
-        return same_table(table, tables.front());
-    });
-    std::vector<bool> is_listed(plan.draws.size(), false);
-    for (std::size_t i = 0; i < plan.draws.size(); ++i) {
-        if (is_listed[i]) continue;
-        std::size_t same = 0;
-        for (std::size_t j = i; j < plan.draws.size(); ++j) {
-            if (!same_table(tables[i], tables[j])) continue;
-            is_listed[j] = true;
-            ++same;
-        }
-        std::vector<std::string> lines = {
-            draw_heading(scene, plan.draws[i]) +
-            (same > 1 ? fmt::format(" (and {} alike)", counted(same - 1, "draw")) : "")};
-        const std::vector<std::string> table = table_lines(tables[i], explains_off);
-        lines.insert(lines.end(), table.begin(), table.end());
-        summary.add("draw", lines);
-    }
-    if (!explains_off)
-        summary.add("off", "--json states the reason for each effect of a draw that is off");
+    add_draws(summary, scene, plan);
     const auto draw_json = [&](const DrawPlan& draw) -> Json {
         const DrawInputs inputs = planned_inputs(scene, draw);
         return {

@@ -47,7 +47,7 @@ struct SharedSampler {
 
 const std::map<std::string_view, SharedSampler>& shared_samplers() {
     static const std::map<std::string_view, SharedSampler> all = {
-        {"environment", {true, "the surface mirrors it or lets it through"}},
+        {"environment", {true, "the surface mirrors it, lets it through or has its color"}},
         {"blurred_environment", {true, "the surface mirrors it blurred; a level for a roughness"}},
         {"environment_brdf", {false, "how much a rough surface mirrors, by angle and roughness"}},
         {"behind", {true, "the surface shows what is behind it; levels for roughness"}},
@@ -75,7 +75,7 @@ PlannedTexture texture_of(const Scene& scene, const DrawPlan& draw, const std::s
         if (sampler_name(used.unit) != sampler) continue;
         if (used.texture == nullptr) return {sampler, "", false, "neutral: forced on"};
         return {sampler, scene.images[used.texture->image].name, true,
-                fmt::format("material '{}' has it", material.name)};
+                material_label(scene, draw.range.material) + " has it"};
     }
     return {sampler, "", false, ""};
 }
