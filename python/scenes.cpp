@@ -34,12 +34,14 @@ struct SceneObject {
     std::optional<glm::ivec2> size;
 };
 
-/// Loads a scene with the background that relief-view draws.
-SceneObject load(const FileName& file, const FindingList& report) {
+/// Loads a scene with the background and the environment that relief-view draws.
+SceneObject load(const FileName& file, bool studio, const FindingList& report) {
     Report findings;
     SceneObject loaded = without_gil([&] {
         SceneGraph graph = load_scene_graph(file, SceneOptions{}, findings);
-        if (file.extension() != ".json") graph.scene.background = default_background;
+        const bool is_model = file.extension() != ".json";
+        if (is_model) graph.scene.background = default_background;
+        if (is_model && studio) (void)add_default_environment(graph.scene);
         return SceneObject{std::move(graph.scene), graph.picture_size};
     });
     append(findings, report);
@@ -214,8 +216,11 @@ void add_scenes(py::module_& module) {
              arg("green") = "up", arg("normal_space") = "tangent",
              "Create a scene of one mesh with a Phong material, or one of the classic table.\n\n"
              "Colors are linear. The normal map is a stored map, as from bump().")
-        .def_static("load", &load, arg("file"), py::kw_only(), arg("report") = none,
-                    "Load a model (.glb .gltf .obj .ply .stl .off) or a scene file (.json).")
+        .def_static("load", &load, arg("file"), py::kw_only(), arg("studio") = true,
+                    arg("report") = none,
+                    "Load a model (.glb .gltf .obj .ply .stl .off) or a scene file (.json).\n\n"
+                    "Models with a metallic, coated or transmissive material get the built-in\n"
+                    "studio as their environment, unless `studio` is False.")
         .def_property(
             "ambient",
             [](const SceneObject& object) {

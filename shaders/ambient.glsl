@@ -6,9 +6,10 @@
 
 #include "inputs.glsl#ambient"
 #include <occlusion>
+#include <term_limit>
 
 void add_ambient(Surface surface, inout Lighting lighting) {
-    lighting.scattered += ambient_scattered * occlusion();
+    lighting.scattered += limited(ambient_scattered) * occlusion();
 }
 
 #part metallic_roughness

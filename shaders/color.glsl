@@ -27,6 +27,13 @@ in vec4 color_from_white;
 
 vec4 vertex_tint() { return max(vec4(1.0) + color_from_white, vec4(0.0)); }
 
+#part environment_tint
+// The environment along the normal, which multiplies scattered light and highlights.
+
+#include "environment.glsl#radiance"
+
+vec3 environment_tint(Surface surface) { return environment_radiance(surface.normal_world); }
+
 #part specular_texture
 // The color of highlights.
 

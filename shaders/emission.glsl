@@ -4,18 +4,21 @@
 #part color
 // One color.
 
+#include <term_limit>
+
 uniform vec3 emission_color;
 
-vec3 emitted_radiance() { return emission_color; }
+vec3 emitted_radiance() { return limited(emission_color); }
 
 #part texture
 // A color times a texture; the lookup decodes sRGB.
 
 #include "inputs.glsl#texcoord"
+#include <term_limit>
 
 uniform vec3 emission_color;
 uniform sampler2D emission_texture;
 
 vec3 emission_lookup = texture(emission_texture, texcoord_surface).rgb;
 
-vec3 emitted_radiance() { return emission_color * emission_lookup; }
+vec3 emitted_radiance() { return limited(emission_color) * emission_lookup; }

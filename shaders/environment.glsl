@@ -107,10 +107,11 @@ vec3 environment_irradiance(vec3 n) {
 #include "inputs.glsl#diffuse_color"
 #include "environment.glsl#irradiance"
 #include <occlusion>
+#include <term_limit>
 
 void add_environment_light(Surface surface, inout Lighting lighting) {
-    lighting.scattered +=
-        diffuse_color * environment_irradiance(surface.normal_world) * occlusion();
+    vec3 received = environment_irradiance(surface.normal_world);
+    lighting.scattered += limited(diffuse_color * received) * occlusion();
 }
 
 #part light_metallic_roughness

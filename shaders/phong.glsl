@@ -8,14 +8,20 @@
 
 #include <diffuse>
 #include <specular>
+#include <term_limit>
 
 void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_irradiance,
              inout Lighting lighting) {
     float n_dot_l = dot(surface.normal_world, light_world);
     if (!(n_dot_l > 0.0)) return;
-    lighting.scattered += irradiance * diffuse_scattering(n_dot_l);
-    lighting.highlights += highlight_irradiance * specular_highlight(surface, light_world);
+    lighting.scattered += limited(irradiance * diffuse_scattering(n_dot_l));
+    lighting.highlights += limited(highlight_irradiance * specular_highlight(surface, light_world));
 }
+
+#part clamped_terms
+// Each term is clamped before it is added, as hardware with fixed functions did.
+
+vec3 limited(vec3 term) { return clamp(term, 0.0, 1.0); }
 
 #part lambert
 // Diffuse scattering, equal in all directions. Source: [Lambert 1760].

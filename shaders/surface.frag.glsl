@@ -13,6 +13,7 @@ invariant out vec4 color;
 #include <environment_light>
 #include <tint>
 #include <specular_texture>
+#include <environment_tint>
 #include <transmission>
 #include <reflection>
 #include <sheen>
@@ -29,9 +30,10 @@ void main() {
     add_lights(surface, lighting);
     add_environment_light(surface, lighting);
 
+    vec3 around = environment_tint(surface);
     vec3 scattered =
-        with_transmission(surface, lighting.scattered * scattering_tint(surface));
-    vec3 highlights = lighting.highlights * specular_texture_color();
+        with_transmission(surface, lighting.scattered * scattering_tint(surface) * around);
+    vec3 highlights = lighting.highlights * specular_texture_color() * around;
     vec3 reflected = with_sheen(surface, with_reflection(surface, scattered) + highlights);
     vec3 radiance = with_clearcoat(surface, reflected + emitted_radiance());
     color = vec4(coded(radiance), alpha);

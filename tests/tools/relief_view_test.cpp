@@ -87,6 +87,22 @@ TEST(ViewCommand, LightsAreAddedWhereThereAreNoneAndItSaysSo) {
     EXPECT_GT(pixel(picture_in(workplace / "out/p.png"), 16, 16)[0], 100);
 }
 
+TEST(ViewCommand, MentionsAmbientLightOnlyIfASurfaceShowsIt) {
+    const Workplace workplace;
+    workplace.write("scene.json", R"({"relief_scene": 1, "ambient": 0.5, "nodes": [
+        {"shape": "quad", "material": {"diffuse": 1, "ambient": 0}}],
+        "lights": [{"type": "point", "position": [0, 0, 1]}, {"type": "point", "on": false}]})");
+    const auto lights = [&](const std::string& model) {
+        const ProgramResult result =
+            workplace.run("relief-view " + model + " --size 8x8 --output out/p.png");
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return result.out;
+    };
+    EXPECT_THAT(lights("scene.json"), HasSubstr("light     1 point light\n"));
+    EXPECT_THAT(lights("scene.json --material gold"),
+                HasSubstr("light     1 point light and ambient light\n"));
+}
+
 TEST(ViewCommand, BackgroundIsTheColorOrNothing) {
     const Workplace workplace;
     workplace.write_square("square.obj");
@@ -537,6 +553,12 @@ TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
           "--no-skybox: there is no --environment"},
          {"square.obj --output out/old.png --reflectivity 0.5", 2,
           "--reflectivity: there is no --environment"},
+         {"square.obj --output out/old.png --environment none --reflectivity 0.5", 2,
+          "--reflectivity: there is no --environment"},
+         {"square.obj --output out/old.png --environment-tint", 2,
+          "--environment-tint: there is no --environment"},
+         {"square.obj --output out/old.png --clamp-terms --metallic-roughness 1,0.5", 2,
+          "--metallic-roughness: needs the glTF model, and --clamp-terms needs the Phong model"},
          {"square.obj --output out/old.png --environment-rotation 90", 2,
           "--environment-rotation: there is no --environment"},
          {"square.obj --output out/old.png --background-blur 0.5", 2,

@@ -239,6 +239,113 @@ TEST(SceneOptions, AnOrthographicCameraShowsTheWholeModel) {
     EXPECT_EQ(drawn.scene().camera, drawn.camera);
 }
 
+/// Writes a triangle with a material of these members of glTF.
+void write_triangle(const Workplace& workplace, const std::string& name,
+                    const std::string& material) {
+    workplace.write(name, R"({"asset": {"version": "2.0"}, "materials": [{"name": "paint", )" +
+                              material + R"(}],
+        "buffers": [{"byteLength": 36, "uri":
+            "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0})");
+}
+
+TEST(SceneOptions, TheStudioLightsModelsThatShowTheirSurroundings) {
+    const Workplace workplace;
+    const std::string dielectric = R"("pbrMetallicRoughness": {"metallicFactor": 0})";
+    const auto coated = [&](const std::string& extension, const std::string& member) {
+        return dielectric + R"(, "extensions": {"KHR_materials_)" + extension + R"(": {")" +
+               member + R"(": 0.5}})";
+    };
+    const std::vector<std::pair<std::string, bool>> materials = {
+        {R"("pbrMetallicRoughness": {"metallicFactor": 0.5})", true},
+        {coated("clearcoat", "clearcoatFactor"), true},
+        {coated("transmission", "transmissionFactor"), true},
+        {coated("specular", "specularFactor"), false},
+        {dielectric, false},
+        {R"("extensions": {"KHR_materials_unlit": {}})", false}};
+    for (const auto& [material, is_lit] : materials) {
+        SCOPED_TRACE(material);
+        write_triangle(workplace, "paint.gltf", material);
+        ViewOptions options = of(workplace / "paint.gltf");
+        const ComposedScene usual = composed(options);
+        EXPECT_EQ(usual.scene().environment && is_studio(*usual.scene().environment), is_lit);
+        const auto note = HasSubstr(
+            "material 'paint' is metallic, coated or transmissive and "
+            "needs an environment");
+        if (is_lit) {
+            EXPECT_THAT(usual.notes, testing::Contains(note));
+            EXPECT_THAT(usual.notes, testing::Contains(HasSubstr("only the environment lights")));
+            EXPECT_THAT(usual.scene().directional_lights, IsEmpty());
+        } else {
+            EXPECT_THAT(usual.notes, testing::Not(testing::Contains(note)));
+            EXPECT_EQ(usual.scene().directional_lights.size(), 2U);
+        }
+        options.environment = {"none"};
+        const ComposedScene without = composed(options);
+        EXPECT_FALSE(without.scene().environment);
+        EXPECT_EQ(without.scene().directional_lights.size(), 2U);
+        options.environment.clear();
+        options.shading = SceneOptions::MaterialModel::phong;
+        EXPECT_FALSE(composed(options).scene().environment) << "Phong's surfaces scatter light";
+    }
+}
+
+TEST(SceneOptions, SceneFilesHaveTheEnvironmentThatTheyState) {
+    const Workplace workplace;
+    write_triangle(workplace, "paint.gltf", R"("pbrMetallicRoughness": {})");
+    workplace.write("scene.json", R"({"relief_scene": 1, "nodes": [{"model": "paint.gltf"}]})");
+    EXPECT_FALSE(composed(of(workplace / "scene.json")).scene().environment);
+    workplace.write("lit.json", R"({"relief_scene": 1, "nodes": [{"model": "paint.gltf"}],
+        "environment": {"studio": true}})");
+    ViewOptions options = of(workplace / "lit.json");
+    EXPECT_TRUE(composed(options).scene().environment);
+    options.environment = {"none"};
+    EXPECT_FALSE(composed(options).scene().environment);
+}
+
+TEST(SceneOptions, AGuessedLightProbeIsNoted) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    write_image(workplace / "square.png", make_image(8, 8, 3, 8, ColorSpace::srgb));
+    ViewOptions options = of(workplace / "square.obj");
+    options.environment = {workplace / "square.png"};
+    EXPECT_THAT(composed(options).notes,
+                testing::Contains(HasSubstr("square.png is square, so it counts as an angular "
+                                            "light probe; --environment-layout")));
+    options.environment_layout = EnvironmentLayout::probe;
+    EXPECT_THAT(composed(options).notes, testing::Not(testing::Contains(HasSubstr("probe"))));
+}
+
+TEST(SceneOptions, AmbientLightOfALightIsReplacedWithIt) {
+    const Workplace workplace;
+    workplace.write("scene.json",
+                    R"({"relief_scene": 1, "nodes": [{"shape": "quad"}], "ambient": 0.25,
+        "lights": [{"type": "point", "ambient": 0.5}]})");
+    ViewOptions options = of(workplace / "scene.json");
+    EXPECT_EQ(ambient_light(composed(options).scene()), glm::vec3(0.75F));
+    options.lights = {parse_light("--light", "point:0,0,1,2,#ffffff,0.125")};
+    EXPECT_EQ(ambient_light(composed(options).scene()), glm::vec3(0.5F));
+    options.ambient = 0.0F;
+    EXPECT_EQ(ambient_light(composed(options).scene()), glm::vec3(0.25F));
+}
+
+TEST(SceneOptions, TermsAreClampedAndTintedOnRequest) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewOptions options = of(workplace / "square.obj");
+    options.environment = {"studio"};
+    options.environment_tint = options.clamp_terms = true;
+    const Scene scene = composed(options).scene();
+    EXPECT_TRUE(scene.clamp_terms);
+    ASSERT_EQ(scene.materials.size(), 1U);
+    EXPECT_TRUE(scene.materials[0].environment_tint);
+    EXPECT_EQ(reason_for_phong(options), "--environment-tint");
+}
+
 TEST(SceneOptions, LightsOnTheCommandLineReplaceAllOthers) {
     const Workplace workplace;
     workplace.write_square("square.obj");
@@ -279,6 +386,9 @@ TEST(LightOption, ADirectionalLightComesFromWhereItIsNamed) {
     const auto front = parsed<DirectionalLight>("directional:0,0,2,#ff0000");
     EXPECT_LT(degrees_between(front.direction_world, {0, 0, -1}), light_tolerance);
     EXPECT_EQ(front.irradiance, glm::vec3(2.0F, 0.0F, 0.0F));
+    EXPECT_EQ(front.ambient, glm::vec3(0.0F));
+    const auto around = parsed<DirectionalLight>("directional:0,0,2,#ff0000,0.25");
+    EXPECT_EQ(around.ambient, glm::vec3(0.5F, 0.0F, 0.0F));
 }
 
 TEST(LightOption, APointLightStandsWhereItIsNamed) {
@@ -294,6 +404,8 @@ TEST(LightOption, ASpotLightShinesAtItsTargetWithinItsCone) {
     EXPECT_FLOAT_EQ(light.outer_cone, glm::radians(40.0F));
     EXPECT_FLOAT_EQ(light.inner_cone, glm::radians(30.0F));
     EXPECT_EQ(light.point.intensity, glm::vec3(10.0F));
+    EXPECT_EQ(parsed<SpotLight>("spot:0,5,0,0,0,0,40,10,#ffffff,0.5").point.ambient,
+              glm::vec3(5.0F));
     EXPECT_FLOAT_EQ(parsed<SpotLight>("spot:0,5,0,0,0,0").outer_cone, glm::radians(30.0F));
 }
 
@@ -311,8 +423,10 @@ TEST(LightOption, RefusesWhatIsNotALight) {
               "--light point:1,2,3,-1: '-1': not between 0 and 1000000000");
     EXPECT_EQ(light_refusal("point:1,2,3,1,#fff"),
               "--light point:1,2,3,1,#fff: '#fff': not a color like #ff8000");
-    EXPECT_EQ(light_refusal("directional:0,0,1,#ffffff,9"),
-              "--light directional:0,0,1,#ffffff,9: too many values");
+    EXPECT_EQ(light_refusal("directional:0,0,1,#ffffff,9,9"),
+              "--light directional:0,0,1,#ffffff,9,9: too many values");
+    EXPECT_EQ(light_refusal("point:0,0,1,1,#ffffff,-1"),
+              "--light point:0,0,1,1,#ffffff,-1: '-1': not between 0 and 1000");
     EXPECT_EQ(light_refusal("directional:0,91"),
               "--light directional:0,91: '91': not between -90 and 90 degrees");
     EXPECT_EQ(

@@ -277,7 +277,7 @@ void check_materials(const ViewOptions& options) {
 }
 
 std::string reason_for_phong(const ViewOptions& options) {
-    const std::array<std::pair<bool, const char*>, 10> reasons{{
+    const std::array<std::pair<bool, const char*>, 12> reasons{{
         {options.shading == SceneOptions::MaterialModel::phong, "--shading phong"},
         {options.interpolation == Interpolation::gouraud, "--interpolation gouraud"},
         {options.specular.has_value(), "--specular"},
@@ -287,6 +287,8 @@ std::string reason_for_phong(const ViewOptions& options) {
         {options.reflection_roughness.has_value(), "--reflection-roughness"},
         {options.fresnel.has_value() || options.no_fresnel, "--fresnel"},
         {options.transmission.has_value(), "--transmission"},
+        {options.environment_tint, "--environment-tint"},
+        {options.clamp_terms, "--clamp-terms"},
         {options.material.has_value(), "--material"},
     }};
     for (const auto& [given, name] : reasons) {
@@ -304,7 +306,8 @@ bool has_overrides(const ViewOptions& o) {
     return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.tangent_frame ||
            o.specular_antialiasing || o.interpolation || o.material || o.metallic_roughness ||
            o.specular || o.shininess || o.highlight_fresnel || o.reflectivity ||
-           o.reflection_roughness || o.fresnel || o.no_fresnel || o.transmission;
+           o.reflection_roughness || o.fresnel || o.no_fresnel || o.transmission ||
+           o.environment_tint || o.clamp_terms;
 }
 
 /// A map requires that at least one mesh has texture coordinates. Meshes without them are noted.
@@ -470,8 +473,10 @@ void set_shading(Scene& scene, const ViewOptions& options) {
         material.tangent_frame = options.tangent_frame.value_or(material.tangent_frame);
         material.specular_antialiasing =
             options.specular_antialiasing.value_or(material.specular_antialiasing);
+        material.environment_tint |= options.environment_tint;
         set_reflection(material, options);
     }
+    scene.clamp_terms |= options.clamp_terms;
 }
 
 /// Notes materials whose normal or bump map cannot show.
@@ -549,7 +554,9 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
         app, "--environment", "FILE...",
         "Use an environment: one image, six square images in the order +x -x +y -y +z -z, or a "
         "folder with six images whose names end in posx, negx, posy, negy, posz, negz. studio is a "
-        "built-in photo studio, which lights the model and is not visible behind it.",
+        "built-in photo studio, which lights the model and is not visible behind it; none is no "
+        "environment. Default: that of the scene file; studio for models with a metallic, coated "
+        "or transmissive material.",
         [&](const std::string&, const std::string& text) {
             options.environment.emplace_back(text);
         })
@@ -615,6 +622,9 @@ void add_reflection_options(CLI::App& app, ViewOptions& options) {
                "Set the refractive index for --fresnel dielectric and --transmission. Default: "
                "1.5, glass.")
         .group(environment_group);
+    add_switch(app, "--environment-tint", options.environment_tint,
+               "Multiply ambient, diffuse and specular light by the environment along the normal.")
+        .group(environment_group);
     add_number(app, "--transmission", "T", options.transmission,
                field_limits(&Material::transmission),
                "Set the share of the light that is not reflected and passes through the surface "
@@ -644,9 +654,21 @@ decltype(Environment::source) one_image(const ViewOptions& options) {
     return Equirectangular{image_file(file)};
 }
 
-/// A file of this name can be given as ./studio.
+/// Tells whether the environment is a word. A file of this name can be given as ./studio.
+bool is_word(const ViewOptions& options, const char* word) {
+    return options.environment.size() == 1 && options.environment.front() == word;
+}
+
 bool uses_studio(const ViewOptions& options) {
-    return options.environment.size() == 1 && options.environment.front() == "studio";
+    return is_word(options, "studio");
+}
+
+bool uses_none(const ViewOptions& options) {
+    return is_word(options, "none");
+}
+
+bool is_scene_file(const ViewOptions& options) {
+    return extension_of(options.model) == ".json";
 }
 
 }  // namespace
@@ -657,12 +679,12 @@ void add_environment_options(CLI::App& app, ViewOptions& options) {
 }
 
 void check_environment(const ViewOptions& options) {
-    const std::size_t files = options.environment.size();
+    const std::size_t files = uses_none(options) ? 0 : options.environment.size();
     const char* const give = "give one, or leave it out";
     refuse(files != 0 && files != 1 && files != 6, "--environment",
            fmt::format("takes one file, six files or a folder, not {} files", files), "");
     // A scene file may have its own environment, which is not known yet.
-    const bool none = files == 0 && extension_of(options.model) != ".json";
+    const bool none = files == 0 && (uses_none(options) || !is_scene_file(options));
     refuse(options.no_skybox && none, "--no-skybox", "there is no --environment", "");
     const auto need_environment = [&](bool given, const char* option) {
         refuse(given && none, option, "there is no --environment", give);
@@ -671,6 +693,7 @@ void check_environment(const ViewOptions& options) {
     need_environment(options.reflection_roughness.has_value(), "--reflection-roughness");
     need_environment(options.fresnel.has_value() || options.no_fresnel, "--fresnel");
     need_environment(options.transmission.has_value(), "--transmission");
+    need_environment(options.environment_tint, "--environment-tint");
     const auto describe_environment = [&](bool given, const char* option) {
         refuse(given && none, option, "there is no --environment", give);
     };
@@ -758,11 +781,11 @@ bool is_physical(const Material& material) {
 /// Applies options to the environment of a scene file.
 void override_scene_environment(Scene& scene, const ViewOptions& options) {
     if (!scene.environment) {
-        const bool has_options = options.no_skybox || options.environment_light ||
-                                 options.environment_intensity || options.environment_rotation ||
-                                 options.background_blur || options.reflectivity ||
-                                 options.reflection_roughness || options.fresnel ||
-                                 options.no_fresnel || options.transmission;
+        const bool has_options =
+            options.no_skybox || options.environment_light || options.environment_intensity ||
+            options.environment_rotation || options.background_blur || options.reflectivity ||
+            options.reflection_roughness || options.fresnel || options.no_fresnel ||
+            options.transmission || options.environment_tint;
         if (!has_options) return;
         throw UsageError("the scene has no environment for these options",
                          "add --environment, or leave the options out");
@@ -777,18 +800,37 @@ void override_scene_environment(Scene& scene, const ViewOptions& options) {
         options.background_blur.value_or(scene.environment->skybox_blur);
 }
 
-void set_environment(Scene& scene, const ViewOptions& options) {
-    if (options.environment.empty()) {
-        override_scene_environment(scene, options);
-        return;
-    }
+/// Lights materials by the studio that would be nearly black without surroundings.
+void light_by_studio(Scene& scene, std::vector<std::string>& notes) {
+    const std::optional<std::string> material = add_default_environment(scene);
+    if (!material) return;
+    notes.push_back(fmt::format(
+        "{} is metallic, coated or transmissive and needs an environment, so the built-in studio "
+        "lights the model; --environment none leaves it out",
+        *material));
+}
+
+void set_environment(Scene& scene, const ViewOptions& options, std::vector<std::string>& notes) {
+    if (uses_none(options)) return scene.environment.reset();
+    if (options.environment.empty() && !is_scene_file(options))
+        return light_by_studio(scene, notes);
+    if (options.environment.empty()) return override_scene_environment(scene, options);
     scene.environment = environment_of(options);
+    const bool is_guessed = options.environment_layout.value_or(EnvironmentLayout::automatic) ==
+                            EnvironmentLayout::automatic;
+    if (is_guessed && std::holds_alternative<AngularMap>(scene.environment->source)) {
+        notes.push_back(
+            fmt::format("{} is square, so it counts as an angular light probe; "
+                        "--environment-layout chooses another layout",
+                        options.environment.front().string()));
+    }
     const bool physical = std::any_of(scene.materials.begin(), scene.materials.end(), is_physical);
     scene.environment->lights =
         options.environment_light.value_or(physical || scene.environment->lights);
-    const bool reflected = std::any_of(
-        scene.materials.begin(), scene.materials.end(),
-        [](const Material& material) { return material.reflectivity != glm::vec3(0.0F); });
+    const bool reflected =
+        std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+            return material.reflectivity != glm::vec3(0.0F) || material.environment_tint;
+        });
     if (!reflected && !physical && !scene.environment->lights && !scene.environment->skybox) {
         throw UsageError(
             "--environment: has no effect, because no material reflects it and --no-skybox hides "
@@ -893,11 +935,6 @@ void occlude(Scene& scene, const ViewOptions& options, Stages& stages) {
         stages.run("ambient occlusion", [&] { add_ambient_occlusion(scene); });
 }
 
-/// Only scene files have a background.
-bool has_background(const ViewOptions& options) {
-    return extension_of(options.model) == ".json";
-}
-
 /// Shows point lights and spotlights as spheres, relative to the size of the scene.
 void mark_lights(ComposedScene& composed, float share) {
     const Bounds bounds = world_bounds(composed.scene());
@@ -960,9 +997,10 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
     if (options.frames && duration(composed.graph) == 0.0 && !options.seconds)
         throw UsageError("--frames: the scene has no animation", "use --turntable");
     override_materials(scene, options, stages, report, composed.notes);
-    set_environment(scene, options);
-    scene.background = options.background.value_or(has_background(options) ? scene.background
-                                                                           : default_background);
+    set_environment(scene, options, composed.notes);
+    // Only scene files have a background.
+    scene.background =
+        options.background.value_or(is_scene_file(options) ? scene.background : default_background);
     scene.exposure = options.exposure.value_or(scene.exposure);
     scene.tone_mapping = options.tone_mapping.value_or(scene.tone_mapping);
     composed.camera_follows_scene = scene.camera && !options.camera;

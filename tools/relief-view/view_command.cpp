@@ -509,16 +509,27 @@ struct Drawn {
     FrameMeasures measures;
 };
 
-std::string lights_text(const Scene& scene) {
+/// Describes the lights that are on, and the ambient light if a surface shows it.
+std::string lights_text(const Scene& scene, const FramePlan& plan) {
     std::string text;
-    const auto add = [&](std::size_t count, const std::string& kind) {
+    const auto add = [&](const auto& lights, const std::string& kind) {
+        const auto count = static_cast<std::size_t>(
+            std::count_if(lights.begin(), lights.end(), [](const auto& light) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(light)>, SpotLight>)
+                    return light.point.on;
+                else
+                    return light.on;
+            }));
         if (count != 0) text += (text.empty() ? "" : ", ") + counted(count, kind + " light");
     };
-    add(scene.directional_lights.size(), "directional");
-    add(scene.point_lights.size(), "point");
-    add(scene.spot_lights.size(), "spot");
+    add(scene.directional_lights, "directional");
+    add(scene.point_lights, "point");
+    add(scene.spot_lights, "spot");
     if (text.empty()) text = "no light";
-    if (scene.ambient != glm::vec3(0.0F)) text += " and ambient light";
+    const bool shows_ambient =
+        std::any_of(plan.draws.begin(), plan.draws.end(),
+                    [](const DrawPlan& draw) { return draw.features.ambient; });
+    if (shows_ambient) text += " and ambient light";
     return text;
 }
 
@@ -570,8 +581,9 @@ void add_picture(Summary& summary, const ViewOptions& options, const Drawn& draw
 }
 
 /// \param drawn  null if no picture was drawn; then only the JSON is of use
-Summary summary_of(const ViewOptions& options, const ComposedScene& composed, const Drawn* drawn,
-                   const HealthMarkers& markers, const Findings& findings, const Stages& stages) {
+Summary summary_of(const ViewOptions& options, const ComposedScene& composed, const FramePlan& plan,
+                   const Drawn* drawn, const HealthMarkers& markers, const Findings& findings,
+                   const Stages& stages) {
     const Scene& scene = composed.scene();
     const std::size_t triangles = triangle_count(scene);
     Summary summary;
@@ -583,7 +595,7 @@ Summary summary_of(const ViewOptions& options, const ComposedScene& composed, co
                 {{"model", options.model.string()},
                  {"instances", scene.instances.size()},
                  {"triangles", triangles}});
-    summary.add("light", lights_text(scene));
+    summary.add("light", lights_text(scene, plan));
     summary.add("notes", composed.notes, {{"notes", composed.notes}});
     summary.add_findings(findings);
     if (drawn != nullptr) add_picture(summary, options, *drawn);
@@ -726,7 +738,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     Findings findings;
     findings.add("", report);
     Summary summary =
-        summary_of(options, composed, drawn ? &*drawn : nullptr, markers, findings, stages);
+        summary_of(options, composed, plan, drawn ? &*drawn : nullptr, markers, findings, stages);
     if (options.json) {
         if (options.explain_effects)
             summary.add_part("effects", effect_summary(composed.scene(), plan));

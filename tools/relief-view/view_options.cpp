@@ -52,13 +52,21 @@ class Fields {
         return {x, y, z};
     }
 
-    /// The common end of all lights: INTENSITY[,#RRGGBB].
-    glm::vec3 light() {
-        const float intensity = number_or(1.0F, intensities);
-        if (done()) return glm::vec3(intensity);
-        const std::string& field = fields_[used_++];
+    struct Power {
+        glm::vec3 light{1.0F};
+        glm::vec3 ambient{0.0F};
+    };
+
+    /// The common end of all lights: INTENSITY[,#RRGGBB[,AMBIENT]].
+    Power power() {
+        glm::vec3 light(number_or(1.0F, intensities));
+        if (!done()) {
+            const std::string& field = fields_[used_++];
+            light *= parse_color(subject_ + ": '" + field + "'", field);
+        }
+        const float share = number_or(0.0F, {0, 1000, ""});
         if (!done()) throw UsageError(subject_ + ": too many values", form_);
-        return intensity * parse_color(subject_ + ": '" + field + "'", field);
+        return {light, share * light};
     }
 
   private:
@@ -71,22 +79,27 @@ class Fields {
 };
 
 DirectionalLight directional(const std::string& subject, std::string_view text) {
-    Fields fields(subject, "directional:azimuth,elevation[,intensity[,#rrggbb]]", text);
+    Fields fields(subject, "directional:azimuth,elevation[,intensity[,#rrggbb[,ambient]]]", text);
     const float azimuth = glm::radians(fields.number({-360, 360, "degrees"}));
     const float elevation = glm::radians(fields.number({-90, 90, "degrees"}));
-    return {.direction_world = -towards(azimuth, elevation), .irradiance = fields.light()};
+    const Fields::Power power = fields.power();
+    return {.direction_world = -towards(azimuth, elevation),
+            .irradiance = power.light,
+            .ambient = power.ambient};
 }
 
 PointLight point(const std::string& subject, std::string_view text) {
-    Fields fields(subject, "point:x,y,z[,intensity[,#rrggbb]]", text);
+    Fields fields(subject, "point:x,y,z[,intensity[,#rrggbb[,ambient]]]", text);
     PointLight light;
     light.position_world = fields.position();
-    light.intensity = fields.light();
+    const Fields::Power power = fields.power();
+    light.intensity = power.light;
+    light.ambient = power.ambient;
     return light;
 }
 
 SpotLight spot(const std::string& subject, std::string_view text) {
-    Fields fields(subject, "spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]]", text);
+    Fields fields(subject, "spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb[,ambient]]]]", text);
     // The ratio of the inner to the outer cone.
     constexpr float full_share = 0.75F;
     SpotLight light;
@@ -96,7 +109,9 @@ SpotLight spot(const std::string& subject, std::string_view text) {
         throw UsageError(subject + ": the position and the target of the spotlight are the same");
     light.outer_cone = glm::radians(fields.number_or(30.0F, {0.1, 90, "degrees"}));
     light.inner_cone = full_share * light.outer_cone;
-    light.point.intensity = fields.light();
+    const Fields::Power power = fields.power();
+    light.point.intensity = power.light;
+    light.point.ambient = power.ambient;
     return light;
 }
 
@@ -208,18 +223,25 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Lights and camera";
     add_repeatable(app, "--light", "LIGHT",
                    "Replace the model's lights; may be given several times. "
-                   "directional:azimuth,elevation[,intensity[,#rrggbb]] shines from this "
-                   "direction, in degrees; point:x,y,z[,intensity[,#rrggbb]] is in world space, "
-                   "y up; spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb]]] shines from x,y,z "
-                   "towards tx,ty,tz in a cone of 30 or angle degrees from its axis; none removes "
-                   "all lights. Intensity 1 makes a white surface white, at distance 1 for point "
-                   "and spot. Default: the model's lights, else a key light and a fill light.",
+                   "directional:azimuth,elevation[,intensity[,#rrggbb[,ambient]]] shines from this "
+                   "direction, in degrees; point:x,y,z[,intensity[,#rrggbb[,ambient]]] is in world "
+                   "space, y up; spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb[,ambient]]]] "
+                   "shines from x,y,z towards tx,ty,tz in a cone of 30 or angle degrees from its "
+                   "axis; none removes all lights. Intensity 1 makes a white surface white, at "
+                   "distance 1 for point and spot. ambient (0) is the share of the light that it "
+                   "adds as ambient light, everywhere. Default: the model's lights, else a key "
+                   "light and a fill light.",
                    [&](const std::string& subject, const std::string& text) {
                        options.lights.push_back(parse_light(subject, text));
                    })
         .group(group);
     add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
-               "Set the ambient light. Default: 0, or 0.08 with the key light and fill light.")
+               "Set the ambient light of the scene, to which lights may add. Default: 0, or 0.08 "
+               "with the key light and fill light.")
+        .group(group);
+    add_switch(app, "--clamp-terms", options.clamp_terms,
+               "Clamp each term of the Phong model to 0 to 1 before the sum, for each light, as "
+               "hardware with fixed functions did.")
         .group(group);
     add_number(app, "--shadow", "DEG", options.shadow_size, {0, 30, "degrees"},
                "Show the shadow of the first directional light, else of the first spot or point "

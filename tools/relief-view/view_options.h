@@ -188,7 +188,8 @@ struct ViewOptions {
     bool highlight_fresnel = false;
     std::optional<SpecularModel> specular;
 
-    std::vector<std::filesystem::path> environment;  ///< One image, one folder or six files.
+    /// One image, one folder, six files, "studio" or "none".
+    std::vector<std::filesystem::path> environment;
     std::optional<EnvironmentLayout> environment_layout;
     std::optional<bool> environment_light;  ///< If absent, metallic-roughness materials decide.
     std::optional<float> environment_intensity;
@@ -202,11 +203,13 @@ struct ViewOptions {
     bool no_fresnel = false;
     std::optional<float> refractive_index;
     std::optional<float> transmission;
+    bool environment_tint = false;
 
     std::vector<LightOption> lights;
     std::optional<float> ambient_occlusion;  ///< Share of the scene's size; 0 is none.
     std::optional<float> shadow_size;        ///< Degrees; 0 is a hard edge.
     std::optional<float> ambient;
+    bool clamp_terms = false;
     std::optional<float> light_markers;  ///< Radius relative to the size of the scene.
     std::optional<CameraOption> camera;
     std::optional<float> vertical_fov;

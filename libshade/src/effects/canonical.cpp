@@ -102,6 +102,15 @@ void drop_lights(Features& f) {
     }
 }
 
+/// Phong's surfaces are tinted where they scatter light or have highlights, and clamp what they
+/// add up.
+void drop_phong_choices(Features& f) {
+    const bool scatters =
+        f.ambient || f.environment_diffuse || f.diffuse || f.specular != SpecularTerm::none;
+    f.environment_tint &= !f.metallic_roughness && scatters;
+    f.clamped_terms &= !f.metallic_roughness && (scatters || f.emission);
+}
+
 /// True if light of any kind reaches glTF's surface, apart from its emission.
 bool is_lit_anyhow(const Features& f) {
     return light_count(f) > 0 || f.ambient || f.environment_diffuse ||
@@ -129,7 +138,7 @@ void drop_layers(Features& f) {
 /// Rotation and direction show where the environment is looked up by direction. The light that it
 /// scatters is rotated before.
 void drop_lookups(Features& f) {
-    f.environment_rotation &= looks_up_mirror(f) || looks_up_refraction(f);
+    f.environment_rotation &= looks_up_mirror(f) || looks_up_refraction(f) || f.environment_tint;
     f.reflection_by_normal &= looks_up_mirror(f) && !f.metallic_roughness;
 }
 
@@ -277,6 +286,7 @@ Features canonical(Features f) {
     if (f.unlit) return unlit_only(f);
     settle_model(f);
     drop_lights(f);
+    drop_phong_choices(f);
     drop_layers(f);
     drop_lookups(f);
     drop_normal(f);

@@ -236,7 +236,8 @@ template <typename Light>
 Decision of_lights(const std::vector<Light>& lights, std::uint32_t shining) {
     if (lights.empty()) return {false, "the scene has none"};
     const std::string black =
-        shining < lights.size() ? fmt::format(", {} of them black", lights.size() - shining) : "";
+        shining < lights.size() ? fmt::format(", {} of them black or off", lights.size() - shining)
+                                : "";
     return {shining > 0, fmt::format("the scene has {}{}", lights.size(), black)};
 }
 
@@ -295,8 +296,9 @@ Effect shadow_effect() {
 }
 
 Decision of_ambient(Subject s) {
-    if (!is_not_black(s.scene.ambient)) return {false, "the scene has no ambient light"};
-    const glm::vec3 scattered = s.scene.ambient * s.material.ambient;
+    const glm::vec3 light = ambient_light(s.scene);
+    if (!is_not_black(light)) return {false, "the scene has no ambient light"};
+    const glm::vec3 scattered = light * s.material.ambient;
     const bool scatters = is_physical(s) || is_not_black(s.material.ambient);
     return {is_physical(s) || is_not_black(scattered),
             s.name + (scatters ? " scatters ambient light" : " scatters none")};
@@ -361,6 +363,18 @@ Decision of_refraction(Subject s) {
         return {false, s.name + " lets nothing through"};
     if (!s.scene.environment) return {false, "the scene has no environment"};
     return {true, s.name + " lets through what it does not mirror"};
+}
+
+Decision of_environment_tint(Subject s) {
+    if (!s.material.environment_tint) return {false, s.name + " does not ask for it"};
+    if (is_physical(s)) return {false, s.name + " is glTF's model"};
+    if (!s.scene.environment) return {false, "the scene has no environment"};
+    return {true, s.name + " has the color of the environment along its normal"};
+}
+
+Decision of_clamped_terms(Subject s) {
+    if (!s.scene.clamp_terms) return {false, "the scene adds terms as they are"};
+    return of_material(s, !is_physical(s), "clamps each term before the sum", "is glTF's model");
 }
 
 Decision of_rotation(Subject s) {
@@ -682,6 +696,14 @@ std::vector<EffectRow> lighting_rows() {
         {.effect = one_switch<&F::specular_texture>("specular texture", no_highlights),
          .decide = [](Subject s) { return of_texture(s, s.material.specular_texture); },
          .phong_only = true},
+        {.effect = one_switch<&F::environment_tint>(
+             "environment tint", "nothing is lit that it could tint, or by glTF's model"),
+         .decide = of_environment_tint,
+         .choice = "the color of a surface's light is the material's choice"},
+        {.effect =
+             one_switch<&F::clamped_terms>("clamped terms", "nothing is lit, or by glTF's model"),
+         .decide = of_clamped_terms,
+         .choice = "whether terms are clamped is the scene's choice"},
         {.effect = one_switch<&F::emission>("emission", ""),
          .decide =
              [](Subject s) {
@@ -801,7 +823,8 @@ Features lights_of(const Scene& scene) {
         }) ||
         std::any_of(scene.directional_lights.begin(), scene.directional_lights.end(),
                     [&](const DirectionalLight& light) {
-                        return differs(light.highlight_irradiance, light.irradiance);
+                        return shines(light) &&
+                               differs(light.highlight_irradiance, light.irradiance);
                     });
     return f;
 }

@@ -67,9 +67,9 @@ inline bool reflection_shows_view(const Features& f) {
     return by_angle || (looks_up_mirror(f) && !f.reflection_by_normal) || looks_up_refraction(f);
 }
 
-/// True if reflection or refraction depends on the normal.
+/// True if a lookup of the environment depends on the normal.
 inline bool reflection_shows_normal(const Features& f) {
-    return reflection_shows_view(f) || looks_up_mirror(f);
+    return reflection_shows_view(f) || looks_up_mirror(f) || f.environment_tint;
 }
 
 /// True if the view shows a vector of the tangent frame.
@@ -86,7 +86,7 @@ inline bool shows_normal(const Features& f) {
 /// The forms of the environment that a frame's draws look up. The plan reports them; the renderer
 /// prepares them, also for draws that were changed by hand.
 struct EnvironmentNeeds {
-    bool sharp = false;       ///< Mirrored without blur, or seen through a surface.
+    bool sharp = false;       ///< Mirrored without blur, seen through a surface, or its tint.
     bool blurred = false;     ///< Mirrored by rough surfaces, or shown by a blurred skybox.
     bool irradiance = false;  ///< Scattered.
     bool brdf = false;        ///< GGX's directional albedo, for metallic-roughness.

@@ -87,10 +87,10 @@ LightRowLayout light_row_layout(const Features& features) {
 }
 
 bool shines(const DirectionalLight& light) {
-    return is_not_black(light.irradiance) || is_not_black(highlights_of(light));
+    return light.on && (is_not_black(light.irradiance) || is_not_black(highlights_of(light)));
 }
 bool shines(const PointLight& light) {
-    return is_not_black(light.intensity) || is_not_black(highlights_of(light));
+    return light.on && (is_not_black(light.intensity) || is_not_black(highlights_of(light)));
 }
 bool shines(const SpotLight& light) {
     return shines(light.point);

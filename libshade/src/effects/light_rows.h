@@ -44,7 +44,7 @@ inline bool is_not_black(const glm::vec3& color) {
     return color != glm::vec3(0.0F);
 }
 
-/// True if a light is not black.
+/// True if a light is on and not black.
 bool shines(const DirectionalLight& light);
 bool shines(const PointLight& light);
 bool shines(const SpotLight& light);

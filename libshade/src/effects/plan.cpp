@@ -98,7 +98,7 @@ void plan_environment(const Scene& scene, const FrameSettings& settings, FramePl
     decide(&FramePlan::environment_irradiance, needs.irradiance, "a material scatters its light",
            "no material scatters its light");
     decide(&FramePlan::environment_map, plan.skybox || needs.any(),
-           needs.sharp ? "a material mirrors it" : "the effects above are made from it",
+           needs.sharp ? "a material shows it without blur" : "the effects above are made from it",
            "nothing shows it");
 }
 
@@ -154,7 +154,7 @@ EnvironmentNeeds environment_needs(const FramePlan& plan) {
         const Features& f = draw.features;
         const bool blurs = f.reflection == ReflectionTerm::glossy && !has_black_mirror(f);
         needs.sharp |= (f.reflection == ReflectionTerm::mirror && !has_black_mirror(f)) ||
-                       (f.refraction && !has_black_transmission(f));
+                       (f.refraction && !has_black_transmission(f)) || f.environment_tint;
         needs.blurred |= blurs;
         needs.irradiance |= f.environment_diffuse;
         needs.brdf |=

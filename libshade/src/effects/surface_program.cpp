@@ -543,6 +543,14 @@ Steps scattering_steps(By f, bool in_this_stage) {
     };
 }
 
+/// Returns the step that clamps the terms of Phong's model.
+/// \param adds_terms  the stage adds any
+Step term_step(By f, bool adds_terms) {
+    return {"term_limit",
+            "vec3 limited(vec3 term) { return term; }",
+            {{"phong.glsl#clamped_terms", f.clamped_terms && adds_terms}}};
+}
+
 /// Returns the steps of ambient light and the environment's light.
 Steps ambient_steps(By f) {
     const bool physical = f.metallic_roughness;
@@ -589,6 +597,11 @@ Steps color_steps(By f) {
         {"diffuse_texture",
          "vec4 diffuse_texel() { return vec4(1.0); }",
          {{"color.glsl#diffuse_texture", f.diffuse_texture, {.samplers = {"diffuse_texture"}}}}},
+        {"environment_tint",
+         "vec3 environment_tint(Surface surface) { return vec3(1.0); }",
+         {{"color.glsl#environment_tint",
+           f.environment_tint,
+           {.uniforms = {"environment_intensity"}, .samplers = {"environment"}}}}},
         {"vertex_color",
          "vec4 vertex_tint() { return vec4(1.0); }",
          {{"color.glsl#vertex", f.vertex_colors}}},
@@ -769,6 +782,7 @@ Steps vertex_steps(By f) {
                     {"shadow_place", "// pass_shadow() has written shadow_place.", {}},
                     {"normal", "", {{"gouraud.glsl#normal", true}}},
                     {"sharpness", neutral_sharpness, {}},
+                    term_step(f, true),
                     surface_step(f, needs)},
                    light_steps(f, true),
                    scattering_steps(f, true)});
@@ -786,6 +800,7 @@ Steps lit_steps(By f) {
                       {"gouraud.glsl#interpolated", is_gouraud(f) && !both_sides},
                       {"gouraud.glsl#interpolated_both_sides", both_sides}}},
                     {"shadow_place", "", {{"shadow.glsl#place", lights_here && has_shadow(f)}}},
+                    term_step(f, lights_here || f.ambient || f.environment_diffuse || f.emission),
                     surface_step(f, fragment_needs(f))},
                    dielectric_steps(f),
                    energy_steps(f, lights_here),

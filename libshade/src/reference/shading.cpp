@@ -184,17 +184,20 @@ std::vector<Incoming> all_light(const Scene& scene, ShadowTerm casting,
         return is_first;
     };
     for (const DirectionalLight& light : scene.directional_lights) {
+        if (!light.on) continue;
         incoming.push_back({-glm::normalize(glm::dvec3(light.direction_world)),
                             glm::dvec3(light.irradiance),
                             glm::dvec3(light.highlight_irradiance.value_or(light.irradiance)),
                             casts(ShadowTerm::directional_light, light)});
     }
     for (const PointLight& light : scene.point_lights) {
+        if (!light.on) continue;
         add(
             light, position_world, [](const glm::dvec3&) { return 1.0; },
             casts(ShadowTerm::point_light, light), incoming);
     }
     for (const SpotLight& spot : scene.spot_lights) {
+        if (!spot.point.on) continue;
         add(
             spot.point, position_world,
             [&](const glm::dvec3& to_light) { return cone_share(spot, to_light); },
@@ -311,9 +314,31 @@ glm::dvec3 highlight_color(const Material& material, const Surface& at, const gl
     return specular + glm::max(1.0 - specular, 0.0) * portable::pow(1.0 - cosine, 5.0);
 }
 
+/// Returns the ambient light of the scene and its lights.
+glm::dvec3 ambient_of(const Context& context) {
+    const Scene& scene = context.prepared.scene;
+    glm::dvec3 sum(scene.ambient);
+    const auto add_all = [&](const auto& lights) {
+        for (const auto& light : lights) {
+            if (light.on) sum += glm::dvec3(light.ambient);
+        }
+    };
+    add_all(scene.directional_lights);
+    add_all(scene.point_lights);
+    for (const SpotLight& spot : scene.spot_lights) {
+        if (spot.point.on) sum += glm::dvec3(spot.point.ambient);
+    }
+    return sum;
+}
+
+/// Returns a term of Phong's model as it is added.
+glm::dvec3 limited(const Context& context, const glm::dvec3& term) {
+    return context.prepared.scene.clamp_terms ? glm::clamp(term, 0.0, 1.0) : term;
+}
+
 /// The sums over all lights at one point, before they are multiplied by the surface's textures.
 struct LightSums {
-    glm::dvec3 scattered{0.0};   ///< sum L max(n.l, 0)
+    glm::dvec3 scattered{0.0};   ///< sum L diffuse max(n.l, 0)
     glm::dvec3 highlights{0.0};  ///< sum H s k [n.l > 0]
 };
 
@@ -323,10 +348,12 @@ LightSums light_sums(const Context& context, const Surface& at) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
         if (!(n_dot_l > 0.0)) continue;
-        sums.scattered += light.irradiance * n_dot_l;
-        sums.highlights += light.highlight_irradiance *
-                           highlight(context.material, at, light.light_world) *
-                           highlight_color(context.material, at, light.light_world);
+        sums.scattered +=
+            limited(context, light.irradiance * n_dot_l * glm::dvec3(context.material.diffuse));
+        sums.highlights +=
+            limited(context, light.highlight_irradiance *
+                                 highlight(context.material, at, light.light_world) *
+                                 highlight_color(context.material, at, light.light_world));
     }
     return sums;
 }
@@ -386,9 +413,19 @@ glm::dvec3 refracted(const Context& context) {
         -ratio * v + (ratio * n_dot_v - cosine_inside) * n, context.trace);
 }
 
+glm::dvec3 emission_texel(const Context& context) {
+    return glm::dvec3(context.look_up(context.material.emission_texture, ImageUse::color));
+}
+
+/// Returns the emission of metallic-roughness.
 glm::dvec3 emitted(const Context& context) {
-    return glm::dvec3(context.material.emission) *
-           glm::dvec3(context.look_up(context.material.emission_texture, ImageUse::color));
+    return glm::dvec3(context.material.emission) * emission_texel(context);
+}
+
+/// Returns the term N of the formula.
+glm::dvec3 environment_tint(const Context& context) {
+    const bool has_tint = context.material.environment_tint && context.prepared.environment;
+    return has_tint ? along_normal(context, 0.0) : glm::dvec3(1.0);
 }
 
 glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dvec3& tint) {
@@ -396,14 +433,17 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
     const Surface& at = context.surface;
     const glm::dvec3 diffuse(material.diffuse);
     const LightSums lights = interpolated_light_sums(context, hit);
-    const glm::dvec3 ambient =
-        glm::dvec3(material.ambient) * glm::dvec3(context.prepared.scene.ambient);
+    const glm::dvec3 ambient = limited(context, glm::dvec3(material.ambient) * ambient_of(context));
+    const glm::dvec3 around = environment_tint(context);
 
     const glm::dvec3 scattered =
-        occlusion(context) * tint * (ambient + diffuse * environment_irradiance(context)) +
-        tint * diffuse * lights.scattered;
+        around * tint *
+        (occlusion(context) *
+             (ambient + limited(context, diffuse * environment_irradiance(context))) +
+         lights.scattered);
     const glm::dvec3 highlights =
-        glm::dvec3(context.look_up(material.specular_texture, ImageUse::color)) * lights.highlights;
+        around * glm::dvec3(context.look_up(material.specular_texture, ImageUse::color)) *
+        lights.highlights;
     // Without an environment there are neither reflections nor transmitted light.
     glm::dvec3 mirrors(0.0);
     double transmission = 0.0;
@@ -411,7 +451,8 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
         mirrors = fresnel_factor(material, glm::dot(at.normal_world, at.view_world));
         transmission = static_cast<double>(material.transmission);
     }
-    glm::dvec3 radiance = highlights + emitted(context);
+    glm::dvec3 radiance =
+        highlights + limited(context, glm::dvec3(material.emission)) * emission_texel(context);
     radiance += (1.0 - mirrors) * (1.0 - transmission) * scattered;
     if (mirrors != glm::dvec3(0.0)) {
         const double roughness = static_cast<double>(material.reflection_roughness);
@@ -635,8 +676,7 @@ glm::dvec3 mirror_normal(const Microfacets& facets, const Surface& at) {
 glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     const Surface& at = context.surface;
     const Mirrored facing = with_film(context, facets, 1.0, 1.0, {facets.f0, facets.f0});
-    glm::dvec3 light =
-        glm::dvec3(context.prepared.scene.ambient) * (facets.scattering + facing.mirrored);
+    glm::dvec3 light = ambient_of(context) * (facets.scattering + facing.mirrored);
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
         const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
@@ -723,8 +763,8 @@ glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
         return std::numbers::pi * sheen_distribution(n_dot_h, alpha) *
                sheen_visibility(n_dot_l, n_dot_v, alpha);
     });
-    const glm::dvec3 around = occlusion(context) * (glm::dvec3(context.prepared.scene.ambient) +
-                                                    environment_irradiance(context));
+    const glm::dvec3 around =
+        occlusion(context) * (ambient_of(context) + environment_irradiance(context));
     const double largest = std::max({color.r, color.g, color.b});
     return (1.0 - largest * albedo) * base + color * (lights + albedo * around);
 }
@@ -746,7 +786,7 @@ glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     glm::dvec3 coat = received(plain, at.normal_world, [&](double n_dot_l, const glm::dvec3& half) {
         return n_dot_l * ggx_lobe(at.normal_world, half, at, n_dot_l, roughness);
     });
-    glm::dvec3 around(context.prepared.scene.ambient);
+    glm::dvec3 around = ambient_of(context);
     if (context.prepared.environment) {
         const glm::dvec2 albedo = directional_albedo(n_dot_v, roughness);
         around += (albedo.x + albedo.y) * reflected(plain, at.normal_world, roughness);

@@ -203,7 +203,8 @@ glm::vec2 environment_turn(const Environment& environment) {
 }
 
 void set_material(DrawValues& values, const Material& material, const Scene& scene, int last) {
-    values.ambient_scattered = material.ambient * scene.ambient;
+    const glm::vec3 ambient = ambient_light(scene);
+    values.ambient_scattered = material.ambient * ambient;
     values.diffuse_color = material.diffuse;
     values.specular_color = material.specular * specular_normalization(material);
     if (material.highlight_fresnel) {
@@ -213,7 +214,7 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.shininess = material.shininess;
     values.emission_color = material.emission;
     if (const auto& physical = material.metallic_roughness) {
-        values.ambient_scattered = scene.ambient;
+        values.ambient_scattered = ambient;
         values.diffuse_color = values.base_color = physical->base_color;
         values.metallic = physical->metallic;
         values.roughness = physical->roughness;

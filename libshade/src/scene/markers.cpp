@@ -30,7 +30,7 @@ class MarkerMaker {
     void add(const std::string& name, const PointLight& light, const Carried* carried) {
         const glm::vec3& power = light.intensity;
         const float largest = std::max({power.r, power.g, power.b});
-        if (!(largest > 0.0F)) return;
+        if (!light.on || !(largest > 0.0F)) return;
         Scene& scene = graph_.scene;
         const glm::mat4 size = glm::scale(glm::mat4(1.0F), glm::vec3(radius_));
         glm::mat4 world_from_marker = size;

@@ -254,6 +254,38 @@ Camera framed(const Scene& scene, float azimuth, float elevation, float vertical
     return at_distance(boxed, center, factor);
 }
 
+glm::vec3 ambient_light(const Scene& scene) {
+    glm::vec3 sum = scene.ambient;
+    const auto add = [&](const auto& light) {
+        if (light.on) sum += light.ambient;
+    };
+    for (const DirectionalLight& light : scene.directional_lights)
+        add(light);
+    for (const PointLight& light : scene.point_lights)
+        add(light);
+    for (const SpotLight& light : scene.spot_lights)
+        add(light.point);
+    return sum;
+}
+
+std::optional<std::string> add_default_environment(Scene& scene) {
+    if (scene.environment) return std::nullopt;
+    const auto shows_surroundings = [](const Material& material) {
+        const std::optional<MetallicRoughness>& model = material.metallic_roughness;
+        return model && !material.unlit &&
+               (model->metallic > 0.0F || model->clearcoat > 0.0F || model->transmission > 0.0F);
+    };
+    for (const Instance& instance : scene.instances) {
+        for (const MaterialRange& range : scene.meshes[instance.mesh]->material_ranges) {
+            if (!range.material || range.triangle_count == 0) continue;
+            if (!shows_surroundings(scene.materials[*range.material])) continue;
+            scene.environment = studio_environment();
+            return material_label(scene, range.material);
+        }
+    }
+    return std::nullopt;
+}
+
 void add_default_lights(Scene& scene, const Camera& camera) {
     constexpr float ambient = 0.08F;
     const glm::mat3 world_from_view(camera.world_from_view);

@@ -609,7 +609,8 @@ void pose(SceneGraph& graph, double seconds) {
 bool moves_materials(const SceneGraph& graph) {
     bool moves = false;
     for_each_pointer(graph, 0.0, [&](const KeyChannel& channel, double /*now*/) {
-        moves |= channel.pointer.starts_with("materials.");
+        const std::string_view pointer = channel.pointer;
+        moves |= pointer.starts_with("materials.") || pointer.ends_with("lights.ambient");
     });
     return moves;
 }

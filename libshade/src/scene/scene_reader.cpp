@@ -47,21 +47,20 @@ glm::vec3 vector_in(const JsonCursor& object, const char* key, const glm::vec3& 
 /// Refuses members that this type of light does not have.
 template <typename Light>
 void check_light_members(const JsonCursor& object) {
-    allow_fields<Light>(object, {"type", "intensity", "diffuse", "ambient"});
+    allow_fields<Light>(object, {"type", "intensity", "diffuse"});
     if (object.find("color") && object.find("diffuse"))
         object.at("diffuse").fail("says the same as 'color': give one of them");
 }
 
 /// Completes the colors of a light whose fields have been read: "diffuse" is another name of
-/// "color", and "intensity" multiplies all colors. "ambient" adds to the scene's ambient light.
+/// "color", and "intensity" multiplies all colors.
 void finish_colors(const JsonCursor& object, glm::vec3& diffuse, std::optional<glm::vec3>& specular,
-                   Scene& scene) {
+                   glm::vec3& ambient) {
     const float intensity = number_in(object, "intensity", 1.0F);
     if (const auto color = object.find("diffuse")) diffuse = color_in(*color);
     diffuse *= intensity;
     if (specular) specular = intensity * *specular;
-    if (const auto ambient = object.find("ambient"))
-        scene.ambient += intensity * color_in(*ambient);
+    ambient *= intensity;
 }
 
 /// A light without "direction" shines along its node's -z.
@@ -87,7 +86,7 @@ void add_light(const JsonCursor& object, std::optional<std::size_t> node, JsonIm
         DirectionalLight light;
         check_direction(object, node.has_value(), light.direction_world);
         read_fields(object, images, light);
-        finish_colors(object, light.irradiance, light.highlight_irradiance, scene);
+        finish_colors(object, light.irradiance, light.highlight_irradiance, light.ambient);
         hang(graph.directional_lights, scene.directional_lights.size(), node,
              looking_along(glm::vec3(0.0F), light.direction_world));
         scene.directional_lights.push_back(light);
@@ -95,7 +94,7 @@ void add_light(const JsonCursor& object, std::optional<std::size_t> node, JsonIm
         check_light_members<PointLight>(object);
         PointLight light;
         read_fields(object, images, light);
-        finish_colors(object, light.intensity, light.highlight_intensity, scene);
+        finish_colors(object, light.intensity, light.highlight_intensity, light.ambient);
         hang(graph.point_lights, scene.point_lights.size(), node,
              looking_along(light.position_world, {0.0F, 0.0F, -1.0F}));
         scene.point_lights.push_back(light);
@@ -104,7 +103,8 @@ void add_light(const JsonCursor& object, std::optional<std::size_t> node, JsonIm
         SpotLight light;
         check_direction(object, node.has_value(), light.direction_world);
         read_fields(object, images, light);
-        finish_colors(object, light.point.intensity, light.point.highlight_intensity, scene);
+        finish_colors(object, light.point.intensity, light.point.highlight_intensity,
+                      light.point.ambient);
         hang(graph.spot_lights, scene.spot_lights.size(), node,
              looking_along(light.point.position_world, light.direction_world));
         scene.spot_lights.push_back(light);
@@ -343,7 +343,7 @@ class SceneReader {
             add_light(light, std::nullopt, images_, graph_);
     }
 
-    /// Replaces all lights. Of the ambient light, only that of the file itself remains.
+    /// Replaces all lights.
     void read_only_lights(const JsonCursor& root) {
         if (!root.find("only_lights")) return;
         Scene& scene = graph_.scene;
@@ -353,8 +353,6 @@ class SceneReader {
         graph_.directional_lights.clear();
         graph_.point_lights.clear();
         graph_.spot_lights.clear();
-        const auto ambient = root.find(ambient_field.name);
-        scene.ambient = ambient ? color_in(*ambient) : glm::vec3(0.0F);
         read_lights(root, "only_lights");
     }
 

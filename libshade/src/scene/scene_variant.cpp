@@ -334,6 +334,7 @@ Scene with_variant(const Scene& scene, const PreparedVariant& prepared) {
 
 Scene with_lighting_of(const Scene& scene, Scene other) {
     other.ambient = scene.ambient;
+    other.clamp_terms = scene.clamp_terms;
     other.directional_lights = scene.directional_lights;
     other.point_lights = scene.point_lights;
     other.spot_lights = scene.spot_lights;

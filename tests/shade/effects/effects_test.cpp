@@ -52,7 +52,7 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
         const bool uses_lights = c.diffuse || c.specular != SpecularTerm::none;
         const bool reflects = c.reflection != ReflectionTerm::none;
         const bool uses_map = uses_lights || reflects || c.refraction || c.environment_diffuse ||
-                              c.sheen || c.transmission;
+                              c.sheen || c.transmission || c.environment_tint;
         const bool uses_normal = uses_map || c.clearcoat;
         const bool lit =
             has_lights(c) || c.ambient || c.environment_diffuse || reflects || c.transmission;
@@ -88,7 +88,8 @@ TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
             (c.alpha != AlphaMode::opaque || !c.opacity_texture) &&
             (c.interpolation == Interpolation::per_pixel || c.detail == NormalDetail::none) &&
             (reflects || c.fresnel == FresnelTerm::constant) &&
-            !(c.metallic_roughness && c.refraction) &&
+            !(c.metallic_roughness && (c.refraction || c.environment_tint || c.clamped_terms)) &&
+            (c.ambient || c.environment_diffuse || uses_lights || !c.environment_tint) &&
             (c.output == OutputCoding::srgb ||
              (c.tone_mapping == ToneMapping::none && !c.exposure)) &&
             !(c.unlit && (has_lights(c) || uses_normal || c.ambient || c.emission)) &&

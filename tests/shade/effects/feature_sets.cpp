@@ -136,6 +136,8 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::reflection_by_normal>("reflection by normal"),
         field<&F::refraction>("refraction"),
         field<&F::environment_rotation>("environment rotation"),
+        field<&F::environment_tint>("environment tint"),
+        field<&F::clamped_terms>("clamped terms"),
         field<&F::output, 4>("output"),
         field<&F::tone_mapping, 6>("tone mapping"),
         field<&F::exposure>("exposure"),
@@ -310,6 +312,7 @@ Material material_calling_for(const Features& f) {
     if (f.specular != SpecularTerm::none) m.specular = glm::vec3(0.5F, 0.4F, 0.3F);
     m.highlight_fresnel = f.highlight_fresnel;
     m.reflection_by_normal = f.reflection_by_normal;
+    m.environment_tint = f.environment_tint;
     m.shininess = 12.0F;
     if (f.specular == SpecularTerm::phong) m.specular_model = SpecularModel::phong;
     if (f.emission) m.emission = glm::vec3(0.1F, 0.05F, 0.02F);
@@ -350,7 +353,9 @@ void add_lights(Scene& scene, const Features& f) {
 
 void add_surroundings(Scene& scene, const Features& f) {
     if (f.ambient) scene.ambient = glm::vec3(0.2F, 0.3F, 0.1F);
-    if (!f.environment_diffuse && f.reflection == ReflectionTerm::none && !f.refraction) return;
+    if (!f.environment_diffuse && f.reflection == ReflectionTerm::none && !f.refraction &&
+        !f.environment_tint)
+        return;
     CubeFaces faces;
     for (std::uint32_t i = 0; i < 6; ++i)
         faces.faces[i] = {"face", noise(20 + i, 3, 0, 256, ColorSpace::srgb)};
@@ -462,6 +467,7 @@ CallingScene scene_calling_for(const Features& features) {
     if (features.shadow != ShadowTerm::none) scene.shadow = Shadow{};
     if (features.vertex_occlusion) scene.instances[0].open_shares = shares_of(scene.meshes[0]);
     if (features.exposure) scene.exposure = 1.5F;
+    scene.clamp_terms = features.clamped_terms;
     scene.tone_mapping = features.tone_mapping;
     scene.background = {0.1F, 0.2F, 0.3F, 1.0F};
     scene.camera = framed(scene, 0.4F, 0.3F, 0.6F, 1.0F);

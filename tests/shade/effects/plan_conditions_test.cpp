@@ -117,6 +117,7 @@ const Change black_surface = [](Frame& f) { f.material().diffuse = f.material().
 const Change scattering = with(&Material::diffuse, faint);
 const Change shiny = with(&Material::specular, faint);
 const Change by_normal = with(&Material::reflection_by_normal, true);
+const Change tinted = with(&Material::environment_tint, true);
 const Change gleaming = with(&Material::highlight_fresnel, true);
 const Change phong = with(&Material::specular_model, SpecularModel::phong);
 const Change emissive = with(&Material::emission, faint);
@@ -148,6 +149,7 @@ const Change no_texcoords = [](Frame& f) { f.mesh().texcoords.clear(); };
 const Change stored_tangents = [](Frame& f) { f.mesh().tangents.assign(4, {1, 0, 0, 1}); };
 
 const Change ambient = with(&Scene::ambient, faint);
+const Change clamped = with(&Scene::clamp_terms, true);
 const Change no_suns = with(&Scene::directional_lights, {});
 const Change point_light = [](Frame& f) { f.scene.point_lights.push_back({{0, 0, 1}, faint}); };
 const Change constant_light = [](Frame& f) {
@@ -518,6 +520,25 @@ const std::vector<Boundary> light_boundaries = {
      {},
      {physical}},
     {"ambient", "metallic-roughness in ambient light", {physical}, {}, {ambient}},
+    {"ambient", "of a light", {}, {}, {with_sun(&Sun::ambient, faint)}},
+    {"ambient",
+     "of a light that is on",
+     {with_sun(&Sun::ambient, faint)},
+     {with_sun(&Sun::on, false)},
+     {}},
+    {"ambient",
+     "of a spot light that is on",
+     {spot_light, with_spot(&PointLight::ambient, faint)},
+     {with_spot(&PointLight::on, false)},
+     {}},
+    {"directional lights", "on", {}, {with_sun(&Sun::on, false)}, {}},
+    {"point lights", "on", {point_light}, {with_point_light(&PointLight::on, false)}, {}},
+    {"spot lights", "on", {spot_light}, {with_spot(&PointLight::on, false)}, {}},
+    {"highlight colors",
+     "of a light that is on",
+     {shiny, point_light, with_sun(&Sun::highlight_irradiance, faint)},
+     {with_sun(&Sun::on, false)},
+     {}},
     {"directional lights", "has one", {}, {no_suns}, {}},
     {"directional lights",
      "not black",
@@ -693,6 +714,20 @@ const std::vector<Boundary> highlight_boundaries = {
      {with(&Material::specular, glm::vec3(1, 1, 0.999F))}},
     {"reflection by normal", "the option", {environment, mirror}, {}, {by_normal}},
     {"reflection by normal", "a mirror", {environment, by_normal}, {}, {mirror}},
+    {"environment tint", "the option", {environment}, {}, {tinted}},
+    {"environment tint", "an environment", {tinted}, {}, {environment}},
+    {"environment tint", "light", {environment, tinted}, {no_suns}, {}},
+    {"environment tint", "ambient light", {environment, tinted, no_suns}, {}, {ambient}},
+    {"environment tint", "highlights", {environment, tinted, black_surface}, {}, {shiny}},
+    {"environment tint", "not metallic-roughness", {environment, tinted}, {physical}, {}},
+    {"environment tint", "lit", {environment, tinted}, {unlit}, {}},
+    {"environment rotation", "a tint", {environment, rotated}, {}, {tinted}},
+    {"normal map", "a tint", {normal_map, environment, no_suns, ambient}, {}, {tinted}},
+    {"clamped terms", "the option", {}, {}, {clamped}},
+    {"clamped terms", "ambient light", {clamped, no_suns}, {}, {ambient}},
+    {"clamped terms", "emission", {clamped, no_suns}, {}, {emissive}},
+    {"clamped terms", "not metallic-roughness", {clamped}, {physical}, {}},
+    {"clamped terms", "lit", {clamped}, {unlit}, {}},
     {"environment rotation", "a rotation", {environment, mirror}, {}, {rotated}},
     {"environment rotation", "a mirror", {environment, rotated}, {}, {mirror}},
     {"refraction", "transmission", {environment}, {}, {transmitting}},
@@ -762,6 +797,7 @@ const std::vector<Boundary> frame_boundaries = {
     {"environment map", "seen itself", {environment}, {}, {skybox}},
     {"environment map", "mirrored", {environment}, {}, {mirror}},
     {"environment map", "refracted", {environment}, {}, {transmitting}},
+    {"environment map", "a tint", {environment}, {}, {tinted}},
     {"environment map", "scattered", {environment}, {}, {scattered}},
     {"environment map", "blurred", {environment}, {}, {physical}},
     {"sorted blending", "not a mask", {translucent}, {masked}, {blended}},

@@ -46,7 +46,7 @@ TEST(EffectPlan, LeavesBlackLightsOut) {
     EXPECT_EQ(features(scene), features(lit_scene(gray())));
     const FramePlan plan = plan_effects(scene, {.samples = 1});
     EXPECT_EQ(reason(plan.draws[0].reasons, "directional lights").reason,
-              "the scene has 2, 1 of them black");
+              "the scene has 2, 1 of them black or off");
     EXPECT_FALSE(reason(plan.draws[0].reasons, "point lights").on);
 }
 
@@ -124,7 +124,7 @@ TEST(EffectPlan, ReflectsOnlyWithAnEnvironmentAndReflectivity) {
     EXPECT_EQ(plan.draws[0].features.fresnel, FresnelTerm::schlick);
     EXPECT_TRUE(plan.environment_map);
     EXPECT_FALSE(plan.skybox);
-    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "a material mirrors it");
+    EXPECT_EQ(reason(plan.reasons, "environment map").reason, "a material shows it without blur");
 
     scene.materials[0].reflectivity = {0, 0, 0};
     plan = plan_effects(scene, {.samples = 1});

@@ -124,7 +124,9 @@ TEST_F(ShaderFolder, RefusesCodeThatIsInNoPart) {
 }
 
 TEST_F(ShaderFolder, OverridesEmbeddedPartsOneByOne) {
-    const ShaderSteps no_diffuse = {{"diffuse", {.neutral = "d"}}, {"specular", {.neutral = "s"}}};
+    const ShaderSteps no_diffuse = {{"diffuse", {.neutral = "d"}},
+                                    {"specular", {.neutral = "s"}},
+                                    {"term_limit", {.neutral = "l"}}};
     const std::string embedded = assemble("phong.glsl#receive", no_diffuse, {}).text;
     EXPECT_THAT(embedded, HasSubstr("void receive("));
     EXPECT_THAT(assemble("phong.glsl#lambert", {}, {}).text, HasSubstr("diffuse_color"));

@@ -245,6 +245,35 @@ TEST(EnvironmentLookups, FindDirectionsInPanoramas) {
         expect_near(lookup.radiance(way), slope(glm::normalize(way)), 0.01);
 }
 
+TEST(EnvironmentLookups, OfRotatedPanoramasAreThoseOfOtherViewers) {
+    // A horizontal wave, brightest at u = 0.3.
+    const auto wave = [](double u) { return 1.0 - 2.0 * std::abs(std::remainder(u - 0.3, 1.0)); };
+    const Image image = picture(256, 128, [&](double u, double) {
+        return glm::dvec3(2.0 * wave(u) - 1.0, 0.0, 0.0);  // slope() is the wave.
+    });
+    struct Viewer {
+        const char* name;
+        double degrees;
+        double (*angle)(double x, double z);  // Of the lookup: 2 pi (u - 1/2).
+    };
+    const Viewer viewers[] = {
+        {"three.js", -90.0, [](double x, double z) { return std::atan2(z, x); }},
+        {"glTF Sample Viewer, +Z", 180.0, [](double x, double z) { return std::atan2(-x, z); }}};
+    for (const Viewer& viewer : viewers) {
+        Environment environment{Equirectangular{{"panorama", image}}};
+        environment.rotation = static_cast<float>(viewer.degrees * std::numbers::pi / 180.0);
+        Report report;
+        const EnvironmentLookup lookup(environment, report);
+        for (const double around : {0.3, 1.0, 2.0, 2.9, 4.0, 5.0, 6.1}) {
+            const double x = std::cos(around);
+            const double z = std::sin(around);
+            const double u = viewer.angle(x, z) / (2.0 * std::numbers::pi) + 0.5;
+            EXPECT_NEAR(lookup.radiance({x, 0.0, z}).r, wave(u), 0.01)
+                << viewer.name << " " << around;
+        }
+    }
+}
+
 TEST(EnvironmentLookups, FindDirectionsInProbes) {
     const Image image = picture(256, 256, [](double u, double v) {
         const glm::dvec2 place(2.0 * u - 1.0, 1.0 - 2.0 * v);

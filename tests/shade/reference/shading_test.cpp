@@ -192,6 +192,74 @@ TEST(ReferenceShading, OfAmbientLightIsItsShareTimesTintAndOcclusion) {
     expect_near(in_the_middle(scene), occlusion * glm::dvec3(0.5, 0.5, 0.5));
 }
 
+TEST(ReferenceShading, AmbientLightIncludesThatOfLightsThatAreOn) {
+    Material material = test::black_material();
+    material.ambient = glm::vec3(0.5F);
+    Scene scene = test::square_scene(material);
+    scene.ambient = {0.25F, 0.0F, 0.0F};
+    scene.directional_lights.resize(2);
+    scene.directional_lights[0].ambient = {0.0F, 0.5F, 0.0F};
+    scene.directional_lights[1].ambient = glm::vec3(8.0F);
+    scene.directional_lights[1].on = false;
+    scene.point_lights.resize(1);
+    scene.point_lights[0].ambient = {0.0F, 0.0F, 0.125F};
+    scene.spot_lights.resize(1);
+    scene.spot_lights[0].point.ambient = {1.0F, 0.0F, 0.0F};
+    EXPECT_EQ(ambient_light(scene), glm::vec3(1.25F, 0.5F, 0.125F));
+    expect_near(in_the_middle(scene), {0.625, 0.25, 0.0625});
+    scene.spot_lights[0].point.on = false;
+    expect_near(in_the_middle(scene), {0.125, 0.25, 0.0625});
+}
+
+TEST(ReferenceShading, ALightThatIsOffSendsNothing) {
+    Material material = test::black_material();
+    material.diffuse = material.specular = glm::vec3(1.0F);
+    material.shininess = 0.0F;
+    Scene scene = test::square_scene(material);
+    scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
+    scene.point_lights = {{{0, 0, 1}, {1, 1, 1}}};
+    scene.spot_lights = {{{{0, 0, 1}, {1, 1, 1}}, {0, 0, -1}}};
+    expect_near(in_the_middle(scene), glm::dvec3(6.0));
+    scene.directional_lights[0].on = false;
+    expect_near(in_the_middle(scene), glm::dvec3(4.0));
+    scene.point_lights[0].on = scene.spot_lights[0].point.on = false;
+    expect_near(in_the_middle(scene), glm::dvec3(0.0));
+}
+
+TEST(ReferenceShading, TermsAreClampedBeforeTheSum) {
+    Material material = test::black_material();
+    material.ambient = {0.5F, 0.25F, 1.0F};
+    material.diffuse = {1.0F, 0.5F, 0.25F};
+    material.specular = glm::vec3(3.0F, 0.5F, 0.0F);
+    material.shininess = 0.0F;
+    material.emission = {0.0F, 0.0F, 5.0F};
+    Scene scene = test::square_scene(material);
+    scene.ambient = glm::vec3(4.0F);
+    scene.directional_lights = {{{0, 0, -1}, {1.5F, 1, 1}}, {{0, 0, -1}, {1, 1, 1}}};
+    scene.meshes[0].edit().colors.assign(4, glm::vec4(0.5F, 0.5F, 0.5F, 1.0F));
+    // Ambient 2, 1, 4; diffuse 1.5 and 1, 0.5 twice, 0.25 twice; highlights 4.5 and 3, 0.5 twice,
+    // 0.
+    expect_near(in_the_middle(scene), {0.5 * (2 + 2.5) + 7.5, 0.5 * 2 + 1, 0.5 * 4.5 + 5});
+    scene.clamp_terms = true;
+    expect_near(in_the_middle(scene), {0.5 * 3 + 2, 0.5 * 2 + 1, 0.5 * 1.5 + 1});
+}
+
+TEST(ReferenceShading, AnEnvironmentTintMultipliesScatteredLightAndHighlights) {
+    Material material = test::black_material();
+    material.ambient = glm::vec3(0.5F);
+    material.diffuse = glm::vec3(0.25F);
+    material.specular = glm::vec3(0.125F);
+    material.shininess = 0.0F;
+    material.emission = glm::vec3(0.0625F);
+    material.environment_tint = true;
+    Scene scene = test::square_scene(material);
+    scene.ambient = glm::vec3(1.0F);
+    scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
+    expect_near(in_the_middle(scene), glm::dvec3(0.9375));  // There is no environment.
+    scene.environment = test::constant_environment({0.5F, 1.0F, 2.0F}, false);
+    expect_near(in_the_middle(scene), 0.875 * glm::dvec3(0.5, 1, 2) + 0.0625);
+}
+
 TEST(ReferenceShading, OfDiffuseLightIsTheCosine) {
     Material material = test::black_material();
     material.diffuse = {1.0F, 0.5F, 0.25F};

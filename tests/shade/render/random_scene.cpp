@@ -120,6 +120,7 @@ PointLight random_point_light(Dice& dice) {
         light.intensity *= 0.2F;
     }
     if (dice.chance(0.3)) light.highlight_intensity = dice.color(0.0F, 3.0F);
+    if (light.range) light.ambient = 0.05F * light.intensity;
     return light;
 }
 
@@ -261,6 +262,8 @@ Scene random_scene(std::uint64_t seed) {
     for (std::size_t i = 0; i < count; ++i) {
         Mesh mesh = random_mesh(dice);
         Material material = random_material(scene, dice, physical);
+        // It takes no random number of its own, so that the other values of a seed stay.
+        material.environment_tint = scene.environment && material.diffuse.r > 0.6F;
         if (i == 0 && dice.chance(0.3)) make_see_through(mesh, material, dice);
         if (i > 0 && dice.chance(0.2)) {
             material.alpha_mode = AlphaMode::mask;
@@ -274,6 +277,7 @@ Scene random_scene(std::uint64_t seed) {
     }
     scene.background = glm::vec4(dice.color(), dice.between(0.0F, 1.0F));
     if (dice.chance(0.4)) scene.exposure = dice.between(0.5F, 2.0F);
+    scene.clamp_terms = scene.exposure < 0.9F;
     scene.tone_mapping =
         one_of(dice, {ToneMapping::none, ToneMapping::none, ToneMapping::none,
                       ToneMapping::reinhard, ToneMapping::aces, ToneMapping::khronos_neutral,

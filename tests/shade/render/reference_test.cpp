@@ -90,6 +90,16 @@ std::vector<AddedThing> light_effects() {
              scene.point_lights[0].highlight_intensity = glm::vec3(2, 0, 1);
              scene.directional_lights[0].highlight_irradiance = glm::vec3(0, 1, 1);
          }},
+        {"ambient light of lights, one of which is off",
+         [](Scene& scene, test::Dice&) {
+             scene.directional_lights[0].ambient = {0.2F, 0.0F, 0.1F};
+             scene.directional_lights.push_back(scene.directional_lights[0]);
+             scene.directional_lights[1].on = false;
+             scene.point_lights[0].ambient = {0.0F, 0.1F, 0.0F};
+             scene.spot_lights = {{{{0, 1, 3}, {4, 3, 2}}, {0, -1, -3}, 0.1F, 0.35F}};
+             scene.spot_lights[0].point.on = false;
+             scene.spot_lights[0].point.ambient = glm::vec3(0.5F);
+         }},
         {"exposure", [](Scene& scene, test::Dice&) { scene.exposure = 1.7F; }},
         {"Reinhard", [](Scene& scene, test::Dice&) { scene.tone_mapping = ToneMapping::reinhard; }},
         {"ACES", [](Scene& scene, test::Dice&) { scene.tone_mapping = ToneMapping::aces; }},
@@ -198,6 +208,21 @@ std::vector<AddedThing> material_effects() {
              s.background = {0.2F, 0.4F, 0.6F, 0.8F};
          }},
     };
+    for (const Interpolation where : {Interpolation::per_pixel, Interpolation::gouraud}) {
+        effects.push_back({"clamped terms", [=](Scene& s, test::Dice&) {
+                               s.clamp_terms = true;
+                               s.exposure = 0.3F;  // The sum of clamped terms exceeds 1.
+                               s.directional_lights[0].irradiance = {3.0F, 1.0F, 0.5F};
+                               s.ambient = glm::vec3(2.0F);
+                               s.materials[0].specular = {2.0F, 0.4F, 0.3F};
+                               s.materials[0].shininess = 3.0F;
+                               s.materials[0].emission = {1.5F, 0.2F, 0.0F};
+                               s.materials[0].interpolation = where;
+                               for (const glm::vec3& position : s.meshes[0]->positions)
+                                   s.meshes[0].edit().colors.emplace_back(position * 0.5F + 0.5F,
+                                                                          1.0F);
+                           }});
+    }
     for (const SpecularModel model : {SpecularModel::phong, SpecularModel::blinn_phong,
                                       SpecularModel::blinn_phong_normalized}) {
         for (const Interpolation where : {Interpolation::per_pixel, Interpolation::gouraud}) {
@@ -425,6 +450,28 @@ std::vector<AddedThing> environment_effects() {
                            s.environment = test::random_environment(d);
                            s.materials[0].reflectivity = glm::vec3(0.6F);
                            s.materials[0].reflection_by_normal = true;
+                       }});
+    for (const Interpolation where :
+         {Interpolation::per_pixel, Interpolation::gouraud, Interpolation::flat}) {
+        effects.push_back({"environment tint", [=](Scene& s, test::Dice& d) {
+                               s.environment = test::random_environment(d);
+                               s.environment->rotation = 1.0F;
+                               s.materials[0].environment_tint = true;
+                               s.materials[0].specular = glm::vec3(0.6F);
+                               s.materials[0].reflectivity = glm::vec3(0.2F);
+                               s.materials[0].interpolation = where;
+                               if (where == Interpolation::gouraud) return;
+                               s.materials[0].double_sided = true;
+                               s.materials[0].normal_map =
+                                   NormalMap{image(s, test::random_normals(d))};
+                           }});
+    }
+    effects.push_back({"clamped light of the environment", [](Scene& s, test::Dice& d) {
+                           s.environment = test::random_environment(d);
+                           s.environment->lights = true;
+                           s.environment->intensity = 4.0F;
+                           s.exposure = 0.5F;
+                           s.clamp_terms = true;
                        }});
     effects.push_back({"rotation", [](Scene& s, test::Dice& d) {
                            s.environment = test::random_environment(d);

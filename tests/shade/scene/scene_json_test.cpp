@@ -224,7 +224,9 @@ TEST_F(SceneFile, LampsHaveTheThreeColoursOfCourses) {
         {"type": "spot", "position": [0, 5, 0], "direction": [0, -1, 0], "inner_cone": 10, "outer_cone": 20,
          "range": 9}])");
     const Scene& scene = graph.scene;
-    EXPECT_NEAR(scene.ambient.x, 0.5F, json_rounding);  // 0.1 and 2 times 0.2.
+    EXPECT_EQ(scene.ambient, glm::vec3(0.1F));
+    EXPECT_EQ(scene.point_lights[0].ambient, glm::vec3(0.4F));  // 2 times 0.2.
+    EXPECT_NEAR(ambient_light(scene).x, 0.5F, json_rounding);
     EXPECT_EQ(scene.point_lights[0].intensity, glm::vec3(2, 0, 0));
     EXPECT_EQ(scene.point_lights[0].highlight_intensity, glm::vec3(2.0F));
     EXPECT_EQ(scene.point_lights[0].falloff, Falloff::none);
@@ -233,6 +235,38 @@ TEST_F(SceneFile, LampsHaveTheThreeColoursOfCourses) {
     EXPECT_FALSE(scene.directional_lights[0].highlight_irradiance);
     EXPECT_NEAR(scene.spot_lights[0].outer_cone, std::numbers::pi_v<float> / 9, json_rounding);
     EXPECT_EQ(scene.spot_lights[0].point.range, 9.0F);
+}
+
+TEST_F(SceneFile, LightsKeepTheirAmbientLightAndTheirSwitch) {
+    SceneGraph graph = load(R"("ambient": 0.1, "nodes": [{"shape": "quad"}], "lights": [
+        {"type": "point", "ambient": [0.2, 0, 0], "intensity": 2},
+        {"type": "directional", "direction": [0, -1, 0], "ambient": 0.25, "on": false},
+        {"type": "spot", "direction": [0, -1, 0], "ambient": 0.5}])");
+    Scene& scene = graph.scene;
+    EXPECT_FALSE(scene.directional_lights[0].on);
+    EXPECT_TRUE(scene.point_lights[0].on);
+    EXPECT_EQ(ambient_light(scene), scene.ambient + glm::vec3(0.4F, 0, 0) + glm::vec3(0.5F));
+    scene.spot_lights[0].point.on = false;
+    EXPECT_EQ(ambient_light(scene), scene.ambient + glm::vec3(0.4F, 0, 0));
+
+    // A saved scene has the same lights.
+    save_scene(folder_ / "saved.json", {folder_ / "scene.json", scene, Camera{}, {8, 8}, {}});
+    const Scene saved = load_scene_graph(folder_ / "saved.json", {}, report_).scene;
+    EXPECT_EQ(saved.ambient, scene.ambient);
+    EXPECT_EQ(saved.point_lights[0].ambient, scene.point_lights[0].ambient);
+    EXPECT_EQ(saved.directional_lights[0].ambient, glm::vec3(0.25F));
+    EXPECT_FALSE(saved.directional_lights[0].on);
+    EXPECT_FALSE(saved.spot_lights.at(0).point.on);
+    EXPECT_EQ(ambient_light(saved), ambient_light(scene));
+    EXPECT_THROW(load(R"("lights": [{"type": "point", "ambient": -1}])"), FileError);
+}
+
+TEST_F(SceneFile, OnlyLightsReplaceTheAmbientLightOfOthers) {
+    // As scenes were saved whose lights had no ambient light of their own.
+    const Scene scene = load(R"("ambient": 0.75, "lights": [{"type": "point", "ambient": 0.5}],
+        "only_lights": [{"type": "point"}])")
+                            .scene;
+    EXPECT_EQ(ambient_light(scene), glm::vec3(0.75F));
 }
 
 TEST_F(SceneFile, ShadowsHaveASizeInDegrees) {
@@ -329,8 +363,9 @@ TEST_F(SceneFile, CamerasLookAtAPlaceOrFrameTheScene) {
 
 TEST_F(SceneFile, SettingsOfThePicture) {
     const Scene scene = load(R"("background": [0.1, 0.2, 0.3, 0.4], "exposure": 2,
-        "tone_mapping": "aces")")
+        "tone_mapping": "aces", "clamp_terms": true)")
                             .scene;
+    EXPECT_TRUE(scene.clamp_terms);
     EXPECT_EQ(scene.background, glm::vec4(0.1F, 0.2F, 0.3F, 0.4F));
     EXPECT_EQ(scene.exposure, 2.0F);
     EXPECT_EQ(scene.tone_mapping, ToneMapping::aces);

@@ -85,6 +85,21 @@ TEST(Lights, KeepTheirHighlightColor) {
     EXPECT_NEAR(std::get<DirectionalLight>(again).highlight_irradiance->x, 0.25F, 1e-6F);
 }
 
+TEST(Lights, KeepTheirAmbientLightAndSwitchWhenTheirKindChanges) {
+    DirectionalLight far;
+    far.ambient = {0.5F, 0.25F, 0.0F};
+    far.on = false;
+    for (const LightType type : {LightType::point, LightType::spot}) {
+        const AnyLight near = converted_to(far, type, lit_sphere);
+        Scene scene;
+        set_lights(scene, {near});
+        EXPECT_EQ(ambient_light(scene), glm::vec3(0.0F));
+        const AnyLight again = converted_to(near, LightType::directional, lit_sphere);
+        EXPECT_EQ(std::get<DirectionalLight>(again).ambient, far.ambient);
+        EXPECT_FALSE(std::get<DirectionalLight>(again).on);
+    }
+}
+
 TEST(Lights, AtTheCenterOrWithoutADirectionStayFinite) {
     PointLight inside;
     inside.position_world = lit_sphere.center;

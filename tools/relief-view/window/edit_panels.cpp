@@ -31,6 +31,8 @@ struct Illumination {
     glm::vec3 from{0.0F, 1.0F, 0.0F};  ///< Unit vector towards the light.
     glm::vec3 irradiance{1.0F};
     std::optional<glm::vec3> highlight;
+    glm::vec3 ambient{0.0F};
+    bool on = true;
 };
 
 glm::vec3 normalized_or_up(const glm::vec3& v) {
@@ -48,13 +50,14 @@ float falloff_at(const PointLight& light, float distance) {
 /// conversion turns it towards the center.
 Illumination illumination_of(const AnyLight& light, const BoundingSphere& sphere) {
     if (const auto* far = std::get_if<DirectionalLight>(&light))
-        return {normalized_or_up(-far->direction_world), far->irradiance,
-                far->highlight_irradiance};
+        return {normalized_or_up(-far->direction_world), far->irradiance, far->highlight_irradiance,
+                far->ambient, far->on};
     const auto* spot = std::get_if<SpotLight>(&light);
     const PointLight& point = spot != nullptr ? spot->point : std::get<PointLight>(light);
     const glm::vec3 offset = point.position_world - sphere.center;
     const float falloff = falloff_at(point, glm::length(offset));
-    Illumination illumination{normalized_or_up(offset), falloff * point.intensity, {}};
+    Illumination illumination{
+        normalized_or_up(offset), falloff * point.intensity, {}, point.ambient, point.on};
     if (point.highlight_intensity) illumination.highlight = falloff * *point.highlight_intensity;
     return illumination;
 }
@@ -68,6 +71,8 @@ PointLight point_light_for(const Illumination& illumination, const BoundingSpher
     };
     light.intensity = bounded(illumination.irradiance);
     if (illumination.highlight) light.highlight_intensity = bounded(*illumination.highlight);
+    light.ambient = illumination.ambient;
+    light.on = illumination.on;
     return light;
 }
 
@@ -117,7 +122,7 @@ AnyLight converted_to(const AnyLight& light, LightType type, const BoundingSpher
     if (type == LightType::directional)
         return DirectionalLight{-illumination.from,
                                 glm::min(illumination.irradiance, glm::vec3(max_light)),
-                                illumination.highlight};
+                                illumination.highlight, illumination.ambient, illumination.on};
     // Point lights and spotlights keep their position, range and falloff.
     PointLight point = point_light_for(illumination, sphere);
     if (const auto* spot = std::get_if<SpotLight>(&light)) point = spot->point;
@@ -269,6 +274,13 @@ bool edit_direction(glm::vec3& direction) {
     return changed;
 }
 
+/// Edits what all lights have in common: whether it is on, and its ambient light.
+template <typename Light>
+bool edit_common(Light& light) {
+    const bool changed = check("On", light.on);
+    return pick_color("Ambient", light.ambient, false) || changed;
+}
+
 bool edit_point(PointLight& light) {
     bool changed = ImGui::DragFloat3(begin_row("Position").c_str(), &light.position_world.x, 0.01F);
     changed |= edit_light_color(light.intensity);
@@ -278,7 +290,7 @@ bool edit_point(PointLight& light) {
         light.falloff = falls_off ? Falloff::inverse_square : Falloff::none;
         changed = true;
     }
-    return changed;
+    return edit_common(light) || changed;
 }
 
 /// Edits the cone angles. The inner cone stays smaller than the outer cone.
@@ -297,6 +309,7 @@ bool edit_light(AnyLight& light) {
     if (auto* directional = std::get_if<DirectionalLight>(&light)) {
         bool changed = edit_direction(directional->direction_world);
         changed |= edit_light_color(directional->irradiance);
+        changed |= edit_common(*directional);
         return edit_highlights(directional->highlight_irradiance, directional->irradiance) ||
                changed;
     }
@@ -364,6 +377,12 @@ void draw_light_panel(const PanelInput& input) {
     if (pick_color("Ambient", ambient, false)) {
         state.edit([&](Scene& scene) { scene.ambient = glm::max(ambient, glm::vec3(0.0F)); });
     }
+    bool clamps = state.scene().clamp_terms;
+    if (check("Clamp terms", clamps)) {
+        state.edit([&](Scene& scene) { scene.clamp_terms = clamps; });
+    }
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("Phong's surfaces clamp each term to 0 to 1 before they add it.");
     std::optional<Shadow> shadow = state.scene().shadow;
     bool casts = shadow.has_value();
     if (check("Shadow", casts)) {
@@ -562,6 +581,7 @@ bool edit_reflection(Material& material) {
     changed |= choose("Fresnel", material.fresnel);
     changed |= slide(material, &Material::reflection_roughness);
     changed |= check("Reflection by normal", material.reflection_by_normal);
+    changed |= check("Environment tint", material.environment_tint);
     changed |= slide(material, &Material::transmission);
     changed |= slide("Refractive index", material.refractive_index, {1.0F, 3.0F});
     return changed;

@@ -115,6 +115,7 @@ struct Features {
     ReflectionTerm reflection = ReflectionTerm::none;
     FresnelTerm fresnel = FresnelTerm::constant;  ///< Phong's model only.
     bool reflection_by_normal = false;            ///< Phong's model only.
+    bool environment_tint = false;                ///< Phong's model only.
     bool refraction = false;
     bool environment_rotation = false;
     // The picture.
@@ -124,6 +125,7 @@ struct Features {
     DebugView view = DebugView::picture;
     ShadowTerm shadow = ShadowTerm::none;  ///< Surfaces hide one of the lights.
     bool vertex_occlusion = false;         ///< Light from all around is dimmed by vertex.
+    bool clamped_terms = false;            ///< Phong's model only: Scene::clamp_terms.
 
     friend auto operator<=>(const Features&, const Features&) = default;
 };

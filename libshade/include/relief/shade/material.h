@@ -149,9 +149,10 @@ bool compensates_energy(const MetallicRoughness& model);
 ///              + emission * emission_texture
 ///     scattered  = occlusion * tint (ambient * scene.ambient + diffuse * E(n))
 ///                + tint sum_i L diffuse max(n.l, 0)
-///     highlights = specular_texture * sum_i H s k [n.l > 0]
+///     highlights = specular_texture * N * sum_i H s k [n.l > 0]
 ///
-///     tint = diffuse_texture * vertex color
+///     tint = diffuse_texture * vertex color * N
+///     N    = with environment_tint the environment in direction n, else 1
 ///     s    = max(n.h, 0)^shininess (Blinn-Phong), that times (shininess + 2) / 8
 ///            (blinn_phong_normalized), or max(r.v, 0)^shininess (Phong); x^0 is 1
 ///     k    = specular, or with highlight_fresnel
@@ -165,7 +166,11 @@ bool compensates_energy(const MetallicRoughness& model);
 ///     refracted = v refracted by refractive_index, once, at the first surface
 ///     occlusion = 1 + occlusion_strength (occlusion_texture - 1)
 ///
-/// A highlight is the mirror image of its light, so F does not dim it.
+/// A highlight is the mirror image of its light, so F does not dim it. With Scene::clamp_terms,
+/// these terms are clamped to [0,1] by channel before they are multiplied by occlusion, tint and
+/// textures, and added: ambient * scene.ambient, diffuse * E(n), emission, and for each light
+/// L diffuse max(n.l, 0) and H s k. Here and below, scene.ambient includes that of the lights
+/// (ambient_light()).
 ///
 /// glTF's model, with b = base_color * tint, m metallic, roughness r, alpha = r^2, c = b (1 - m),
 /// f0 = mix(d, b, m), f90 = mix(specular, 1, m), Schlick's f = f0 + (f90 - f0) (1 - v.h)^5, and D
@@ -240,7 +245,7 @@ bool compensates_energy(const MetallicRoughness& model);
 struct Material {
     std::string name;
     Interpolation interpolation = Interpolation::per_pixel;
-    glm::vec3 ambient{0.8F};  ///< The scattered share of scene.ambient.
+    glm::vec3 ambient{0.8F};  ///< The scattered share of ambient light.
     glm::vec3 diffuse{0.8F};
     glm::vec3 specular{0.0F};
     glm::vec3 emission{0.0F};
@@ -259,6 +264,9 @@ struct Material {
     /// The environment is looked up along the normal, not along the mirrored view: as if painted on
     /// the surface.
     bool reflection_by_normal = false;
+    /// The environment along the normal multiplies ambient, scattered and highlight light, like a
+    /// texture; without an environment, nothing does.
+    bool environment_tint = false;
     float transmission = 0.0F;  ///< The transmitted share of the light that is not reflected.
 
     std::optional<Texture> diffuse_texture;    ///< sRGB color; alpha is used unless opaque.

@@ -94,6 +94,8 @@ struct DirectionalLight {
     glm::vec3 irradiance{1.0F};
     /// The irradiance for highlights, if different; metallic-roughness ignores it.
     std::optional<glm::vec3> highlight_irradiance = std::nullopt;
+    glm::vec3 ambient{0.0F};  ///< The ambient light that it adds to the scene's.
+    bool on = true;           ///< False: the light is off, and so is its ambient light.
 };
 
 /// The decrease of light with distance.
@@ -111,6 +113,8 @@ struct PointLight {
     Falloff falloff = Falloff::inverse_square;
     /// The intensity for highlights, if different; metallic-roughness ignores it.
     std::optional<glm::vec3> highlight_intensity = std::nullopt;
+    glm::vec3 ambient{0.0F};  ///< The ambient light that it adds to the scene's, everywhere.
+    bool on = true;           ///< False: the light is off, and so is its ambient light.
 };
 
 /// A point light within a cone.
@@ -254,7 +258,8 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<ImageSource> images;
     std::vector<Instance> instances;
-    glm::vec3 ambient{0.0F};  ///< Constant radiance from all directions.
+    /// Constant radiance from all directions, besides that of lights: ambient_light() has the sum.
+    glm::vec3 ambient{0.0F};
     std::vector<DirectionalLight> directional_lights;
     std::vector<PointLight> point_lights;
     std::vector<SpotLight> spot_lights;
@@ -266,7 +271,13 @@ struct Scene {
     ToneMapping tone_mapping = ToneMapping::none;  ///< For pictures with sRGB codes only.
     std::optional<Shadow> shadow = std::nullopt;   ///< If absent, no light casts a shadow.
     std::optional<AmbientOcclusion> ambient_occlusion = std::nullopt;
+    /// Phong's surfaces clamp each term to [0, 1] before they add it (Material has the formula), as
+    /// hardware with fixed functions did.
+    bool clamp_terms = false;
 };
+
+/// Returns the ambient light of the scene: its own, and that of all lights that are on.
+glm::vec3 ambient_light(const Scene& scene);
 
 /// Returns true if the pose adds displacements of a morph target, because its weight is not 0.
 bool is_morphed(const MeshPose& pose);
@@ -344,6 +355,14 @@ Environment studio_environment();
 
 /// Returns true if the environment has the image of studio_environment().
 bool is_studio(const Environment& environment);
+
+/// Sets studio_environment() if the scene has no environment, and a triangle has a material that
+/// shows its surroundings: metallic-roughness that is metallic, coated or transmissive, and lit.
+/// Such a material is nearly black without an environment.
+///
+/// \return the name of the first such material for messages ("material 'body'"); nothing if the
+///         scene did not change
+std::optional<std::string> add_default_environment(Scene& scene);
 
 // Computes cameras that show a scene as large as possible. World space; angles in radians.
 
@@ -493,7 +512,8 @@ struct SceneGraph {
 ///         finite, or keys are not as KeyChannel requires
 void pose(SceneGraph& graph, double seconds);
 
-/// Returns whether an animation that plays moves numbers or colors of materials.
+/// Returns whether an animation that plays moves numbers or colors of materials, or the ambient
+/// light of lights.
 bool moves_materials(const SceneGraph& graph);
 
 /// Makes a camera of the file the scene's camera. The next pose() places it.
@@ -523,7 +543,8 @@ void validate(const SceneGraph& graph);
 glm::mat4 looking_along(const glm::vec3& position, const glm::vec3& direction);
 
 /// Adds a small unlit sphere for every point and spot light, in the color of the light scaled to a
-/// maximum of 1. Spheres move with the nodes of their lights; black lights get none.
+/// maximum of 1. Spheres move with the nodes of their lights; lights that are black or off get
+/// none.
 ///
 /// \param radius  in world units, independent of the scale of nodes
 /// \throws InvalidInput if the radius is not positive and finite

@@ -231,6 +231,7 @@ inline constexpr auto fields_of<Material> = std::tuple{
         "conductor_absorption", &Material::conductor_absorption, {0, 1e3F}, FieldUnit::color},
     SceneField{"reflection_roughness", &Material::reflection_roughness, {0, 1}},
     SceneField{"reflection_by_normal", &Material::reflection_by_normal},
+    SceneField{"environment_tint", &Material::environment_tint},
     SceneField{"transmission", &Material::transmission, {0, 1}},
     SceneField{"diffuse_texture", &Material::diffuse_texture},
     SceneField{"specular_texture", &Material::specular_texture},
@@ -257,7 +258,9 @@ inline constexpr auto fields_of<DirectionalLight> = std::tuple{
                &DirectionalLight::highlight_irradiance,
                {0, max_light},
                FieldUnit::color,
-               "highlight irradiance"}};
+               "highlight irradiance"},
+    SceneField{"ambient", &DirectionalLight::ambient, {0, max_light}, FieldUnit::color},
+    SceneField{"on", &DirectionalLight::on}};
 
 template <>
 inline constexpr auto fields_of<PointLight> = std::tuple{
@@ -269,7 +272,9 @@ inline constexpr auto fields_of<PointLight> = std::tuple{
                FieldUnit::color,
                "highlight intensity"},
     SceneField{"falloff", &PointLight::falloff},
-    SceneField{"range", &PointLight::range, positive_range, FieldUnit::world_length}};
+    SceneField{"range", &PointLight::range, positive_range, FieldUnit::world_length},
+    SceneField{"ambient", &PointLight::ambient, {0, max_light}, FieldUnit::color},
+    SceneField{"on", &PointLight::on}};
 
 inline constexpr SceneField outer_cone_field{
     "outer_cone", &SpotLight::outer_cone, {0, std::numbers::pi_v<float> / 2}, FieldUnit::radians};
@@ -327,7 +332,8 @@ inline constexpr auto fields_of<Scene> =
                SceneField{"exposure", &Scene::exposure, {0, max_reflectance}},
                SceneField{"tone_mapping", &Scene::tone_mapping},
                SceneField{"shadow", &Scene::shadow},
-               SceneField{"ambient_occlusion", &Scene::ambient_occlusion}};
+               SceneField{"ambient_occlusion", &Scene::ambient_occlusion},
+               SceneField{"clamp_terms", &Scene::clamp_terms}};
 
 template <>
 inline constexpr auto fields_of<Orbit> = std::tuple{
