@@ -555,8 +555,8 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
         "Use an environment: one image, six square images in the order +x -x +y -y +z -z, or a "
         "folder with six images whose names end in posx, negx, posy, negy, posz, negz. studio is a "
         "built-in photo studio, which lights the model and is not visible behind it; none is no "
-        "environment. Default: that of the scene file; studio for models with a metallic, coated "
-        "or transmissive material.",
+        "environment. Without this option, a scene file has its own one, and a model with a "
+        "metallic, coated or transmissive material gets the studio.",
         [&](const std::string&, const std::string& text) {
             options.environment.emplace_back(text);
         })
