@@ -303,6 +303,17 @@ class Pictures(CommandLineCase):
                     self.run_tool("relief-view", file, "--output", out, "--size", "96x64", *words)
                     picture = relief.Scene.load(file).render(size=(96, 64), **options)
                     numpy.testing.assert_array_equal(picture, relief.read_image(out)[0])
+        metal = self.folder / "metal.glb"
+        self.run_tool("relief-mesh", "process", DATA / "vase.obj", self.folder / "vase.gltf")
+        document = json.loads((self.folder / "vase.gltf").read_text())
+        for material in document["materials"]:
+            material["pbrMetallicRoughness"]["metallicFactor"] = 1
+        (self.folder / "vase.gltf").write_text(json.dumps(document))
+        self.run_tool("relief-mesh", "process", self.folder / "vase.gltf", metal)
+        for studio, words in ((True, []), (False, ["--environment", "none"])):
+            self.run_tool("relief-view", metal, "--output", self.folder / "out.png", "--size", "96x64", *words)
+            picture = relief.Scene.load(metal, studio=studio).render(size=(96, 64))
+            numpy.testing.assert_array_equal(picture, relief.read_image(self.folder / "out.png")[0])
         out = self.folder / "out.exr"
         scene = self.folder / "scene.json"
         self.run_tool("relief-view", model, "--output", out, "--size", "96x64", "--material", "gold", "--light",
