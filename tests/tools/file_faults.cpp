@@ -215,6 +215,9 @@ class Supervised {
         const int nowhere = ::open("/dev/null", O_RDWR);
         for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
             ::dup2(nowhere, stream);
+        // A shell may start these tests with signals ignored, which programs inherit.
+        for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU})
+            ::signal(signal, SIG_DFL);
         if (::chdir(folder) != 0) ::_exit(127);
         const int questions = install_filter();
         if (questions < 0 || exchange_descriptor(socket, questions) < 0) ::_exit(127);

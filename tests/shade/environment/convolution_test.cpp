@@ -373,7 +373,8 @@ TEST(IrradianceSh, ATexelThatIsNotFiniteIsRefusedByPlace) {
         (void)irradiance_sh(faces);
         FAIL() << "was accepted";
     } catch (const InvalidInput& error) {
-        EXPECT_STREQ(error.what(), "irradiance: face -y holds inf in texel 7, which is not finite");
+        EXPECT_STREQ(error.what(),
+                     "irradiance: face -y holds inf in column 3, row 1, which is not finite");
     }
     faces.pop_back();
     EXPECT_THROW(irradiance_sh(faces), InvalidInput);

@@ -347,10 +347,10 @@ TEST_F(BumpFile, MapsReadByRowsRefuseWhatNeedsTheWholeMap) {
     for (std::size_t i = 0; i < 220; ++i)
         alpha.as<std::uint8_t>()[2 * i + 1] = i == 107 ? 0 : 9;
     const std::filesystem::path transparent = written(alpha, "a.png");
-    EXPECT_EQ(refusal(transparent),
-              transparent.string() +
-                  ": the texel (7, 5) is transparent, which is understood only in maps that fit "
-                  "into 0 MiB");
+    EXPECT_EQ(refusal(transparent), transparent.string() +
+                                        ": the texel in column 7, row 5 is transparent, which is "
+                                        "understood only in maps that fit "
+                                        "into 0 MiB");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "n.png"));
 }
 
