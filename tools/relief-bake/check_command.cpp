@@ -160,7 +160,7 @@ std::string describe(const MapDescription& stated) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-Json json_of(const MapDescription& stated) {
+Json description_json(const MapDescription& stated) {
     Json json = Json::object();
     for (const auto& [key, text] : write_description(stated, 8))
         json[key.substr(key.find(':') + 1)] = text;
@@ -322,7 +322,7 @@ Summary summary_of(const CheckedMap& map, bool has_models) {
                 {{"content", name_of(check.content, contents)},
                  {"curve", name_of(check.curve, curves)},
                  {"color_tag", map.color_tag}});
-    summary.add("stated", describe(map.stated), {{"stated", json_of(map.stated)}});
+    summary.add("stated", describe(map.stated), {{"stated", description_json(map.stated)}});
     summary.add("lengths", if_normals(describe(check.lengths)),
                 {{"lengths", lengths_json(check.lengths)}});
     summary.add("decoded", if_normals(is_curved ? describe(check.lengths_uncurved) : ""),

@@ -134,7 +134,8 @@ TEST_P(Prefilter, CodedFacesAndTheBrightestThereAreStayFinite) {
     EXPECT_NEAR(even[2].as<float>()[0], linear_from_srgb(200.0F / 255.0F), 2e-3F);
 
     // The largest half float, and the largest radiance. The error of blurring is up to 2%.
-    for (const auto& [brightest, limit] : {std::pair(65504.0F, 65504.0F), {1e18F, 1.02e18F}}) {
+    for (const auto& [radiance, limit] : {std::pair(65504.0F, 65504.0F), {1e18F, 1.02e18F}}) {
+        const float brightest = radiance;  // Lambdas of Clang 14 capture no structured binding.
         const CubeMap blinding = make_prefiltered(api(), cube_of(faces_of(16, [&](glm::dvec3 d) {
                                                       return glm::dvec3(d.y > 0 ? brightest : 0);
                                                   })));
