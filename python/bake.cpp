@@ -97,8 +97,8 @@ py::dict report_of(const BakeResult& result, const BakeFit& fit, const Report& f
     py::dict report;
     report["offset"] = result.distances.offset;
     report["max_distance"] = result.distances.max_distance;
-    report["least_height"] = result.min_height;
-    report["greatest_height"] = result.max_height;
+    report["min_height"] = result.min_height;
+    report["max_height"] = result.max_height;
     report["texels_baked"] = result.texels_baked;
     report["texels_missed"] = result.texels_missed;
     report["samples"] = result.samples;

@@ -48,7 +48,7 @@ constexpr auto contents =
     std::to_array<EnumName<MapContent>>({{"tangent-space", MapContent::tangent_normals},
                                          {"object-space", MapContent::object_normals},
                                          {"xy", MapContent::xy_normals},
-                                         {"grey", MapContent::gray},
+                                         {"gray", MapContent::gray},
                                          {"other", MapContent::other}});
 constexpr auto curves =
     std::to_array<EnumName<StoredCurve>>({{"none", StoredCurve::none},
@@ -373,8 +373,8 @@ py::dict py_check_normal_map(const py::object& map, const Metadata& metadata,
     result["seams"] = std::vector<double>{check.tiling.seam_x, check.tiling.seam_y};
     result["bits_used"] = check.bits;
     result["alpha_correlation"] = check.alpha_correlation;
-    result["trouble"] = conditions_of(check, Severity::problem);
-    result["remarks"] = conditions_of(check, Severity::note);
+    result["problems"] = conditions_of(check, Severity::problem);
+    result["notes"] = conditions_of(check, Severity::note);
     return result;
 }
 

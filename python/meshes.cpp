@@ -451,8 +451,8 @@ py::dict py_check_mesh(const MeshObject& mesh, bool for_baking, bool for_tangent
     result["spacing"] = diagnosis.spacing;
     result["overlap_raster"] = diagnosis.overlap_raster;
     result["tangents"] = tangents ? py::object(to_dict(*tangents)) : py::none();
-    result["trouble"] = to_list(problems);
-    result["remarks"] = to_list(notes);
+    result["problems"] = to_list(problems);
+    result["notes"] = to_list(notes);
     return result;
 }
 

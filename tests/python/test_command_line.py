@@ -257,7 +257,7 @@ class MapTools(CommandLineCase):
                 expected = self.run_tool("relief-bake", "check", file, "--json")["files"][0]
                 image, metadata = relief.read_image(file)
                 result = relief.check_normal_map(image, metadata=metadata, color_tag=expected["color_tag"])
-                for finding in expected["trouble"] + expected["remarks"]:
+                for finding in expected["problems"] + expected["notes"]:
                     del finding["remedy"]
                 self.assertEqual({name: expected[name] for name in result}, json.loads(json.dumps(result)))
 
@@ -278,7 +278,7 @@ class Bakes(CommandLineCase):
                                              relief.read_image(self.folder / f"{file}.exr")[0], name)
         self.assertIsNone(baked.colors)
         self.assertEqual(baked.states.shape, (96, 128))
-        for name in ("offset", "max_distance", "least_height", "greatest_height", "texels_baked", "texels_missed",
+        for name in ("offset", "max_distance", "min_height", "max_height", "texels_baked", "texels_missed",
                      "samples", "rays", "occlusion_rays"):
             self.assertEqual(baked.report[name], report[name], name)
         self.assertEqual(baked.report["texels_baked"], int((baked.states == 2).sum()))

@@ -73,7 +73,7 @@ TEST_F(DebugOptions, GiveALegendOfMarkers) {
     ASSERT_EQ(markers.size(), 1U);
     EXPECT_EQ(markers[0]["kind"], "boundary edge");
     EXPECT_EQ(markers[0]["count"], 4);
-    EXPECT_THAT(run("--health-markers trouble --output m.png").out, HasSubstr("markers   none"));
+    EXPECT_THAT(run("--health-markers problems --output m.png").out, HasSubstr("markers   none"));
 }
 
 TEST_F(DebugOptions, PrintTheShadersOfTheView) {

@@ -53,32 +53,32 @@ class BakeAccuracy : public testing::Test {
 
 TEST_F(BakeAccuracy, IncreasesSamplesAndBitsUntilTheErrorIsWithinTheLimit) {
     const json loose = baked("--max-error 5");
-    EXPECT_EQ(loose["kept"]["samples"], 1);
-    EXPECT_EQ(loose["kept"]["bits"], 8);
+    EXPECT_EQ(loose["selected"]["samples"], 1);
+    EXPECT_EQ(loose["selected"]["bits"], 8);
     EXPECT_EQ(loose["bits"], 8);
     EXPECT_EQ(read_image_info(workplace / "out/map.png").bits, 8);
     const json tight = baked("--max-error 0.1");
-    EXPECT_GT(tight["kept"]["samples"].get<int>(), 1);
-    EXPECT_EQ(tight["kept"]["bits"], 16);
-    EXPECT_LE(tight["kept"]["rms"].get<double>(), 0.1);
+    EXPECT_GT(tight["selected"]["samples"].get<int>(), 1);
+    EXPECT_EQ(tight["selected"]["bits"], 16);
+    EXPECT_LE(tight["selected"]["rms"].get<double>(), 0.1);
     const json& before = tight["steps"][tight["steps"].size() - 4];
     EXPECT_GT(before["rms"].get<double>(), 0.1);
     const auto said = read_image_info(workplace / "out/map.png").metadata;
     EXPECT_EQ(said.at("relief:bake"),
-              fmt::format("--samples {} --space tangent", tight["kept"]["samples"].get<int>()));
+              fmt::format("--samples {} --space tangent", tight["selected"]["samples"].get<int>()));
     // The file has the measured method.
     const json checked = baked("--max-error 0.1 --verify");
     EXPECT_NEAR(checked["maps"][0]["check"]["error"]["rms"].get<double>(),
-                tight["kept"]["rms"].get<double>(), 0.01);
+                tight["selected"]["rms"].get<double>(), 0.01);
 }
 
 TEST_F(BakeAccuracy, KeepsGivenSamplesAndBits) {
     // Directions in the plane y = 0 have no exact code in 8 bits, so that rounding alone is 0.25
     // degrees.
     const json bits = baked("--max-error 0.3 --bits 8");
-    EXPECT_EQ(bits["kept"]["bits"], 8);
+    EXPECT_EQ(bits["selected"]["bits"], 8);
     const json samples = baked("--max-error 5 --samples 16");
-    EXPECT_EQ(samples["kept"]["samples"], 16);
+    EXPECT_EQ(samples["selected"]["samples"], 16);
     EXPECT_EQ(samples["steps"].size(), 2U);
 }
 
@@ -114,11 +114,11 @@ TEST_F(BakeAccuracy, FailsWithTheMinimumErrorOfAllChoices) {
     EXPECT_LE(min_in(floats), min_in(both));
     // The minimum errors of the messages can be reached.
     const json eight = baked(fmt::format("--max-error {} --bits 8", 1.02 * min_in(rounding)));
-    EXPECT_LE(eight["kept"]["rms"].get<double>(), 1.02 * min_in(rounding));
+    EXPECT_LE(eight["selected"]["rms"].get<double>(), 1.02 * min_in(rounding));
     const json sixteen = baked(fmt::format("--max-error {}", 1.02 * min_in(both)));
-    EXPECT_EQ(sixteen["kept"]["samples"], 256);
+    EXPECT_EQ(sixteen["selected"]["samples"], 256);
     EXPECT_LT(min_in(both),
-              0.5 * baked("--max-error 1 --samples 16 --bits 16")["kept"]["rms"].get<double>());
+              0.5 * baked("--max-error 1 --samples 16 --bits 16")["selected"]["rms"].get<double>());
     std::filesystem::remove(workplace / "out/map.png");
     std::filesystem::remove(workplace / "out/report.json");
     const ProgramResult result = workplace.run(
@@ -168,14 +168,14 @@ TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
 
 TEST_F(BakeAccuracy, Uses256SamplesIfFewerAreNotEnough) {
     const json few = baked("--max-error 10 --samples 64 --bits 16");
-    const double bound = 0.6 * few["kept"]["rms"].get<double>();
+    const double bound = 0.6 * few["selected"]["rms"].get<double>();
     const json report = baked(fmt::format("--max-error {}", bound));
-    EXPECT_EQ(report["kept"]["samples"], 256);
-    EXPECT_EQ(report["kept"]["bits"], 16);
-    EXPECT_LE(report["kept"]["rms"].get<double>(), bound);
+    EXPECT_EQ(report["selected"]["samples"], 256);
+    EXPECT_EQ(report["selected"]["bits"], 16);
+    EXPECT_LE(report["selected"]["rms"].get<double>(), bound);
     // The reference has more samples than the map, so the error is that of the samples, not 0.
     EXPECT_EQ(report["reference"]["samples"], 1024);
-    EXPECT_GT(report["kept"]["sampling"].get<double>(), 0.1 * bound);
+    EXPECT_GT(report["selected"]["sampling"].get<double>(), 0.1 * bound);
     EXPECT_EQ(report["samples"], 256 * 32 * 32);
 }
 

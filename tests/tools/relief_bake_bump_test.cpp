@@ -516,8 +516,8 @@ TEST(BumpAccuracyCommand, SelectsTheFastestMethodWithinALimit) {
     ASSERT_EQ(tight.exit_code, 0) << tight.error;
     EXPECT_EQ(read_image(workplace / "out/b.png", ImageUse::data).bits(), 16);
     const json report = json::parse(workplace.read("out/r"));
-    EXPECT_LE(report["kept"]["degrees"]["rms"].get<double>(), 0.02);
-    EXPECT_EQ(report["kept"]["kernel"], report["kernel"]);
+    EXPECT_LE(report["selected"]["degrees"]["rms"].get<double>(), 0.02);
+    EXPECT_EQ(report["selected"]["kernel"], report["kernel"]);
     EXPECT_EQ(report["bits"], 16);
     EXPECT_TRUE(report["reference"]["whole"].get<bool>());
     // Options on the command line are kept.
@@ -550,7 +550,7 @@ TEST(BumpAccuracyCommand, ALimitIncludesTheErrorOfTheMap) {
     ASSERT_EQ(added.exit_code, 0) << added.error;
     EXPECT_THAT(added.out, HasSubstr(" degrees RMS expected\n"));
     EXPECT_THAT(added.out, HasSubstr(" from the map itself, "));
-    const json expected = json::parse(workplace.read("out/b.json"))["kept"]["expected_degrees"];
+    const json expected = json::parse(workplace.read("out/b.json"))["selected"]["expected_degrees"];
     EXPECT_LE(expected["added"].get<double>(), 0.5);
     EXPECT_NEAR(expected["total"].get<double>(),
                 std::hypot(expected["map"].get<double>(), expected["added"].get<double>()), 1e-9);
@@ -568,7 +568,7 @@ TEST(BumpAccuracyCommand, ALimitWithinTheRangeOfTheExpectedErrorIsAFinding) {
     EXPECT_THAT(within.out, HasSubstr("error limit that may be exceeded"));
     EXPECT_THAT(within.out, HasSubstr("and --max-error is 2: the map does not show "));
     const json report = json::parse(workplace.read("out/r.json"));
-    const json expected = report["kept"]["expected_degrees"];
+    const json expected = report["selected"]["expected_degrees"];
     EXPECT_LE(expected["total"].get<double>(), 2.0);
     EXPECT_GT(expected["total_upper"].get<double>(), 2.0);
     // The upper end of every method is below this limit.

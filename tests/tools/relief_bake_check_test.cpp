@@ -83,11 +83,11 @@ TEST(MapCheckCommand, ReportsTheSameAsJson) {
     const json report = json::parse(result.out);
     EXPECT_EQ(report["tool"], "relief-bake check");
     EXPECT_EQ(report["sound"], 1);
-    EXPECT_EQ(report["with_trouble"], 1);
+    EXPECT_EQ(report["with_problems"], 1);
     const json& heights = report["files"][0];
-    EXPECT_EQ(heights["content"], "grey");
+    EXPECT_EQ(heights["content"], "gray");
     EXPECT_EQ(heights["green"], nullptr);
-    EXPECT_EQ(heights["trouble"][0]["kind"], "no normal map");
+    EXPECT_EQ(heights["problems"][0]["kind"], "no normal map");
     const json& map = report["files"][1];
     EXPECT_EQ(map["sound"], true);
     EXPECT_EQ(map["content"], "tangent-space");
@@ -96,7 +96,7 @@ TEST(MapCheckCommand, ReportsTheSameAsJson) {
     EXPECT_GT(map["green"]["confidence"], 0.999999);
     EXPECT_EQ(map["bits_used"], json({8, 8, 8}));
     EXPECT_EQ(map["lengths"]["within"]["0.1"], 1.0);
-    EXPECT_TRUE(map["trouble"].empty());
+    EXPECT_TRUE(map["problems"].empty());
 }
 
 /// Hills as 8-bit tangent-space normals.
@@ -120,7 +120,7 @@ Image changed(Image map, Change change) {
 std::string remedy_of(const Workplace& workplace, const std::string& file,
                       const std::string& kind) {
     const json report = json::parse(workplace.run("relief-bake check " + file + " --json").out);
-    for (const char* list : {"trouble", "remarks"}) {
+    for (const char* list : {"problems", "notes"}) {
         for (const json& finding : report["files"][0][list]) {
             if (finding["kind"] == kind) return finding["remedy"];
         }
@@ -280,13 +280,13 @@ TEST_F(Verify, AFreshMapHasOnlyRoundingErrors) {
     EXPECT_THAT(result.out, HasSubstr("verdict   matches this bake\n"));
     const json report = json::parse(workplace.read("out/report.json"));
     const json& check = report["maps"][0]["check"];
-    EXPECT_EQ(check["centre"]["texels"], 64 * 64);
-    EXPECT_LT(check["centre"]["max"].get<double>(), 0.003);
+    EXPECT_EQ(check["center"]["texels"], 64 * 64);
+    EXPECT_LT(check["center"]["max"].get<double>(), 0.003);
     EXPECT_LT(check["error"]["rms"].get<double>(), 0.5);
     EXPECT_EQ(check["stages"]["other"]["rms"], 0.0);
     double shares = 0.0;
     for (const json& stage : check["stages"])
-        shares += stage["share"].get<double>();
+        shares += stage["fraction"].get<double>();
     EXPECT_NEAR(shares, 1.0, 1e-9);
     const Image errors = read_image(workplace / "out/e.png", ImageUse::data);
     EXPECT_EQ(errors.width, 64);
@@ -308,7 +308,7 @@ TEST_F(Verify, TheFileRecordsItsBake) {
     EXPECT_EQ(surface["reference_samples"], 64);
     // The repeated bake gives the same codes, including the dither.
     EXPECT_EQ(surface["stages"]["other"]["rms"], 0.0);
-    EXPECT_GT(surface["stages"]["quantisation"]["rms"].get<double>(), 0.05);
+    EXPECT_GT(surface["stages"]["quantization"]["rms"].get<double>(), 0.05);
     const json told = check("out/map.png", "--samples 1");
     EXPECT_EQ(told["reference_samples"], 16);
     EXPECT_GT(told["stages"]["other"]["rms"].get<double>(), 0.0);
@@ -319,10 +319,10 @@ TEST_F(Verify, AnErrorAboveTheLimitIsAProblem) {
     int exit_code = -1;
     json surface = check("out/map.png", "--max-error 1 --strict", &exit_code);
     EXPECT_EQ(exit_code, 0);
-    EXPECT_TRUE(surface["trouble"].empty());
+    EXPECT_TRUE(surface["problems"].empty());
     surface = check("out/map.png", "--max-error 0.01 --max-error-kind p99 --strict", &exit_code);
     EXPECT_EQ(exit_code, 3);
-    EXPECT_THAT(surface["trouble"][0].get<std::string>(),
+    EXPECT_THAT(surface["problems"][0].get<std::string>(),
                 HasSubstr("more than the limit of 0.01 degrees (99 of 100 texels)"));
 }
 
@@ -337,7 +337,7 @@ TEST_F(Verify, InvertedGreenIsReportedAndItsRemedyWorks) {
     EXPECT_EQ(exit_code, 3);
     EXPECT_GT(surface["error"]["rms"].get<double>(), 5.0);
     EXPECT_EQ(surface["convention"]["differs_in"], json({"axes"}));
-    EXPECT_THAT(surface["trouble"][0].get<std::string>(), HasSubstr("green is inverted"));
+    EXPECT_THAT(surface["problems"][0].get<std::string>(), HasSubstr("green is inverted"));
     const std::string remedy = surface["remedies"][0];
     EXPECT_EQ(remedy, "relief-bake convert out/map.png out.png --axes=x,-y,z");
     ASSERT_EQ(workplace.run(remedy).exit_code, 0);
@@ -357,7 +357,7 @@ TEST_F(Verify, AnotherSpaceIsReportedAndItsRemedyWorks) {
     EXPECT_EQ(surface["convention"]["differs_in"], json({"axes"}));
     const std::string remedy = surface["remedies"][0];
     ASSERT_EQ(workplace.run(remedy).exit_code, 0);
-    EXPECT_LT(check("out.png", "--space world")["centre"]["max"].get<double>(), 0.003);
+    EXPECT_LT(check("out.png", "--space world")["center"]["max"].get<double>(), 0.003);
 }
 
 TEST_F(Verify, NoConventionExplainsAMapOfAnotherModel) {
@@ -369,7 +369,7 @@ TEST_F(Verify, NoConventionExplainsAMapOfAnotherModel) {
     const json surface = check("out/map.png", "--strict", &exit_code);
     EXPECT_EQ(exit_code, 3);
     EXPECT_EQ(surface["convention"]["explained"], false);
-    EXPECT_THAT(surface["trouble"][0].get<std::string>(),
+    EXPECT_THAT(surface["problems"][0].get<std::string>(),
                 HasSubstr("the map differs from this bake"));
 }
 
@@ -393,7 +393,7 @@ TEST_F(Verify, OutliersAtEdgesAreNotedAndDoNotMakeAnotherBake) {
     bend_texels(workplace / "out/map.png", border);
     const json surface = check("out/map.png", "--strict");
     EXPECT_GT(surface["stages"]["other"]["rms"].get<double>(), 5.0);
-    EXPECT_TRUE(surface["trouble"].empty()) << surface["trouble"];
+    EXPECT_TRUE(surface["problems"].empty()) << surface["problems"];
     const json& outliers = surface["outliers"];
     EXPECT_NEAR(outliers["percent"].get<double>(), 100.0 * 40 / 4096, 1e-9);
     EXPECT_EQ(outliers["percent_at_edges"], outliers["percent"]);
@@ -419,7 +419,7 @@ TEST_F(Verify, TheSameOutliersInsideAreAnEdit) {
     EXPECT_EQ(exit_code, 3);
     EXPECT_EQ(surface["outliers"]["percent_at_edges"], 0.0);
     EXPECT_THAT(
-        surface["trouble"][0].get<std::string>(),
+        surface["problems"][0].get<std::string>(),
         HasSubstr("degrees (median), and 0.98 % of its texels by more than 1 degree (0.98 % away "
                   "from edges); none of "));
 }
@@ -442,7 +442,7 @@ TEST(MapCheckCommand, LeavesOpenWhatOnlyTheModelsOfABakeShow) {
                           "          -> relief-bake check baked.png --high HIGH --low LOW\n"));
     const json report =
         json::parse(workplace.run("relief-bake check baked.png --json").out)["files"][0];
-    EXPECT_TRUE(report["trouble"].empty());
+    EXPECT_TRUE(report["problems"].empty());
     EXPECT_EQ(report["unjudged"][0]["kind"], "texel facing back");
 }
 
@@ -463,8 +463,8 @@ TEST_F(Verify, EachTileIsVerified) {
         "out/report.json --quiet");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const json report = json::parse(workplace.read("out/report.json"));
-    EXPECT_LT(report["maps"][0]["check"]["centre"]["max"].get<double>(), 0.003);
-    EXPECT_LT(check("out/1001.png")["centre"]["max"].get<double>(), 0.003);
+    EXPECT_LT(report["maps"][0]["check"]["center"]["max"].get<double>(), 0.003);
+    EXPECT_LT(check("out/1001.png")["center"]["max"].get<double>(), 0.003);
     EXPECT_EQ(
         workplace.run("relief-bake check out/1001.png --high high.obj --low low.obj --udim 1002")
             .exit_code,

@@ -329,7 +329,7 @@ TEST(ConvertCommand, MipLevelsStoreLengthsAndRoughness) {
     EXPECT_EQ(levels[3]["width"], 1);
     for (std::size_t level = 1; level < 4; ++level) {
         EXPECT_NEAR(levels[level]["mean_length"].get<double>(), length, 1e-5);
-        EXPECT_NEAR(levels[level]["least_length"].get<double>(), length, 1e-5);
+        EXPECT_NEAR(levels[level]["min_length"].get<double>(), length, 1e-5);
         EXPECT_NEAR(levels[level]["mean_roughness"].get<double>(), roughness, 1e-5);
         const Image map =
             read_image(workplace / fmt::format("out/m-mip0{}.png", level), ImageUse::data);
@@ -387,8 +387,8 @@ TEST(ConvertCommand, CountsNormalsThatAreNotUnitAndTexelsWithoutDirection) {
     const double off_zero = 1.0 / 255.0;
     const auto length = [&](double z) { return std::sqrt(2.0 * off_zero * off_zero + z * z); };
     const double gray = std::sqrt(3.0) * off_zero;
-    EXPECT_NEAR(report["input_lengths"]["least"].get<double>(), gray, 1e-6);
-    EXPECT_NEAR(report["input_lengths"]["greatest"].get<double>(), length(1.0), 1e-6);
+    EXPECT_NEAR(report["input_lengths"]["min"].get<double>(), gray, 1e-6);
+    EXPECT_NEAR(report["input_lengths"]["max"].get<double>(), length(1.0), 1e-6);
     EXPECT_NEAR(report["input_lengths"]["mean"].get<double>(),
                 (2.0 * length(1.0) + length(145.0 / 255.0) + gray) / 4, 1e-6);
     EXPECT_THAT(result.out, HasSubstr("normalized (lengths were 0.007 to 1.000, mean 0.644)\n"));

@@ -66,7 +66,7 @@ TEST(MeshBakeCommand, BakesNormalsAndPrintsASummary) {
     const json report = json::parse(workplace.read("out/report.json"));
     EXPECT_EQ(report["texels_baked"], 32);
     EXPECT_EQ(report["high_triangles"], 2);
-    EXPECT_NEAR(report["greatest_height"].get<double>(), 0.25, 1e-6);
+    EXPECT_NEAR(report["max_height"].get<double>(), 0.25, 1e-6);
 }
 
 TEST(MeshBakeCommand, MissedTexelsAreFilledOrTransparent) {

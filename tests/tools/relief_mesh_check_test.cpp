@@ -86,19 +86,19 @@ TEST(CheckCommand, PrintsOneJsonObject) {
     EXPECT_EQ(result.exit_code, 3);
     const json report = json::parse(result.out);
     EXPECT_EQ(report["tool"], "relief-mesh check");
-    EXPECT_EQ(report["with_trouble"], 1);
+    EXPECT_EQ(report["with_problems"], 1);
     const json part = report["files"][0]["primitives"][0];
     EXPECT_EQ(part["sound"], false);
     EXPECT_EQ(part["triangles"], 3);
     EXPECT_EQ(part["size"], 2.0);
-    ASSERT_EQ(part["trouble"].size(), 2U);
-    EXPECT_EQ(part["trouble"][1]["kind"], "vertex with only degenerate triangles");
-    EXPECT_EQ(part["trouble"][0]["kind"], "collinear triangle");
-    EXPECT_EQ(part["trouble"][0]["element"], "triangle");
-    EXPECT_EQ(part["trouble"][0]["count"], 1);
-    EXPECT_EQ(part["trouble"][0]["first"], json({2}));
-    ASSERT_EQ(part["remarks"].size(), 1U);
-    EXPECT_EQ(part["remarks"][0]["kind"], "boundary edge");
+    ASSERT_EQ(part["problems"].size(), 2U);
+    EXPECT_EQ(part["problems"][1]["kind"], "vertex with only degenerate triangles");
+    EXPECT_EQ(part["problems"][0]["kind"], "collinear triangle");
+    EXPECT_EQ(part["problems"][0]["element"], "triangle");
+    EXPECT_EQ(part["problems"][0]["count"], 1);
+    EXPECT_EQ(part["problems"][0]["first"], json({2}));
+    ASSERT_EQ(part["notes"].size(), 1U);
+    EXPECT_EQ(part["notes"][0]["kind"], "boundary edge");
 }
 
 TEST(CheckCommand, WhatAFormatHoldsBesideTheMeshIsNoTrouble) {

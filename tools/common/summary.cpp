@@ -75,7 +75,7 @@ Summary summary_of(const std::string& tool, const Verdicts& verdicts, const std:
                                             verdicts.with_problems, verdicts.unreadable);
     summary.add("verdict", verdicts.all() < 2 ? "" : numbers,
                 {{"sound", verdicts.sound},
-                 {"with_trouble", verdicts.with_problems},
+                 {"with_problems", verdicts.with_problems},
                  {"unreadable", verdicts.unreadable}});
     const bool has_findings = verdicts.all() > verdicts.unreadable;
     summary.add("details", has_findings ? document + " describes each condition" : "",

@@ -526,7 +526,7 @@ void add_selected(Summary& summary, const BumpMeasurement& selected,
          fmt::format("{:.3g} from the map itself, {:.3g} added by this conversion "
                      "({:.3g} at most), {:.0f} MPixel/s",
                      error.map, error.added, selected.error.max, selected.megapixels_per_second)},
-        {{"kept", measurement_json(selected, reference)}});
+        {{"selected", measurement_json(selected, reference)}});
 }
 
 void add_experiment(Summary& summary, const BumpExperiment& experiment, bool has_table) {

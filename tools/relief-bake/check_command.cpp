@@ -300,7 +300,7 @@ Summary summary_of(const CheckedMap& map, bool has_models) {
     const Choices<MapContent> contents = {{"tangent-space", MapContent::tangent_normals},
                                           {"object-space", MapContent::object_normals},
                                           {"xy", MapContent::xy_normals},
-                                          {"grey", MapContent::gray},
+                                          {"gray", MapContent::gray},
                                           {"other", MapContent::other}};
     const Choices<StoredCurve> curves = {{"none", StoredCurve::none},
                                          {"srgb-encoded", StoredCurve::srgb_encoded},
@@ -339,11 +339,11 @@ Summary summary_of(const CheckedMap& map, bool has_models) {
     summary.add("bits", describe_bits(check.bits), {{"bits_used", check.bits}});
     summary.add_json({{"alpha_correlation", or_null(check.alpha_correlation)}});
     summary.add("problems", finding_lines(map, Severity::problem),
-                {{"trouble", findings_json(map, Severity::problem)}});
+                {{"problems", findings_json(map, Severity::problem)}});
     summary.add("unjudged", has_models ? std::vector<std::string>{} : unjudged_lines(map),
                 {{"unjudged", unjudged_json(map)}});
     summary.add("notes", finding_lines(map, Severity::note),
-                {{"remarks", findings_json(map, Severity::note)}});
+                {{"notes", findings_json(map, Severity::note)}});
     summary.add("time",
                 fmt::format("{} ({:.0f} MPixel/s without file access)", duration(map.milliseconds),
                             map.megapixels_per_second()),
@@ -633,17 +633,16 @@ Command add_map_check_command(CLI::App& tool) {
              "16-bit or float map from which a texture was made.");
     add_switch(
         app, "--json", options->json,
-        "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers of "
-        "files), words (the documentation), files [file, sound, error or: width, height, channels, "
-        "bits, content, stated {content, green, flat, channels, color-space, alpha}, curve, "
-        "color_tag, lengths and lengths_uncurved {mean, rms_deviation, "
-        "within}, green {is, correlation, deviation, confidence, scale} or null, zero_code, seams "
-        "[x, y], bits_used, alpha_correlation, trouble (problems) and remarks (notes) [kind, "
-        "element, count, first, meaning, remedy], unjudged (without the models) [kind, element, "
-        "count, first], milliseconds, megapixels_per_second, exact {file, levels [width, height, "
-        "mean, rms, p99, max], inverted_green}, surface "
-        "{baked, error and centre {rms, mean, p99, max, texels}, stages {share, rms}, worst, "
-        "convention, trouble, remedies, ...}].");
+        "Print one JSON object: tool, version, sound, with_problems and unreadable (numbers of "
+        "files), words (the documentation), files [file, sound, error or: width, height, "
+        "channels, bits, content, stated {content, green, flat, channels, color-space, alpha}, "
+        "curve, color_tag, lengths and lengths_uncurved {mean, rms_deviation, within}, green "
+        "{is, correlation, deviation, confidence, scale} or null, zero_code, seams [x, y], "
+        "bits_used, alpha_correlation, problems and notes [kind, element, count, first, meaning, "
+        "remedy], unjudged (without the models) [kind, element, count, first], milliseconds, "
+        "megapixels_per_second, exact {file, levels [width, height, mean, rms, p99, max], "
+        "inverted_green}, surface {baked, error and center {rms, mean, p99, max, texels}, stages "
+        "{fraction, rms}, worst, convention, problems, remedies, ...}].");
     add_switch(app, "--strict", options->strict,
                "Exit with 3 if a file has problems, by itself or on its models. Notes are not "
                "problems.");

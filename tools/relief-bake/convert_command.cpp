@@ -66,7 +66,7 @@ Json json_of(const WrittenLevel& level) {
                  {"width", level.width},
                  {"height", level.height},
                  {"mean_length", level.mean_length},
-                 {"least_length", level.min_length}};
+                 {"min_length", level.min_length}};
     if (level.roughness_file) {
         json["roughness_file"] = level.roughness_file->string();
         json["mean_roughness"] = *level.mean_roughness;
@@ -83,9 +83,9 @@ Summary summary_of(const Job& job, const MapConversion& conversion, const Stages
     const NormalMapFormat& format = conversion.format;
     Json lengths;
     if (conversion.lengths) {
-        lengths = {{"least", conversion.lengths->least},
+        lengths = {{"min", conversion.lengths->least},
                    {"mean", conversion.lengths->mean},
-                   {"greatest", conversion.lengths->greatest}};
+                   {"max", conversion.lengths->greatest}};
     }
     Summary summary;
     summary.add_json({{"width", largest.width}, {"height", largest.height}});

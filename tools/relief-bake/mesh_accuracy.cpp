@@ -364,7 +364,7 @@ void add_problems(VerifiedMap& map, const MeshBakeRequest& bake, const BakeModel
 
 // The summary.
 
-constexpr std::array stage_names = {"projection", "sampling", "quantisation", "basis", "other"};
+constexpr std::array stage_names = {"projection", "sampling", "quantization", "basis", "other"};
 
 std::vector<std::string> stage_lines(const BakeCheck& check) {
     constexpr std::array descriptions = {"texels without a single normal", "too few samples",
@@ -423,8 +423,8 @@ Json convention_json(const ConventionFit& fit) {
             {"differs_in",
              json_list(fit.changes,
                        [&](ConventionPart part) { return describe(fit.convention, part).name; })},
-            {"told_degrees", fit.given_degrees},
-            {"found_degrees", fit.found_degrees},
+            {"assumed_degrees", fit.given_degrees},
+            {"best_degrees", fit.found_degrees},
             {"tried", fit.tried}};
 }
 
@@ -481,7 +481,7 @@ Summary summary_of(const VerifiedMap& map) {
     const BakeCheck& check = map.check;
     Json stages = Json::object();
     for (std::size_t i = 0; i < bake_stage_count; ++i)
-        stages[stage_names[i]] = {{"share", check.stages[i].share},
+        stages[stage_names[i]] = {{"fraction", check.stages[i].share},
                                   {"rms", check.stages[i].error.rms}};
     Summary summary;
     summary.add(
@@ -490,7 +490,7 @@ Summary summary_of(const VerifiedMap& map) {
              fmt::format(", from the mean over each texel ({} samples)", check.reference_samples),
          to_string(check.center) + ", from the normal at its center", texel_text(check)},
         {{"error", summary_json(check.error)},
-         {"centre", summary_json(check.center)},
+         {"center", summary_json(check.center)},
          {"remade", summary_json(check.rebaked)},
          {"reference_samples", check.reference_samples},
          {"torn", check.discontinuous},
@@ -508,7 +508,7 @@ Summary summary_of(const VerifiedMap& map) {
                    {"texels", json_list(check.worst_outliers, worst_json)}}}});
     summary.add("verdict", verdict_lines(map),
                 {{"convention", convention_json(check.convention)},
-                 {"trouble", map.problems},
+                 {"problems", map.problems},
                  {"remedies", map.remedies}});
     if (map.request.error_map) {
         const std::filesystem::path& file = *map.request.error_map;

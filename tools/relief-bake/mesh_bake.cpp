@@ -608,8 +608,8 @@ Json map_json(const BakedMap& map, const glm::dvec3& origin) {
     if (map.plan.udim) json["tile"] = *map.plan.udim;
     json.update({{"texels_baked", map.result.texels_baked},
                  {"texels_missed", map.result.texels_missed},
-                 {"least_height", map.result.min_height},
-                 {"greatest_height", map.result.max_height},
+                 {"min_height", map.result.min_height},
+                 {"max_height", map.result.max_height},
                  {"samples", map.result.samples},
                  {"rays", map.result.rays},
                  {"missed", missed_json(map.result, origin)}});
@@ -643,7 +643,7 @@ void add_accuracy(Summary& summary, const MeshBakeRequest& request,
         summary.add("steps", step_lines(request, accuracy), {{"steps", measured}});
         summary.add("selected",
                     fmt::format("{}: {}", to_string(selected), to_string(selected.error)),
-                    {{"kept", measured_json(selected)}});
+                    {{"selected", measured_json(selected)}});
     }
     summary.add("errors",
                 fmt::format("measured on {} of the map, against {} samples per texel",
@@ -695,8 +695,8 @@ Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const S
                                                 counted(result.samples, "sample"), rate)},
         {{"offset", result.distances.offset},
          {"max_distance", result.distances.max_distance},
-         {"least_height", result.min_height},
-         {"greatest_height", result.max_height},
+         {"min_height", result.min_height},
+         {"max_height", result.max_height},
          {"samples", result.samples},
          {"rays", result.rays},
          {"occlusion_rays", result.occlusion_rays},

@@ -272,8 +272,8 @@ Json json_of(const CheckedPart& part) {
             {"spacing", part.diagnosis.spacing},
             {"overlap_raster", part.diagnosis.overlap_raster},
             {"tangents", part.tangents ? json_of(*part.tangents) : Json()},
-            {"trouble", json_of(part.problems)},
-            {"remarks", json_of(part.notes)}};
+            {"problems", json_of(part.problems)},
+            {"notes", json_of(part.notes)}};
 }
 
 /// The text of a file that cannot be read is the error message.
@@ -290,8 +290,8 @@ Summary summary_of(const CheckedFile& file) {
                             counted(triangles_of(file.model), "triangle"), verdict(file.model)),
                 {{"format", file.format}});
     summary.add("problems", problem_lines(file.model),
-                {{"trouble", json_of(file.model.reading_problems)}});
-    summary.add("notes", notes_text(file.model), {{"remarks", json_of(file.model.reading_notes)}});
+                {{"problems", json_of(file.model.reading_problems)}});
+    summary.add("notes", notes_text(file.model), {{"notes", json_of(file.model.reading_notes)}});
     summary.add("tangents", tangents_text(file.model),
                 {{"primitives", json_list(file.model.parts,
                                           [](const CheckedPart& part) { return json_of(part); })}});
@@ -349,14 +349,13 @@ Command add_check_command(CLI::App& tool) {
         .required();
     add_switch(
         app, "--json", options->json,
-        "Print one JSON object: tool, version, sound, with_trouble and unreadable (numbers "
-        "of files), words (the documentation), files [file, sound, error or: format, trouble "
-        "(problems) and remarks (notes) of reading, "
-        "primitives [name, sound, triangles, vertices, size, spacing, overlap_raster, tangents "
-        "{basis, variant, nearest, nearest_by_far, same_here, texcoord_set, "
-        "texcoord_set_of_material, corners, left_out, "
-        "without_direction, stored_bits, tolerance, agreements} or null, "
-        "trouble and remarks [kind, element, count, first, outcome]]].");
+        "Print one JSON object: tool, version, sound, with_problems and unreadable (numbers of "
+        "files), words (the documentation), files [file, sound, error or: format, problems and "
+        "notes of reading, primitives [name, sound, triangles, vertices, size, spacing, "
+        "overlap_raster, tangents {basis, variant, nearest, nearest_by_far, same_here, "
+        "texcoord_set, texcoord_set_of_material, corners, left_out, without_direction, "
+        "stored_bits, tolerance, agreements} or null, problems and notes [kind, element, count, "
+        "first, outcome]]].");
     add_switch(app, "--strict", options->strict,
                "Exit with 3 if a file has problems. Notes do not count.");
     add_switch(app, "--for-baking", options->for_baking,

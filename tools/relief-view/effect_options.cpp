@@ -491,7 +491,7 @@ Choices<DebugView> view_choices() {
 }
 
 const Choices<HealthChoice>& health_choices() {
-    static const Choices<HealthChoice> words = {{"trouble", HealthChoice::problem},
+    static const Choices<HealthChoice> words = {{"problems", HealthChoice::problem},
                                                 {"all", HealthChoice::all}};
     return words;
 }

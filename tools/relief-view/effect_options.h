@@ -3,7 +3,7 @@
 /// The effects and the debug views of a picture, by option.
 ///
 ///     --effects auto|all|none|+NAME,-NAME,...    also all,-NAME and none,+NAME
-///     --show VIEW --wireframe --vertex-frames [--frame-length R] --health-markers trouble|all
+///     --show VIEW --wireframe --vertex-frames [--frame-length R] --health-markers problems|all
 ///
 /// Tests: tests/tools/effect_options_test.cpp, debug_options_test.cpp.
 #pragma once

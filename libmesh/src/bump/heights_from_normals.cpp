@@ -444,7 +444,7 @@ SlopeOperator::SlopeRows slopes_of(const Image& normals, double max_slope, glm::
     };
 }
 
-void report_trouble(const Image& normals, double max_slope, Report& report) {
+void report_problems(const Image& normals, double max_slope, Report& report) {
     const std::size_t count = normals.sample_count() / 3;
     parallel_for_reporting(
         count, 1 << 14, report, [&](std::size_t begin, std::size_t end, Report& found) {
@@ -621,7 +621,7 @@ IntegratedHeights heights_from_normals(const Image& normals, const IntegrationOp
                                        Report& report) {
     check(normals, options);
     const GradientKernel kernel = gradient_kernel(options.kernel, options.gaussian_radius);
-    report_trouble(normals, options.max_slope, report);
+    report_problems(normals, options.max_slope, report);
     IntegratedHeights result;
     result.heights = make_image(normals.width, normals.height, 1, 32, ColorSpace::data);
     const SlopeOperator slopes(normals.width, normals.height, kernel, options.wrap, options.texel);

@@ -249,7 +249,7 @@ TEST_F(State, ShowsDebugViewsByKeyAndKeepsThemForAnotherModel) {
     EXPECT_TRUE(request.settings.overlays.wireframe);
     EXPECT_TRUE(request.settings.overlays.markers);
     EXPECT_THAT(state().command_line(), testing::HasSubstr(" --show geometric-normal --wireframe "
-                                                           "--health-markers trouble"));
+                                                           "--health-markers problems"));
     show("far.obj");
     EXPECT_TRUE(state().take_health_request()->choice) << "of the new model too";
     EXPECT_EQ(state().json(RenderedPicture{})["show"], "geometric-normal");
