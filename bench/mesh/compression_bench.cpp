@@ -52,7 +52,7 @@ Image normals_of(const Image& image, bool is_middle) {
 }
 
 void print_line(const std::string& name, const ErrorStats& error, const std::string& rest) {
-    fmt::print("{:22} mean {:.3f}, 99 % {:.3f}, greatest {:.3f} degrees{}\n", name, error.mean,
+    fmt::print("{:22} mean {:.3f}, 99 % {:.3f}, maximum {:.3f} degrees{}\n", name, error.mean,
                error.p99, error.max, rest);
 }
 

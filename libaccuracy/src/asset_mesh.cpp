@@ -92,10 +92,9 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
     FittedNormals fitted = fitted_normals(mesh, fit);
     CornerGroundTruth ground_truth;
     ground_truth.description = fmt::format(
-        "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). "
-        "It is known at {} of {} examined places; the others have too few neighbors or no smooth "
-        "surface. Its own expected error is {:.2g} degrees. It assumes that the vertices lie on "
-        "the "
+        "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). It "
+        "is known at {} of {} examined vertices; the others have too few neighbors or no smooth "
+        "surface. Its expected error is {:.2g} degrees. It assumes that the vertices lie on the "
         "surface, and is not valid for models whose vertices do not.",
         creases.description, fitted.corners.size(), fitted.places, fitted.reference_degrees);
     constexpr std::size_t fewest = 16;

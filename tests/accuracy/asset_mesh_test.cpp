@@ -49,7 +49,7 @@ TEST(AssetNormals, AreJudgedAsByTheTruthThatNobodyTold) {
     }
     EXPECT_EQ(found(own, "max").error.count, ground_truth.mesh.positions.size());
     EXPECT_EQ(own.command(), "relief-mesh process vase.obj -o OUT.glb --normals max");
-    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("2304 of 2304 examined places"));
+    EXPECT_THAT(own.experiment.ground_truth, HasSubstr("2304 of 2304 examined vertices"));
     EXPECT_THAT(own.experiment.finding, HasSubstr(". To do it: relief-mesh process"));
 }
 

@@ -85,9 +85,8 @@ std::string sample_tables() {
         texel_references(high, rays, low_sphere, sampled_map_side);
     const Baked single = baked(high, low, 1, false);
     std::string text =
-        "\nOne ray, against the place on the surface that it asks about: RMS / 99 of 100 / "
-        "greatest "
-        "error in degrees\n\n" +
+        "\nError of one ray from the surface at the center of each texel, in degrees: RMS / 99 % / "
+        "maximum\n\n" +
         table_header({"against the mesh's triangles", "against the surface itself"});
     for (const int bits : {8, 16, 32}) {
         const Image seen = as_seen(single.normals, low, bits);
@@ -96,8 +95,8 @@ std::string sample_tables() {
                             errors(seen, all, &TexelReference::surface_middle)});
     }
     text +=
-        "\nAgainst all that a texel shows, the mean over its square: RMS / 99 of 100 / greatest "
-        "error in degrees\n\n" +
+        "\nError from the mean over the square of each texel, in degrees: RMS / 99 % / "
+        "maximum\n\n" +
         table_header(
             {"rays a texel", "8 bit, mesh", "16 bit, mesh", "8 bit, surface", "16 bit, surface"});
     struct Choice {
@@ -201,10 +200,10 @@ std::string direction_row(const std::string& name, const BakeOptions& options) {
 
 std::string direction_tables() {
     std::string text =
-        "\nHow much of the high face no texel holds, and how far along the face a place is moved "
-        "at\nmost, in units of its height above the low face\n\n" +
+        "\nFraction of the high-poly face that is not in the map, and the maximum shift of a point "
+        "along\nthe face, in units of its height above the low-poly face\n\n" +
         table_header(
-            {"not held, face of 2 triangles", "moved", "not held, face of 128 triangles", "moved"});
+            {"missing, face of 2 triangles", "shift", "missing, face of 128 triangles", "shift"});
     text += direction_row("`--rays averaged` (default)", {});
     for (const double hardness : {0.5, 1.0}) {
         BakeOptions options;
@@ -252,36 +251,34 @@ Image baked(int padding) {
 
 /// Returns the largest error that a bilinear lookup within the chart can see. It includes the
 /// texels next to the chart.
-double greatest_error(const Image& level) {
+double max_error_seen(const Image& level) {
     const auto seen = [&](double edge, double by) {
         return static_cast<int>(std::floor(edge * level.width - 0.5 + by));
     };
-    double greatest = 0.0;
+    double max = 0.0;
     for (int y = seen(chart_begin, 0.0); y <= seen(chart_end, 1.0); ++y) {
         for (int x = seen(chart_begin, 0.0); x <= seen(chart_end, 1.0); ++x) {
             const float* const n =
                 &level.as<float>()[3 * static_cast<std::size_t>(y * level.width + x)];
-            greatest = std::max(greatest,
-                                degrees_between(glm::dvec3(n[0], n[1], n[2]), glm::dvec3(slant)));
+            max = std::max(max, degrees_between(glm::dvec3(n[0], n[1], n[2]), glm::dvec3(slant)));
         }
     }
-    return greatest;
+    return max;
 }
 
 std::string padding_tables() {
     std::vector<std::string> columns = {"the map itself"};
     for (int level = 1; level < level_count; ++level)
         columns.push_back(fmt::format("level {}", level));
-    std::string text =
-        "\nThe greatest error in degrees of what filtering can see of the chart\n\n" +
-        table_header(columns);
+    std::string text = "\nMaximum error of bilinear lookups within the chart, in degrees\n\n" +
+                       table_header(columns);
     for (const int padding : {0, 1, 2, 4, 8, 16, 32, 64}) {
         const Image map = baked(padding);
-        std::vector<std::string> cells = {in_digits(greatest_error(map))};
+        std::vector<std::string> cells = {in_digits(max_error_seen(map))};
         const std::vector<Image> smaller = mip_levels(map);
         for (int level = 1; level < level_count; ++level)
             cells.push_back(
-                in_digits(greatest_error(smaller[static_cast<std::size_t>(level - 1)])));
+                in_digits(max_error_seen(smaller[static_cast<std::size_t>(level - 1)])));
         text += table_row(fmt::format("`--padding {}`", padding),
                           std::vector<double>(cells.size(), NAN), cells);
     }

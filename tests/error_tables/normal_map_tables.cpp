@@ -248,8 +248,8 @@ std::string mip_row(double rms_slope) {
 
 std::string mip_tables() {
     std::string text =
-        "\nAll of a map in one texel: the variance of its slopes along each axis, and the "
-        "roughness\nthat makes up for it on a surface of 0.3\n\n" +
+        "\nA whole map in one texel: the variance of its slopes along each axis, and the roughness "
+        "that\ncompensates for it on a surface of roughness 0.3\n\n" +
         table_header({"mean length", "true variance", "from the length", "by Toksvig",
                       "true roughness", "from the length"});
     for (const double slope : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6})

@@ -272,7 +272,7 @@ HardCase bare_case() {
 }
 
 HardCase apart_case() {
-    return {"high mesh in another place",
+    return {"high mesh at another position",
             "A square at 5 times its size from the low mesh, in front of it or beside it.",
             "bakers that silently write an empty map",
             {{"bake", "refused: apart, unless the ray length reaches it", [] {

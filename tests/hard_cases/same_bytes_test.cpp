@@ -290,7 +290,7 @@ void hash_converted_maps(Hash& hash) {
     }
     Report report;
     const LengthRange lengths = measure_lengths(codes, FlatCode::half, report);
-    for (const double length : {lengths.least, lengths.mean, lengths.greatest})
+    for (const double length : {lengths.min, lengths.mean, lengths.max})
         hash.add(length);
     const Image base = decode_normal_map(codes, Green::down, FlatCode::middle, report);
     const Image detail = decode_xy_map(codes, {3, 1}, Green::up, FlatCode::half, report);

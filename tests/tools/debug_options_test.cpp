@@ -59,7 +59,7 @@ TEST_F(DebugOptions, TakeOneSampleForDataAndSaySo) {
 TEST_F(DebugOptions, SayWhyThereIsNothingToShow) {
     const ProgramResult result = run("--show height --output h.png");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.error, HasSubstr("square.obj: there is nothing to show of height"));
+    EXPECT_THAT(result.error, HasSubstr("square.obj: height cannot be shown"));
     EXPECT_THAT(result.error, HasSubstr("(give --height-map with --height-as bump_map)"));
     EXPECT_FALSE(std::filesystem::exists(workplace_ / "h.png"));
 }

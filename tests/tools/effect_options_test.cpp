@@ -115,7 +115,7 @@ TEST_F(EffectOptions, ForceNeutralEffectsWithoutAChangeAndTakeOutOthersWithOne) 
 
 TEST_F(EffectOptions, RefuseWhatIsUnknownOrImpossible) {
     EXPECT_EQ(run("--effects +emision --explain-effects").error,
-              "relief-view: error: --effects: 'emision' is no effect; did you mean 'emission'? "
+              "relief-view: error: --effects: 'emision' is not an effect; did you mean 'emission'? "
               "(--explain-effects lists the effects and their reasons)\n");
     const ProgramResult flat = run("--effects +flat --explain-effects");
     EXPECT_EQ(flat.exit_code, 2);

@@ -141,8 +141,8 @@ TEST_F(MapKinds, AWrongKindIsAnErrorThatAssumeOverrides) {
 
 TEST_F(MapKinds, ErrorsNameTheCommandThatConverts) {
     refuses("relief-mesh material square.obj out/a.glb --normal height.png",
-            "height.png: is gray, like a height map or a mask, and holds no normals (convert it "
-            "with relief-bake bump; --assume normal reads it anyway)");
+            "height.png: is gray, like a height map or a mask, so it is not a normal map (convert "
+            "it with relief-bake bump; --assume normal reads it anyway)");
     refuses("relief-bake bump stated-normal.png out/a.png",
             "stated-normal.png: is a normal map in tangent space, as its metadata say (convert it "
             "with relief-bake heights; --assume height reads it anyway)");

@@ -65,7 +65,7 @@ TEST(MapCheckCommand, ComparesGreenWithTheExpectedDirection) {
     const ProgramResult down =
         workplace.run("relief-bake check " + bricks_map + " --green down --strict");
     EXPECT_EQ(down.exit_code, 3);
-    EXPECT_THAT(down.out, HasSubstr("problems  green is not as said: "));
+    EXPECT_THAT(down.out, HasSubstr("problems  green is not as stated: "));
     // Maps written by relief state their direction of green.
     EXPECT_EQ(
         workplace.run("relief-bake bump data/bricks-height.png out/dx.png --green down --quiet")
@@ -323,7 +323,7 @@ TEST_F(Verify, AnErrorAboveTheLimitIsAProblem) {
     surface = check("out/map.png", "--max-error 0.01 --max-error-kind p99 --strict", &exit_code);
     EXPECT_EQ(exit_code, 3);
     EXPECT_THAT(surface["problems"][0].get<std::string>(),
-                HasSubstr("more than the limit of 0.01 degrees (99 of 100 texels)"));
+                HasSubstr("more than the limit of 0.01 degrees (99 % of the texels)"));
 }
 
 TEST_F(Verify, InvertedGreenIsReportedAndItsRemedyWorks) {

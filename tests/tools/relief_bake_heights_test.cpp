@@ -83,7 +83,7 @@ TEST(HeightsCommand, AMapWithoutHeightsIsAFinding) {
     const ProgramResult result = workplace.run(line + "--report out/r.json");
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_THAT(result.out,
-                HasSubstr("1 x map that is not the slopes of a height field (map 0): "));
+                HasSubstr("1 x map whose slopes are not those of a height field (map 0): "));
     EXPECT_THAT(result.out, HasSubstr("degrees (RMS) of it are lost, more than the limit of 5: "));
     const json residual = json::parse(workplace.read("out/r.json"))["residual_degrees"];
     // All of it: atan(0.75).

@@ -172,7 +172,7 @@ TEST_F(BakeFit, AScaleOrAShiftWithinTheBoxesIsAFinding) {
     for (const auto& [high, text] :
          {std::pair(Placement{.scale = 2.54}, "high model of another size (model 0): is about 2.5"),
           {{.scale = 3.28}, "is the high model in feet and the low one in meters?"},
-          {{.x = 0.3}, "high model in another place (model 0): is moved by (0.3, "}}) {
+          {{.x = 0.3}, "high model at another position (model 0): is moved by (0.3, "}}) {
         workplace.write("high.obj", bent_tube(48, high));
         const ProgramResult result = workplace.run(
             "relief-bake mesh high.obj low.obj out/map.png --size 32 --max-missed 100 --report "

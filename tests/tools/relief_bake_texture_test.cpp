@@ -96,7 +96,7 @@ TEST(ConvertToTexture, CheckStatesTheErrorOfEachLevelAgainstTheExactMap) {
                 test::image_of<std::uint8_t>(3, {128, 128, 255, 128, 128, 255, 200, 128, 230}));
     run_texture(workplace, "flat.png out/f.ktx2 --format rg16");
     EXPECT_THAT(workplace.run("relief-bake check out/f.ktx2 --exact flat.png").out,
-                HasSubstr("error 0.001 degrees (99 %: 0.001, greatest: 0.001)"));
+                HasSubstr("error 0.001 degrees (99 %: 0.001, maximum: 0.001)"));
     // A map that is compared with itself has no error; the direction of green counts.
     const ProgramResult same = workplace.run("relief-bake check map.png --exact map.png");
     EXPECT_THAT(same.out, HasSubstr("level 0, 20 x 12: error 0.000 degrees"));
@@ -256,7 +256,7 @@ TEST(ConvertToTexture, Refusals) {
          {"relief-bake convert map.png out/m.ktx2 --mips --mip-lengths", 2,
           "--mip-lengths: textures store no lengths"},
          {"relief-bake convert map.png out/m.ktx2 --format bc5 --max-error 0.001", 2,
-          "--max-error 0.001: the least mean error of the formats is"},
+          "--max-error 0.001: the smallest mean error of the formats is"},
          {"relief-bake convert alpha.png out/m.ktx2", 2,
           "--format bc5: stores no alpha, which the map has"}});
 }

@@ -56,9 +56,10 @@ struct JudgedKind {
 JudgedKind judged_kind(MapContent content) {
     switch (content) {
         case MapContent::gray:
-            return {MapKind::height, "is gray, like a height map or a mask, and holds no normals"};
+            return {MapKind::height,
+                    "is gray, like a height map or a mask, so it is not a normal map"};
         case MapContent::other:
-            return {std::nullopt, "holds no normals: its texels are colors, or several masks"};
+            return {std::nullopt, "is not a normal map: its texels are colors, or several masks"};
         case MapContent::object_normals:
             return {MapKind::object_normal, "seems to be a normal map in object space"};
         default:

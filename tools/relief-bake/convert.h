@@ -168,7 +168,7 @@ struct LevelError {
     ErrorStats error;
 };
 
-/// "level 1, 128 x 128: error 0.152 degrees (99 %: 0.410, greatest: 0.900)"
+/// "level 1, 128 x 128: error 0.152 degrees (99 %: 0.410, maximum: 0.900)"
 std::string level_text(std::size_t level, const LevelError& error);
 
 /// A map that others are compared with.

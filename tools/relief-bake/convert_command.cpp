@@ -83,9 +83,9 @@ Summary summary_of(const Job& job, const MapConversion& conversion, const Stages
     const NormalMapFormat& format = conversion.format;
     Json lengths;
     if (conversion.lengths) {
-        lengths = {{"min", conversion.lengths->least},
+        lengths = {{"min", conversion.lengths->min},
                    {"mean", conversion.lengths->mean},
-                   {"max", conversion.lengths->greatest}};
+                   {"max", conversion.lengths->max}};
     }
     Summary summary;
     summary.add_json({{"width", largest.width}, {"height", largest.height}});

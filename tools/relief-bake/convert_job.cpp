@@ -152,7 +152,7 @@ TargetMesh read_target(const std::filesystem::path& file, std::optional<TangentM
         }
         target.mesh = joined(std::move(model.parts));
     });
-    if (target.mesh.triangles.empty()) throw FileError(file, "holds no triangles");
+    if (target.mesh.triangles.empty()) throw FileError(file, "has no triangles");
     return target;
 }
 
@@ -557,8 +557,8 @@ bool needs_whole_map(const Job& job, const ConvertRequest& request) {
 }
 
 std::string describe_lengths(const LengthRange& lengths) {
-    return fmt::format("normalized (lengths were {:.3f} to {:.3f}, mean {:.3f})", lengths.least,
-                       lengths.greatest, lengths.mean);
+    return fmt::format("normalized (lengths were {:.3f} to {:.3f}, mean {:.3f})", lengths.min,
+                       lengths.max, lengths.mean);
 }
 
 /// Converts the stored codes, of which only axes and alpha change.

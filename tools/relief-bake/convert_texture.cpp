@@ -172,7 +172,7 @@ EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alph
 }
 
 std::string level_text(std::size_t level, const LevelError& error) {
-    return fmt::format("level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, greatest: {:.3f})",
+    return fmt::format("level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, maximum: {:.3f})",
                        level, error.width, error.height, error.error.mean, error.error.p99,
                        error.error.max);
 }
@@ -282,8 +282,7 @@ TextureEncoding choose_encoding(const TextureOptions& options, const Image& norm
         least = std::min(least, error);
     }
     throw UsageError(
-        fmt::format("--max-error {:g}: the least mean error of the formats is {:.3g} "
-                    "degrees",
+        fmt::format("--max-error {:g}: the smallest mean error of the formats is {:.3g} degrees",
                     *options.max_error, least));
 }
 

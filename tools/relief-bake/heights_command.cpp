@@ -98,11 +98,10 @@ void add_heights_options(CLI::App& app, HeightsRequest& request) {
                "First remove the mean slope: a map whose flat texels are off by one code would "
                "tilt.")
         .group(group);
-    add_number(
-        app, "--max-residual", "DEG", request.max_residual, {0.0, 180.0, "degrees"},
-        fmt::format("Residual (RMS) above which the map is reported as no slopes of a height "
-                    "field. Default: {:g}.",
-                    HeightsRequest{}.max_residual))
+    add_number(app, "--max-residual", "DEG", request.max_residual, {0.0, 180.0, "degrees"},
+               fmt::format("Residual (RMS) above which it is reported that no height field has the "
+                           "slopes of the map. Default: {:g}.",
+                           HeightsRequest{}.max_residual))
         .group(group);
     const Choices<int> depths = {{"8", 8}, {"16", 16}, {"32", 32}};
     add_choice(app, "--bits", request.bits, depths,
@@ -180,7 +179,7 @@ void report_residual(const HeightsRequest& request, const IntegratedHeights& res
                      Report& report) {
     if (result.residual.rms <= request.max_residual) return;
     report.add(
-        "map that is not the slopes of a height field", "map", 0,
+        "map whose slopes are not those of a height field", "map", 0,
         fmt::format("{:.3g} degrees (RMS) of it are lost, more than the limit of {:g}: a bake, "
                     "or maps that were blended?",
                     result.residual.rms, request.max_residual));

@@ -473,7 +473,7 @@ VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshB
 }
 
 std::string to_string(const ErrorStats& summary) {
-    return fmt::format("RMS {:.3g} degrees, mean {:.3g}, 99 of 100 within {:.3g}, {:.3g} at most",
+    return fmt::format("RMS {:.3g} degrees, mean {:.3g}, 99 % within {:.3g}, {:.3g} at most",
                        summary.rms, summary.mean, summary.p99, summary.max);
 }
 

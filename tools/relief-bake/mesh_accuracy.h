@@ -58,7 +58,7 @@ struct VerifiedMap {
 VerifiedMap verify_map(const Baker& baker, const BakeModels& models, const MeshBakeRequest& bake,
                        BakeMapOptions map, const VerifyRequest& request, Report& report);
 
-/// "RMS 0.131 degrees, mean 0.12, 99 of 100 within 0.3, 2.1 at most"
+/// "RMS 0.131 degrees, mean 0.12, 99 % within 0.3, 2.1 at most"
 std::string to_string(const ErrorStats& summary);
 
 Summary summary_of(const VerifiedMap& map);

@@ -524,10 +524,11 @@ void add_texel_options(CLI::App& app, MeshBakeRequest& request) {
 }
 
 void add_fit_options(CLI::App& app, MeshBakeRequest& request, const std::string& consequence) {
-    add_number(app, "--max-missed", "PERCENT", request.max_missed, {0.0, 100.0, "percent"},
-               fmt::format("Maximum share of the texels covered by LOW whose rays may hit nothing. "
-                           "{} Default: {:g}.",
-                           consequence, MeshBakeRequest{}.missed_limit()))
+    add_number(
+        app, "--max-missed", "PERCENT", request.max_missed, {0.0, 100.0, "percent"},
+        fmt::format("Maximum percentage of the texels covered by LOW whose rays may hit nothing. "
+                    "{} Default: {:g}.",
+                    consequence, MeshBakeRequest{}.missed_limit()))
         .group("Rays");
     add_switch(app, "--allow-size-mismatch", request.bake.allow_size_mismatch,
                fmt::format("Accept models whose bounding boxes differ in size by more than a "
@@ -548,7 +549,7 @@ void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& desc
     add_number(app, "--max-error", "DEG", bound.degrees, {0.0, 180.0, "degrees"}, description)
         .group(group);
     add_choice(app, "--max-error-kind", bound.kind, enum_choices<ErrorKind>(),
-               "Error that --max-error limits: the root mean square, the error that 99 of 100 "
+               "Error that --max-error limits: the root mean square, the error that 99 % of the "
                "texels do not exceed (p99), or the maximum. Default: rms.")
         .group(group);
 }
@@ -582,7 +583,7 @@ std::string to_string(const ErrorBound& bound) {
     const ErrorKind kind = bound.kind.value_or(ErrorKind::rms);
     return fmt::format("{:g} degrees ({})", bound.degrees.value_or(0.0),
                        kind == ErrorKind::rms   ? "RMS"
-                       : kind == ErrorKind::p99 ? "99 of 100 texels"
+                       : kind == ErrorKind::p99 ? "99 % of the texels"
                                                 : "maximum");
 }
 

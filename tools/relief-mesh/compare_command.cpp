@@ -38,7 +38,7 @@ constexpr std::size_t max_parts = 24;
 /// per instance in world space. A glTF file and a file of another format are always compared in
 /// world space, because other formats store world space.
 ///
-/// \throws FileError if a file cannot be read or holds no triangles
+/// \throws FileError if a file cannot be read or has no triangles
 ModelComparison compare_files(const CompareRequest& request) {
     Report ignored;  // `relief-mesh check` reports the findings of a file.
     Model a = read_model(request.a, ignored);

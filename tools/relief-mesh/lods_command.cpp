@@ -153,7 +153,7 @@ LevelMaker::LevelMaker(const LodsCommand& command, GltfDocument& document, Stage
                        LodsResult& done)
     : command_(command), document_(document), stages_(stages), done_(done) {
     meshes_ = lod_meshes_of(document);
-    if (meshes_.empty()) throw InvalidInput("holds no triangles");
+    if (meshes_.empty()) throw InvalidInput("has no triangles");
     for (const LodMesh& mesh : meshes_) {
         done.input.triangles += mesh.surface.triangles.size();
         done.input.vertices += mesh.surface.positions.size();

@@ -513,7 +513,7 @@ std::string remedy_for(DebugView view) {
         case DebugView::texcoords:
             return "unwrap the model first";
         default:
-            return "--explain-effects says what the scene calls for";
+            return "--explain-effects lists what the scene needs";
     }
 }
 

@@ -221,19 +221,19 @@ void add_window_options(CLI::App& app, ViewOptions& options) {
 
 void add_light_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Lights and camera";
-    add_repeatable(app, "--light", "LIGHT",
-                   "Replace the model's lights; may be given several times. "
-                   "directional:azimuth,elevation[,intensity[,#rrggbb[,ambient]]] shines from this "
-                   "direction, in degrees; point:x,y,z[,intensity[,#rrggbb[,ambient]]] is in world "
-                   "space, y up; spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb[,ambient]]]] "
-                   "shines from x,y,z towards tx,ty,tz in a cone of 30 or angle degrees from its "
-                   "axis; none removes all lights. Intensity 1 makes a white surface white, at "
-                   "distance 1 for point and spot. ambient (0) is the share of the light that it "
-                   "adds as ambient light, everywhere. Default: the model's lights, else a key "
-                   "light and a fill light.",
-                   [&](const std::string& subject, const std::string& text) {
-                       options.lights.push_back(parse_light(subject, text));
-                   })
+    add_repeatable(
+        app, "--light", "LIGHT",
+        "Replace the model's lights; may be given several times. "
+        "directional:azimuth,elevation[,intensity[,#rrggbb[,ambient]]] shines from this direction, "
+        "in degrees; point:x,y,z[,intensity[,#rrggbb[,ambient]]] is in world space, y up; "
+        "spot:x,y,z,tx,ty,tz[,angle[,intensity[,#rrggbb[,ambient]]]] shines from x,y,z towards "
+        "tx,ty,tz in a cone of 30 or angle degrees from its axis; none removes all lights. "
+        "Intensity 1 makes a white surface white, at distance 1 for point and spot. ambient (0) is "
+        "the fraction of the light that it adds as ambient light, everywhere. Default: the model's "
+        "lights, else a key light and a fill light.",
+        [&](const std::string& subject, const std::string& text) {
+            options.lights.push_back(parse_light(subject, text));
+        })
         .group(group);
     add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
                "Set the ambient light of the scene, to which lights may add. Default: 0, or 0.08 "

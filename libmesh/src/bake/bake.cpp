@@ -145,7 +145,7 @@ ProjectionLine LowSurface::line(const CoveredTexel& texel, const BakeDistances& 
     }
     // A line without a direction, or that is not finite, gets a negative length.
     if (!(glm::length(line.outward) > 0.5) || !is_finite(line.point)) {
-        report.add("place without a ray", "texel", sample, "missed");
+        report.add("sample without a ray", "texel", sample, "missed");
         line = {glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), -1.0, 0.0};
     }
     return line;
@@ -276,17 +276,18 @@ void check_rows(const BakeRowRange& rows, const BakeMapOptions& map) {
     const bool ends_well = rows.last == map.height || rows.last % TexelRasterizer::band_rows == 0;
     if (rows.first < 0 || rows.first % TexelRasterizer::band_rows != 0 || rows.last <= rows.first ||
         rows.last > map.height || !ends_well) {
-        throw InvalidInput(fmt::format("rows {} to {} are no multiples of {} within a map of {}",
-                                       rows.first, rows.last, TexelRasterizer::band_rows,
-                                       map.height));
+        throw InvalidInput(
+            fmt::format("rows {} to {} must be multiples of {} within a map of {} rows", rows.first,
+                        rows.last, TexelRasterizer::band_rows, map.height));
     }
-    if (map.padding > 0) throw InvalidInput("some rows of a map have no padding");
+    if (map.padding > 0)
+        throw InvalidInput("padding needs all rows of a map, but only some are baked");
 }
 
 void check_border(const BakeMapOptions& map) {
     if (!map.border_folder) return;
     if (map.padding > 0 || map.rows)
-        throw InvalidInput("a map that is filled to its border has no padding, and all rows");
+        throw InvalidInput("filling a map to its border needs all rows and a padding of 0");
     if (std::max(map.width, map.height) > BorderFill::max_side) {
         throw InvalidInput(fmt::format("a map of {} x {} texels is too large to be filled: {}",
                                        map.width, map.height, BorderFill::max_side));
@@ -430,7 +431,7 @@ LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
     for (const auto& surface : surfaces_) {
         if (layers.curvature) {
             const HighSurface::CurvatureRange range = surface->high.curvature_range();
-            bounds.curvature = std::max(bounds.curvature, range.greatest);
+            bounds.curvature = std::max(bounds.curvature, range.max);
             bounds.curvature_p99 = std::max(bounds.curvature_p99, range.usual);
         }
         if (layers.positions) {

@@ -263,7 +263,7 @@ void report_agreement(const BakeAgreement& agreement, const BakeOptions& options
                                    units.empty() ? "" : " (", units, units.empty() ? "" : ")"));
             return;
         }
-        report.add("high model in another place", "model", 0,
+        report.add("high model at another position", "model", 0,
                    fmt::format("is moved by {} from the low one, which explains most of their "
                                "difference; move one of them",
                                to_text(correction->shift)));

@@ -408,7 +408,7 @@ HighSurface::CurvatureRange HighSurface::curvature_range() const {
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         const Entry& entry = entries_[i];
         for (const float value : entry.curvature)
-            range.greatest = std::max(range.greatest, static_cast<double>(std::abs(value)));
+            range.max = std::max(range.max, static_cast<double>(std::abs(value)));
         // A large mesh is sampled with a stride.
         const std::size_t stride = entry.mesh->triangles.size() / max_area_samples + 1;
         for (std::size_t triangle = 0; triangle < entry.mesh->triangles.size();

@@ -63,7 +63,7 @@ class HighSurface {
     /// Bounds of the absolute curvature over all meshes, if requested.
     struct CurvatureRange {
         double usual = 0.0;  ///< Holds on 99% of the area.
-        double greatest = 0.0;
+        double max = 0.0;
     };
     [[nodiscard]] CurvatureRange curvature_range() const;
 

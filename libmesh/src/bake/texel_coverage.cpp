@@ -671,7 +671,7 @@ class Sorting {
             return;
         }
         const Interval across(low.x, high.x), down(low.y, high.y);
-        const glm::dvec2 least(range_.least), greatest(range_.greatest);
+        const glm::dvec2 least(range_.min), greatest(range_.max);
         const glm::dvec2 begin = glm::max(glm::dvec2(across.first, down.first), least);
         const glm::dvec2 end = glm::min(glm::dvec2(across.last, down.last), greatest);
         bool is_inside = across.first >= least.x && across.last <= greatest.x &&

@@ -42,7 +42,7 @@ class DuplicateKeys {
         if (event == Json::parse_event_t::key &&
             !open_.back().insert(value.get<std::string>()).second) {
             throw InvalidInput(
-                fmt::format("the key '{}' stands twice in one object", value.get<std::string>()));
+                fmt::format("the key '{}' occurs twice in one object", value.get<std::string>()));
         }
         return true;
     }
@@ -98,7 +98,7 @@ JsonCursor JsonCursor::parse(std::string_view text) {
         return JsonCursor(Json::parse(text.begin(), text.end(), std::ref(duplicates)),
                           Wording::requirement);
     } catch (const Json::exception& error) {
-        throw InvalidInput(fmt::format("is no JSON: {}", json_problem(error)));
+        throw InvalidInput(fmt::format("is not valid JSON: {}", json_problem(error)));
     }
 }
 

@@ -484,7 +484,7 @@ constexpr double max_strength = 1e30;
 constexpr double max_texel = 1e30;
 
 void check(const ImageView& height, const BumpOptions& options) {
-    if (height.empty()) throw InvalidInput("an empty height field has no normals");
+    if (height.empty()) throw InvalidInput("the height field is empty");
     if (height.channels != 1)
         throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
     check_bump(options);

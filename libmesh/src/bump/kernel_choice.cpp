@@ -596,7 +596,7 @@ std::string reason_text(const KernelErrorModel& model, const BumpOptions& option
     const bool is_noisy = noise > 0.3 * step && noise > 0.0;
     const bool has_outliers = !is_noisy && model.outlier_share() > 0.0;
     const std::string problem = has_outliers
-                                    ? fmt::format("{:.2g}% of texels that stick out on their own",
+                                    ? fmt::format("isolated outliers ({:.2g}% of the texels)",
                                                   100.0 * model.outlier_share())
                                 : is_noisy   ? fmt::format("noise of {:.2g} texels", noise)
                                 : step > 0.0 ? fmt::format("steps of {:.2g} texels", step)
@@ -608,7 +608,7 @@ std::string reason_text(const KernelErrorModel& model, const BumpOptions& option
     }
     if (model.edge_share() > 0.005 && kernel.radius == 1) {
         return fmt::format(
-            "{}: {:.1f}% of the texels are beside sharp walls, so only the next texels are read",
+            "{}: {:.1f}% of the texels are next to sharp walls, so only the next texels are read",
             coding, 100.0 * model.edge_share());
     }
     return fmt::format(
@@ -653,7 +653,8 @@ std::vector<ImagePart> parts_to_analyze(int width, int height) {
     constexpr int max_side = 128;
     constexpr int max_per_axis = 3;
     if (width <= 0 || height <= 0)
-        throw InvalidInput(fmt::format("a map of {} x {} texels has no parts", width, height));
+        throw InvalidInput(
+            fmt::format("the map has {} x {} texels, but needs at least 1 x 1", width, height));
     if (std::min(width, height) < 8) {
         constexpr int max_length = max_side * max_side;
         return {{0, 0, std::min(width, max_length), std::min(height, max_length)}};
@@ -720,7 +721,7 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
     if (texels < min_texels && choice.rms_degrees > 0.0) {
         choice.rms_degrees = choice.max_degrees = std::numeric_limits<double>::quiet_NaN();
         choice.upper_rms_degrees = choice.upper_max_degrees = choice.rms_degrees;
-        choice.reason = fmt::format("{} texel{} say too little to expect an error", texels,
+        choice.reason = fmt::format("{} texel{} are too few to estimate an error", texels,
                                     texels == 1 ? "" : "s");
     }
     return choice;
@@ -728,7 +729,7 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
 
 KernelChoice choose_kernel(const ImageView& height, const BumpOptions& options, bool destaircased,
                            Grain grain) {
-    if (height.empty()) throw InvalidInput("an empty height field has no kernel");
+    if (height.empty()) throw InvalidInput("the height field is empty");
     std::vector<Image> parts;
     for (const ImagePart& part : parts_to_analyze(height.width, height.height))
         parts.push_back(part_of(height, part));

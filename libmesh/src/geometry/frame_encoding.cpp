@@ -359,7 +359,7 @@ SoundFrame repaired_frame(const glm::vec3& normal, const glm::vec4& tangent, std
     frame.tangent = sound_tangent(glm::dvec3(tangent), frame.normal, index, found);
     if (std::abs(tangent.w) != 1.0F) {
         found.add("tangent without handedness", "vertex", index,
-                  "-1 is taken where w is negative, else 1");
+                  "w becomes -1 if it is negative, else 1");
     }
     frame.mirrored = tangent.w < 0.0F;
     return frame;
@@ -512,8 +512,8 @@ std::vector<std::uint32_t> encode_frames(std::span<const glm::vec3> normals,
 Frames decode_frames(std::span<const std::uint32_t> words, FrameEncoding encoding, Report& report) {
     const std::size_t stride = words_per_frame(encoding);
     if (words.size() % stride != 0) {
-        throw InvalidInput(
-            fmt::format("{} words are not whole frames of {} words", words.size(), stride));
+        throw InvalidInput(fmt::format("{} words are not a multiple of {}, the words of a frame",
+                                       words.size(), stride));
     }
     const std::size_t count = words.size() / stride;
     Frames frames{std::vector<glm::vec3>(count), std::vector<glm::vec4>(count)};
@@ -542,7 +542,7 @@ ChosenEncoding smallest_encoding_within(double max_degrees, std::span<const glm:
                                         FrameRounding rounding) {
     if (!(max_degrees >= 0.0) || !std::isfinite(max_degrees)) {
         throw InvalidInput(
-            fmt::format("an error of {} degrees is no bound: 0 or more", max_degrees));
+            fmt::format("the limit is {} degrees, but must be finite and at least 0", max_degrees));
     }
     const Frames reference =
         stored_and_read(normals, tangents, FrameEncoding::float32, FrameRounding::nearest);

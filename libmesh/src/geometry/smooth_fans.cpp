@@ -340,7 +340,8 @@ void part(std::vector<JudgedEdge>& edges, InferredCreases& found) {
 
 InferredCreases inferred_creases(const Mesh& mesh) {
     validate(mesh);
-    if (mesh.normals.empty()) throw InvalidInput("the mesh has no normals to tell hard edges by");
+    if (mesh.normals.empty())
+        throw InvalidInput("the mesh has no normals that could show hard edges");
     const std::vector<glm::uvec3> welded =
         welded_triangles(mesh.triangles, weld_positions(mesh.positions));
     const std::vector<glm::vec3> normals = normals_or_zero(mesh.positions, mesh.triangles);

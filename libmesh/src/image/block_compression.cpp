@@ -51,7 +51,7 @@ struct CodeFit {
 };
 
 struct CodeRange {
-    float least, greatest;
+    float min, max;
 };
 
 constexpr CodeRange range_of(bool is_signed) {
@@ -101,8 +101,8 @@ RELIEF_INLINE float error_with_ends(const ChannelTargets& targets, std::size_t l
         const float value = targets.value[t][lane];
         const float offset = value - low;
         const float rest = offset - step * step_of<5>(offset, scale);
-        const float from_least = value - range.least;
-        const float from_greatest = value - range.greatest;
+        const float from_least = value - range.min;
+        const float from_greatest = value - range.max;
         float square = rest * rest;
         square = from_least * from_least < square ? from_least * from_least : square;
         square = from_greatest * from_greatest < square ? from_greatest * from_greatest : square;
@@ -113,8 +113,8 @@ RELIEF_INLINE float error_with_ends(const ChannelTargets& targets, std::size_t l
 
 /// Makes two numbers valid codes with low < high.
 RELIEF_INLINE void make_codes(float& low, float& high, CodeRange range) {
-    low = clamped_to(nearest_code(low), range.least, range.greatest - 1.0F);
-    high = clamped_to(nearest_code(high), low + 1.0F, range.greatest);
+    low = clamped_to(nearest_code(low), range.min, range.max - 1.0F);
+    high = clamped_to(nearest_code(high), low + 1.0F, range.max);
 }
 
 /// Replaces the fit of each block by the candidate if its error is smaller.
@@ -248,15 +248,15 @@ RELIEF_INLINE void search_with_ends(const ChannelTargets& targets, CodeRange ran
     constexpr float margin = 0.5F;
     BlockLanes inner_low, inner_high, has_end;
     for (std::size_t lane = 0; lane < block_lanes; ++lane) {
-        float least = range.greatest;
-        float greatest = range.least;
+        float least = range.max;
+        float greatest = range.min;
         float found = 0.0F;
 #pragma GCC unroll 16
         for (std::size_t t = 0; t < texels_per_block; ++t) {
             const float value = targets.value[t][lane];
-            const bool is_end = (value < range.least + margin) | (value > range.greatest - margin);
-            const float low = is_end ? range.greatest : value;
-            const float high = is_end ? range.least : value;
+            const bool is_end = (value < range.min + margin) | (value > range.max - margin);
+            const float low = is_end ? range.max : value;
+            const float high = is_end ? range.min : value;
             least = low < least ? low : least;
             greatest = high > greatest ? high : greatest;
             found = is_end ? 1.0F : found;
@@ -341,15 +341,15 @@ RELIEF_INLINE void choose_values_with_ends(const TexelLanes& value, const CodeFi
             index = from_low == 5 ? 1 : index;
             const float rest = value[t][lane] - result;
             float square = rest * rest;
-            const float from_least = value[t][lane] - range.least;
+            const float from_least = value[t][lane] - range.min;
             const bool is_least = from_least * from_least < square;
             square = is_least ? from_least * from_least : square;
             index = is_least ? 6 : index;
-            result = is_least ? range.least : result;
-            const float from_greatest = value[t][lane] - range.greatest;
+            result = is_least ? range.min : result;
+            const float from_greatest = value[t][lane] - range.max;
             const bool is_greatest = from_greatest * from_greatest < square;
             index = is_greatest ? 7 : index;
-            result = is_greatest ? range.greatest : result;
+            result = is_greatest ? range.max : result;
             decoded[t][lane] = has_ends ? result : decoded[t][lane];
             halves[t / 8] |= index << (3 * (t % 8));
         }
@@ -708,7 +708,8 @@ void decode_channel(const std::byte* block, std::size_t channels, std::uint16_t*
 
 void check_size(int width, int height) {
     if (width < 1 || height < 1)
-        throw InvalidInput(fmt::format("an image of {} x {} texels has no blocks", width, height));
+        throw InvalidInput(
+            fmt::format("the image has {} x {} texels, but needs at least 1 x 1", width, height));
 }
 
 std::vector<std::byte> encode_channels(const ImageView& image, BlockFormat format,

@@ -177,7 +177,7 @@ void follow(const Surface& surface, const Plane& codes, const Wraps& wrap, int s
 }
 
 void check(const Image& height, const DestaircaseOptions& options) {
-    if (height.empty()) throw InvalidInput("an empty height field has no steps");
+    if (height.empty()) throw InvalidInput("the height field is empty");
     if (height.channels != 1)
         throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
     if (!(options.step >= 0.0 && std::isfinite(options.step)))

@@ -115,7 +115,7 @@ std::vector<float> heights_of(const Image& image, HeightChannel channel) {
 }
 
 void check(const Image& image, HeightChannel channel) {
-    if (image.empty()) throw InvalidInput("an empty image has no heights");
+    if (image.empty()) throw InvalidInput("the image is empty");
     if (channel == HeightChannel::alpha && !has_alpha(image))
         throw InvalidInput("the image has no alpha channel to take heights from");
     const bool is_color = channel == HeightChannel::green || channel == HeightChannel::blue;

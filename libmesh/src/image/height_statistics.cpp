@@ -44,7 +44,7 @@ class Heights {
 };
 
 void check_heights(const ImageView& image) {
-    if (image.empty()) throw InvalidInput("an empty height field has no statistics");
+    if (image.empty()) throw InvalidInput("the height field is empty");
     if (image.channels != 1)
         throw InvalidInput(fmt::format("a height field has one channel, not {}", image.channels));
 }

@@ -258,9 +258,9 @@ Image part_of(const ImageView& image, const ImagePart& part) {
                            part.width <= image.width - part.x &&
                            part.height <= image.height - part.y;
     if (!is_within) {
-        throw InvalidInput(fmt::format("{} x {} texels at ({}, {}) are no part of {} x {}",
-                                       part.width, part.height, part.x, part.y, image.width,
-                                       image.height));
+        throw InvalidInput(
+            fmt::format("{} x {} texels at ({}, {}) are not inside the image of {} x {}",
+                        part.width, part.height, part.x, part.y, image.width, image.height));
     }
     Image result =
         make_image(part.width, part.height, image.channels, image.bits(), ColorSpace::data);
@@ -283,7 +283,7 @@ Image part_of(const Image& image, const ImagePart& part) {
 }
 
 void check_floats(const ImageView& image, int channels, const char* what) {
-    if (image.empty()) throw InvalidInput(fmt::format("an empty image holds no {}", what));
+    if (image.empty()) throw InvalidInput(fmt::format("the image of {} is empty", what));
     if (image.channels != channels || image.bits() != 32) {
         throw InvalidInput(fmt::format("{} have {} float channels, not {} of {} bits", what,
                                        channels, image.channels, image.bits()));

@@ -207,7 +207,7 @@ std::vector<Image> levels(const Image& image) {
 }  // namespace
 
 std::vector<Image> mip_levels(const Image& image) {
-    if (image.empty()) throw InvalidInput("an image without texels has no mip levels");
+    if (image.empty()) throw InvalidInput("the image is empty");
     if (image.bits() == 16 && image.color_space == ColorSpace::srgb) {
         // 16 bits of linear light do not resolve the darkest codes.
         std::vector<Image> result = mip_levels(to_linear(image));

@@ -51,9 +51,9 @@ Image decode_xy_rows(const ImageView& map, const XyChannels& channels, FlatCode 
 
 /// The lengths of the vectors of a row.
 struct RowLengths {
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     double sum = 0.0;
-    double greatest = 0.0;
+    double max = 0.0;
     std::size_t count = 0;
 };
 

@@ -25,24 +25,26 @@ using enum Severity;
 constexpr std::array all_map_conditions = {
     MapConditionInfo{not_normals, "no normal map", "map", problem,
                      "its vectors have no common length, or all its channels are the same"},
-    MapConditionInfo{object_space, "object-space normals", "map", note,
-                     "its vectors face all ways: for one mesh only, and no tangent-space map"},
-    MapConditionInfo{z_missing, "no third component", "map", problem,
-                     "only x and y are stored: who reads three channels gets wrong normals"},
+    MapConditionInfo{
+        object_space, "object-space normals", "map", note,
+        "its vectors face all directions: it fits only one mesh, and is not a tangent-space map"},
+    MapConditionInfo{
+        z_missing, "no third component", "map", problem,
+        "only x and y are stored: programs that read three channels get wrong normals"},
     MapConditionInfo{z_constant, "constant third component", "map", note,
-                     "x and y carry all; true only where slopes are small"},
+                     "x and y contain all information; valid only for small slopes"},
     MapConditionInfo{stored_through_srgb, "stored through the sRGB curve", "map", problem,
                      "too bright: flat is 188 of 255 instead of 128"},
     MapConditionInfo{decoded_from_srgb, "darkened by the sRGB curve", "map", problem,
                      "read as color and stored as light: flat is 55 of 255 instead of 128"},
     MapConditionInfo{tagged_as_color, "tagged as a color", "map", note,
-                     "its file says sRGB or the like: programs that follow such tags bend the "
-                     "normals (relief does not, nor does glTF)"},
+                     "its file is tagged as a color: programs that apply such tags change the "
+                     "normals (relief and glTF do not)"},
     MapConditionInfo{signed_samples, "signed samples", "map", problem,
                      "float samples hold n itself; relief and most others read (n + 1) / 2"},
     MapConditionInfo{texel_not_finite, "texel not finite", "texel", problem, "is read as flat"},
     MapConditionInfo{texel_without_direction, "texel without direction", "texel", problem,
-                     "is (0,0,0) or all but that; what it is read as differs between programs"},
+                     "is (0,0,0) or nearly so: programs read it differently"},
     MapConditionInfo{texel_facing_back, "texel facing back", "texel", problem,
                      "has z below 0, which no surface seen from outside has in tangent space"},
     MapConditionInfo{texel_gray, "gray texel", "texel", note,
@@ -53,22 +55,22 @@ constexpr std::array all_map_conditions = {
                      "shade it wrong"},
     MapConditionInfo{not_quite_unit, "not quite of unit length", "map", note,
                      "lengths are off by more than 0.02 (RMS): filtered or compressed"},
-    MapConditionInfo{green_contradicted, "green is not as said", "map", problem,
-                     "its slopes are those of a surface only with green the other way round"},
+    MapConditionInfo{green_contradicted, "green is not as stated", "map", problem,
+                     "its slopes are those of a surface only with the opposite green"},
     MapConditionInfo{green_down, "green is down", "map", note,
-                     "as DirectX has it; OpenGL and glTF want it up"},
-    MapConditionInfo{green_unknown, "green cannot be told", "map", note,
-                     "its slopes are as good a surface with green up as with green down"},
-    MapConditionInfo{flat_contradicted, "zero is not what the file says", "map", problem,
-                     "its flat texels have another code than the one named"},
+                     "as in DirectX; OpenGL and glTF have it up"},
+    MapConditionInfo{green_unknown, "green is undecidable", "map", note,
+                     "its slopes fit a surface equally well with green up and down"},
+    MapConditionInfo{flat_contradicted, "zero is not as stated", "map", problem,
+                     "its flat texels have another code than the file states"},
     MapConditionInfo{all_flat, "every texel the same", "map", note, "shows nothing"},
     MapConditionInfo{x_constant, "constant first component", "map", note,
                      "no slope left and right"},
     MapConditionInfo{y_constant, "constant second component", "map", note, "no slope up and down"},
     MapConditionInfo{bits_unused, "bits unused", "map", note,
-                     "holds no more than 8 bits: as large as a finer map and no better"},
+                     "has only 8-bit content: 16 bits or float need more memory without a benefit"},
     MapConditionInfo{alpha_opaque, "constant alpha", "map", note,
-                     "a fourth channel that says nothing"},
+                     "a fourth channel without information"},
     MapConditionInfo{alpha_heights, "heights in alpha", "map", note,
                      "the slopes of the fourth channel are those of the normals"},
     MapConditionInfo{alpha_other, "something in alpha", "map", note,
@@ -372,7 +374,7 @@ void look_at_surface(const ImageView& map, SampleMeaning meaning, const MapStati
 }  // namespace
 
 MapContent judged_content(const ImageView& map, FlatCode flat) {
-    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.empty()) throw InvalidInput("the image is empty");
     if (map.channels == 1) return MapContent::gray;
     const Meaning meaning = meaning_of(map, flat);
     if (meaning.content != MapContent::other) return meaning.content;
@@ -384,7 +386,7 @@ MapContent judged_content(const ImageView& map, FlatCode flat) {
 NormalMapCheck check_normal_map(const ImageView& map,
                                 const std::map<std::string, std::string>& metadata,
                                 std::string_view color_tag, std::optional<MapContent> assumed) {
-    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.empty()) throw InvalidInput("the image is empty");
     NormalMapCheck check;
     FoundConditions found(check);
     look_at_channels(map, check);

@@ -61,8 +61,8 @@ RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Repo
         if (!(std::abs(length - 1.0) <= tolerance))
             found.add("normal not of unit length", "texel", texel, "scaled to length 1");
         if (!std::isfinite(length)) continue;
-        result.least = std::min(result.least, length);
-        result.greatest = std::max(result.greatest, length);
+        result.min = std::min(result.min, length);
+        result.max = std::max(result.max, length);
         result.sum += length;
         ++result.count;
     }
@@ -103,7 +103,7 @@ void check_xy_channels(int count, const XyChannels& channels) {
 
 Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green green, FlatCode flat,
                     Report& report, FlatTexels texels) {
-    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.empty()) throw InvalidInput("the image is empty");
     check_xy_channels(map.channels, channels);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
     float* const normals = result.as<float>().data();
@@ -128,7 +128,7 @@ Image decode_xy_rows(const ImageView& map, const XyChannels& channels, FlatCode 
 
 void append_row_lengths(const Image& map, FlatCode flat, std::vector<RowLengths>& lengths,
                         Report& report) {
-    if (map.empty()) throw InvalidInput("an empty image holds no normals");
+    if (map.empty()) throw InvalidInput("the image is empty");
     if (map.channels < 3)
         throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
     const std::size_t first = lengths.size();
@@ -143,13 +143,13 @@ void append_row_lengths(const Image& map, FlatCode flat, std::vector<RowLengths>
 LengthRange range_of(const std::vector<RowLengths>& rows) {
     RowLengths all;
     for (const RowLengths& row : rows) {
-        all.least = std::min(all.least, row.least);
-        all.greatest = std::max(all.greatest, row.greatest);
+        all.min = std::min(all.min, row.min);
+        all.max = std::max(all.max, row.max);
         all.sum += row.sum;
         all.count += row.count;
     }
     if (all.count == 0) return {};
-    return {all.least, all.sum / static_cast<double>(all.count), all.greatest};
+    return {all.min, all.sum / static_cast<double>(all.count), all.max};
 }
 
 LengthRange measure_lengths(const Image& map, FlatCode flat, Report& report) {

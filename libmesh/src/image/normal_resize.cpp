@@ -127,7 +127,8 @@ FloatRows rows_of(const Image& image) {
 
 void check_resize(int width, int height, const ResizeOptions& options) {
     if (width < 1 || height < 1)
-        throw InvalidInput(fmt::format("there is no image of {} x {} texels", width, height));
+        throw InvalidInput(
+            fmt::format("the size is {} x {} texels, but must be at least 1 x 1", width, height));
     for (const double repeat : {options.repeat.x, options.repeat.y}) {
         if (!(repeat > 0.0 && repeat <= 1e4))
             throw InvalidInput(

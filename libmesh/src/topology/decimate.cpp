@@ -47,17 +47,19 @@ void check(const Mesh& mesh, const Deformation& deformation, const DecimateOptio
     if (!options.triangles && !options.max_error)
         throw InvalidInput("decimation needs a number of triangles or an error to stop at");
     if (options.triangles && *options.triangles == 0)
-        throw InvalidInput("0 triangles are no surface; at least 1 must be left");
+        throw InvalidInput("the number of triangles is 0, but must be at least 1");
     if (options.max_error && !(*options.max_error >= 0.0 && std::isfinite(*options.max_error)))
-        throw InvalidInput(fmt::format("an error of {} is no distance", *options.max_error));
+        throw InvalidInput(fmt::format("the maximum error is {}, but must be finite and at least 0",
+                                       *options.max_error));
     if (options.max_normal_error && !(*options.max_normal_error > 0.0))
-        throw InvalidInput(fmt::format("an angle of {} between normals is not above 0",
+        throw InvalidInput(fmt::format("the maximum error of normals is {}, but must be above 0",
                                        *options.max_normal_error));
     const AttributeWeights& weights = options.weights;
     for (const double weight :
          {weights.texcoord, weights.normal, weights.color, weights.joint, weights.target}) {
         if (!(weight >= 0.0 && std::isfinite(weight)))
-            throw InvalidInput(fmt::format("a weight of {} is not 0 or above", weight));
+            throw InvalidInput(
+                fmt::format("a weight is {}, but must be finite and at least 0", weight));
     }
 }
 

@@ -169,7 +169,8 @@ LoopPoints loop_points(const Topology& topology, std::span<const glm::dvec3> poi
 void check(const Mesh& mesh, int levels) {
     validate(mesh);
     if (levels < 1)
-        throw InvalidInput(fmt::format("{} levels of subdivision, but the least is 1", levels));
+        throw InvalidInput(
+            fmt::format("the number of levels is {}, but must be at least 1", levels));
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max() / 3;
     std::uint64_t triangles = mesh.triangles.size();
     for (int level = 0; level < levels; ++level) {

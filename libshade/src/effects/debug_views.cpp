@@ -198,7 +198,7 @@ FramePlan plan_view(const Scene& scene, const FrameSettings& settings, FramePlan
     const DebugView view = settings.view;
     if (view == DebugView::picture) return plan;
     if (view == DebugView::nothing_to_show)
-        throw InvalidInput("nothing_to_show is no view to ask for");
+        throw InvalidInput("nothing_to_show cannot be requested");
     std::string first_reason;
     std::size_t showing = 0;
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
@@ -217,8 +217,8 @@ FramePlan plan_view(const Scene& scene, const FrameSettings& settings, FramePlan
             report.add("surface without what the view shows", "draw", i, "hatched in gray");
     }
     if (showing == 0 && !first_reason.empty()) {
-        throw InvalidInput(fmt::format("there is nothing to show of {}: {}",
-                                       debug_view_info(view).name, first_reason));
+        throw InvalidInput(
+            fmt::format("{} cannot be shown: {}", debug_view_info(view).name, first_reason));
     }
     plan_frame(scene, settings, plan);
     return plan;

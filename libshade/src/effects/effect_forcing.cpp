@@ -46,7 +46,7 @@ std::string known_name(std::string_view wanted) {
         return bare(name) == bare(wanted);
     });
     if (found != names.end()) return *found;
-    throw InvalidInput(fmt::format("'{}' is no effect{}", wanted, did_you_mean(wanted, names)));
+    throw InvalidInput(fmt::format("'{}' is not an effect{}", wanted, did_you_mean(wanted, names)));
 }
 
 /// The requested effects by known names.
@@ -104,7 +104,7 @@ std::string refusal_reason(const ForcingSubject& subject, const EffectRow& row) 
     Features with = subject.planned;
     row.effect.set(with, true);
     const std::string displaced = displaced_effect(subject.planned, with);
-    return displaced.empty() ? "" : fmt::format("it would take the place of '{}'", displaced);
+    return displaced.empty() ? "" : fmt::format("it would replace '{}'", displaced);
 }
 
 /// The features of a draw with effects forced, and why requested ones are not there.

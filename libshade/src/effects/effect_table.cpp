@@ -53,32 +53,33 @@ Effect lights(const char* name) {
                     f.*Member = 1;
                 }
             },
-            "the material does nothing with light"};
+            "the material does not respond to light"};
 }
 
 // Reasons of canonical() that several rows share.
-const char* const no_light = "no light reaches the surface, or it does nothing with it";
-const char* const no_layer = "the material is not metallic-roughness, or nothing shines on it";
+const char* const no_light =
+    "no light reaches the surface, or its material does not respond to light";
+const char* const no_layer = "the material is not metallic-roughness, or no light reaches it";
 const char* const no_reflectance = "dielectrics reflect the 4% of the index 1.5";
-const char* const no_facets = "the material is not metallic-roughness, or mirrors nothing";
+const char* const no_facets = "the material is not metallic-roughness, or reflects nothing";
 const char* const no_coat = "there is no coat";
 const char* const no_film = "there is no film";
 const char* const no_normal = "neither light nor reflection shows the normal";
-const char* const no_color = "nothing is scattered that it could tint";
+const char* const no_color = "there is no scattered light to tint";
 const char* const no_highlights = "there are no highlights";
 const char* const not_lit = "no light source reaches the surface";
 const char* const not_reflecting = "nothing is reflected";
 const char* const not_srgb = "the picture is not coded in sRGB";
 
-const char* const not_deformed = "nothing deforms the mesh, or its normals do not show";
+const char* const not_deformed = "the mesh is not deformed, or its normals are not used";
 
 const char* map_hidden_by(const Features& requested, const Features& shown) {
     if (requested.detail == shown.detail) return "";
     switch (requested.interpolation) {
         case Interpolation::gouraud:
-            return "Gouraud shading knows the normal at vertices only";
+            return "Gouraud shading uses normals only at vertices";
         case Interpolation::flat:
-            return "flat shading knows the triangle's plane only";
+            return "flat shading uses only the triangle's normal";
         default:
             return "";
     }
@@ -268,11 +269,11 @@ Decision of_shadow(Subject s) {
     if (!s.scene.shadow) return {false, "the scene asks for none"};
     switch (s.lights.shadow) {
         case ShadowTerm::directional_light:
-            return {true, "the first directional light that shines casts one"};
+            return {true, "the first directional light that is on casts one"};
         case ShadowTerm::spot_light:
-            return {true, "the first spot light that shines casts one"};
+            return {true, "the first spot light that is on casts one"};
         case ShadowTerm::point_light:
-            return {true, "the first point light that shines casts one"};
+            return {true, "the first point light that is on casts one"};
         default:
             return {false,
                     "no light shines from outside of the scene, or no surface casts a shadow"};
@@ -360,9 +361,9 @@ Decision of_refraction(Subject s) {
     if (is_physical(s) && s.material.metallic_roughness->transmission > 0.0F)
         return {false, s.name + " shows what is behind it by transmission instead"};
     if (!(s.material.transmission > 0.0F) || is_physical(s))
-        return {false, s.name + " lets nothing through"};
+        return {false, s.name + " transmits no light"};
     if (!s.scene.environment) return {false, "the scene has no environment"};
-    return {true, s.name + " lets through what it does not mirror"};
+    return {true, s.name + " transmits the light that it does not reflect"};
 }
 
 Decision of_environment_tint(Subject s) {
@@ -401,7 +402,7 @@ EffectRow tone_row(const char* name) {
 Decision of_transmission(Subject s) {
     if (!is_physical(s)) return {false, s.name + " is Phong's model"};
     const MetallicRoughness& model = *s.material.metallic_roughness;
-    if (!(model.transmission > 0.0F)) return {false, s.name + " lets nothing through"};
+    if (!(model.transmission > 0.0F)) return {false, s.name + " transmits no light"};
     const bool textured = shows(model.texture, s.mesh);
     return of_material(s, model.metallic < 1.0F || textured, "shows what is behind it",
                        "is a metal everywhere");
@@ -409,7 +410,7 @@ Decision of_transmission(Subject s) {
 
 const char* coat_map_hidden_by(const Features& requested, const Features& /*shown*/) {
     const bool flat = requested.interpolation == Interpolation::flat;
-    return flat ? "flat shading knows the triangle's plane only" : "";
+    return flat ? "flat shading uses only the triangle's normal" : "";
 }
 
 EffectRow coat_map_row() {
@@ -469,7 +470,7 @@ std::vector<EffectRow> model_rows() {
              one_switch<&F::transmission>("transmission", "the material is not metallic-roughness"),
          .decide = of_transmission,
          .choice = "what is behind it would be drawn first"},
-        {.effect = one_switch<&F::volume>("volume", "the surface lets nothing through"),
+        {.effect = one_switch<&F::volume>("volume", "the surface transmits no light"),
          .decide =
              [](Subject s) {
                  const bool has = is_physical(s) && s.material.metallic_roughness->thickness > 0.0F;
@@ -490,7 +491,7 @@ std::vector<EffectRow> model_rows() {
             "sheen roughness texture", "there is no sheen"),
         model_texture<&F::clearcoat_texture, &M::clearcoat_texture>("clearcoat texture", no_coat),
         model_texture<&F::clearcoat_roughness_texture, &M::clearcoat_roughness_texture>(
-            "clearcoat roughness texture", "there is no coat, or it mirrors nothing"),
+            "clearcoat roughness texture", "there is no coat, or it reflects nothing"),
         coat_map_row(),
         model_texture<&F::anisotropy_texture, &M::anisotropy_texture>("anisotropy texture",
                                                                       "there is no anisotropy"),
@@ -499,7 +500,7 @@ std::vector<EffectRow> model_rows() {
         model_texture<&F::film_thickness_texture, &M::iridescence_thickness_texture>(
             "film thickness texture", no_film),
         model_texture<&F::transmission_texture, &M::transmission_texture>(
-            "transmission texture", "the surface lets nothing through"),
+            "transmission texture", "the surface transmits no light"),
         model_texture<&F::thickness_texture, &M::thickness_texture>("thickness texture",
                                                                     "there is no volume"),
         {.effect = one_value<&F::interpolation, Interpolation::gouraud>("Gouraud",
@@ -509,14 +510,14 @@ std::vector<EffectRow> model_rows() {
                  return of_material(s, s.material.interpolation == Interpolation::gouraud,
                                     "is lit at its vertices", "is lit at every pixel");
              },
-         .choice = "where light is computed is the material's choice"},
+         .choice = "the material determines where light is computed"},
         {.effect = one_value<&F::interpolation, Interpolation::flat>("flat", no_normal),
          .decide =
              [](Subject s) {
                  return of_material(s, s.material.interpolation == Interpolation::flat,
                                     "shows its facets", "interpolates its normals");
              },
-         .choice = "where light is computed is the material's choice"},
+         .choice = "the material determines where light is computed"},
     };
 }
 
@@ -542,7 +543,7 @@ Decision of_skinning(Subject s) {
 Decision of_facets(Subject s) {
     if (s.pose == nullptr || !s.pose->has_flat_normals)
         return {false, "the mesh has no flat normals that are deformed"};
-    if (!is_morphed(*s.pose) && !is_skinned(*s.pose)) return {false, "nothing deforms the mesh"};
+    if (!is_morphed(*s.pose) && !is_skinned(*s.pose)) return {false, "the mesh is not deformed"};
     return {true, "the normals are those of the deformed triangles"};
 }
 
@@ -697,11 +698,11 @@ std::vector<EffectRow> lighting_rows() {
          .decide = [](Subject s) { return of_texture(s, s.material.specular_texture); },
          .phong_only = true},
         {.effect = one_switch<&F::environment_tint>(
-             "environment tint", "nothing is lit that it could tint, or by glTF's model"),
+             "environment tint", "the surface has no lit color to tint, or is glTF's model"),
          .decide = of_environment_tint,
          .choice = "the color of a surface's light is the material's choice"},
-        {.effect =
-             one_switch<&F::clamped_terms>("clamped terms", "nothing is lit, or by glTF's model"),
+        {.effect = one_switch<&F::clamped_terms>("clamped terms",
+                                                 "the surface is not lit, or is glTF's model"),
          .decide = of_clamped_terms,
          .choice = "whether terms are clamped is the scene's choice"},
         {.effect = one_switch<&F::emission>("emission", ""),
@@ -755,7 +756,7 @@ std::vector<EffectRow> picture_rows() {
         {.effect = one_switch<&F::environment_rotation>(
              "environment rotation", "the surface neither mirrors the environment nor refracts it"),
          .decide = of_rotation},
-        {.effect = one_switch<&F::refraction>("refraction", "glTF's model lets nothing through"),
+        {.effect = one_switch<&F::refraction>("refraction", "glTF's model transmits no light"),
          .decide = of_refraction,
          .phong_only = true},
         {.effect = one_switch<&F::exposure>("exposure", not_srgb),

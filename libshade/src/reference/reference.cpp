@@ -418,7 +418,7 @@ glm::dvec4 over(const glm::dvec4& front, const glm::dvec4& background) {
 }  // namespace
 
 Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding output) {
-    if (output == OutputCoding::half) throw InvalidInput("half is no picture's coding");
+    if (output == OutputCoding::half) throw InvalidInput("pictures cannot have the coding half");
     const bool codes = output == OutputCoding::srgb;
     Image picture = make_image(radiance.width, radiance.height, 4, 32,
                                codes ? ColorSpace::srgb : ColorSpace::linear);

@@ -147,7 +147,7 @@ glm::dvec3 limited_light(const glm::dvec3& irradiance) {
     return glm::min(irradiance, glm::dvec3(static_cast<double>(max_light)));
 }
 
-/// \param share  the share of the light that its cone transmits, by the direction to the light
+/// \param share  the fraction of the light that its cone transmits, by the direction to the light
 template <typename Share>
 void add(const PointLight& light, const glm::dvec3& position, Share share, bool casts_shadow,
          std::vector<Incoming>& incoming) {

@@ -25,7 +25,7 @@ struct AttributeRow {
 const std::vector<AttributeRow>& attribute_rows() {
     static const std::vector<AttributeRow> all = {
         {"position_object", [](const Mesh& m) { return !m.positions.empty(); },
-         "every vertex has a place"},
+         "every vertex has a position"},
         {"normal_object", [](const Mesh& m) { return !m.normals.empty(); },
          "light or a reflection shows the normal"},
         {"tangent_object", [](const Mesh& m) { return !m.tangents.empty(); },
@@ -52,7 +52,8 @@ const std::map<std::string_view, SharedSampler>& shared_samplers() {
         {"environment_brdf", {false, "how much a rough surface mirrors, by angle and roughness"}},
         {"behind", {true, "the surface shows what is behind it; levels for roughness"}},
         {"light_buffer", {false, "the lights are in a buffer"}},
-        {"shadow_maps", {false, "surfaces hide the main light; a layer for a place on it"}},
+        {"shadow_maps",
+         {false, "surfaces hide the main light; one layer for each sampled point of it"}},
         {"joint_matrices", {false, "joints move the vertices"}},
         {"joint_weights", {false, "each vertex follows some of the joints"}},
         {"morph_weights", {false, "morph targets have weights"}},

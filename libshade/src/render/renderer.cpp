@@ -165,7 +165,7 @@ Picture::Picture(const gl::Api& api, TargetPool& targets, ProgramCache& programs
                             format_of(drawn_coding(settings, finishes)), settings.samples)),
       empty_vertices_(api) {
     if (settings.output == OutputCoding::half) {
-        throw InvalidInput("half is what a finishing pass reads, not a picture's coding");
+        throw InvalidInput("pictures cannot have the coding half, which finishing passes read");
     }
     if (!finishes && settings.samples > 1) {
         throw InvalidInput("samples are to be averaged, but the plan has no finishing pass");

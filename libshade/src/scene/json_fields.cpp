@@ -149,7 +149,7 @@ Environment environment_from(const JsonCursor& object, JsonImages& images) {
     read_fields(object, images, environment);
     if (const auto left_handed = object.find("left_handed")) {
         auto* cube = std::get_if<CubeFaces>(&environment.source);
-        if (cube == nullptr) left_handed->fail("says something of six faces only");
+        if (cube == nullptr) left_handed->fail("applies only to six faces");
         cube->left_handed = left_handed->boolean();
     }
     return environment;

@@ -49,7 +49,7 @@ template <typename Light>
 void check_light_members(const JsonCursor& object) {
     allow_fields<Light>(object, {"type", "intensity", "diffuse"});
     if (object.find("color") && object.find("diffuse"))
-        object.at("diffuse").fail("says the same as 'color': give one of them");
+        object.at("diffuse").fail("means the same as 'color': give one of them");
 }
 
 /// Completes the colors of a light whose fields have been read: "diffuse" is another name of
@@ -125,7 +125,7 @@ Camera node_camera_from(const JsonCursor& object, JsonImages& images, bool& sees
 Camera camera_by_matrix(const JsonCursor& object, JsonImages& images, bool& sees_all) {
     for (const char* key : {"eye", "target", "azimuth", "elevation", "distance_factor"}) {
         if (const auto extra = object.find(key))
-            extra->fail("says where the camera stands, and so does 'matrix'");
+            extra->fail("sets the camera's transform, as 'matrix' does: give one of them");
     }
     Camera camera;
     camera.world_from_view = matrix_from(object.at("matrix"));
@@ -153,12 +153,12 @@ Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, J
     if (object.find("eye") || object.find("target")) {
         for (const char* key : {"azimuth", "elevation", "distance_factor"}) {
             if (const auto extra = object.find(key))
-                extra->fail("says where the camera stands, and so does 'eye'");
+                extra->fail("sets the camera's transform, as 'eye' does: give one of them");
         }
         const glm::vec3 eye = object.at("eye").vector();
         const glm::vec3 forward = vector_in(object, "target", glm::vec3(0.0F)) - eye;
         depth = glm::length(forward);
-        if (!(depth > 0.0F)) object.at("eye").fail("is where the target is");
+        if (!(depth > 0.0F)) object.at("eye").fail("is at the target");
         camera.world_from_view = looking_along(eye, forward);
     } else {
         camera = framed(scene, degrees_in(object, "azimuth", default_azimuth),
@@ -243,7 +243,7 @@ SceneNode node_from(const JsonCursor& object) {
     if (const auto name = object.find("name")) node.name = name->text();
     if (const auto matrix = object.find("matrix")) {
         for (const char* key : {"translation", "rotation", "scale"}) {
-            if (const auto part = object.find(key)) part->fail("says what 'matrix' says already");
+            if (const auto part = object.find(key)) part->fail("is already contained in 'matrix'");
         }
         node.matrix = matrix_from(*matrix);
     }
@@ -387,12 +387,12 @@ class SceneReader {
     void read_meshes(const JsonCursor& object, std::size_t node) {
         const auto model = object.find("model");
         const auto shape = object.find("shape");
-        if (model && shape) shape->fail("stands beside 'model': a node has one of them");
+        if (model && shape) shape->fail("cannot be combined with 'model'");
         if (!model && !shape) {
             for (const char* key :
                  {"material", "material_variant", "material_changes", "normals", "crease"}) {
                 if (const auto extra = object.find(key))
-                    extra->fail("needs a 'model' or a 'shape' beside it");
+                    extra->fail("needs a 'model' or a 'shape'");
             }
             return;
         }
@@ -400,7 +400,7 @@ class SceneReader {
         const std::size_t first_material = graph_.scene.materials.size();
         for (const char* key : {"normals", "crease", "material_variant"}) {
             const auto extra = object.find(key);
-            if (extra && !model) extra->fail("needs a 'model' beside it");
+            if (extra && !model) extra->fail("needs a 'model'");
         }
         if (model) {
             append(graph_, model_from(object, *model), node);
@@ -463,7 +463,7 @@ class SceneReader {
     void read_camera(const JsonCursor& root) {
         const auto camera = root.find("camera");
         if (!camera) return;
-        if (graph_.scene.camera) camera->fail("is the second camera: a node has one already");
+        if (graph_.scene.camera) camera->fail("is a second camera: a node has one already");
         const glm::vec2 size(graph_.picture_size.value_or(glm::ivec2(1)));
         graph_.scene.camera =
             camera_from(*camera, graph_.scene, size.x / size.y, images_, graph_.camera_sees_all);

@@ -100,8 +100,8 @@ class SceneWriter {
         }
         if (!are_same) {
             throw InvalidInput(
-                fmt::format("meshes stand otherwise than in {} (moved by --time, or light markers "
-                            "added), which a scene file cannot say",
+                fmt::format("the positions of meshes differ from {} (by --time or light markers), "
+                            "which a scene file cannot store",
                             saved_.source.string()));
         }
     }
@@ -124,7 +124,7 @@ class SceneWriter {
         }
         if (std::filesystem::absolute(file_).parent_path().lexically_normal() !=
             std::filesystem::absolute(saved_.source).parent_path().lexically_normal()) {
-            throw InvalidInput("a scene file names others by where it is, so " +
+            throw InvalidInput("a scene file names other files relative to its folder, so " +
                                saved_.source.string() + " can be saved in its own folder only");
         }
         json_ = Json::parse(read_file(saved_.source));
@@ -181,7 +181,7 @@ class SceneWriter {
             environment_json(*scene_.environment, [&](const ImageSource& source) -> Json {
                 const auto* path = std::get_if<std::filesystem::path>(&source.source);
                 if (path == nullptr)
-                    throw InvalidInput("the environment is no file, but " + source.name);
+                    throw InvalidInput("the environment is not a file, but " + source.name);
                 return relative_path(file_.parent_path(), *path);
             });
     }
@@ -211,7 +211,7 @@ class SceneWriter {
                 file_.parent_path() /
                 fmt::format("{}-image-{}.png", file_.stem().string(), new_images_.size());
             if (std::filesystem::exists(entry->second))
-                throw FileError(entry->second, "is there already");
+                throw FileError(entry->second, "already exists");
         }
         return entry->second;
     }

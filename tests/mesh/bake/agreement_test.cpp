@@ -92,7 +92,8 @@ TEST(BakeAgreement, ShiftsAreNamed) {
     for (const glm::vec3& shift :
          {glm::vec3(0.3F, 0.0F, 0.0F), {0.0F, -0.3F, 0.0F}, {0.1F, 0.2F, -0.1F}}) {
         const Comparison pair = compare({moved(high_torus(), 1.0F, shift)}, low_torus());
-        EXPECT_THAT(pair.text(), HasSubstr("high model in another place (model 0): is moved by ("));
+        EXPECT_THAT(pair.text(),
+                    HasSubstr("high model at another position (model 0): is moved by ("));
         ASSERT_TRUE(pair.agreement.correction.has_value()) << shift.x;
         EXPECT_LT(glm::distance(pair.agreement.correction->shift, glm::dvec3(shift)), 0.05);
     }

@@ -286,7 +286,7 @@ TEST(BakeCheck, RefusesWhatIsNoMapOfThatSize) {
                   checked(make_quad(), make_quad(), options,
                           make_image(16, 16, 2, 8, ColorSpace::data));
               }),
-              "an image of 2 channels holds no normals");
+              "the image has 2 channels, but normals need at least 3");
 }
 
 }  // namespace

@@ -458,7 +458,7 @@ TEST(BorderFill, OfABakeReachesTheBorder) {
         EXPECT_NEAR(image.normal(corner).x, 0.6, 1e-6);
     options.map.padding = 1;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { test::bake({high}, low, options); }),
-              "a map that is filled to its border has no padding, and all rows");
+              "filling a map to its border needs all rows and a padding of 0");
     options = test::sized(40000, 1);
     options.map.border_folder = folder / ".";
     EXPECT_EQ(test::message_of<InvalidInput>([&] { test::bake({high}, low, options); }),

@@ -294,7 +294,7 @@ TEST(MapTiles, AreNumberedFromTheLeftAndUpwards) {
     EXPECT_EQ(udim_of({0, 0}), 1001);
     EXPECT_EQ(udim_of({9, 0}), 1010);
     EXPECT_EQ(udim_of({0, -1}), 1011);
-    EXPECT_EQ(udim_of(udim_tiles.greatest - glm::ivec2(1, -udim_tiles.least.y)), 9999);
+    EXPECT_EQ(udim_of(udim_tiles.max - glm::ivec2(1, -udim_tiles.min.y)), 9999);
     const MapTiles tiles = sorted({{0.1F, -0.9F},
                                    {0.2F, -0.9F},
                                    {0.1F, -0.8F},

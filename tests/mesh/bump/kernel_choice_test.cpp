@@ -242,7 +242,7 @@ TEST(KernelChoice, StatesTheShareOfTexelsThatStickOut) {
     }
     const KernelChoice choice = choose_kernel(field.heights, field.options);
     EXPECT_EQ(choice.spikes, 1.0 / 256.0);
-    EXPECT_THAT(choice.reason, HasSubstr("0.39% of texels that stick out on their own"));
+    EXPECT_THAT(choice.reason, HasSubstr("isolated outliers (0.39% of the texels)"));
 }
 
 TEST(KernelChoice, ExpectsTheErrorThatThereIs) {

@@ -444,7 +444,7 @@ TEST(KernelChoiceOnTinyMaps, NoErrorIsExpectedOfAFewTexels) {
     tiny.samples = std::vector<std::uint8_t>{0, 90, 200, 30};
     const KernelChoice choice = choose_kernel(tiny, {});
     EXPECT_TRUE(std::isnan(choice.rms_degrees));
-    EXPECT_THAT(choice.reason, HasSubstr("4 texels say too little to expect an error"));
+    EXPECT_THAT(choice.reason, HasSubstr("4 texels are too few to estimate an error"));
 }
 
 TEST(DefaultOptions, AreSettledByTheMap) {

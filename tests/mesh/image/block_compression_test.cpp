@@ -124,7 +124,7 @@ TEST(BlockDecoder, RefusesAnotherNumberOfBytes) {
     EXPECT_EQ(message_of<InvalidInput>([] { decode_blocks(Blocks(8), BlockFormat::bc7, 1, 1); }),
               "1 x 1 texels of bc7 have 16 bytes, not 8");
     EXPECT_EQ(message_of<InvalidInput>([] { decode_blocks({}, BlockFormat::bc4, 0, 1); }),
-              "an image of 0 x 1 texels has no blocks");
+              "the image has 0 x 1 texels, but needs at least 1 x 1");
 }
 
 TEST(Bc4Encoder, EveryCodeOfEightBitsIsExactInAFlatBlock) {

@@ -305,7 +305,7 @@ TEST(NormalMapCheck, IsTheSameForAnyNumberOfThreads) {
 
 TEST(NormalMapCheck, TakesTheSmallestImagesAndRefusesNone) {
     EXPECT_EQ(test::message_of<InvalidInput>([] { check_normal_map(Image{}); }),
-              "an empty image holds no normals");
+              "the image is empty");
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {3, 2}}) {
         const NormalMapCheck check =
             check_normal_map(map_from(hilly_normals(width == 1 ? 8 : width, 8, 0.1)));

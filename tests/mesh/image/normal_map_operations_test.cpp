@@ -224,8 +224,8 @@ TEST(CountLengths, CountsWhatNoCodeExplains) {
     ASSERT_EQ(report.findings().size(), 1U);
     EXPECT_EQ(report.findings()[0].kind, "normal not of unit length");
     EXPECT_THAT(report.findings()[0].first, ElementsAre(0, 2, 3));
-    EXPECT_EQ(spread.least, 0.0);
-    EXPECT_NEAR(spread.greatest, std::sqrt(2.0), 1e-12);
+    EXPECT_EQ(spread.min, 0.0);
+    EXPECT_NEAR(spread.max, std::sqrt(2.0), 1e-12);
     EXPECT_NEAR(spread.mean,
                 (100.0 / 127 + std::hypot(121.0, 39.0) / 127 + 0.0 + std::sqrt(2.0)) / 4, 1e-12);
     Image floats = image_of<float>(3, {NAN, 0.5F, 1.0F, 0.5F, 0.5F, 1.0F});

@@ -209,7 +209,7 @@ TEST(ResizeNormals, RefusesSizesThatAreNone) {
     const Image normals = normals_of_slopes({0.0});
     Report report;
     EXPECT_EQ(message_of<InvalidInput>([&] { resize_normals(normals, 0, 4, {}, report); }),
-              "there is no image of 0 x 4 texels");
+              "the size is 0 x 4 texels, but must be at least 1 x 1");
     ResizeOptions none;
     none.repeat.y = 0.0;
     EXPECT_EQ(message_of<InvalidInput>([&] { resize_normals(normals, 4, 4, none, report); }),

@@ -369,9 +369,11 @@ TEST(Decimate, RefusesLimitsThatAreNone) {
         return message_of<InvalidInput>([&] { decimated(test::grid(2), options, report); });
     };
     EXPECT_EQ(refusal({}), "decimation needs a number of triangles or an error to stop at");
-    EXPECT_EQ(refusal({0, {}, {}}), "0 triangles are no surface; at least 1 must be left");
-    EXPECT_EQ(refusal({{}, -1.0, {}}), "an error of -1 is no distance");
-    EXPECT_EQ(refusal({{}, std::nan(""), {}}), "an error of nan is no distance");
+    EXPECT_EQ(refusal({0, {}, {}}), "the number of triangles is 0, but must be at least 1");
+    EXPECT_EQ(refusal({{}, -1.0, {}}),
+              "the maximum error is -1, but must be finite and at least 0");
+    EXPECT_EQ(refusal({{}, std::nan(""), {}}),
+              "the maximum error is nan, but must be finite and at least 0");
 }
 
 TEST(Decimate, ARealModelKeepsItsTexture) {

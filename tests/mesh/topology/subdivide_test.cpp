@@ -239,7 +239,7 @@ TEST(Subdivide, RefusesLevelsThatAreNoneOrTooMany) {
     const auto refusal = [&](int levels) {
         return message_of<InvalidInput>([&] { subdivided(test::grid(1), levels, {}, report); });
     };
-    EXPECT_EQ(refusal(0), "0 levels of subdivision, but the least is 1");
+    EXPECT_EQ(refusal(0), "the number of levels is 0, but must be at least 1");
     EXPECT_EQ(refusal(20),
               "2 triangles make 2147483648 after 15 levels, but 1431655765 are the most");
 }

@@ -298,8 +298,8 @@ TEST(EffectForcing, ThatNoDrawCanHaveIsRefusedByEffectMaterialAndReason) {
               "reflected");
     scene.materials[0].interpolation = Interpolation::gouraud;
     EXPECT_EQ(refusal(scene, {{"normal map", true}}),
-              "effect 'normal map' cannot be forced on: material 'body': Gouraud shading knows the "
-              "normal at vertices only");
+              "effect 'normal map' cannot be forced on: material 'body': Gouraud shading uses "
+              "normals only at vertices");
     scene.materials[0].interpolation = Interpolation::per_pixel;
     scene.materials[0].metallic_roughness = MetallicRoughness{};
     EXPECT_EQ(refusal(scene, {{"Phong highlights", true}}),
@@ -321,8 +321,8 @@ TEST(EffectForcing, InThePlaceOfAnotherIsRefused) {
     Scene scene = scene_with({test::gray("body")});
     scene.materials[0].specular = glm::vec3(0.5F);
     EXPECT_EQ(refusal(scene, {{"Phong highlights", true}}),
-              "effect 'Phong highlights' cannot be forced on: material 'body': it would take the "
-              "place of 'Blinn-Phong highlights'");
+              "effect 'Phong highlights' cannot be forced on: material 'body': it would replace "
+              "'Blinn-Phong highlights'");
     EXPECT_EQ(refusal(scene, {{"normal map", true}, {"bump map", true}}),
               "effects 'normal map' and 'bump map' exclude each other: a surface has one of them "
               "at most");
@@ -331,8 +331,8 @@ TEST(EffectForcing, InThePlaceOfAnotherIsRefused) {
 TEST(EffectForcing, OfAnUnknownNameSuggestsNearOnes) {
     const Scene scene = scene_with({test::gray("body")});
     EXPECT_EQ(refusal(scene, {{"norml map", true}}),
-              "'norml map' is no effect; did you mean 'normal map'?");
-    EXPECT_EQ(refusal(scene, {{"zzz", false}}), "'zzz' is no effect");
+              "'norml map' is not an effect; did you mean 'normal map'?");
+    EXPECT_EQ(refusal(scene, {{"zzz", false}}), "'zzz' is not an effect");
     EXPECT_EQ(refusal(scene, {{"emission", true}, {"Emission", false}}),
               "effect 'emission' is forced both on and off");
 }
@@ -517,13 +517,13 @@ TEST(PlanView, SaysWhyThereIsNothingToShow) {
         return test::message_of<InvalidInput>([&] { (void)view_of(scene, view, report); });
     };
     EXPECT_THAT(message(DebugView::height),
-                HasSubstr("nothing to show of height: the default material has no bump map"));
+                HasSubstr("height cannot be shown: the default material has no bump map"));
     EXPECT_THAT(message(DebugView::normal_map), HasSubstr("has no normal map and no bump map"));
     EXPECT_THAT(message(DebugView::reflection),
                 HasSubstr("reflection: the default material reflects nothing"));
-    EXPECT_THAT(message(DebugView::diffuse), HasSubstr("nothing to show of diffuse"));
-    EXPECT_THAT(message(DebugView::emission), HasSubstr("nothing to show of emission"));
-    EXPECT_THAT(message(DebugView::nothing_to_show), HasSubstr("no view to ask for"));
+    EXPECT_THAT(message(DebugView::diffuse), HasSubstr("diffuse cannot be shown"));
+    EXPECT_THAT(message(DebugView::emission), HasSubstr("emission cannot be shown"));
+    EXPECT_THAT(message(DebugView::nothing_to_show), HasSubstr("cannot be requested"));
     scene.meshes[1] = scene.meshes[0];
     EXPECT_THAT(message(DebugView::texcoords),
                 HasSubstr("texcoords: mesh 'plain' has no texture coordinates"));

@@ -248,11 +248,11 @@ TEST(EffectPlan, HasNoNormalMapWhereLightIsComputedAtVerticesOrByPlanes) {
     EXPECT_EQ(features(scene).detail, NormalDetail::none);
     EXPECT_EQ(features(scene).interpolation, Interpolation::gouraud);
     EXPECT_EQ(reason(plan_effects(scene, {.samples = 1}).draws[0].reasons, "normal map").reason,
-              "Gouraud shading knows the normal at vertices only");
+              "Gouraud shading uses normals only at vertices");
     scene.materials[0].interpolation = Interpolation::flat;
     EXPECT_EQ(features(scene).detail, NormalDetail::none);
     EXPECT_EQ(reason(plan_effects(scene, {.samples = 1}).draws[0].reasons, "normal map").reason,
-              "flat shading knows the triangle's plane only");
+              "flat shading uses only the triangle's normal");
 }
 
 TEST(EffectPlan, ComputesNoTangentsForFramesFromDerivativesOrObjectSpaceMaps) {

@@ -421,7 +421,7 @@ TEST_F(SceneFile, RefusesWhatItDoesNotKnowAndSaysWhere) {
            "/nodes/0/light: 'outer_cone' is not known here");
     expect(R"("lights": [{"type": "spot"}])", "/lights/0: has no 'direction'");
     expect(R"("lights": [{"type": "point", "color": 1, "diffuse": 1}])",
-           "/lights/0/diffuse: says the same as 'color'");
+           "/lights/0/diffuse: means the same as 'color'");
     expect(R"("nodes": [{"matrix": [1, 2]}])", "/nodes/0/matrix: must be an array of 16 numbers");
     expect(R"("nodes": [{"scale": true}])", "/nodes/0/scale: must be an array of 3 numbers");
     expect(R"("nodes": [{"translation": [1, 2, 1e99]}])",
@@ -433,13 +433,13 @@ TEST_F(SceneFile, RefusesWhatItDoesNotKnowAndSaysWhere) {
     expect(R"("camera": {"eye": [0, 0, 0]})", "/camera/eye: is where the target is");
     expect(R"("environment": {})", "/environment: must have one of 'faces'");
     expect(R"("environment": {"cross": "a.png", "left_handed": true})",
-           "/environment/left_handed: says something of six faces only");
+           "/environment/left_handed: applies only to six faces");
     expect(R"("environment": {"folder": "nowhere"})", "cannot be read as a folder");
     expect(R"("picture": {"width": 0, "height": 1})",
            "/picture/width: must be a whole number within [1, 16384]");
-    expect(R"("ambient": 1, "ambient": 2)", "the key 'ambient' stands twice in one object");
+    expect(R"("ambient": 1, "ambient": 2)", "the key 'ambient' occurs twice in one object");
     expect(R"("ambient": -1)", "ambient light is (-1, -1, -1)");  // The check of the scene itself.
-    expect(R"("relief_scene": 2)", "stands twice");
+    expect(R"("relief_scene": 2)", "occurs twice");
     std::ofstream(folder_ / "other.json") << "{\"relief_scene\": 2}";
     EXPECT_THROW((void)load_scene_graph(folder_ / "other.json", {}, report_), FileError);
     std::ofstream(folder_ / "other.json") << "{\"relief_scene\": 1";

@@ -490,8 +490,8 @@ class Baker {
 
     /// The agreement of the surfaces. If they do not agree, the report of the constructor has one
     /// of the findings "high model of another size" (unless BakeOptions::allow_size_mismatch is
-    /// set), "high model in another place" and "surfaces that do not agree" (35 degrees and 5% of
-    /// the half diagonal).
+    /// set), "high model at another position" and "surfaces that do not agree" (35 degrees and 5%
+    /// of the half diagonal).
     [[nodiscard]] const BakeAgreement& agreement() const;
 
     /// Upper bounds of the values of the requested layers; 0 for the others.

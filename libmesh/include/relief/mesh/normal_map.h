@@ -195,9 +195,9 @@ Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green gree
 
 /// The lengths of the vectors of a map.
 struct LengthRange {
-    double least = 0.0;
+    double min = 0.0;
     double mean = 0.0;
-    double greatest = 0.0;
+    double max = 0.0;
 };
 
 /// Measures the lengths of a map's vectors without changing it; decode_normal_map() normalizes

@@ -34,10 +34,10 @@ struct MapTiles {
     std::vector<std::uint32_t> outside, partly_outside, not_finite;
 };
 
-/// The allowed tiles, from the least to the greatest indices.
+/// The allowed tiles, from the minimum to the maximum indices.
 struct TileRange {
-    glm::ivec2 least{0, 0};
-    glm::ivec2 greatest{0, 0};
+    glm::ivec2 min{0, 0};
+    glm::ivec2 max{0, 0};
 };
 
 /// All tiles of a UDIM set: ten columns, from 1001 (v from 0 to 1, counted upwards) to 9999.

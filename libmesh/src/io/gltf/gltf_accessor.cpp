@@ -166,8 +166,8 @@ ElementLayout index_layout(const GltfContents& contents, std::size_t accessor) {
     if (layout.components != 1 ||
         (layout.component_type != gltf_code::uint8 && layout.component_type != gltf_code::uint16 &&
          layout.component_type != gltf_code::uint32)) {
-        throw InvalidInput(
-            fmt::format("accessors[{}] holds no indices, which are unsigned scalars", accessor));
+        throw InvalidInput(fmt::format(
+            "accessors[{}] is used for indices, but does not have unsigned scalars", accessor));
     }
     return layout;
 }
@@ -301,7 +301,7 @@ std::vector<glm::uvec3> index_triples(const GltfContents& contents, std::size_t 
     const std::string_view elements = packed.bytes();
     const std::size_t count = elements.size() / layout.size;
     if (count % 3 != 0) {
-        throw InvalidInput(fmt::format("{} indices make no whole triangles", count));
+        throw InvalidInput(fmt::format("{} indices are not a multiple of 3", count));
     }
     if (layout.component_type == gltf_code::uint32) return copied<glm::uvec3>(elements);
     std::vector<glm::uvec3> result(count / 3);
@@ -361,7 +361,7 @@ std::vector<glm::uvec3> plain_triangles(std::size_t vertex_count, std::size_t mo
         return unrolled(indices, mode);
     }
     if (count % 3 != 0) {
-        throw InvalidInput(fmt::format("{} indices make no whole triangles", count));
+        throw InvalidInput(fmt::format("{} indices are not a multiple of 3", count));
     }
     std::vector<glm::uvec3> triangles;
     triangles.reserve(count / 3);

@@ -539,7 +539,7 @@ std::pair<int, int> version_in(const Json& asset, const char* key) {
     const char* end = text.data() + text.size();
     const auto [dot, error] = std::from_chars(text.data(), end, major);
     if (error == std::errc() && dot != end && *dot == '.') std::from_chars(dot + 1, end, minor);
-    if (major < 0 || minor < 0) fail_gltf("asset.{} is '{}', which is no version", key, text);
+    if (major < 0 || minor < 0) fail_gltf("asset.{} is '{}', which is not a version", key, text);
     return {major, minor};
 }
 

@@ -271,7 +271,7 @@ struct DataUri {
 
 bool is_data_uri(std::string_view uri);
 
-/// \throws InvalidInput if it is no data URI or its base64 is malformed
+/// \throws InvalidInput if it is not a data URI or its base64 is malformed
 DataUri decode_data_uri(std::string_view uri);
 
 /// Returns true if a URI has a scheme ("https:", "file:"), so that it does not depend on a folder.

@@ -517,7 +517,7 @@ bool is_data_uri(std::string_view uri) {
 
 DataUri decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
-    if (!is_data_uri(uri) || comma == uri.npos) throw InvalidInput("is no data URI");
+    if (!is_data_uri(uri) || comma == uri.npos) throw InvalidInput("is not a data URI");
     std::string_view head = uri.substr(5, comma - 5);
     const std::string_view body = uri.substr(comma + 1);
     const bool is_base64 = head.ends_with(";base64");

@@ -92,7 +92,7 @@ std::size_t image_entry(GltfContents& contents, const std::filesystem::path& fil
     const std::string bytes = read_file(file);
     const std::string media_type = image_media_type(bytes);
     if (media_type != "image/png" && media_type != "image/jpeg")
-        throw FileError(file, "is neither PNG nor JPEG, which is all that glTF holds");
+        throw FileError(file, "is neither PNG nor JPEG, the formats of glTF");
     const std::size_t index = array_in(contents.root, "images").size();
     Json image = {{"name", utf8_name(file.stem().string(), "image", index, report)}};
     if (storage == GltfImageStorage::embedded) {

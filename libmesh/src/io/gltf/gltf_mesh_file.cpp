@@ -149,7 +149,7 @@ Json DocumentBuilder::texture_info(const std::filesystem::path& image) {
         entry = textures_.emplace(image, textures_.size()).first;
         const std::string media_type = image_media_type(bytes);
         if (media_type != "image/png" && media_type != "image/jpeg") {
-            throw FileError(image, "is neither PNG nor JPEG, which is all that glTF holds");
+            throw FileError(image, "is neither PNG nor JPEG, the formats of glTF");
         }
         Report ignored;
         const std::string name = utf8_name(image.stem().string(), "image", entry->second,

@@ -291,7 +291,7 @@ void check_stride(const PackedView& view) {
     }
     if (!fits) fail_gltf("{} with filter {} have no stride of {}", view.mode, view.filter, stride);
     if (view.mode == "TRIANGLES" && view.count % 3 != 0)
-        fail_gltf("{} indices make no whole triangles", view.count);
+        fail_gltf("{} indices are not a multiple of 3", view.count);
 }
 
 /// Checks that this many bytes can decode to the claimed length.
@@ -305,7 +305,7 @@ void check_length(const PackedView& view, std::size_t length) {
                   view.stride, length);
     }
     if (length / max_expansion > view.bytes.size())
-        fail_gltf("{} bytes cannot stand for {}", view.bytes.size(), length);
+        fail_gltf("{} bytes cannot encode {}", view.bytes.size(), length);
 }
 
 bool decode_view(const PackedView& view, std::string& elements) {

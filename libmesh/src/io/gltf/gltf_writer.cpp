@@ -456,8 +456,8 @@ void check_inside_folder(const Json& image, std::size_t number, const GltfConten
     if (uri.empty() || has_scheme(uri) || path_inside(contents.folder(), uri)) return;
     if (std::filesystem::absolute(file).parent_path() == contents.folder()) return;
     throw FileError(file,
-                    fmt::format("images[{}] '{}' lies outside the document's folder, so it is "
-                                "neither read nor right from here; write to {}",
+                    fmt::format("images[{}] '{}' is outside the document's folder: it is not read, "
+                                "and its path is wrong from another folder; write to {}",
                                 number, uri, contents.folder().string()));
 }
 
@@ -485,9 +485,8 @@ void embed_images(GltfLayout& layout, const GltfContents& contents,
         const std::string actual = image_media_type(bytes);
         if (!actual.empty()) media_type = actual;
         if (media_type.empty()) {
-            throw FileError(file, fmt::format("images[{}] is of no kind that glTF knows; PNG and "
-                                              "JPEG are",
-                                              i));
+            throw FileError(file,
+                            fmt::format("images[{}] has neither format of glTF, PNG or JPEG", i));
         }
         const std::size_t padding = (4 - layout.size % 4) % 4;
         layout.pieces.push_back(std::string_view(zeros).substr(0, padding));
@@ -560,9 +559,10 @@ void copy_images(const GltfContents& contents, const std::filesystem::path& file
         std::error_code failed;
         if (std::filesystem::exists(staged_file(target), failed)) {
             if (read_file(target) == bytes) continue;
-            throw FileError(target, fmt::format("is in the way of images[{}] of {}, which is "
-                                                "another image; write .glb, which holds its own",
-                                                i, file.string()));
+            throw FileError(target,
+                            fmt::format("exists and differs from images[{}] of {}, which would "
+                                        "replace it; write .glb, which contains its images",
+                                        i, file.string()));
         }
         std::filesystem::create_directories(target.parent_path(), failed);
         if (failed) throw FileError(target.parent_path(), "cannot be made: " + failed.message());
@@ -621,7 +621,9 @@ void GltfDocument::write(const std::filesystem::path& file) const {
     } else if (extension == ".gltf") {
         write_json(file, contents);
     } else {
-        throw FileError(file, fmt::format("'{}' is no glTF; .gltf and .glb are", extension));
+        throw FileError(
+            file, fmt::format("'{}' is not an extension of glTF files, which are .gltf and .glb",
+                              extension));
     }
 }
 

@@ -335,7 +335,7 @@ ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesy
     if (container.format == nullptr && is_tga(bytes, name)) container.format = "targa";
     if (container.format == nullptr) {
         throw FileError(name,
-                        "is no image that relief reads: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, "
+                        "is not an image that relief reads: PNG, JPEG, TIFF, EXR, HDR, BMP, TGA, "
                         "PNM, DDS, KTX2, PSD or WebP");
     }
     const std::string_view format = container.format;

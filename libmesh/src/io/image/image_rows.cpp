@@ -93,7 +93,7 @@ void check_writable(const std::string& format, const ImageShape& shape,
     if (format == "png" && bits == 32) throw InvalidInput("PNG holds 8 or 16 bits, not float");
     if (format == "jpeg" && bits != 8)
         throw InvalidInput(fmt::format("JPEG holds 8 bits, not {}", bits));
-    if (format == "jpeg" && shape.channels % 2 == 0) throw InvalidInput("JPEG holds no alpha");
+    if (format == "jpeg" && shape.channels % 2 == 0) throw InvalidInput("JPEG cannot store alpha");
     if (format == "hdr" && shape.channels != 3)
         throw InvalidInput(fmt::format("HDR holds 3 channels, not {}", shape.channels));
     if (shape.color_space == ColorSpace::linear && bits != 32)

@@ -309,7 +309,7 @@ void check_swizzle(const std::string& swizzle) {
 }  // namespace
 
 TextureContainer open_ktx2(Bytes bytes, const std::filesystem::path& name) {
-    if (!text_of(bytes).starts_with(ktx2_identifier)) throw FileError(name, "is no KTX2 file");
+    if (!text_of(bytes).starts_with(ktx2_identifier)) throw FileError(name, "is not a KTX2 file");
     if (bytes.size() < ktx2_header_bytes) throw FileError(name, "is cut short within its header");
     const auto number = [&](std::size_t offset) { return little<std::uint32_t>(bytes, offset); };
     const std::uint32_t scheme = number(44);
@@ -319,7 +319,7 @@ TextureContainer open_ktx2(Bytes bytes, const std::filesystem::path& name) {
     const std::uint32_t height = number(24);
     if (number(36) == 6) throw FileError(name, "is a cube map, but only single images are read");
     if (height == 0 || number(28) > 0 || number(36) != 1)
-        throw FileError(name, "is no two-dimensional texture");
+        throw FileError(name, "is not a two-dimensional texture");
     if (number(32) > 1) {
         throw FileError(name, fmt::format("is an array of {} textures, but only single images are "
                                           "read",

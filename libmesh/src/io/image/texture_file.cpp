@@ -272,7 +272,7 @@ std::size_t texture_level_size(TextureFormat format, int width, int height) {
 std::vector<std::byte> encode_texture_level(const ImageView& image, TextureFormat format,
                                             BlockQuality quality, Report& report) {
     const FormatTraits& traits = traits_of(format);
-    if (image.empty()) throw InvalidInput("an empty image is no level of a texture");
+    if (image.empty()) throw InvalidInput("the image of a texture level is empty");
     if (traits.blocks) return encode_blocks(image, *traits.blocks, quality, report);
     const bool has_channels =
         image.channels == traits.channels || (traits.channels == 4 && image.channels == 3);
@@ -327,7 +327,7 @@ std::optional<TextureContainer> open_dds(Bytes bytes, const std::filesystem::pat
     const bool is_flat = (number(112) & dds::is_volume) == 0 &&
                          (!is_dx10 || number(dds_header_bytes + 4) == dds::dimension_2d);
     if (is_cube) throw FileError(name, "is a cube map, but only single images are read");
-    if (!is_flat) throw FileError(name, "is no two-dimensional texture");
+    if (!is_flat) throw FileError(name, "is not a two-dimensional texture");
     if (is_dx10 && number(dds_header_bytes + 12) > 1) {
         throw FileError(name, fmt::format("is an array of {} textures, but only single images are "
                                           "read",

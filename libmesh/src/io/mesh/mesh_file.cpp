@@ -81,8 +81,8 @@ void TextScanner::fail(const std::string& reason) const {
 }
 
 void TextScanner::fail_at(std::string_view text, const char* wanted) const {
-    fail(text.empty() ? fmt::format("the file ends where {} should be", wanted)
-                      : fmt::format("{} stands where {} should be", quoted(text), wanted));
+    fail(text.empty() ? fmt::format("expected {}, but the file ends", wanted)
+                      : fmt::format("expected {1}, but found {0}", quoted(text), wanted));
 }
 
 glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin) {
@@ -166,9 +166,10 @@ MeshFile read_with_local_origin(const std::filesystem::path& file, const MeshRea
     }
     report.merge(findings);
     if (best.origin != glm::dvec3(0.0)) {
-        report.add("far from the origin", "mesh", 0,
-                   fmt::format("are kept relative to ({}, {}, {}), where floats hold their digits",
-                               best.origin.x, best.origin.y, best.origin.z));
+        report.add(
+            "far from the origin", "mesh", 0,
+            fmt::format("are stored relative to ({}, {}, {}), so that floats keep their digits",
+                        best.origin.x, best.origin.y, best.origin.z));
     }
     return best;
 }
@@ -216,9 +217,9 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report) {
     } catch (const std::bad_alloc&) {
         throw FileError(file, "needs more memory than there is");
     }
-    throw FileError(file, fmt::format("'{}' is no mesh format that is read here; .obj, .ply, .stl "
-                                      "and .off are",
-                                      extension));
+    throw FileError(
+        file, fmt::format("'{}' is not a mesh format that relief reads: .obj, .ply, .stl and .off",
+                          extension));
 }
 
 void write_mesh(const std::filesystem::path& file, const MeshFile& contents, Report& report) {
@@ -238,8 +239,7 @@ void write_mesh(const std::filesystem::path& file, const MeshFile& contents, Rep
         write_ply(file, contents);
     } else {
         throw InvalidInput(
-            fmt::format("{}: '{}' is no mesh format that is written here; .obj and "
-                        ".ply are",
+            fmt::format("{}: '{}' is not a mesh format that relief writes: .obj and .ply",
                         file.string(), extension));
     }
 }

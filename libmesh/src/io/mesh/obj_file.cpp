@@ -393,7 +393,7 @@ std::string name_in_line(const std::filesystem::path& name, const std::filesyste
     if (text.empty() || text.find_first_of("\r\n\\") != text.npos || is_blank(text.front()) ||
         is_blank(text.back())) {
         throw FileError(file, fmt::format("cannot name the file '{}', whose blanks, line breaks or "
-                                          "backslashes would be read otherwise (rename it)",
+                                          "backslashes would be read differently (rename it)",
                                           text));
     }
     return text.front() == '-' ? "./" + text : text;  // Options of maps begin with '-'.

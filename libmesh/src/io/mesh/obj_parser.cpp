@@ -309,7 +309,7 @@ void ObjParser::smoothing_group() {
     const auto [stop, error] =
         std::from_chars(text.data(), text.data() + text.size(), smoothing_group_);
     if (error != std::errc() || stop != text.data() + text.size() || text.empty()) {
-        report_.add("smoothing group that is no number", "line", line_, "taken as off");
+        report_.add("smoothing group that is not a number", "line", line_, "taken as off");
         smoothing_group_ = 0;
     }
 }

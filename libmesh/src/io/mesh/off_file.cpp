@@ -43,7 +43,7 @@ OffHeader parse_header(TextScanner& text, std::size_t file_size) {
     const std::string_view first = text.word();
     const auto vertex_count = number_in<std::uint64_t>(first);
     if (!vertex_count)
-        text.fail(fmt::format("{} stands where the vertex count should be", quoted(first)));
+        text.fail(fmt::format("expected the vertex count, but found {}", quoted(first)));
     header.vertex_count = *vertex_count;
     header.face_count = text.number<std::uint64_t>();
     text.skip_line();  // The number of edges, which some files lack.

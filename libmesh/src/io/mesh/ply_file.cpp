@@ -81,7 +81,7 @@ PlyType type_named(std::string_view name, const TextScanner& text) {
     for (const auto& [known, type] : types) {
         if (known == name) return type;
     }
-    text.fail(fmt::format("{} is no PLY type", quoted(name)));
+    text.fail(fmt::format("{} is not a PLY type", quoted(name)));
 }
 
 PlyProperty parse_property(TextScanner& text) {
@@ -120,7 +120,7 @@ PlyFormat parse_format(TextScanner& text) {
     if (format == "ascii") return PlyFormat::ascii;
     if (format == "binary_little_endian") return PlyFormat::little_endian;
     if (format == "binary_big_endian") return PlyFormat::big_endian;
-    text.fail(fmt::format("{} is no PLY format", quoted(format)));
+    text.fail(fmt::format("{} is not a PLY format", quoted(format)));
 }
 
 /// Bytes of one value in a binary file.
@@ -149,20 +149,20 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::filesystem::path& 
     for (std::string_view word = text.word(); word != "end_header"; word = text.word()) {
         if (word.empty()) throw FileError(file, "the header has no end_header line");
         if (word == "format") {
-            if (!header.elements.empty()) text.fail("the format stands behind an element");
+            if (!header.elements.empty()) text.fail("the format must precede the elements");
             header.format = parse_format(text);
             has_format = true;
         } else if (word == "element") {
             header.elements.push_back(parse_element(text));
         } else if (word == "property") {
-            if (header.elements.empty()) text.fail("a property stands before any element");
+            if (header.elements.empty()) text.fail("a property must follow an element");
             header.elements.back().properties.push_back(parse_property(text));
         } else if (word != "comment" && word != "obj_info") {
-            text.fail(fmt::format("{} has no meaning in a PLY header", quoted(word)));
+            text.fail(fmt::format("{} is not a keyword of PLY headers", quoted(word)));
         }
         text.skip_line();
     }
-    if (!has_format) throw FileError(file, "the header names no format");
+    if (!has_format) throw FileError(file, "the header has no format");
     text.skip_line();
     header.data_begin = bytes.size() - text.rest().size();
     header.file_size = bytes.size();
@@ -484,7 +484,7 @@ void PlyElements<Values>::read_corner_texcoords(const PlyProperty& property) {
     if (length % 2 != 0) values_.next(property.type);
     if (texcoords.size() == data_.polygons.corners.size()) return;
     report_.add("face with too few or too many texture coordinates", "face",
-                data_.polygons.corner_counts.size() - 1, "has (0, 0) where they lack");
+                data_.polygons.corner_counts.size() - 1, "missing ones become (0, 0)");
     texcoords.resize(data_.polygons.corners.size());
 }
 

@@ -90,7 +90,7 @@ Mesh read_ascii(std::string_view bytes, const std::filesystem::path& file, const
         } else if (equal_ignoring_case(word, "facet") || equal_ignoring_case(word, "endfacet")) {
             is_in_facet = equal_ignoring_case(word, "facet");
         } else if (!equal_ignoring_case(word, "outer") && !equal_ignoring_case(word, "loop")) {
-            text.fail(fmt::format("{} has no meaning in STL", quoted(word)));
+            text.fail(fmt::format("{} is not a keyword of STL", quoted(word)));
         }
     }
     if (!corners.empty() || is_in_facet) text.fail("the file ends inside a facet");

@@ -183,7 +183,7 @@ JoinedModel joined_model(Model model, bool in_world_space) {
     } else {
         append_primitives(result, std::get<GltfDocument>(model), in_world_space);
     }
-    if (result.mesh.triangles.empty()) throw InvalidInput("holds no triangles");
+    if (result.mesh.triangles.empty()) throw InvalidInput("has no triangles");
     return result;
 }
 

@@ -141,7 +141,7 @@ std::vector<FramedPart> compute_frames(Model& model, FrameOptions options,
     if (auto* document = std::get_if<GltfDocument>(&model)) {
         options.if_missing = NormalMode::flat;
         const std::vector<GltfPrimitiveId> ids = document->triangle_primitives();
-        if (ids.empty()) throw InvalidInput("holds no triangles");
+        if (ids.empty()) throw InvalidInput("has no triangles");
         return frame_primitives(*document, ids, options, texcoord_set);
     }
     options.if_missing = NormalWeight::angle;
@@ -344,7 +344,7 @@ ChangedModel change_document(GltfDocument& document,
     std::vector<JoinedPrimitives> meshes;
     for (const auto& [mesh, ids] : primitives)
         meshes.emplace_back(document, ids);
-    if (meshes.empty()) throw InvalidInput("holds no triangles");
+    if (meshes.empty()) throw InvalidInput("has no triangles");
     for (const JoinedPrimitives& joined : meshes) {
         done.triangles_read += joined.mesh().triangles.size();
         done.vertices_read += joined.mesh().positions.size();

@@ -401,7 +401,8 @@ AnimatedPng::~AnimatedPng() = default;
 void AnimatedPng::add(const Image& frame) {
     Implementation& self = *implementation_;
     if (self.added == self.frames) {
-        throw InvalidInput(fmt::format("one frame more than the {} that were said", self.frames));
+        throw InvalidInput(
+            fmt::format("one frame more than the {} that were announced", self.frames));
     }
     if (self.shape &&
         (frame.width != self.shape->width || frame.height != self.shape->height ||
@@ -409,7 +410,7 @@ void AnimatedPng::add(const Image& frame) {
          frame.color_space != self.shape->color_space)) {
         throw InvalidInput(fmt::format("frame {} is not of the first one's shape", self.added));
     }
-    if (frame.bits() == 32) throw InvalidInput("PNG holds no float samples");
+    if (frame.bits() == 32) throw InvalidInput("PNG cannot store float samples");
     const std::string png = encode_png(frame, {});
     if (self.added == 0) {
         self.shape = make_image(1, 1, frame.channels, frame.bits(), frame.color_space);

@@ -248,8 +248,8 @@ struct Instance {
     glm::mat4 world_from_object{1.0F};
     std::string name;
     std::optional<MeshPose> pose = std::nullopt;  ///< Only for meshes that can be deformed.
-    /// For each vertex of the mesh, the share of the light from all around that arrives, from 0 to
-    /// 1; empty: all of it.
+    /// For each vertex of the mesh, the fraction of the light from all around that arrives, from 0
+    /// to 1; empty: all of it.
     Shared<std::vector<float>> open_shares{};
 };
 

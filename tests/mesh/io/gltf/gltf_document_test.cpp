@@ -512,11 +512,11 @@ TEST_F(GltfDocumentTest, MeshesAreRefusedWhereTheirDataContradictsItself) {
     EXPECT_EQ(error("/meshes/0/name", "Body", bytes),
               "mesh 'Body' primitive 0: index 1 names vertex 3, but there are only 3");
     EXPECT_THAT(error("/accessors/1/count", 2, triangle_bytes()),
-                HasSubstr("2 indices make no whole triangles"));
+                HasSubstr("2 indices are not a multiple of 3"));
     EXPECT_THAT(error("/meshes/0/primitives/0/attributes/NORMAL", 1, triangle_bytes()),
                 HasSubstr("accessors[1] is of type SCALAR, but VEC3 is needed"));
     EXPECT_THAT(error("/meshes/0/primitives/0/indices", 0, triangle_bytes()),
-                HasSubstr("accessors[0] holds no indices"));
+                HasSubstr("accessors[0] is used for indices"));
     const GltfDocument cube = GltfDocument::from_mesh({test::cube(), {}});
     EXPECT_THROW(static_cast<void>(cube.mesh({0, 1})), InvalidInput);
     EXPECT_THROW(static_cast<void>(cube.mesh({5, 0})), InvalidInput);

@@ -404,10 +404,10 @@ TEST_F(GltfMeshopt, EveryContradictionIsNamed) {
     // A few bytes with a stated size of a thousand million are refused before memory is allocated.
     root = document_of({packed.packed, "ATTRIBUTES", "NONE", 250'000'000, 4},
                        "EXT_meshopt_compression");
-    EXPECT_THAT(error_of(root, packed.packed), HasSubstr("bytes cannot stand for 1000000000"));
+    EXPECT_THAT(error_of(root, packed.packed), HasSubstr("bytes cannot encode 1000000000"));
     // A byte stands for at most 1024: a longer length is refused, a shorter one fails to decode.
     const std::size_t elements_of_limit = 256 * (packed.packed.size() + 1);
-    for (const auto& [count, message] : {std::pair(elements_of_limit, "bytes cannot stand for"),
+    for (const auto& [count, message] : {std::pair(elements_of_limit, "bytes cannot encode"),
                                          {elements_of_limit - 1, "its data is damaged"}}) {
         root =
             document_of({packed.packed, "ATTRIBUTES", "NONE", count, 4}, "EXT_meshopt_compression");

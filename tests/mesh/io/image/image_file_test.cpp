@@ -432,8 +432,10 @@ TEST(ImageContainer, TheFirstBytesDecideTheFormat) {
     EXPECT_STREQ(examine("#?RADIANCE\n").format, "hdr");
     EXPECT_STREQ(examine("P6 1 1 255 abc").format, "pnm");
     EXPECT_STREQ(examine("RIFF\4\0\0\0WEBPVP8 "s).format, "webp");
-    EXPECT_THAT(complaint_about("RIFF\4\0\0\0WAVE"s), HasSubstr("is no image that relief reads"));
-    EXPECT_THAT(complaint_about("hello"), HasSubstr("image: is no image that relief reads: PNG"));
+    EXPECT_THAT(complaint_about("RIFF\4\0\0\0WAVE"s),
+                HasSubstr("is not an image that relief reads"));
+    EXPECT_THAT(complaint_about("hello"),
+                HasSubstr("image: is not an image that relief reads: PNG"));
     EXPECT_THAT(complaint_about(""), HasSubstr("is empty"));
 }
 
@@ -523,7 +525,7 @@ TEST(ImageContainer, TgaGoesByItsNameOrFooterAndIsChecked) {
     header[16] = 24;
     EXPECT_STREQ(examine(header + "bgrbgr", "a.TGA").format, "targa");
     EXPECT_STREQ(examine(header + "bgrbgr" + "TRUEVISION-XFILE.\0"s).format, "targa");
-    EXPECT_THAT(complaint_about(header + "bgrbgr", "a.png"), HasSubstr("is no image"));
+    EXPECT_THAT(complaint_about(header + "bgrbgr", "a.png"), HasSubstr("is not an image"));
     header[13] = 1;  // 258 texels of 3 bytes.
     EXPECT_THAT(complaint_about(header + "bgrbgr", "a.tga"),
                 HasSubstr("announces 258 x 1 texels, which its 24 bytes cannot hold"));

@@ -120,9 +120,9 @@ class NormalMapFile : public testing::Test {
             EXPECT_EQ(texts_of(report), texts_of(expected_report));
             ASSERT_EQ(result.lengths.has_value(), expected.lengths.has_value());
             if (!result.lengths) continue;
-            EXPECT_EQ(result.lengths->least, expected.lengths->least);
+            EXPECT_EQ(result.lengths->min, expected.lengths->min);
             EXPECT_EQ(result.lengths->mean, expected.lengths->mean);
-            EXPECT_EQ(result.lengths->greatest, expected.lengths->greatest);
+            EXPECT_EQ(result.lengths->max, expected.lengths->max);
         }
     }
 

@@ -316,8 +316,8 @@ TEST(DamagedTextures, Ktx2HeadersAreRefused) {
               "x: level 0 has 32 bytes, but its texels need 67108864");
     EXPECT_THAT(damaged(bytes, {{20, 8192}, {24, 8192}, {96, 67108864}}),
                 HasSubstr("x: level 0 announces 67108864 bytes in"));
-    EXPECT_EQ(damaged(bytes, {{24, 0}}), "x: is no two-dimensional texture");
-    EXPECT_EQ(damaged(bytes, {{28, 2}}), "x: is no two-dimensional texture");
+    EXPECT_EQ(damaged(bytes, {{24, 0}}), "x: is not a two-dimensional texture");
+    EXPECT_EQ(damaged(bytes, {{28, 2}}), "x: is not a two-dimensional texture");
     EXPECT_EQ(damaged(bytes, {{32, 2}}),
               "x: is an array of 2 textures, but only single images are read");
     EXPECT_EQ(damaged(bytes, {{36, 6}}), "x: is a cube map, but only single images are read");
@@ -346,7 +346,7 @@ TEST(DamagedTextures, DdsHeadersAreRefused) {
     EXPECT_EQ(damaged(bytes, {{28, 31}}), "x: announces 31 mip levels of 6 x 3 texels");
     EXPECT_EQ(damaged(bytes, {{112, 0x200}}), "x: is a cube map, but only single images are read");
     EXPECT_EQ(damaged(bytes, {{136, 4}}), "x: is a cube map, but only single images are read");
-    EXPECT_EQ(damaged(bytes, {{132, 4}}), "x: is no two-dimensional texture");
+    EXPECT_EQ(damaged(bytes, {{132, 4}}), "x: is not a two-dimensional texture");
     EXPECT_EQ(damaged(bytes, {{140, 6}}),
               "x: is an array of 6 textures, but only single images are read");
 }

@@ -154,7 +154,7 @@ TEST(MeshFile, WhatIsNoMeshFileIsRefusedByName) {
         return test::message_of<FileError>([&] { read_mesh(file, report); });
     };
     EXPECT_THAT(error_of(folder / "none.obj"), HasSubstr("none.obj: no such file"));
-    EXPECT_THAT(error_of(folder / "a.fbx"), HasSubstr("'.fbx' is no mesh format"));
+    EXPECT_THAT(error_of(folder / "a.fbx"), HasSubstr("'.fbx' is not a mesh format"));
     std::filesystem::create_directory(folder / "b.ply");
     EXPECT_THAT(error_of(folder / "b.ply"), HasSubstr("is not a file"));
     EXPECT_THROW(write_mesh(folder / "a.stl", {test::cube(), {}}), InvalidInput);

@@ -210,7 +210,7 @@ TEST_F(Obj, ASmoothingGroupThatIsNoNumberIsOffAndCounted) {
     for (const char* group : {"seven", "-1", "1.5", "", "4294967296"}) {
         const Mesh mesh = read(three + "s " + group + "\nf 1 2 3\n").mesh;
         EXPECT_THAT(mesh.smoothing_groups, ElementsAre(0U)) << group;
-        EXPECT_EQ(report_.count("smoothing group that is no number"), 1U) << group;
+        EXPECT_EQ(report_.count("smoothing group that is not a number"), 1U) << group;
         report_ = {};
     }
 }

@@ -120,7 +120,7 @@ TEST_F(Ply, MalformedHeadersAreRefusedByLine) {
     EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex many\n"),
                 HasSubstr("line 3: an element has the count 'many'"));
     EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n"),
-                HasSubstr("line 4: 'half' is no PLY type"));
+                HasSubstr("line 4: 'half' is not a PLY type"));
     EXPECT_THAT(error_of("ply\nelement vertex 1\n"), HasSubstr("no end_header"));
     EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int a\n"),
                 HasSubstr("counted in a floating-point type"));
@@ -239,7 +239,7 @@ TEST_F(Stl, DamagedFilesAreRefusedAndSurplusIsCounted) {
     EXPECT_THAT(error_of(binary(4000000000U, one)), HasSubstr("4000000000 triangles need"));
     EXPECT_THAT(error_of(binary(0, "")), HasSubstr("has no triangle"));
     EXPECT_THAT(error_of("solid\nfacet\nouter loop\nvertex 1,5 0 0\n"),
-                HasSubstr("line 4: '1,5' stands where a number should be"));
+                HasSubstr("line 4: expected a number, but found '1,5'"));
     EXPECT_THAT(error_of("solid\nfacet outer loop vertex 0 0 0 vertex 1 1 1 endloop"),
                 HasSubstr("line 2: a facet has 2 corners instead of 3"));
     EXPECT_THAT(error_of("solid\nfacet outer loop vertex 0 0 0"), HasSubstr("ends inside a facet"));
