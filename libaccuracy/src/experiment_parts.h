@@ -264,8 +264,7 @@ struct Needles {
 /// width of the origin, where floats are fine enough, and the third corner lies at a distance of 1.
 ///
 /// \param width  length of the short side, which is perpendicular to the long ones. The first
-/// corner
-///               alternates between the three.
+///         corner alternates between the three.
 Needles make_needles(std::size_t count, double width, std::uint32_t seed);
 
 /// Textbook code: normalizes the sum of cross products around each vertex; 0 / 0 gives NaN.

@@ -129,8 +129,7 @@ Material glossy_plastic();
 /// \param size         width and height in pixels
 /// \param rays_per_side  rays along each side of a pixel, at the centers of a regular grid
 /// \return three float channels, linear light. Each ray is clamped to [0,1] before the average, as
-/// a
-///         renderer with as many samples does
+///         a renderer with as many samples does
 Image supersampled_reference(const Scene& scene, int size, int rays_per_side);
 
 /// Slices around the circle of the torus; the tube has half as many. With this number the torus

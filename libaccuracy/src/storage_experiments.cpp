@@ -332,10 +332,8 @@ std::string error_by_decoder(const Experiment& experiment, std::span<const Norma
     };
     return fmt::format(
         " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are decoded that "
-        "way, "
-        "but of {:.2g} by the decoder of glTF and engines, whose zero is 127.5; codes with that "
-        "zero "
-        "have an error of {:.2g} there.",
+        "way, but of {:.2g} by the decoder of glTF and engines, whose zero is 127.5; codes with "
+        "that zero have an error of {:.2g} there.",
         rms_of(NormalCodeId::xyz_8_zero_128), rms_of(NormalCodeId::xyz_8_zero_128_read_as_gltf),
         rms_of(NormalCodeId::xyz_8));
 }

@@ -35,8 +35,7 @@ std::string storage_row(const char* name, const std::string& code_name) {
 std::string storage_tables() {
     std::string text =
         "\nRMS error in degrees of single texels, and of the means of 4 x 4 and 16 x 16 of them, "
-        "on "
-        "a smooth surface\n\n" +
+        "on a smooth surface\n\n" +
         table_header({"1 texel", "4 x 4", "16 x 16"});
     text += storage_row("8 bits", "xyz 8 bit");
     text += storage_row("8 bits, zero at 128", "xyz 8 bit, zero at 128");

@@ -339,8 +339,7 @@ TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
         {"topology", "libmesh", "-lrelief_mesh $(pkg-config --libs openmesh)"},
         {"files", "libmesh",
          "-lrelief_mesh $(pkg-config --libs tinyobjloader libdeflate libisal libturbojpeg libzstd "
-         "draco) "
-         "-lmeshoptimizer"},
+         "draco) -lmeshoptimizer"},
         {"bake", "libmesh", "-lrelief_mesh -lembree3"},
         {"shade", "libshade", "-lrelief_files -lrelief_mesh"},
         {"reference", "libshade/src/reference",

@@ -438,8 +438,7 @@ TEST(BakeRefusal, ExplainsAndLeavesNoFiles) {
          {"relief-bake bump flat.png", 2, "OUT is missing (see relief-bake bump --help)"},
          {"relief-bake", 2,
           "a command is missing: bump or mesh or convert or check or heights or pack (see "
-          "relief-bake "
-          "--help)"}});
+          "relief-bake --help)"}});
 }
 
 /// Writes the heights of a field.

@@ -70,18 +70,16 @@ struct JobList {
     std::vector<Job> jobs;
     /// The folder of -o, which need not exist.
     std::optional<std::filesystem::path> folder;
+    bool has_tiles = false;
     /// Returns whether the command line can only mean one job.
     [[nodiscard]] bool is_single() const { return jobs.size() == 1 && !folder && !has_tiles; }
-    bool has_tiles = false;
 };
 
 /// \param kind            the kind of the files for messages: "model"
 /// \param name_in_folder  returns the name of an output in the output folder; throws UsageError for
-/// an
-///                        unusable input
+///                        an unusable input
 /// \throws UsageError if inputs and output are ambiguous, if two inputs have the same output, or if
-/// only one
-///         name of a pair contains "<UDIM>"; FileError if no tile exists
+///         only one name of a pair contains "<UDIM>"; FileError if no tile exists
 JobList jobs_of(
     const FileWords& words, const std::string& kind,
     const std::function<std::filesystem::path(const std::filesystem::path&)>& name_in_folder);

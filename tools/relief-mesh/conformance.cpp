@@ -382,8 +382,7 @@ Command add_conformance_command(CLI::App& tool) {
               [options](const std::string&, const std::string& text) { options->kit = text; });
     add_switch(app, "--json", options->json,
                "Print one JSON object: tool, version, conforms, stable, meshes [name, group, "
-               "passed, error "
-               "or: corners, judged, missing, left_out, extra, not_finite, not_unit, "
+               "passed, error or: corners, judged, missing, left_out, extra, not_finite, not_unit, "
                "not_perpendicular, unhanded, mixed_handedness and, against the reference, "
                "other_sign, too_far, degrees {mean, p99, max}, worst_corner].");
     add_switch(app, "--strict", options->strict,

@@ -554,10 +554,9 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
         app, "--environment", "FILE...",
         "Use an environment: one image, six square images in the order +x -x +y -y +z -z, or a "
         "folder with six images whose names end in posx, negx, posy, negy, posz, negz. studio is a "
-        "built-in photo studio, which lights the model and is not visible behind it; none means "
-        "no environment. Without this option, a scene file has its own one, and a model with a "
-        "metallic, "
-        "coated or transmissive material gets the studio.",
+        "built-in photo studio, which lights the model and is not visible behind it; none means no "
+        "environment. Without this option, a scene file has its own one, and a model with a "
+        "metallic, coated or transmissive material gets the studio.",
         [&](const std::string&, const std::string& text) {
             options.environment.emplace_back(text);
         })

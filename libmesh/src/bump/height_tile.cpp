@@ -31,7 +31,7 @@ void read_line(const double* line, std::ptrdiff_t stride, int count, Wrap wrap, 
         padded[static_cast<std::size_t>(i + margin)] = sample_at(line, stride, i, count, wrap);
 }
 
-/// Calls with_line(first index, stride, count, wrap, buffer) for all rows or for all columns.
+/// Calls process_line(first index, stride, count, wrap, buffer) for all rows or for all columns.
 template <typename WithLine>
 void for_lines(const HeightTile& tile, bool rows, const WithLine& process_line) {
     const int lines = rows ? tile.height : tile.width;

@@ -162,8 +162,7 @@ class TriangleSigns {
 /// \param triangles  with indices of welded vertices
 /// \param corners    corners of participating triangles
 /// \return signs that do not depend on the order of triangles. The time is linear except for
-/// sorting the edges of vertices of triangles without a gradient.
-///         of triangles without a gradient
+///         sorting the edges of vertices of triangles without a gradient
 TriangleSigns triangle_signs(TriangleSpan triangles, const CornersByVertex& corners,
                              const TriangleGradients& gradients);
 

@@ -3,8 +3,8 @@
 //
 // The steps: a sample of texels gives the encoding (curve, sign, content); all texels are then
 // evaluated with that encoding; the last step tests properties that only surfaces have. The limits
-// are calibrated on the maps and photographs of the shared data; normal_map_check_real_test.cpp has
-// a row for each. An empty image throws.
+// are calibrated on the maps and photographs of the shared data; normal_map_check_test.cpp has a
+// row for each. An empty image throws.
 #include "relief/mesh/normal_map_check.h"
 
 #include <algorithm>

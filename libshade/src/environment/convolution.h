@@ -89,10 +89,9 @@ using SheenAlbedos = std::array<SheenAlbedo, 20>;
 /// Returns the albedos for the roughness of a material and of smoother fibers.
 ///
 /// \return the last row is sheen_albedo_table(roughness). The other rows are not limited to 1,
-/// since
-///         rows with a bend would be interpolated worse: for a roughness of at least 0.1 and n.v of
-///         at least 0.026, the table of the roughness at a pixel and lookups (sheen_albedo())
-///         differ by at most 1e-2
+///         since rows with a bend would be interpolated worse: for a roughness of at least 0.1 and
+///         n.v of at least 0.026, the table of the roughness at a pixel and lookups
+///         (sheen_albedo()) differ by at most 1e-2
 SheenAlbedos sheen_albedo_tables(double roughness);
 
 /// Returns the interpolation of the tables at n.v and at the root of the texel, which are clamped

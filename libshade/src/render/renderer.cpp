@@ -4,7 +4,7 @@
 // transmissive surfaces over a copy of these, the blended surfaces in painter's order, the
 // finishing pass with sRGB codes by [IEC 61966-2-1], and the overlays. Finished pictures are
 // exchanged between threads. Tests: tests/shade/render/renderer_test.cpp, shading_test.cpp,
-// forced_effects_test.cpp, picture_exchange_test.cpp.
+// forced_effects_test.cpp, render_cache_test.cpp.
 #include "relief/shade/renderer.h"
 
 #include <fmt/format.h>

@@ -28,9 +28,6 @@
 
 namespace RELIEF_API relief {
 
-// Measures the error and time of the conversions of a height map, and selects the cheapest one
-// within an error limit.
-
 /// A method of conversion.
 struct BumpMethod {
     Kernel kernel = Kernel::sobel3;

@@ -244,7 +244,7 @@ std::string format_seconds(double seconds);
 std::vector<Experiment> run_experiments(std::span<const Subject> subjects,
                                         const RunOptions& options);
 
-// Compares two runs of the same experiments: times, errors and memory.
+// Comparison of two runs of the same experiments: times, errors and memory.
 //
 // *Errors* are the same in each run, so every difference beyond rounding is a change.
 //

@@ -19,8 +19,6 @@
 
 namespace RELIEF_API relief {
 
-// Height fields whose slopes are known in closed form.
-
 /// The height amplitude * sin(dot(frequency, (x, y)) + phase); x points right and y down, both in
 /// texels.
 struct HeightWave {
@@ -84,9 +82,6 @@ CodedHeights coded_heights(const Image& heights, int bits);
 /// \throws InvalidInput if the sizes differ
 ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, int margin = 0);
 
-// Height maps like those in files, with exact normals, for tuning and evaluating the choice of a
-// kernel.
-
 /// The shape of a field before it is stored.
 enum class FieldShape {
     waves,     ///< A sum of waves in all directions; tiles.
@@ -139,8 +134,7 @@ std::span<const FieldRecipe> evaluation_fields();
 /// Computes the angles between normals and the exact normals of the field, in degrees.
 ErrorStats field_error(const Image& normals, const BumpField& field);
 
-// Meshes of surfaces whose normals and tangents are known in closed form.
-
+/// Surfaces whose normals and tangents are known in closed form.
 enum class AnalyticSurface {
     sphere,     ///< Radius 1; open at both poles.
     torus,      ///< Radii 1 and 0.4.

@@ -91,8 +91,6 @@ struct LayerBounds {
     double position = 0.0;       ///< Over all coordinates, transformed by `position_from_mesh`.
 };
 
-// Describes the materials of the high meshes of a bake: colors, color textures and normal maps.
-
 /// An image on a mesh. It is sampled at full resolution, bilinearly or nearest, as `filter` says; a
 /// map that is coarser than the image needs several samples per texel.
 struct SurfaceTexture {
@@ -258,8 +256,6 @@ struct BakedRows {
     std::span<float> colors{};     ///< Three per texel.
     std::span<float> opacity{};
 };
-
-// The storage of layers in image files.
 
 enum class LayerKind { height, occlusion, curvature, position, color };
 

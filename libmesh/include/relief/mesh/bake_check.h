@@ -27,9 +27,7 @@
 
 namespace RELIEF_API relief {
 
-// Pairs high and low parts by name, states the likely cause if the models do not fit, and
-// estimates the texels whose rays hit nothing.
-
+/// The side of a pair of models.
 enum class BakeSide { high, low };
 
 /// Returns the name that a part shares with its counterparts, in lower case.
@@ -117,10 +115,6 @@ inline constexpr double estimate_texels = 65536.0;
 /// Estimates which texels of a map are missed by their rays. The map is baked with one sample per
 /// texel and with at most `estimate_texels` texels.
 MissedEstimate estimate_missed(const Baker& baker, const BakeMapOptions& map);
-
-// Measures the error of a finished normal map, texel by texel, against the surface that it was
-// baked from, as a renderer shows it, and splits the error by cause. Part of the library
-// relief::bake.
 
 /// The causes of the error of a map, in the order of the steps of a bake.
 enum class BakeStage {
@@ -220,9 +214,6 @@ struct BakeCheck {
 BakeCheck check_bake(const Baker& baker, const Image& map, const BakeCheckOptions& options,
                      const std::function<void(int first_row, std::span<const float> degrees)>& take,
                      Report& report = IgnoredReport());
-
-// The parts of check_bake(), for comparisons of several bakes with one reference. Part of the
-// library relief::bake.
 
 /// A bake of the texels of a BakeReference, row by row.
 struct BakedTexels {

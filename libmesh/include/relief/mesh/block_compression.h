@@ -89,8 +89,7 @@ struct NormalBlockOptions {
 ///         face back (z < 0), which become the nearest ones with z = 0
 /// \param execution  threads, progress and cancellation; the bytes do not depend on it
 /// \return blocks as from encode_blocks(). bc5 has FlatCode::half, as engines decode it: (0,0,1)
-/// has
-///         an error of at most 0.05 degrees. bc5_snorm decodes it exactly
+///         has an error of at most 0.05 degrees. bc5_snorm decodes it exactly
 /// \throws InvalidInput if the image is empty or has another format, or for formats but BC5;
 ///         Cancelled
 std::vector<std::byte> encode_normal_blocks(const ImageView& normals,

@@ -17,9 +17,6 @@
 
 namespace RELIEF_API relief {
 
-// Defines the derivative kernels for slopes of height fields, and computes their noise gain,
-// response and anisotropy in closed form.
-
 /// Derivative kernels. All have unit gain on a plane, so the choice of a kernel does not change the
 /// depth of a map. On waves of L texels, the error is proportional to L^-order. The noise column is
 /// the standard deviation of the slope for independent height errors of standard deviation 1. The

@@ -22,8 +22,6 @@
 
 namespace RELIEF_API relief {
 
-// Defines the floating-point precision of computations that offer a choice.
-
 /// The floating-point type of a computation. Each option of this type documents its accuracy and
 /// time.
 enum class Arithmetic { float64, float32 };
@@ -31,8 +29,6 @@ enum class Arithmetic { float64, float32 };
 template <>
 inline constexpr auto enum_names<Arithmetic> = std::to_array<EnumName<Arithmetic>>(
     {{"float64", Arithmetic::float64}, {"float32", Arithmetic::float32}});
-
-// Limits the number of threads of parallel loops.
 
 /// Sets the maximum number of threads of relief's parallel loops in this process, including the
 /// calling thread. Results do not depend on it. Programs call it once, when they start; the limit
@@ -165,8 +161,6 @@ class ExecutionScope {
     unsigned limit_before_;
     Progress* progress_before_;
 };
-
-// Reuses the memory of intermediate results in repeated computations of normals and tangents.
 
 /// Memory for intermediate results, which normals and tangents leave to the next call. The system
 /// clears new memory at its first use, which costs up to a tenth of the time.

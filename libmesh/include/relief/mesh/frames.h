@@ -28,9 +28,6 @@
 
 namespace RELIEF_API relief {
 
-// Converts values at triangle corners to values at vertices, with the minimum number of additional
-// vertices.
-
 /// The source of every new vertex, and the triangles over the new vertices.
 ///
 /// The first entries are the old vertices in their order, including isolated ones; the copies
@@ -164,8 +161,6 @@ struct FramedMesh {
 ///         option is outside of the range in normals.h
 FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report = IgnoredReport());
 
-// Encodes tangent frames for vertex buffers and files, and decodes them.
-
 /// The layout of an encoded frame, in 32-bit words whose bit 0 is the least significant one. On
 /// little-endian machines, the words have the memory layout of vertex formats of the same
 /// structure.
@@ -174,8 +169,7 @@ FramedMesh with_frames(Mesh mesh, const FrameOptions& options, Report& report = 
 /// M = 2^(bits - 1) - 1, and the lowest code, -M - 1, also stands for -1. *Octahedral*: a unit
 /// vector is the position (x, y) on an octahedron that is unfolded into a square:
 /// z = M - |x| - |y|; if z is negative, x and y become (M - |y|) sign(x) and (M - |x|) sign(y),
-/// with
-/// sign(0) = 1 [Cigolle et al. 2014]. *w* is the handedness.
+/// with sign(0) = 1 [Cigolle et al. 2014]. *w* is the handedness.
 enum class FrameEncoding {
     /// 7 words: normal x y z, tangent x y z w, all IEEE floats.
     float32,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Reads and writes glTF and GLB files as documents: all contents are kept, and only processed
-/// parts
-/// change.
+/// parts change.
 ///
 /// write() preserves materials, animations, skins, morph targets, extensions, extras, names and
 /// images (their bytes, without re-encoding).

@@ -24,8 +24,6 @@
 
 namespace RELIEF_API relief {
 
-// Extracts heights from images, and finds the texels that have none.
-
 /// The channel that holds the heights. For mean, luminance and red of a gray image it is the only
 /// one, without decoding. For colors, only `luminance` decodes sRGB.
 enum class HeightChannel {
@@ -76,8 +74,6 @@ struct HeightMap {
 /// \param image  is consumed; the samples of gray images are moved, not copied
 /// \throws InvalidInput as height_field()
 HeightMap height_map(Image&& image, HeightChannel channel = HeightChannel::mean);
-
-// Analyzes a height map: whether it tiles, how many bits it uses, and how noisy it is.
 
 /// The continuity of a map across the seams between its last and first column, and last and first
 /// row.
@@ -134,9 +130,7 @@ HeightDepth height_depth(const Image& height);
 /// Source: [Immerkaer 1996].
 double height_noise(const Image& height);
 
-// Removes the quantization steps of 8-bit height maps. No height changes by more than its rounding
-// error.
-
+/// Options of destaircase().
 struct DestaircaseOptions {
     Wraps wrap;
     /// The step between adjacent codes, where 1.0 is white. 0: height_depth() determines it.
@@ -166,9 +160,7 @@ struct Destaircased {
 /// than 400 have no effect.
 Destaircased destaircase(const Image& height, const DestaircaseOptions& options = {});
 
-// Integrates a normal map: computes the height field whose slopes have the least squared
-// difference from those of the normals.
-
+/// Options of heights_from_normals().
 struct IntegrationOptions {
     /// The kernel whose slopes are matched: the one with which normals_from_height() will be
     /// called.
@@ -217,9 +209,6 @@ struct IntegratedHeights {
 /// Source: [Frankot and Chellappa 1988], with the response of the kernel instead of the derivative.
 IntegratedHeights heights_from_normals(const Image& normals, const IntegrationOptions& options,
                                        Report& report = IgnoredReport());
-
-// Selects the derivative kernel with the least expected error for a height map, from the map
-// alone.
 
 /// The error of normals from a height map in degrees, by cause.
 struct ExpectedError {

@@ -191,8 +191,6 @@ struct Wraps {
 /// Returns "repeat", or "repeat,clamp" for different axes.
 std::string name_of(const Wraps& wraps);
 
-// Extracts single channels of images, and adds or removes alpha.
-
 /// Extracts one channel as float; integer samples are divided by their maximum.
 /// \throws InvalidInput if there is no such channel
 Image channel_of(const Image& image, int channel);
@@ -206,8 +204,6 @@ Image with_alpha(const Image& image, const Image& alpha);
 
 /// Removes the fourth channel. \throws InvalidInput if the image does not have four channels
 void drop_alpha(Image& image);
-
-// Extracts rectangles of images.
 
 /// A rectangle of texels; x points right, y down.
 struct ImagePart {
@@ -223,8 +219,6 @@ struct ImagePart {
 /// \throws InvalidInput if the rectangle is empty or not inside of the image
 Image part_of(const Image& image, const ImagePart& part);
 Image part_of(const ImageView& image, const ImagePart& part);
-
-// Computes the mip levels of an image.
 
 /// Computes the mip levels below the image itself, down to one texel. Each level has half the width
 /// and height of the previous one, rounded down, but at least 1.
@@ -269,8 +263,6 @@ inline constexpr auto enum_names<Dither> = std::to_array<EnumName<Dither>>(
 /// The tiles are computed on first use in integer arithmetic, with the same result on every
 /// machine. Source: [Bayer 1973], [Ulichney 1993].
 float dither_threshold(Dither dither, int x, int y, int channel);
-
-// Renders values as a false-color image.
 
 /// Renders values as an 8-bit sRGB image with a color map from black over violet and orange to pale
 /// yellow, whose brightness increases with the value.

@@ -25,11 +25,10 @@
 
 namespace RELIEF_API relief {
 
-// Reads the color tags of image files. relief does not use them: ImageUse decides.
-
 /// Returns the tag by which a program would interpret the samples of a PNG file as colors: "sRGB",
 /// "gamma 0.45455", "ICC profile" or "coding-independent code points"; the first one in the file.
-/// Empty for a gamma of 1, for files without tags, and for other formats.
+/// Empty for a gamma of 1, for files without tags, and for other formats. relief does not use the
+/// tags: ImageUse decides.
 /// \throws FileError if the file cannot be read
 std::string color_tag(const std::filesystem::path& file);
 
@@ -121,7 +120,7 @@ void write_image(const std::filesystem::path& file, const Image& image,
                  const std::map<std::string, std::string>& metadata,
                  const ImageWriteOptions& options, Report& report);
 
-// Reads and writes image files by rows, so that images may be larger than memory.
+// Image files can be read and written by rows, so that images may be larger than memory.
 //
 // Samples and errors are those of whole images. Memory holds a band of rows of
 // about 16 MiB, or one row of tiles if that is larger, and the rows of the caller.
@@ -222,7 +221,7 @@ class ImageRowWriter {
     std::unique_ptr<Implementation> implementation_;
 };
 
-// Writes animated PNG files (APNG) frame by frame. Browsers play them; other readers show the
+// Animated PNG files (APNG) are written frame by frame. Browsers play them; other readers show the
 // first frame. Source: the APNG chunks of [PNG 3], section 11.3.6.
 
 /// Writes an animated PNG file. The file replaces an old one in finish().

@@ -24,8 +24,6 @@
 
 namespace RELIEF_API relief {
 
-// Converts normal maps between the tangent space and the object space of a mesh.
-
 /// The part of texture space that the map shows.
 struct MapRegion {
     glm::ivec2 tile{0, 0};  ///< As in CoverageOptions.
@@ -65,9 +63,6 @@ ConvertedNormals object_from_tangent(const Image& normals, const Mesh& mesh,
 ///         which do not occur if the map belongs to the mesh
 ConvertedNormals tangent_from_object(const Image& normals, const Mesh& mesh,
                                      const MapRegion& placement, Report& report = IgnoredReport());
-
-// Finds the convention (axes, tangent basis, orientation, coding) with which a normal map matches
-// known normals of a mesh. Part of the library relief::bake.
 
 /// The interpolation of tangent frames from vertices to fragments.
 enum class FrameInterpolation {

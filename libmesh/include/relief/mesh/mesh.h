@@ -75,14 +75,10 @@ Bounds bounds_of(const Mesh& mesh);
 /// \throws InvalidInput naming the first error: "triangle 7 names vertex 12, but there are only 8"
 void validate(const Mesh& mesh);
 
-// Extracts triangles of a mesh as a new mesh.
-
 /// Extracts triangles in the given order, with their smoothing groups and materials, and the
 /// vertices that they use, in their order and with all attributes. The name is kept.
 /// \throws InvalidInput if there is no such triangle, or the mesh is not valid
 Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles);
-
-// Transforms meshes.
 
 /// Transforms the positions, normals and tangents of a mesh.
 ///
@@ -93,8 +89,6 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles);
 ///         stay counter-clockwise, and the w of tangents is negated, so that bitangents still point
 ///         up in the image. A direction that would become zero does not change
 Mesh placed(Mesh mesh, const glm::mat4& world_from_object);
-
-// Transforms texture coordinates.
 
 /// KHR_texture_transform: texture coordinates are scaled, then rotated, then shifted.
 struct GltfTextureTransform {
@@ -119,9 +113,6 @@ glm::vec2 transformed(const GltfTextureTransform& transform, const glm::vec2& te
 ///         change the tangent
 glm::vec4 transformed(const GltfTextureTransform& transform, const glm::vec4& tangent,
                       const glm::vec3& normal);
-
-// Generates simple shapes around the origin with normals and texture coordinates. Object space,
-// right-handed, y up.
 
 /// Creates the square from -1 to 1 in the xy plane, facing +z, with cells x cells cells; the image
 /// is upright. \throws InvalidInput unless there are 1 to 4096 cells

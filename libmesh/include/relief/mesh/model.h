@@ -112,8 +112,6 @@ ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleCh
 ChangedModel change_triangles(GltfDocument& document, std::span<const std::size_t> meshes,
                               NormalMode normals, const TriangleChange& change);
 
-// Models for maps: the meshes, objects and materials that a bake or a conversion of a map needs.
-
 /// object: each primitive of a document once, in object space. world: each instance in the scene.
 enum class ModelSpace { object, world };
 
@@ -161,8 +159,6 @@ Mesh joined(std::vector<MapModelPart> parts);
 
 /// Changes the origin of the positions.
 void move_to(MapModel& model, const glm::dvec3& origin);
-
-// The differences between the normals and tangents of two models.
 
 /// A primitive of a joined model.
 struct ComparedPart {

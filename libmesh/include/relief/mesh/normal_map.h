@@ -23,8 +23,6 @@
 
 namespace RELIEF_API relief {
 
-// Encodes unit normals as normal maps and decodes them.
-
 /// The space of the vectors of a map.
 enum class VectorSpace {
     tangent,  ///< The normals and tangents of the mesh, as the shader interpolates them.
@@ -147,9 +145,6 @@ FlatCode detect_flat_code(const ImageView& map,
 /// (map_description.h): its content, green, code of zero and color space.
 std::map<std::string, std::string> normal_map_metadata(const NormalMapFormat& format);
 
-// Applies per-texel operations to normals: axis permutations, reconstruction of z, length
-// statistics, and scaling of slopes.
-
 /// One of the axes x, y, z, or its opposite.
 struct SignedAxis {
     int axis = 0;  ///< 0 to 2.
@@ -232,11 +227,8 @@ Image slopes_from_normals(const Image& normals, Report& report = IgnoredReport()
 /// Converts slopes to unit normals. \throws InvalidInput if the image is not two float channels
 Image normals_from_slopes(const Image& slopes, Report& report = IgnoredReport());
 
-// Blends a detail normal map into a base normal map. docs/normal-maps.md has the error of each
-// method.
-
 /// Blending methods for unit normals: base b and detail d, with z out of the surface. Every result
-/// is normalized.
+/// is normalized. docs/normal-maps.md has the error of each method.
 enum class NormalBlend {
     /// d, rotated by the shortest rotation from (0,0,1) to b: the detail is carved into the base.
     /// [Barré-Brisebois and Hill 2012]
@@ -273,9 +265,6 @@ inline constexpr NormalBlend all_normal_blends[] = {
 /// detail.
 void blend_normals(Image& base, const Image& detail, NormalBlend method,
                    Report& report = IgnoredReport());
-
-// Computes mip levels of normal maps, and converts the shortening of averaged normals to slope
-// variance and roughness.
 
 /// Computes the levels of a normal map down to one texel, with the sizes and weights of
 /// mip_levels().
@@ -320,9 +309,8 @@ double roughness_with_variance(double roughness, double variance);
 /// \throws InvalidInput if the image is not one float channel, or the roughness is out of range
 Image roughness_from_lengths(const Image& lengths, double roughness);
 
-// Resizes normal maps. docs/normal-maps.md has the errors of the filters.
-
 /// The filter kernel. When an image is reduced, the kernel is widened by the same factor.
+/// docs/normal-maps.md has the error of each filter.
 enum class ResizeFilter {
     /// The texels that the new one covers, weighted by area; for enlargement the nearest texel.
     box,

@@ -4,9 +4,8 @@
 /// normals, and computes the curvature at vertices.
 ///
 /// docs/normals.md has the error and time of each weighting.
-/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp,
-/// tests/accuracy/ground_truth_test.cpp, tests/mesh/geometry/corner_normals_test.cpp,
-/// tests/mesh/geometry/curvature_test.cpp.
+/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp, curvature_test.cpp,
+/// tests/accuracy/ground_truth_test.cpp.
 #pragma once
 
 #include <array>
@@ -156,9 +155,6 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
 std::vector<glm::vec3> triangle_normals(StridedSpan<const glm::vec3> positions,
                                         TriangleSpan triangles, Report& report = IgnoredReport());
 
-// Estimates reference normals of a mesh without a known formula: the normals of a smooth surface
-// that is fitted through its vertices.
-
 /// Reference normals at corners, one for each smooth fan (a vertex, or one side of a hard edge at
 /// it).
 struct FittedNormals {
@@ -196,9 +192,7 @@ struct FitOptions {
 /// strongly decimated models. Computed in double precision; the same for any number of threads.
 FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options);
 
-// Infers the hard edges of a mesh from its normals, and the crease angle that best separates them
-// from smooth edges.
-
+/// The hard edges that the normals of a mesh imply.
 struct InferredCreases {
     std::size_t edges = 0;  ///< Number of edges between two triangles with area.
     /// Number of these edges with different normals of the two triangles at one of its ends.
@@ -215,8 +209,6 @@ struct InferredCreases {
 ///         less than half a degree as equal
 /// \throws InvalidInput if the mesh is not valid or has no normals
 InferredCreases inferred_creases(const Mesh& mesh);
-
-// Computes the mean curvature of a mesh at its vertices.
 
 /// Computes the mean curvature at every vertex: the mean of the two principal curvatures, positive
 /// for convex surfaces. A sphere of radius r has 1/r, a cylinder 1/(2r).

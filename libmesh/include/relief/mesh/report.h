@@ -39,8 +39,8 @@ class FileError : public Error {
         : Error(file.string() + ": " + reason) {}
 };
 
-// Reports the problems that library functions find in their input, and the fallbacks that they
-// use.
+// A Report contains the problems that library functions find in their input, and the fallbacks
+// that they use.
 //
 // Functions with fallbacks have a parameter of type Report& and add to it. It may be left out:
 // results are usable even if the caller ignores the report.

@@ -20,8 +20,6 @@
 
 namespace RELIEF_API relief {
 
-// Computes angles between directions, and statistics of many angles, in degrees.
-
 /// Returns the angle between two directions of any length, in degrees, 0 to 180. It is computed by
 /// atan2 in double precision, which is accurate for small angles, unlike the arc cosine. NaN if one
 /// direction is zero or not finite.
@@ -89,8 +87,8 @@ ErrorStats direction_error(std::span<const glm::vec3> directions,
                            std::span<const glm::dvec3> reference,
                            std::span<const unsigned char> counts = {});
 
-// Measures wall-clock time: interleaved repetitions with warm-up, so that all methods share the
-// drift of the machine, summarized by median and percentiles.
+// Wall-clock times are measured by interleaved repetitions with warm-up, so that all methods share
+// the drift of the machine. They are summarized by median and percentiles.
 
 /// The number of repetitions of a measurement.
 struct Repeats {

@@ -49,8 +49,6 @@ constexpr bool computes_tangents(TangentMethod method) {
     return method != TangentMethod::keep && method != TangentMethod::none;
 }
 
-// Computes tangent frames from texture coordinates: MikkTSpace and two other weightings.
-
 /// Computes a tangent frame for every triangle corner, as MikkTSpace defines it.
 ///
 /// \param positions  object space, any unit of length
@@ -140,8 +138,6 @@ std::vector<glm::vec4> lengyel_tangents(StridedSpan<const glm::vec3> positions,
                                         StridedSpan<const glm::vec2> texcoords,
                                         TriangleSpan triangles, Report& report = IgnoredReport());
 
-// Identifies the method with which the stored tangents of a mesh were computed.
-//
 // A normal map is correct only with the tangents that its baker assumed, but files do not name the
 // method. Therefore the tangents are computed by all known methods and compared with the stored
 // ones.

@@ -19,14 +19,13 @@
 
 namespace RELIEF_API relief {
 
-// Finds the UDIM tiles (unit squares of texture space) that triangles cover.
-
 /// The square from (x, y) to (x + 1, y + 1), with v down, and its triangles.
 struct MapTile {
     glm::ivec2 tile{0, 0};
     std::vector<std::uint32_t> triangles;  ///< Ascending.
 };
 
+/// The UDIM tiles (unit squares of texture space) that triangles cover.
 struct MapTiles {
     std::vector<MapTile> tiles;  ///< In order of UDIM numbers, without empty tiles.
     /// Triangles completely outside of the allowed tiles, partly outside, and with coordinates that

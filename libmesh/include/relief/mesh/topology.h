@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Changes the number of triangles of a mesh: decimation and subdivision; and measures the distance
-/// between surfaces. Part of the library
-/// relief::topology.
+/// between surfaces. Part of the library relief::topology.
 /// Tests: tests/mesh/topology/decimate_test.cpp, surface_distance_test.cpp, subdivide_test.cpp.
 #pragma once
 
@@ -16,10 +15,8 @@
 
 namespace RELIEF_API relief {
 
-// Decimation reduces the number of triangles and preserves the surface and its texture mapping.
-
-/// Weights of differences of attributes relative to distances; at least 0. The error of
-/// a collapse is the root of the sum of the squared weighted differences.
+/// Weights of differences of attributes relative to distances; at least 0. The error of a collapse
+/// is the root of the sum of the squared weighted differences.
 struct AttributeWeights {
     double texcoord = 1.0;  ///< In lengths on the surface that the texture moves by.
     /// The distance, relative to the size of the mesh, for which a difference of 1 between normals
@@ -61,10 +58,9 @@ struct DecimateOptions {
 /// \param deformation  how the vertices move, by vertex; where it differs between vertices at one
 ///         position, there is a seam
 /// \return a subset of the vertices with all attributes, in their order; with `fit_positions`, at
-///         other positions; and the remaining
-///         triangles in the original order, with their material ranges and smoothing groups.
-///         `source_vertex` holds the input's index of each vertex. If `frames` does not keep
-///         normals, vertices may be split in addition
+///         other positions; and the remaining triangles in the original order, with their material
+///         ranges and smoothing groups. `source_vertex` holds the input's index of each vertex. If
+///         `frames` does not keep normals, vertices may be split in addition
 /// \throws InvalidInput if the mesh is not valid, no limit is given or one is out of range, or as
 ///         with_frames() does
 ///
@@ -118,8 +114,6 @@ struct SurfaceDistance {
 ///         if there are many) where a distance between their corners may be larger. The work has a
 ///         limit: beyond it, fewer points are examined, which `omitted` counts
 SurfaceDistance surface_distance(const Mesh& a, const Mesh& b);
-
-// Subdivision computes finer, smoother surfaces.
 
 /// Applies Loop subdivision: each level splits every triangle into four and smooths all positions.
 ///

@@ -65,8 +65,7 @@ struct CutPolygons {
 ///
 /// \param vertices  positions, and texture coordinates if it has them
 /// \param report    counts polygons of fewer than three corners (left out), and those that are cut
-/// as
-///         fans
+///         as fans
 CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report& report);
 
 /// Sets the triangles of a mesh. \throws FileError if a polygon names a missing vertex, or if there

@@ -39,8 +39,7 @@ namespace relief {
 ///
 /// \param counts  frequency of each symbol; at most 288 symbols, with a sum below 2^32
 /// \param max_length    the maximum length of a code; longer codes are shortened at the expense of
-/// as few
-///         others as possible
+///         as few others as possible
 ///
 /// At least two symbols get a code, used or not, because some decoders refuse incomplete codes.
 /// Source: [Huffman 1952].

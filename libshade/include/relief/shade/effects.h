@@ -225,7 +225,7 @@ PlannedInterface planned_interface(const Features& features);
 /// The material of meshes that name no material.
 const Material& default_material();
 
-// Forces effects on or off by name, independent of the scene. Pure: no OpenGL, no files.
+// Effects can be forced on or off by name, independent of the scene.
 //
 // An effect that is forced on without anything to show is neutral: its values are zero, its
 // texture is white, its lights are black, and the picture does not change by a bit. Effects
@@ -270,9 +270,6 @@ FramePlan force_effects(const Scene& scene, const FrameSettings& settings, Frame
 /// off.
 std::vector<std::string> effects_in(const FramePlan& plan);
 
-// Lists the inputs of a plan with reasons: vertex attributes, textures with their mip chains, and
-// the passes of a frame. It needs no OpenGL and decodes no image.
-
 /// One stream of vertices.
 struct PlannedAttribute {
     std::string name;     ///< GLSL: "tangent_object".
@@ -302,8 +299,6 @@ struct PlannedPass {
     std::string reason;
 };
 std::vector<PlannedPass> planned_passes(const FramePlan& plan);
-
-// Lists the shader source of the programs of a plan, as the driver gets it. Pure: no OpenGL.
 
 /// One program, assembled from the files in shaders/.
 struct ShaderListing {

@@ -21,11 +21,9 @@
 
 namespace RELIEF_API relief {
 
-// Defines debug views, which show one input or term of shading instead of the picture, and
-// overlays.
-//
-// FrameSettings selects the view. Views do not change the programs and pixels of the normal
-// picture: a view selects other shader parts. World space, linear light.
+// Debug views show one input or term of shading instead of the picture. FrameSettings selects the
+// view. Views do not change the programs and pixels of the normal picture: a view selects other
+// shader parts. World space, linear light.
 
 /// The content of a picture.
 ///
@@ -153,8 +151,6 @@ inline constexpr glm::vec3 tangent_color{1.0F, 0.2F, 0.2F};    ///< (255,51,51)
 inline constexpr glm::vec3 bitangent_color{0.2F, 1.0F, 0.2F};  ///< (51,255,51)
 inline constexpr glm::vec3 normal_color{0.4F, 0.6F, 1.0F};     ///< (102,153,255)
 
-// Defines the size, sample count and output coding of a picture.
-
 /// The coding of the finished radiance.
 enum class OutputCoding : std::uint8_t {
     linear,   ///< Radiance, up to the largest float.
@@ -180,9 +176,6 @@ struct FrameSettings {
     friend bool operator==(const FrameSettings&, const FrameSettings&) = default;
 };
 
-// Formats the names of parts of a scene for messages: the name in quotes, or the index if there is
-// no name.
-
 /// Returns "material 'paint'", "material 3" if it has no name, or "the default material" for none.
 std::string material_label(const Scene& scene, std::optional<std::size_t> material);
 
@@ -193,8 +186,8 @@ std::string instance_label(const Scene& scene, std::size_t instance);
 /// Returns "mesh 'Wheel'" or "mesh 3".
 std::string mesh_label(const Scene& scene, std::size_t mesh);
 
-// Creates markers for the findings of the mesh health check (diagnose.h, `relief-mesh check`).
-// They are drawn over a picture and colored by kind. No OpenGL.
+// Markers show the findings of the mesh health check (diagnose.h, `relief-mesh check`). They are
+// drawn over a picture and colored by kind.
 
 /// A condition, counted over all instances.
 struct MarkedCondition {

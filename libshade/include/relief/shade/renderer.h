@@ -20,8 +20,6 @@
 
 namespace RELIEF_API relief {
 
-// Creates OpenGL contexts without a window, or wraps those of a window library.
-
 /// OpenGL is missing, too old or out of memory, or refuses a shader. The message contains that of
 /// the driver.
 class GpuError : public Error {
@@ -85,8 +83,6 @@ class Context {
     std::unique_ptr<Implementation> implementation_;
 };
 
-// Caches the resources that renderers share, so that an edited scene is redrawn quickly.
-
 /// Programs, vertex buffers, textures, environment maps and render targets of one context.
 ///
 /// A renderer with a cache reuses its contents: programs by their Features, meshes and images that
@@ -122,8 +118,6 @@ class RenderCache {
   private:
     std::unique_ptr<Implementation> implementation_;
 };
-
-// Draws scenes with OpenGL.
 
 namespace gl {
 class RenderTarget;
@@ -211,8 +205,6 @@ class Renderer {
     std::unique_ptr<Implementation> implementation_;
 };
 
-// Passes pictures from the drawing thread to the thread that shows them.
-
 /// A triple buffer of textures: one is shown, one is the next, one is free for the next copy.
 ///
 /// The contexts of both threads share textures (a window library creates them). The drawing thread
@@ -246,8 +238,8 @@ class PictureExchange {
     std::unique_ptr<Implementation> implementation_;
 };
 
-// Measures frame times: renderers draw interleaved, the first frames are dropped, and the wall
-// clock is read around finished work, because the timer queries of software drivers are wrong.
+// Frame times are measured by a wall clock around finished work, because the timer queries of
+// software drivers are wrong. Renderers draw interleaved, and their first frames are dropped.
 
 /// Milliseconds of each counted frame of one renderer, in the order in which they were drawn.
 struct FrameSeries {

@@ -29,8 +29,6 @@
 
 namespace RELIEF_API relief {
 
-// Implements copy-on-write values, so that copying a scene with millions of triangles is cheap.
-
 /// A value that copies share until one of them is edited.
 ///
 /// Several threads may read without a lock, also while another thread edits its own copy.
@@ -81,10 +79,8 @@ class Shared {
     std::shared_ptr<Held> held_;
 };
 
-// Defines directional, point and spot lights as plain data in world space.
-//
-// Intensities are irradiances over pi: a white surface that faces a directional light of
-// irradiance 1 has radiance 1.
+// Lights are plain data in world space. Intensities are irradiances over pi: a white surface that
+// faces a directional light of irradiance 1 has radiance 1.
 
 /// Light from infinitely far away.
 struct DirectionalLight {
@@ -322,8 +318,6 @@ void validate_transforms(const Scene& scene);
 /// Checks a camera alone.
 void validate(const Camera& camera);
 
-// Adds the default material to the list of materials.
-
 /// Adds the default material to the list and assigns it to every triangle without a material, so
 /// that it can be edited. Meshes that change are copied.
 void name_default_material(Scene& scene);
@@ -331,10 +325,7 @@ void name_default_material(Scene& scene);
 /// Returns true if a triangle has no material.
 bool uses_default_material(const Scene& scene);
 
-// Defines the default camera and lights of a model without its own. World space; angles in
-// radians.
-
-/// The direction and field of view of the camera.
+/// The direction and field of view of the default camera, in radians.
 inline constexpr float default_azimuth = 0.523598776F;       // 30 degrees
 inline constexpr float default_elevation = 0.34906585F;      // 20 degrees
 inline constexpr float default_vertical_fov = 0.610865238F;  // 35 degrees
@@ -363,8 +354,6 @@ bool is_studio(const Environment& environment);
 /// \return the name of the first such material for messages ("material 'body'"); nothing if the
 ///         scene did not change
 std::optional<std::string> add_default_environment(Scene& scene);
-
-// Computes cameras that show a scene as large as possible. World space; angles in radians.
 
 /// Computes a camera that sees every finite vertex of a scene, with a small margin. It is closer
 /// than framed() of the scene's box, whose corners are mostly empty.

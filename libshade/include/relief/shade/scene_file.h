@@ -25,8 +25,6 @@
 
 namespace RELIEF_API relief {
 
-// Reads scenes from model files and scene files.
-
 /// The axis of a model that points up in the world.
 enum class UpAxis {
     y,
@@ -154,8 +152,6 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
 /// as 0. Source: the MTL format's illumination models (Blinn's half vector for all highlights).
 Material phong_from_mtl(const MtlMaterial& material);
 
-// Saves an edited scene as a scene file (docs/scene-files.md) that draws the same pixels.
-
 /// A scene that was read from a file, with a camera and a picture size.
 struct SceneToSave {
     std::filesystem::path source;  ///< The model or scene file.
@@ -176,13 +172,9 @@ struct SceneToSave {
 ///         path of a file is not UTF-8
 void save_scene(const std::filesystem::path& file, const SceneToSave& saved);
 
-// Finds the images of environment maps in folders.
-
 /// Finds six images in a folder by the ends of their names: posx, negx, posy, negy, posz, negz.
 /// \throws FileError naming the first missing face, or two files for one face
 CubeFaces cube_faces_in(const std::filesystem::path& folder);
-
-// Decodes the images of a scene.
 
 /// Decodes an image.
 /// \return the image; a decoded image keeps its samples, and for ImageUse::data its color space is
