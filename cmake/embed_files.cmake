@@ -1,7 +1,7 @@
 # Writes text files as a C++ array, sorted by name, so that none is needed at run time.
 # Used at build time as a script (no tool but CMake): see the call below for what is given.
 #
-# relief_embed_files(NAME FOLDER ... FILES *.glsl HEADER "effects/shader_source.h" ARRAY embedded_shaders
+# relief_embed_files(NAME FOLDER ... FILES *.glsl HEADER "effects/shader_parts.h" ARRAY embedded_shaders
 #                    ELEMENT EmbeddedShader [NAMESPACE relief])
 # makes an object library of those in FOLDER and below that FILES fits; a changed or new file builds
 # again. HEADER declares `const std::vector<ELEMENT>& ARRAY()`, an element being {name, text}.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface's coverage.
 
-#part product
+//@part product
 // The product of everything that alpha depends on.
 
-#include <diffuse_texture>
-#include <vertex_color>
-#include <opacity_texture>
+//@include <diffuse_texture>
+//@include <vertex_color>
+//@include <opacity_texture>
 
 uniform float opacity;
 
@@ -14,11 +14,11 @@ float alpha_product() {
     return opacity * diffuse_texel().a * vertex_tint().a * opacity_texel();
 }
 
-#part mask
+//@part mask implements alpha
 // Fragments with an alpha below the cutoff, or NaN, are discarded. This is the last step of a shader:
 // after it, the neighbors of a discarded fragment have no derivatives.
 
-#include "alpha.glsl#product"
+//@include "alpha.glsl#product"
 
 uniform float alpha_cutoff;
 
@@ -28,10 +28,10 @@ void cut_holes() {
     if (!(alpha_product() >= alpha_cutoff)) discard;
 }
 
-#part blend
+//@part blend implements alpha
 // The surface covers its background by alpha; NaN counts as 0.
 
-#include "alpha.glsl#product"
+//@include "alpha.glsl#product"
 
 float alpha_here() {
     float alpha = alpha_product();
@@ -40,13 +40,20 @@ float alpha_here() {
 
 void cut_holes() {}
 
-#part opacity_texture
+//@neutral alpha
+float alpha_here() { return 1.0; }
+void cut_holes() {}
+
+//@part opacity_texture implements opacity_texture
 // The red channel of the opacity texture.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D opacity_texture;
 
 float opacity_lookup = texture(opacity_texture, texcoord_surface).r;
 
 float opacity_texel() { return opacity_lookup; }
+
+//@neutral opacity_texture
+float opacity_texel() { return 1.0; }

@@ -4,13 +4,13 @@
 // Source: KHR_materials_anisotropy. Unlike there, the direction is made perpendicular to the
 // shading normal, so that D covers the surface under a normal map, too.
 
-#part axis
+//@part axis
 // The direction of the larger roughness, unit and perpendicular to the normal, and the strength.
 // Without a tangent frame, the strength is 0.
 
-#include "vector.glsl#normalized_or"
-#include <frame>
-#include <anisotropy_texture>
+//@include "vector.glsl#normalized_or"
+//@include <frame>
+//@include <anisotropy_texture>
 
 uniform float anisotropy;
 uniform vec2 anisotropy_direction;  // In the tangent frame.
@@ -32,11 +32,11 @@ Anisotropy anisotropy_of(Surface surface) {
     return Anisotropy(axis, cross(normal, axis), axis == vec3(0.0) ? 0.0 : anisotropy * texel.z);
 }
 
-#part texture
+//@part texture implements anisotropy_texture
 // Direction and strength from a texture. A texel without a direction counts as the tangent.
 
-#include "inputs.glsl#texcoord"
-#include "vector.glsl#normalized_or"
+//@include "inputs.glsl#texcoord"
+//@include "vector.glsl#normalized_or"
 
 uniform sampler2D anisotropy_texture;
 
@@ -48,11 +48,14 @@ vec3 anisotropy_texel() {
     return vec3(direction.xy, anisotropy_lookup.b);
 }
 
-#part lobe
+//@neutral anisotropy_texture
+vec3 anisotropy_texel() { return vec3(1.0, 0.0, 1.0); }
+
+//@part lobe implements lobe
 // The share of a light that facets mirror, before Fresnel's factor: pi D V.
 
-#include "metallic_roughness.glsl#ggx"
-#include "anisotropy.glsl#axis"
+//@include "metallic_roughness.glsl#ggx"
+//@include "anisotropy.glsl#axis"
 
 float mirrored_share(Surface surface, vec3 light_world, vec3 half_world, float n_dot_l,
                      float n_dot_v) {
@@ -80,11 +83,11 @@ float mirrored_share(Surface surface, vec3 light_world, vec3 half_world, float n
     return distribution * (0.5 / (masked + shadowed));
 }
 
-#part mirror_normal
+//@part mirror_normal implements mirror_normal
 // The normal that mirrors the environment: it leans towards the eye across the rough axis, so that
 // the blurred picture is stretched. Source: glTF Sample Renderer, getIBLRadianceAnisotropy.
 
-#include "anisotropy.glsl#axis"
+//@include "anisotropy.glsl#axis"
 
 vec3 mirror_normal(Surface surface) {
     Anisotropy a = anisotropy_of(surface);
@@ -96,3 +99,6 @@ vec3 mirror_normal(Surface surface) {
     vec3 normal = surface.normal_world;
     return lean > 0.0 ? normalized_or(mix(normal, leaning, lean), normal) : normal;
 }
+
+//@neutral mirror_normal
+vec3 mirror_normal(Surface surface) { return surface.normal_world; }

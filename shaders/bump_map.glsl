@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bump maps: textures of heights.
+
+//@part heights implements detail
 // The normal in tangent space from a height map: central differences over one texel, or over the
 // pixel if that is larger, so that detail finer than a pixel does not flicker. Heights are in
 // texels. Source: [Blinn 1978], with a frame of unit vectors so that strength means the same on
 // every surface.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D bump_texture;
 uniform float bump_strength;

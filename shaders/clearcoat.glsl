@@ -2,15 +2,15 @@
 // A clear layer on top of glTF's surfaces, which dims what is below by its own reflection. Only a
 // normal map of its own bends it. Source: KHR_materials_clearcoat.
 
-#part layer
+//@part layer implements clearcoat
 // The coat over the radiance of the surface, emission included. Its weight is Schlick's Fresnel
 // factor of the index 1.5 at n.v.
 
-#include <clearcoat_normal>
-#include <clearcoat_lights>
-#include <clearcoat_ambient>
-#include <clearcoat_reflection>
-#include <clearcoat_texture>
+//@include <clearcoat_normal>
+//@include <clearcoat_lights>
+//@include <clearcoat_ambient>
+//@include <clearcoat_reflection>
+//@include <clearcoat_texture>
 
 uniform float clearcoat;
 
@@ -21,24 +21,27 @@ vec3 with_clearcoat(Surface surface, vec3 radiance) {
     return radiance * (1.0 - weight) + coat * weight;
 }
 
-#part normal
+//@neutral clearcoat
+vec3 with_clearcoat(Surface surface, vec3 radiance) { return radiance; }
+
+//@part normal implements clearcoat_normal
 // The normal without the map.
 
-#include "inputs.glsl#normal"
-#include "vector.glsl#normalized_or"
-#include <facing>
+//@include "inputs.glsl#normal"
+//@include "vector.glsl#normalized_or"
+//@include <facing>
 
 vec3 clearcoat_normal(Surface surface) {
     return facing() * normalized_or(normal_world, vec3(0.0, 0.0, 1.0));
 }
 
-#part normal_map
+//@part normal_map implements clearcoat_normal
 // The normal with the coat's own map, by the rules of normal.glsl#perturbed.
 
-#include "inputs.glsl#texcoord"
-#include "vector.glsl#normalized_or"
-#include <frame>
-#include <facing>
+//@include "inputs.glsl#texcoord"
+//@include "vector.glsl#normalized_or"
+//@include <frame>
+//@include <facing>
 
 uniform sampler2D clearcoat_normal_texture;
 uniform vec3 clearcoat_normal_scale;
@@ -54,10 +57,13 @@ vec3 clearcoat_normal(Surface surface) {
     return facing() * normalized_or(bends ? bent_world : frame[2], vec3(0.0, 0.0, 1.0));
 }
 
-#part texture
+//@neutral clearcoat_normal
+vec3 clearcoat_normal(Surface surface) { return surface.normal_world; }
+
+//@part texture implements clearcoat_texture
 // The weight from a texture: red.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D clearcoat_texture;
 
@@ -65,10 +71,13 @@ float clearcoat_lookup = texture(clearcoat_texture, texcoord_surface).r;
 
 float clearcoat_texel() { return clearcoat_lookup; }
 
-#part roughness_texture
+//@neutral clearcoat_texture
+float clearcoat_texel() { return 1.0; }
+
+//@part roughness_texture implements clearcoat_roughness_texture
 // The roughness from a texture: green.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D clearcoat_roughness_texture;
 
@@ -76,11 +85,14 @@ float clearcoat_roughness_lookup = texture(clearcoat_roughness_texture, texcoord
 
 float clearcoat_roughness_texel() { return clearcoat_roughness_lookup; }
 
-#part roughness
+//@neutral clearcoat_roughness_texture
+float clearcoat_roughness_texel() { return 1.0; }
+
+//@part roughness
 // The roughness of the coat.
 
-#include "inputs.glsl#min_roughness"
-#include <clearcoat_roughness_texture>
+//@include "inputs.glsl#min_roughness"
+//@include <clearcoat_roughness_texture>
 
 uniform float clearcoat_roughness;
 
@@ -88,13 +100,13 @@ float coat_roughness() {
     return max(clearcoat_roughness * clearcoat_roughness_texel(), min_roughness);
 }
 
-#part lights
+//@part lights implements clearcoat_lights
 // The highlights of light sources, before the layer's weight.
 
-#include "clearcoat.glsl#roughness"
-#include "metallic_roughness.glsl#ggx"
-#include "vector.glsl#normalized_or"
-#include <clearcoat_normal>
+//@include "clearcoat.glsl#roughness"
+//@include "metallic_roughness.glsl#ggx"
+//@include "vector.glsl#normalized_or"
+//@include <clearcoat_normal>
 
 vec3 clearcoat_received = vec3(0.0);
 
@@ -111,22 +123,29 @@ void receive_clearcoat(Surface surface, vec3 light_world, vec3 irradiance) {
 
 vec3 clearcoat_from_lights() { return clearcoat_received; }
 
-#part ambient
+//@neutral clearcoat_lights
+void receive_clearcoat(Surface surface, vec3 light_world, vec3 irradiance) {}
+vec3 clearcoat_from_lights() { return vec3(0.0); }
+
+//@part ambient implements clearcoat_ambient
 // Mirrored ambient light.
 
-#include "inputs.glsl#ambient"
-#include <occlusion>
+//@include "inputs.glsl#ambient"
+//@include <occlusion>
 
 vec3 clearcoat_from_ambient() { return ambient_scattered * occlusion(); }
 
-#part reflection
+//@neutral clearcoat_ambient
+vec3 clearcoat_from_ambient() { return vec3(0.0); }
+
+//@part reflection implements clearcoat_reflection
 // The mirrored environment.
 
-#include "clearcoat.glsl#roughness"
-#include "environment.glsl#blurred"
-#include "environment.glsl#brdf_table"
-#include <clearcoat_normal>
-#include <occlusion>
+//@include "clearcoat.glsl#roughness"
+//@include "environment.glsl#blurred"
+//@include "environment.glsl#brdf_table"
+//@include <clearcoat_normal>
+//@include <occlusion>
 
 vec3 clearcoat_reflection(Surface surface) {
     vec3 normal = clearcoat_normal(surface);
@@ -136,3 +155,6 @@ vec3 clearcoat_reflection(Surface surface) {
     return blurred_radiance(mirrored_world, coat_roughness()) *
            ((factors.x + factors.y) * occlusion());
 }
+
+//@neutral clearcoat_reflection
+vec3 clearcoat_reflection(Surface surface) { return vec3(0.0); }

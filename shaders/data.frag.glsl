@@ -4,9 +4,9 @@
 
 out vec4 color;
 
-#include <second_texcoord>
-#include <alpha>
-#include <view>
+//@include <second_texcoord>
+//@include <alpha>
+//@include <view>
 
 void main() {
     float alpha = alpha_here();

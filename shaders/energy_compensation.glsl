@@ -3,17 +3,17 @@
 // 1 - A - B, with A and B of environment.glsl#brdf_table; it is 0.69 for roughness 1 at normal
 // incidence.
 
-#part weight
+//@part weight
 // 1 if the material keeps that light, else 0.
 
 uniform float energy_compensation;
 
-#part highlights
+//@part highlights implements highlight_gain
 // The factor of the light that facets mirror from light sources. Source: [Turquin 2019].
 
-#include "energy_compensation.glsl#weight"
-#include "environment.glsl#brdf_table"
-#include <film>
+//@include "energy_compensation.glsl#weight"
+//@include "environment.glsl#brdf_table"
+//@include <film>
 
 vec3 highlight_gain(Surface surface) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
@@ -22,11 +22,14 @@ vec3 highlight_gain(Surface surface) {
     return vec3(1.0) + f0 * (energy_compensation * (1.0 / (factors.x + factors.y) - 1.0));
 }
 
-#part share
+//@neutral highlight_gain
+vec3 highlight_gain(Surface surface) { return vec3(1.0); }
+
+//@part share
 // The share of even light that facets mirror after the first bounce, from the share that they mirror
 // at once and the mean of Fresnel's factor. Source: [Fdez-Aguera 2019], equations 13 to 18.
 
-#include "energy_compensation.glsl#weight"
+//@include "energy_compensation.glsl#weight"
 
 vec3 bounced_share(vec2 factors, vec3 mirrored, vec3 mean_fresnel) {
     float lost = 1.0 - (factors.x + factors.y);
@@ -36,12 +39,12 @@ vec3 bounced_share(vec2 factors, vec3 mirrored, vec3 mean_fresnel) {
 // The mean of Schlick's factor over the hemisphere.
 vec3 mean_schlick(vec3 f0, vec3 f90) { return f0 + (f90 - f0) * (1.0 / 21.0); }
 
-#part scattering
+//@part scattering implements scattering_bounces
 // Scattered light lacks the light of all bounces.
 
-#include "energy_compensation.glsl#share"
-#include <film>
-#include <grazing>
+//@include "energy_compensation.glsl#share"
+//@include <film>
+//@include <grazing>
 
 vec3 with_blocked_bounces(Surface surface, float n_dot_v, vec2 factors, vec3 blocked) {
     vec3 mean = mean_schlick(blocking_f0(surface), grazing_reflectance(surface));
@@ -49,15 +52,20 @@ vec3 with_blocked_bounces(Surface surface, float n_dot_v, vec2 factors, vec3 blo
     return blocked + bounced_share(factors, blocked, mean_fresnel);
 }
 
-#part reflection
+//@neutral scattering_bounces
+vec3 with_blocked_bounces(Surface surface, float n_dot_v, vec2 factors, vec3 blocked) {
+    return blocked;
+}
+
+//@part reflection implements bounced_light
 // The bounced light of the environment has no direction: it is that of roughness 1 about the normal.
 
-#include "energy_compensation.glsl#share"
-#include "environment.glsl#blurred"
-#include "environment.glsl#brdf_table"
-#include <film>
-#include <grazing>
-#include <occlusion>
+//@include "energy_compensation.glsl#share"
+//@include "environment.glsl#blurred"
+//@include "environment.glsl#brdf_table"
+//@include <film>
+//@include <grazing>
+//@include <occlusion>
 
 vec3 with_bounced_light(Surface surface, vec3 mirrored, vec3 radiance) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
@@ -67,3 +75,6 @@ vec3 with_bounced_light(Surface surface, vec3 mirrored, vec3 radiance) {
         bounced_share(albedo_factors(n_dot_v, surface.roughness), mirrored, mean_fresnel);
     return radiance + blurred_radiance(surface.normal_world, 1.0) * occlusion() * share;
 }
+
+//@neutral bounced_light
+vec3 with_bounced_light(Surface surface, vec3 mirrored, vec3 radiance) { return radiance; }

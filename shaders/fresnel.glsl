@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fresnel's factor: the share of light that a surface mirrors, by angle and channel.
 
-#part viewing_cosine
+//@part viewing_cosine
 // n.v, clamped to [0,1], since a perturbed normal may leave it.
 
 float viewing_cosine(Surface surface) {
     return clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
 }
 
-#part constant
+//@part constant implements fresnel
 // The same reflectivity at every angle.
 
 uniform vec3 reflectivity;
 
 vec3 fresnel_factor(Surface surface) { return reflectivity; }
 
-#part schlick
+//@part schlick implements fresnel
 // Schlick's approximation: from reflectivity at normal incidence to grazing_reflectivity.
 // Source: [Schlick 1994].
 
-#include "fresnel.glsl#viewing_cosine"
+//@include "fresnel.glsl#viewing_cosine"
 
 uniform vec3 reflectivity;
 uniform vec3 grazing_reflectivity;
@@ -30,12 +30,12 @@ vec3 fresnel_factor(Surface surface) {
     return reflectivity + (grazing_reflectivity - reflectivity) * (m * m * m * m * m);
 }
 
-#part dielectric
+//@part dielectric implements fresnel
 // Fresnel's equations for unpolarized light that enters a denser, clear medium. With index 1 there
 // is no boundary, and nothing is mirrored, at grazing angles too. Source: [Born and Wolf 1999],
 // 1.5.2.
 
-#include "fresnel.glsl#viewing_cosine"
+//@include "fresnel.glsl#viewing_cosine"
 
 uniform vec3 reflectivity;
 uniform float refractive_index;
@@ -51,12 +51,12 @@ vec3 fresnel_factor(Surface surface) {
     return reflectivity * (0.5 * (across * across + along * along));
 }
 
-#part conductor
+//@part conductor implements fresnel
 // Fresnel's equations for unpolarized light on a metal of complex index n + ik, by channel. With
 // index 1 and no absorption there is no boundary, and nothing is mirrored, at grazing angles too.
 // Source: [Born and Wolf 1999], 14.2.
 
-#include "fresnel.glsl#viewing_cosine"
+//@include "fresnel.glsl#viewing_cosine"
 
 uniform vec3 reflectivity;
 uniform vec3 conductor_index;

@@ -2,12 +2,12 @@
 // Gouraud shading: the vertex stage computes the lights, and the fragment stage interpolates the
 // result. Source: [Gouraud 1971].
 
-#part lights
+//@part lights implements pass_lights
 // Vertex stage: all lights at the vertex.
 
-#include "light.glsl#lighting"
-#include <surface>
-#include "light.glsl#all"
+//@include "light.glsl#lighting"
+//@include <surface>
+//@include "light.glsl#all"
 
 out vec3 lights_scattered;
 out vec3 lights_highlights;
@@ -19,13 +19,13 @@ void pass_lights() {
     lights_highlights = lighting.highlights;
 }
 
-#part lights_both_sides
+//@part lights_both_sides implements pass_lights
 // Vertex stage: all lights for both sides, since only the fragment stage knows the visible side.
 // The back side has the opposite normal.
 
-#include "light.glsl#lighting"
-#include <surface>
-#include "light.glsl#all"
+//@include "light.glsl#lighting"
+//@include <surface>
+//@include "light.glsl#all"
 
 out vec3 lights_scattered;
 out vec3 lights_highlights;
@@ -46,14 +46,17 @@ void pass_lights() {
     lights_highlights_back = back.highlights;
 }
 
-#part normal
+//@neutral pass_lights
+void pass_lights() {}
+
+//@part normal implements normal
 // Vertex stage: the normal that pass_normal() has just written; (0,0,1) if it is zero.
 
-#include "vector.glsl#normalized_or"
+//@include "vector.glsl#normalized_or"
 
 vec3 shading_normal() { return normalized_or(normal_world, vec3(0.0, 0.0, 1.0)); }
 
-#part interpolated
+//@part interpolated implements lights
 // Fragment stage: the interpolated light.
 
 in vec3 lights_scattered;
@@ -64,7 +67,7 @@ void add_lights(Surface surface, inout Lighting lighting) {
     lighting.highlights += lights_highlights;
 }
 
-#part interpolated_both_sides
+//@part interpolated_both_sides implements lights
 // Fragment stage: the interpolated light of the visible side.
 
 in vec3 lights_scattered;

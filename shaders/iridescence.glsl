@@ -4,17 +4,17 @@
 // approximation stands for Fresnel's formulas, without polarization.
 // Source: KHR_materials_iridescence, [Belcour and Barla 2017].
 
-#part thickness
+//@part thickness implements film_thickness
 // The thickness in nanometers.
 
 uniform float iridescence_thickness;
 
 float film_thickness() { return iridescence_thickness; }
 
-#part thickness_texture
+//@part thickness_texture implements film_thickness
 // The thickness in nanometers from a texture: green.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform float iridescence_thickness;
 uniform float iridescence_thickness_minimum;
@@ -28,10 +28,10 @@ float film_thickness() {
            lacking * (iridescence_thickness - iridescence_thickness_minimum);
 }
 
-#part texture
+//@part texture implements iridescence_texture
 // The weight from a texture: red.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D iridescence_texture;
 
@@ -39,11 +39,14 @@ float iridescence_lookup = texture(iridescence_texture, texcoord_surface).r;
 
 float iridescence_texel() { return iridescence_lookup; }
 
-#part film
+//@neutral iridescence_texture
+float iridescence_texel() { return 1.0; }
+
+//@part film implements film
 // The film's reflectance, and its effect on mirrored and on scattered light.
 
-#include <film_thickness>
-#include <iridescence_texture>
+//@include <film_thickness>
+//@include <iridescence_texture>
 
 uniform float iridescence;
 uniform float iridescence_index;
@@ -107,3 +110,7 @@ vec3 blocked_by_film(Surface surface, float cosine, float share, vec3 blocked) {
     float largest = min(max(max(film.r, film.g), film.b), 1.0);
     return mix(blocked, vec3(largest * share), iridescence * iridescence_texel());
 }
+
+//@neutral film
+vec3 with_film(Surface surface, float cosine, float share, vec3 mirrored) { return mirrored; }
+vec3 blocked_by_film(Surface surface, float cosine, float share, vec3 blocked) { return blocked; }

@@ -3,7 +3,7 @@
 // libshade/src/effects/light_rows.h describes them. receive() is the material's: phong.glsl or
 // metallic_roughness.glsl.
 
-#part lighting
+//@part lighting
 // The sums of light at a point: scattered before the surface's tint, and highlights.
 
 struct Lighting {
@@ -11,12 +11,12 @@ struct Lighting {
     vec3 highlights;
 };
 
-#part all
+//@part all implements lights
 // Adds all lights.
 
-#include <directional_lights>
-#include <point_lights>
-#include <spot_lights>
+//@include <directional_lights>
+//@include <point_lights>
+//@include <spot_lights>
 
 void add_lights(Surface surface, inout Lighting lighting) {
     add_directional_lights(surface, lighting);
@@ -24,7 +24,10 @@ void add_lights(Surface surface, inout Lighting lighting) {
     add_spot_lights(surface, lighting);
 }
 
-#part rows_block
+//@neutral lights
+void add_lights(Surface surface, inout Lighting lighting) {}
+
+//@part rows_block implements light_rows
 // The rows in a uniform block.
 
 layout(std140) uniform Lights {
@@ -33,20 +36,22 @@ layout(std140) uniform Lights {
 
 vec4 light_row(int index) { return light_rows[index]; }
 
-#part rows_buffer
+//@part rows_buffer implements light_rows
 // The rows in a buffer texture, for more lights than a uniform block holds.
+
+//@include <buffers>
 
 uniform samplerBuffer light_buffer;
 
-vec4 light_row(int index) { return texelFetch(light_buffer, index); }
+vec4 light_row(int index) { return buffer_texel(light_buffer, index); }
 
-#part directional
+//@part directional implements directional_lights
 // Directional lights: rows (direction to the light), (irradiance).
 
-#include <light_rows>
-#include <highlight_row>
-#include <directional_shadow>
-#include <receive>
+//@include <light_rows>
+//@include <highlight_row>
+//@include <directional_shadow>
+//@include <receive>
 
 void add_directional_lights(Surface surface, inout Lighting lighting) {
     float first_share = directional_share(surface);
@@ -59,14 +64,17 @@ void add_directional_lights(Surface surface, inout Lighting lighting) {
     }
 }
 
-#part point
+//@neutral directional_lights
+void add_directional_lights(Surface surface, inout Lighting lighting) {}
+
+//@part point implements point_lights
 // Point lights: rows (position, 1 / range), (intensity, law).
 
-#include <light_rows>
-#include <highlight_row>
-#include "falloff.glsl#irradiance"
-#include <point_shadow>
-#include <receive>
+//@include <light_rows>
+//@include <highlight_row>
+//@include "falloff.glsl#irradiance"
+//@include <point_shadow>
+//@include <receive>
 
 void add_point_lights(Surface surface, inout Lighting lighting) {
     float first_share = point_share(surface);
@@ -82,16 +90,19 @@ void add_point_lights(Surface surface, inout Lighting lighting) {
     }
 }
 
-#part spot
+//@neutral point_lights
+void add_point_lights(Surface surface, inout Lighting lighting) {}
+
+//@part spot implements spot_lights
 // Spot lights: rows (position, 1 / range), (intensity, law), (axis * cone scale, cone offset).
 // Between the cones the light falls off with the square of scale * cosine + offset, which is 1 at
 // the inner and 0 at the outer cone. Source: KHR_lights_punctual.
 
-#include <light_rows>
-#include <highlight_row>
-#include "falloff.glsl#irradiance"
-#include <spot_shadow>
-#include <receive>
+//@include <light_rows>
+//@include <highlight_row>
+//@include "falloff.glsl#irradiance"
+//@include <spot_shadow>
+//@include <receive>
 
 void add_spot_lights(Surface surface, inout Lighting lighting) {
     float first_share = spot_share(surface);
@@ -111,7 +122,13 @@ void add_spot_lights(Surface surface, inout Lighting lighting) {
     }
 }
 
-#part highlight_row
+//@neutral spot_lights
+void add_spot_lights(Surface surface, inout Lighting lighting) {}
+
+//@part highlight_row implements highlight_row
 // The color of a light's highlights: the last of its rows.
 
 vec3 highlight_power(int row, vec3 power) { return light_row(row).rgb; }
+
+//@neutral highlight_row
+vec3 highlight_power(int row, vec3 power) { return power; }

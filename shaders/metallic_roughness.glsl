@@ -3,21 +3,21 @@
 // ambient.glsl, environment.glsl and reflection.glsl hold the rest of the model.
 // Source: glTF 2.0, appendix B, with KHR_materials_ior and KHR_materials_specular.
 
-#part surface
+//@part surface implements surface
 // Base color, metallic and roughness as the color that scatters, the reflectance at normal
 // incidence, and the width of the GGX lobe. Roughness is large enough for its fourth power to be a
 // normal float.
 
-#include "inputs.glsl#eye"
-#include "inputs.glsl#min_roughness"
-#include "vector.glsl#normalized_or"
-#include <position>
-#include <normal>
-#include <sharpness>
-#include <diffuse_texture>
-#include <vertex_color>
-#include <metallic_roughness>
-#include <dielectric>
+//@include "inputs.glsl#eye"
+//@include "inputs.glsl#min_roughness"
+//@include "vector.glsl#normalized_or"
+//@include <position>
+//@include <normal>
+//@include <sharpness>
+//@include <diffuse_texture>
+//@include <vertex_color>
+//@include <metallic_roughness>
+//@include <dielectric>
 
 uniform vec3 base_color;
 
@@ -33,7 +33,7 @@ struct Surface {
     vec3 highlight_gain;  // The factor of highlights that adds the light of further bounces.
 };
 
-#include <highlight_gain>
+//@include <highlight_gain>
 
 Surface surface_here() {
     vec3 normal = shading_normal();
@@ -49,14 +49,14 @@ Surface surface_here() {
     return surface;
 }
 
-#part surface_colors
+//@part surface_colors implements surface
 // The same without an orientation, for a surface that only ambient light reaches: the color that
 // scatters and the reflectance at normal incidence.
 
-#include <diffuse_texture>
-#include <vertex_color>
-#include <metallic_roughness>
-#include <dielectric>
+//@include <diffuse_texture>
+//@include <vertex_color>
+//@include <metallic_roughness>
+//@include <dielectric>
 
 uniform vec3 base_color;
 
@@ -71,12 +71,12 @@ Surface surface_here() {
     return Surface(base * (1.0 - metal), mix(dielectric_reflectance(), base, metal));
 }
 
-#part dielectric
+//@part dielectric implements dielectric
 // The reflectance of dielectrics at normal incidence, from index, weight and color.
 // Source: KHR_materials_ior, KHR_materials_specular.
 
-#include <specular_weight_texture>
-#include <specular_color_texture>
+//@include <specular_weight_texture>
+//@include <specular_color_texture>
 
 uniform vec3 dielectric_color;  // With the reflectance of the index.
 uniform float dielectric_weight;
@@ -87,10 +87,13 @@ vec3 dielectric_reflectance() {
     return min(dielectric_color * specular_color_texel(), vec3(1.0)) * reflection_weight();
 }
 
-#part weight_texture
+//@neutral dielectric
+vec3 dielectric_reflectance() { return vec3(0.04); }
+
+//@part weight_texture implements specular_weight_texture
 // The weight of the reflection from a texture: alpha.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D specular_weight_texture;
 
@@ -98,10 +101,13 @@ float specular_weight_lookup = texture(specular_weight_texture, texcoord_surface
 
 float specular_weight_texel() { return specular_weight_lookup; }
 
-#part color_texture
+//@neutral specular_weight_texture
+float specular_weight_texel() { return 1.0; }
+
+//@part color_texture implements specular_color_texture
 // The color of the reflection from a texture.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D specular_color_texture;
 
@@ -109,12 +115,15 @@ vec3 specular_color_lookup = texture(specular_color_texture, texcoord_surface).r
 
 vec3 specular_color_texel() { return specular_color_lookup; }
 
-#part grazing
+//@neutral specular_color_texture
+vec3 specular_color_texel() { return vec3(1.0); }
+
+//@part grazing implements grazing
 // The reflectance at grazing incidence, which the weight lowers; and the reflectance at normal
 // incidence of the light that scattering lacks. It has the largest channel of the dielectric share,
 // so that a colored reflection does not tint the scattered light. Source: KHR_materials_specular.
 
-#include "metallic_roughness.glsl#dielectric"
+//@include "metallic_roughness.glsl#dielectric"
 
 vec3 grazing_reflectance(Surface surface) {
     return vec3(1.0 + (reflection_weight() - 1.0) * surface.dielectric_share);
@@ -126,33 +135,46 @@ vec3 blocking_f0(Surface surface) {
     return surface.f0 + (vec3(largest) - dielectric) * surface.dielectric_share;
 }
 
-#part factors
+//@neutral grazing
+vec3 grazing_reflectance(Surface surface) { return vec3(1.0); }
+vec3 blocking_f0(Surface surface) { return surface.f0; }
+
+//@part factors implements metallic_roughness
 // Constant metallic and roughness.
 
+//@include <roughness>
+
 uniform float metallic;
-uniform float roughness;
 
 vec2 metallic_and_roughness() { return vec2(metallic, roughness); }
 
-#part texture
+//@part texture implements metallic_roughness
 // Metallic and roughness from a texture: blue and green.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
+//@include <roughness>
 
 uniform float metallic;
-uniform float roughness;
 uniform sampler2D metallic_roughness_texture;
 
 vec2 metallic_roughness_lookup = texture(metallic_roughness_texture, texcoord_surface).bg;
 
 vec2 metallic_and_roughness() { return metallic_roughness_lookup * vec2(metallic, roughness); }
 
-#part tint
+//@part roughness implements roughness
+// The roughness as a factor. Only facets that lights or the environment reach show it.
+
+uniform float roughness;
+
+//@neutral roughness
+const float roughness = 1.0;
+
+//@part tint implements tint
 // The color that multiplies scattered light: the non-metallic share of the base color.
 
 vec3 scattering_tint(Surface surface) { return surface.scattered_color; }
 
-#part ggx
+//@part ggx
 // GGX facets. 1 - (n.h)^2 is computed from the cross product, since a float next to 1 is too coarse
 // for smooth surfaces. Source: [Walter et al. 2007].
 
@@ -183,10 +205,10 @@ float visibility(float n_dot_l, float n_dot_v, float alpha_squared) {
     return 0.5 / (masked + shadowed);
 }
 
-#part lobe
+//@part lobe implements lobe
 // The share of a light that facets mirror, before Fresnel's factor: pi D V.
 
-#include "metallic_roughness.glsl#ggx"
+//@include "metallic_roughness.glsl#ggx"
 
 float mirrored_share(Surface surface, vec3 light_world, vec3 half_world, float n_dot_l,
                      float n_dot_v) {
@@ -194,17 +216,17 @@ float mirrored_share(Surface surface, vec3 light_world, vec3 half_world, float n
            visibility(n_dot_l, n_dot_v, surface.alpha_squared);
 }
 
-#part receive
+//@part receive implements receive
 // Adds the light of one source: GGX facets mirror by Schlick's Fresnel factor, and the rest is
 // scattered. pi is in the irradiance. If light and view are opposite, there is no half vector, and
 // nothing is mirrored. Layers on top receive the light as well.
 
-#include "vector.glsl#normalized_or"
-#include <lobe>
-#include <grazing>
-#include <film>
-#include <sheen_lights>
-#include <clearcoat_lights>
+//@include "vector.glsl#normalized_or"
+//@include <lobe>
+//@include <grazing>
+//@include <film>
+//@include <sheen_lights>
+//@include <clearcoat_lights>
 
 void receive(Surface surface, vec3 light_world, vec3 irradiance, vec3 highlight_irradiance,
              inout Lighting lighting) {

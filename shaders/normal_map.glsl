@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normal maps in tangent space and in object space.
 
-#part texel
+//@part texel
 // The vector that a normal map stores. Scale and bias hold everything that differs between maps:
 // which code stands for zero, the direction of green, and the material's scale of x and y.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D normal_texture;
 uniform vec3 normal_map_scale;
@@ -15,21 +15,21 @@ vec3 normal_lookup = texture(normal_texture, texcoord_surface).xyz;
 
 vec3 normal_texel() { return normal_lookup * normal_map_scale + normal_map_bias; }
 
-#part tangent_space
+//@part tangent_space implements detail
 // The normal in tangent space.
 
-#include "normal_map.glsl#texel"
+//@include "normal_map.glsl#texel"
 
 vec3 normal_tangent() { return normal_texel(); }
 
-#part object_space
+//@part object_space implements normal
 // The shading normal from a map in object space; the interpolated normal if the map's vector is
 // zero.
 
-#include "inputs.glsl#normal"
-#include "vector.glsl#normalized_or"
-#include "normal_map.glsl#texel"
-#include <facing>
+//@include "inputs.glsl#normal"
+//@include "vector.glsl#normalized_or"
+//@include "normal_map.glsl#texel"
+//@include <facing>
 
 uniform mat3 world_from_object_normal;
 

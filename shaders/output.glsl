@@ -2,7 +2,7 @@
 // From radiance to the values that the picture stores. shown() limits the radiance, code_of() codes
 // the limited radiance, and coded() does both.
 
-#part limited
+//@part limited
 // Radiance that every format can hold: NaN and negative values become 0, infinite ones the limit. A
 // NaN from a vertex or a texel ends here.
 
@@ -10,39 +10,39 @@ vec3 limited(vec3 radiance, float limit) {
     return mix(vec3(0.0), min(radiance, vec3(limit)), greaterThan(radiance, vec3(0.0)));
 }
 
-#part linear
+//@part linear implements output
 // Linear floats.
 
-#include "output.glsl#limited"
+//@include "output.glsl#limited"
 
 vec3 shown(vec3 radiance) { return limited(radiance, 3e38); }
 vec3 code_of(vec3 shown_radiance) { return shown_radiance; }
 vec3 coded(vec3 radiance) { return shown(radiance); }
 
-#part half
+//@part half implements output
 // Linear half floats, for the finishing pass.
 
-#include "output.glsl#limited"
+//@include "output.glsl#limited"
 
 vec3 shown(vec3 radiance) { return limited(radiance, 65504.0); }
 vec3 code_of(vec3 shown_radiance) { return shown_radiance; }
 vec3 coded(vec3 radiance) { return shown(radiance); }
 
-#part clamped
+//@part clamped implements output
 // Linear values from 0 to 1.
 
-#include "output.glsl#limited"
+//@include "output.glsl#limited"
 
 vec3 shown(vec3 radiance) { return limited(radiance, 1.0); }
 vec3 code_of(vec3 shown_radiance) { return shown_radiance; }
 vec3 coded(vec3 radiance) { return shown(radiance); }
 
-#part srgb
+//@part srgb implements output
 // sRGB codes of radiance that is exposed, tone-mapped and limited to 1. Source: [IEC 61966-2-1].
 
-#include "output.glsl#limited"
-#include <exposure>
-#include <tone>
+//@include "output.glsl#limited"
+//@include <exposure>
+//@include <tone>
 
 vec3 shown(vec3 radiance) { return limited(toned(exposed(radiance)), 1.0); }
 

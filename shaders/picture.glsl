@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The finishing pass: averages the drawn samples of each pixel over the background.
 
-#part vertex
+//@part vertex
 // One triangle over the whole picture. Needs no vertex attributes.
 
 void main() {
@@ -9,7 +9,7 @@ void main() {
     gl_Position = vec4(corner, 0.0, 1.0);
 }
 
-#part fragment
+//@part fragment
 // Each sample is exposed, tone-mapped and composited over the background; the samples are averaged
 // in linear light and then coded. Their colors are premultiplied by alpha, since a sample without
 // coverage has no color.
@@ -18,8 +18,8 @@ out vec4 color;
 
 uniform vec4 background;  // As shown: linear, premultiplied by alpha.
 
-#include <samples>
-#include <output>
+//@include <samples>
+//@include <output>
 
 vec4 over_background(vec4 drawn) {
     vec3 radiance = drawn.a > 0.0 ? drawn.rgb / drawn.a : vec3(0.0);
@@ -33,7 +33,7 @@ void main() {
     color = vec4(code_of(average), sum.a / float(sample_count));
 }
 
-#part one_sample
+//@part one_sample implements samples
 // One sample per pixel.
 
 uniform sampler2D drawn;
@@ -42,7 +42,7 @@ const int sample_count = 1;
 
 vec4 drawn_sample(int i) { return texelFetch(drawn, ivec2(gl_FragCoord.xy), 0); }
 
-#part four_samples
+//@part four_samples implements samples
 // Four samples per pixel.
 
 uniform sampler2DMS drawn;

@@ -2,10 +2,10 @@
 // What is seen through the surface: the environment behind Phong's surfaces, and the picture of what
 // is behind glTF's.
 
-#part refracted
+//@part refracted implements refraction
 // Light is refracted once, at the surface; total internal reflection is black.
 
-#include "environment.glsl#radiance"
+//@include "environment.glsl#radiance"
 
 uniform float transmission;
 uniform float refraction_ratio;  // The outside's refractive index over the inside's.
@@ -19,33 +19,36 @@ vec3 with_refraction(Surface surface, vec3 scattered) {
     return scattered * (1.0 - transmission) + through * transmission;
 }
 
-#part dimming
+//@part dimming implements refraction
 // For a debug view of another term: transmission only dims the scattered light.
 
 uniform float transmission;
 
 vec3 with_refraction(Surface surface, vec3 scattered) { return scattered * (1.0 - transmission); }
 
-#part transmission_share
+//@neutral refraction
+vec3 with_refraction(Surface surface, vec3 scattered) { return scattered; }
+
+//@part transmission_share
 // The share of the light that passes through glTF's surface instead of being scattered.
 
-#include <transmission_texture>
+//@include <transmission_texture>
 
 uniform float transmission;
 
 float transmission_here() { return transmission * transmission_texel(); }
 
-#part transmission
+//@part transmission implements transmission
 // The picture behind the surface replaces a share of the scattered light. It is tinted as scattered
 // light is, and lacks what facets mirror. Rough surfaces look up a coarser level of the picture.
 // Texels are fetched and mixed here, so that the weights are exact.
 // Source: KHR_materials_transmission.
 
-#include "inputs.glsl#min_roughness"
-#include "refraction.glsl#transmission_share"
-#include <film>
-#include <grazing>
-#include <path>
+//@include "inputs.glsl#min_roughness"
+//@include "refraction.glsl#transmission_share"
+//@include <film>
+//@include <grazing>
+//@include <path>
 
 uniform sampler2D behind;  // Radiance multiplied by coverage. Each level has half the size.
 uniform float blurred_level;  // The level for roughness 1.
@@ -90,19 +93,22 @@ vec3 with_transmission(Surface surface, vec3 scattered) {
     return scattered * (1.0 - share) + passing * share;
 }
 
-#part transmission_dimming
+//@part transmission_dimming implements transmission
 // For a debug view of another term: transmission only dims the scattered light.
 
-#include "refraction.glsl#transmission_share"
+//@include "refraction.glsl#transmission_share"
 
 vec3 with_transmission(Surface surface, vec3 scattered) {
     return scattered * (1.0 - transmission_here());
 }
 
-#part transmission_texture
+//@neutral transmission
+vec3 with_transmission(Surface surface, vec3 scattered) { return scattered; }
+
+//@part transmission_texture implements transmission_texture
 // The share from a texture: red.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D transmission_texture;
 
@@ -110,7 +116,10 @@ float transmission_lookup = texture(transmission_texture, texcoord_surface).r;
 
 float transmission_texel() { return transmission_lookup; }
 
-#part path
+//@neutral transmission_texture
+float transmission_texel() { return 1.0; }
+
+//@part path
 // The path of light through the surface: where it comes from in the picture behind the surface,
 // from 0 to 1, and the share that is not absorbed.
 
@@ -119,21 +128,21 @@ struct Path {
     vec3 transmittance;
 };
 
-#part thin
+//@part thin implements path
 // A thin sheet neither bends the path nor absorbs light.
 
-#include "refraction.glsl#path"
+//@include "refraction.glsl#path"
 
 Path path_through(Surface surface, vec2 picture_size) {
     return Path(gl_FragCoord.xy / picture_size, vec3(1.0));
 }
 
-#part volume
+//@part volume implements path
 // Light is refracted where it leaves the surface to the eye, and absorbed on a path whose length is
 // the thickness. A path that begins behind the eye counts as straight. Source: KHR_materials_volume.
 
-#include "refraction.glsl#path"
-#include <thickness_texture>
+//@include "refraction.glsl#path"
+//@include <thickness_texture>
 
 uniform mat4 clip_from_world;
 uniform float thickness;
@@ -150,13 +159,16 @@ Path path_through(Surface surface, vec2 picture_size) {
     return Path(place, exp(-absorption * path_length));
 }
 
-#part thickness_texture
+//@part thickness_texture implements thickness_texture
 // The share of the thickness from a texture: green.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D thickness_texture;
 
 float thickness_lookup = texture(thickness_texture, texcoord_surface).g;
 
 float thickness_texel() { return thickness_lookup; }
+
+//@neutral thickness_texture
+float thickness_texel() { return 1.0; }

@@ -2,7 +2,7 @@
 // Soft shadows of the main light, from shadow maps: one for each place on the light.
 // libshade/src/effects/light_rows.h describes them. Source: [Williams 1978].
 
-#part pass
+//@part pass implements pass_shadow
 // Vertex stage: the place in the map of the middle of the light, homogeneous. The matrix is multiplied
 // in double precision, so that models far from the origin have sharp shadows.
 
@@ -12,16 +12,22 @@ out vec4 shadow_place;
 
 void pass_shadow() { shadow_place = shadow_from_object * vec4(position_deformed, 1.0); }
 
-#part place
+//@neutral pass_shadow
+void pass_shadow() {}
+
+//@part place implements shadow_place
 // Fragment stage: the same place, interpolated.
 
 in vec4 shadow_place;
 
-#part visible_share
+//@neutral shadow_place
+// The vertex stage has written shadow_place in pass_shadow().
+
+//@part visible_share
 // The share of the main light that reaches the surface. The surface is lifted along its normal, so
 // that it does not shade itself. Each lookup compares with the four nearest texels.
 
-#include <shadow_place>
+//@include <shadow_place>
 
 uniform mat4 shadow_lift;
 uniform vec2 shadow_shift;
@@ -43,23 +49,32 @@ float visible_share(Surface surface) {
     return is_in_front ? share / float(shadow_samples) : 1.0;
 }
 
-#part directional
+//@part directional implements directional_shadow
 // The main light is the first directional light.
 
-#include "shadow.glsl#visible_share"
+//@include "shadow.glsl#visible_share"
 
 float directional_share(Surface surface) { return visible_share(surface); }
 
-#part point
+//@neutral directional_shadow
+float directional_share(Surface surface) { return 1.0; }
+
+//@part point implements point_shadow
 // The main light is the first point light.
 
-#include "shadow.glsl#visible_share"
+//@include "shadow.glsl#visible_share"
 
 float point_share(Surface surface) { return visible_share(surface); }
 
-#part spot
+//@neutral point_shadow
+float point_share(Surface surface) { return 1.0; }
+
+//@part spot implements spot_shadow
 // The main light is the first spot light.
 
-#include "shadow.glsl#visible_share"
+//@include "shadow.glsl#visible_share"
 
 float spot_share(Surface surface) { return visible_share(surface); }
+
+//@neutral spot_shadow
+float spot_share(Surface surface) { return 1.0; }

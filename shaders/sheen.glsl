@@ -2,15 +2,15 @@
 // Fibers on top of glTF's surfaces, as of velvet: they reflect light at grazing angles, and the
 // surface gets the rest. Source: KHR_materials_sheen, [Estevez and Kulla 2017].
 
-#part layer
+//@part layer implements sheen
 // The sheen over the radiance of the surface without its emission. A table over sqrt(n.v) has the
 // share of even light that white fibers reflect.
 
-#include <sheen_lights>
-#include <sheen_ambient>
-#include <sheen_environment>
-#include <sheen_color_texture>
-#include <sheen_albedo>
+//@include <sheen_lights>
+//@include <sheen_ambient>
+//@include <sheen_environment>
+//@include <sheen_color_texture>
+//@include <sheen_albedo>
 
 uniform vec3 sheen_color;
 
@@ -29,17 +29,20 @@ vec3 with_sheen(Surface surface, vec3 radiance) {
     return radiance * (1.0 - largest * albedo) + color * (sheen_from_lights() + around * albedo);
 }
 
-#part albedo
+//@neutral sheen
+vec3 with_sheen(Surface surface, vec3 radiance) { return radiance; }
+
+//@part albedo implements sheen_albedo
 // The table for one roughness.
 
 uniform vec4 sheen_albedo[8];
 
 float sheen_entry(int index) { return sheen_albedo[index / 4][index % 4]; }
 
-#part roughness_texture
+//@part roughness_texture
 // The share of the roughness from a texture: alpha.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D sheen_roughness_texture;
 
@@ -47,11 +50,11 @@ float sheen_roughness_lookup = texture(sheen_roughness_texture, texcoord_surface
 
 float sheen_roughness_texel() { return clamp(sheen_roughness_lookup, 0.0, 1.0); }
 
-#part albedo_by_texture
+//@part albedo_by_texture implements sheen_albedo
 // The table for the roughness at a pixel, between two rows over the root of the texel: row 19 is
 // that of the whole roughness, and rows of smoother fibers also have values above 1.
 
-#include "sheen.glsl#roughness_texture"
+//@include "sheen.glsl#roughness_texture"
 
 uniform vec4 sheen_albedo[8];
 uniform vec4 sheen_albedo_rows[152];
@@ -67,17 +70,17 @@ float sheen_entry(int index) {
     return min(smoother * (1.0 - share) + rougher * share, 1.0);
 }
 
-#part width
+//@part width implements sheen_width
 // Alpha of the fibers' distribution.
 
 uniform float sheen_alpha;
 
 float sheen_width() { return sheen_alpha; }
 
-#part width_by_texture
+//@part width_by_texture implements sheen_width
 // Alpha for the roughness at a pixel, which is at least 0.045.
 
-#include "sheen.glsl#roughness_texture"
+//@include "sheen.glsl#roughness_texture"
 
 uniform float sheen_roughness;
 
@@ -86,10 +89,10 @@ float sheen_width() {
     return max(roughness * roughness, 0.002025);
 }
 
-#part color_texture
+//@part color_texture implements sheen_color_texture
 // The color from a texture.
 
-#include "inputs.glsl#texcoord"
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D sheen_color_texture;
 
@@ -97,11 +100,14 @@ vec3 sheen_color_lookup = texture(sheen_color_texture, texcoord_surface).rgb;
 
 vec3 sheen_color_texel() { return sheen_color_lookup; }
 
-#part lights
+//@neutral sheen_color_texture
+vec3 sheen_color_texel() { return vec3(1.0); }
+
+//@part lights implements sheen_lights
 // The light of light sources. n.v is at least 1e-4, since V has a pole at 0.
 
-#include "vector.glsl#normalized_or"
-#include <sheen_width>
+//@include "vector.glsl#normalized_or"
+//@include <sheen_width>
 
 vec3 sheen_received = vec3(0.0);
 
@@ -136,21 +142,31 @@ void receive_sheen(Surface surface, vec3 light_world, vec3 irradiance) {
 
 vec3 sheen_from_lights() { return sheen_received; }
 
-#part ambient
+//@neutral sheen_lights
+void receive_sheen(Surface surface, vec3 light_world, vec3 irradiance) {}
+vec3 sheen_from_lights() { return vec3(0.0); }
+
+//@part ambient implements sheen_ambient
 // Ambient light.
 
-#include "inputs.glsl#ambient"
-#include <occlusion>
+//@include "inputs.glsl#ambient"
+//@include <occlusion>
 
 vec3 sheen_from_ambient() { return ambient_scattered * occlusion(); }
 
-#part environment
+//@neutral sheen_ambient
+vec3 sheen_from_ambient() { return vec3(0.0); }
+
+//@part environment implements sheen_environment
 // The environment's light. Fibers reflect it from about half of all directions, so it counts as
 // scattered.
 
-#include "environment.glsl#irradiance"
-#include <occlusion>
+//@include "environment.glsl#irradiance"
+//@include <occlusion>
 
 vec3 sheen_from_environment(Surface surface) {
     return environment_irradiance(surface.normal_world) * occlusion();
 }
+
+//@neutral sheen_environment
+vec3 sheen_from_environment(Surface surface) { return vec3(0.0); }

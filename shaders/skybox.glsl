@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment behind everything.
 
-#part vertex
+//@part vertex
 // One triangle over the whole picture, at the far end of depth, with the view direction of each
 // pixel. Needs no vertex attributes.
 
@@ -15,27 +15,27 @@ void main() {
     gl_Position = vec4(corner, 1.0, 1.0);
 }
 
-#part fragment
+//@part fragment
 
 in vec3 direction_world;
 out vec4 color;
 
-#include <sky>
-#include <output>
+//@include <sky>
+//@include <output>
 
 void main() { color = vec4(coded(sky_radiance(direction_world)), 1.0); }
 
-#part sharp
+//@part sharp implements sky
 // The environment as it is.
 
-#include "environment.glsl#radiance"
+//@include "environment.glsl#radiance"
 
 vec3 sky_radiance(vec3 direction_world) { return environment_radiance(direction_world); }
 
-#part blurred
+//@part blurred implements sky
 // The environment as a rough mirror shows it.
 
-#include "environment.glsl#blurred"
+//@include "environment.glsl#blurred"
 
 uniform float skybox_blur;
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Highlights on minified normal maps.
+
+//@part toksvig implements sharpness
 // Widens highlights by the variance of a minified normal map within a pixel. Averaged unit vectors
 // are shorter the more they differ: 1 / length - 1 is their variance, and an exponent s becomes
 // s / (1 + s * variance), dimmed so that the highlight keeps its energy. The loss of length by the
 // rounding of the map's codes does not count. Source: [Toksvig 2005].
 
-#include "normal_map.glsl#texel"
+//@include "normal_map.glsl#texel"
 
 uniform vec3 normal_map_unscale;    // Back to the stored vector: 1, or 1 / scale in x and y.
 uniform float normal_map_rounding;  // The largest error of a coded unit vector's length.
@@ -32,3 +35,8 @@ float widened(float roughness) {
     float exponent = sharpened(2.0 / alpha_squared - 2.0);
     return min(sqrt(sqrt(2.0 / (exponent + 2.0))), 1.0);
 }
+
+//@neutral sharpness
+float sharpened(float exponent) { return exponent; }
+float dimmed(float exponent) { return 1.0; }
+float widened(float roughness) { return roughness; }

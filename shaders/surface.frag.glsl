@@ -4,22 +4,22 @@
 
 invariant out vec4 color;
 
-#include "light.glsl#lighting"
-#include <second_texcoord>
-#include <alpha>
-#include <surface>
-#include <lights>
-#include <ambient>
-#include <environment_light>
-#include <tint>
-#include <specular_texture>
-#include <environment_tint>
-#include <transmission>
-#include <reflection>
-#include <sheen>
-#include <emission>
-#include <clearcoat>
-#include <output>
+//@include "light.glsl#lighting"
+//@include <second_texcoord>
+//@include <alpha>
+//@include <surface>
+//@include <lights>
+//@include <ambient>
+//@include <environment_light>
+//@include <tint>
+//@include <specular_texture>
+//@include <environment_tint>
+//@include <transmission>
+//@include <reflection>
+//@include <sheen>
+//@include <emission>
+//@include <clearcoat>
+//@include <output>
 
 void main() {
     float alpha = alpha_here();

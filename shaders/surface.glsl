@@ -2,7 +2,7 @@
 // The Surface structure: the values that shading needs at a point. Each part holds no more than its
 // scene needs; metallic_roughness.glsl has those of glTF's model.
 
-#part none
+//@part none implements surface
 // No light and no reflection: the orientation of the surface is not needed.
 
 struct Surface {
@@ -11,10 +11,10 @@ struct Surface {
 
 Surface surface_here() { return Surface(false); }
 
-#part normal
+//@part normal implements surface
 // For diffuse surfaces under directional lights: the normal.
 
-#include <normal>
+//@include <normal>
 
 struct Surface {
     vec3 normal_world;
@@ -22,11 +22,11 @@ struct Surface {
 
 Surface surface_here() { return Surface(shading_normal()); }
 
-#part position
+//@part position implements surface
 // For point and spot lights: normal and position.
 
-#include <position>
-#include <normal>
+//@include <position>
+//@include <normal>
 
 struct Surface {
     vec3 normal_world;
@@ -35,14 +35,14 @@ struct Surface {
 
 Surface surface_here() { return Surface(shading_normal(), position_world); }
 
-#part view
+//@part view implements surface
 // For highlights and reflections: normal, position, and the unit vector to the eye. If the eye is
 // at the surface, that vector is the normal.
 
-#include "inputs.glsl#eye"
-#include "vector.glsl#normalized_or"
-#include <position>
-#include <normal>
+//@include "inputs.glsl#eye"
+//@include "vector.glsl#normalized_or"
+//@include <position>
+//@include <normal>
 
 struct Surface {
     vec3 normal_world;

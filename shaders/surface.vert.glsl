@@ -9,20 +9,20 @@ in vec3 position_object;
 
 uniform mat4 clip_from_object;
 
-#include <morphing>
-#include <skinning>
+//@include <morphing>
+//@include <skinning>
 
 // In object space.
 vec3 position_deformed = skinned_point(morphed(position_object, gl_VertexID, 0), gl_VertexID);
 
-#include <pass_position>
-#include <pass_normal>
-#include <pass_texcoord>
-#include <pass_texcoord_2>
-#include <pass_color>
-#include <pass_occlusion>
-#include <pass_shadow>
-#include <pass_lights>
+//@include <pass_position>
+//@include <pass_normal>
+//@include <pass_texcoord>
+//@include <pass_texcoord_2>
+//@include <pass_color>
+//@include <pass_occlusion>
+//@include <pass_shadow>
+//@include <pass_lights>
 
 void main() {
     gl_Position = clip_from_object * vec4(position_deformed, 1.0);

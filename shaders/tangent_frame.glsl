@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tangent frame at a fragment: tangent, bitangent and normal in world space.
 
-#part stored
+//@part stored implements frame
 // The mesh's tangent frame as interpolated, neither normalized nor orthogonalized. The bitangent is
 // computed here. A baker that assumes the same (MikkTSpace) is then inverted exactly.
 
-#include "inputs.glsl#normal"
+//@include "inputs.glsl#normal"
 
 in vec4 tangent_world;
 
@@ -14,17 +14,17 @@ mat3 world_from_tangent() {
     return mat3(tangent_world.xyz, bitangent_world, normal_world);
 }
 
-#part derivatives
+//@part derivatives implements frame
 // A tangent frame without stored tangents: the direction in which u grows along the triangle, from
 // the screen-space derivatives of position and texture coordinates, made perpendicular to the
 // interpolated normal. Bitangents point to decreasing v. If the texture coordinates are constant,
 // tangent and bitangent are 0. Source: [Mikkelsen 2008] for the frame of one triangle.
 
-#include "inputs.glsl#normal"
-#include "vector.glsl#normalized_or"
-#include "vector.glsl#rescaled"
-#include "inputs.glsl#texcoord"
-#include <position>
+//@include "inputs.glsl#normal"
+//@include "vector.glsl#normalized_or"
+//@include "vector.glsl#rescaled"
+//@include "inputs.glsl#texcoord"
+//@include <position>
 
 mat3 derived_frame() {
     vec3 n = normalized_or(normal_world, vec3(0.0, 0.0, 1.0));

@@ -1,38 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exposure and tone curves.
 
-#part exposure
+//@part exposure implements exposure
 // Radiance times the scene's exposure.
 
 uniform float exposure;
 
 vec3 exposed(vec3 radiance) { return radiance * exposure; }
 
-#part reinhard
+//@neutral exposure
+vec3 exposed(vec3 radiance) { return radiance; }
+
+//@part reinhard implements tone
 // A curve that stays below 1. Source: [Reinhard et al. 2002], equation 3.
 
-#include "output.glsl#limited"
+//@include "output.glsl#limited"
 
 vec3 toned(vec3 radiance) {
     vec3 x = limited(radiance, 1e9);
     return x / (vec3(1.0) + x);
 }
 
-#part aces
+//@part aces implements tone
 // A rational fit to the ACES reference rendering, similar to film. Source: [Narkowicz 2016].
 
-#include "output.glsl#limited"
+//@include "output.glsl#limited"
 
 vec3 toned(vec3 radiance) {
     vec3 x = limited(radiance, 1e9);
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
-#part khronos_neutral
+//@part khronos_neutral implements tone
 // Keeps the colors of materials in even light, and compresses brighter ones towards white.
 // Source: [Khronos PBR Neutral].
 
-#include "output.glsl#limited"
+//@include "output.glsl#limited"
 
 vec3 toned(vec3 radiance) {
     const float start = 0.8 - 0.04;  // The brightest value that is not compressed.
@@ -48,11 +51,11 @@ vec3 toned(vec3 radiance) {
     return mix(vec3(compressed), x * (compressed / peak), kept);
 }
 
-#part hill
+//@part hill
 // A fit to the ACES reference rendering and display transforms in their own color space.
 // Source: [Hill 2017].
 
-#include "output.glsl#limited"
+//@include "output.glsl#limited"
 
 vec3 filmic(vec3 radiance) {
     const mat3 aces_from_srgb = mat3(0.59719, 0.07600, 0.02840,  //
@@ -66,16 +69,19 @@ vec3 filmic(vec3 radiance) {
                              (v * (0.983729 * v + 0.4329510) + 0.238081));
 }
 
-#part aces_hill
+//@part aces_hill implements tone
 // ACES Filmic (Hill).
 
-#include "tone.glsl#hill"
+//@include "tone.glsl#hill"
 
 vec3 toned(vec3 radiance) { return filmic(radiance); }
 
-#part aces_hill_boost
+//@part aces_hill_boost implements tone
 // ACES Filmic (Hill) with the exposure that other viewers of glTF put before it.
 
-#include "tone.glsl#hill"
+//@include "tone.glsl#hill"
 
 vec3 toned(vec3 radiance) { return filmic(radiance * (1.0 / 0.6)); }
+
+//@neutral tone
+vec3 toned(vec3 radiance) { return radiance; }

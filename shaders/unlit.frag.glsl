@@ -5,11 +5,11 @@ out vec4 color;
 
 uniform vec3 diffuse_color;
 
-#include <second_texcoord>
-#include <alpha>
-#include <diffuse_texture>
-#include <vertex_color>
-#include <output>
+//@include <second_texcoord>
+//@include <alpha>
+//@include <diffuse_texture>
+//@include <vertex_color>
+//@include <output>
 
 void main() {
     float alpha = alpha_here();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors whose length is zero, or too large or too small to square.
 
-#part normalized_or
+//@part normalized_or
 // Returns the unit vector, or the fallback if the squared length is outside a float's range or the
 // vector is not finite: NaN fails both comparisons.
 
@@ -14,7 +14,7 @@ vec3 normalized_or(vec3 v, vec3 fallback) {
     return has_direction(v) ? v * inversesqrt(dot(v, v)) : fallback;
 }
 
-#part rescaled
+//@part rescaled
 // Scales a vector so that its largest component is 1 and its square fits a float. The zero vector
 // stays as it is.
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replaces a part of shaders/ambient.glsl: the occlusion texture is behind a branch.
 
-#part occlusion
-#include "inputs.glsl#texcoord"
+//@part occlusion implements occlusion
+//@include "inputs.glsl#texcoord"
 
 uniform sampler2D occlusion_texture;
 uniform float occlusion_strength;

@@ -2,10 +2,10 @@
 // Replaces the part of shaders/light.glsl that adds all lights: each kind but directional lights is
 // behind a branch.
 
-#part all
-#include <directional_lights>
-#include <point_lights>
-#include <spot_lights>
+//@part all implements lights
+//@include <directional_lights>
+//@include <point_lights>
+//@include <spot_lights>
 
 uniform int use_point_lights;
 uniform int use_spot_lights;

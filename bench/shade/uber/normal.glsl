@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replaces a part of shaders/normal.glsl: the map is behind a branch.
 
-#part perturbed
-#include "vector.glsl#normalized_or"
-#include <detail>
-#include <frame>
-#include <facing>
+//@part perturbed implements normal
+//@include "vector.glsl#normalized_or"
+//@include <detail>
+//@include <frame>
+//@include <facing>
 
 uniform int use_normal_map;
 

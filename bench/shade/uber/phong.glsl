@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replaces the part of shaders/phong.glsl that receives light: highlights are behind a branch.
 
-#part receive
-#include <diffuse>
-#include <specular>
+//@part receive implements receive
+//@include <diffuse>
+//@include <specular>
 
 uniform int use_highlights;
 

@@ -9,17 +9,17 @@ uniform int use_environment_light;
 uniform int use_reflection;
 uniform int use_emission;
 
-#include "light.glsl#lighting"
-#include <alpha>
-#include <surface>
-#include <lights>
-#include <ambient>
-#include <environment_light>
-#include <tint>
-#include <specular_texture>
-#include <reflection>
-#include <emission>
-#include <output>
+//@include "light.glsl#lighting"
+//@include <alpha>
+//@include <surface>
+//@include <lights>
+//@include <ambient>
+//@include <environment_light>
+//@include <tint>
+//@include <specular_texture>
+//@include <reflection>
+//@include <emission>
+//@include <output>
 
 void main() {
     float alpha = alpha_here();

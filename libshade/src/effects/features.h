@@ -2,7 +2,7 @@
 /// \file
 /// Effects as planning, shader assembly and drawing share them: questions about a set of effects,
 /// and the table of effects, in which one row describes everything that planning and forcing know
-/// of an effect. Its shader code is in surface_program.cpp, since parts depend on several effects
+/// of an effect. Its shader parts are in surface_steps.cpp, since parts depend on several effects
 /// at once. Pure. Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
 #pragma once
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expands #include lines depth first, each part once, refuses cycles, and keeps the file and number
-// of every line, since drivers report only the line of the whole. Missing parts and cycles throw
+// Expands includes depth first, each part once, refuses cycles, and keeps the file and number of
+// every line, since drivers report only the line of the whole. Missing parts and cycles throw
 // GpuError. Tests: tests/shade/effects/shader_source_test.cpp.
 #include "effects/shader_source.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
@@ -23,25 +24,6 @@
 namespace relief {
 
 namespace {
-
-/// The name in the quotes or brackets of an #include line.
-struct Include {
-    bool is_step = false;
-    std::string_view name;
-};
-
-std::optional<Include> include_of(std::string_view line) {
-    constexpr std::string_view directive = "#include ";
-    if (!line.starts_with(directive)) return std::nullopt;
-    line.remove_prefix(directive.size());
-    if (line.size() > 2 && line.front() == '<' && line.back() == '>') {
-        return Include{true, line.substr(1, line.size() - 2)};
-    }
-    if (line.size() > 2 && line.front() == '"' && line.back() == '"') {
-        return Include{false, line.substr(1, line.size() - 2)};
-    }
-    return Include{};
-}
 
 /// A line number in a driver's message, and where its mention ends.
 struct LineMention {
@@ -67,112 +49,84 @@ std::optional<LineMention> line_mention(std::string_view message, std::size_t be
     return mention;
 }
 
-/// The address of a part: "light.glsl" and "point".
-struct PartAddress {
-    std::string_view file;
-    std::string_view part;  ///< Empty for a file without parts.
-};
-
-PartAddress split_address(std::string_view address) {
-    const std::size_t mark = address.find('#');
-    if (mark == std::string_view::npos) return {address, {}};
-    return {address.substr(0, mark), address.substr(mark + 1)};
-}
-
 /// Returns "light.glsl:12".
 std::string origin_name(const ShaderSource& source, SourceLine origin) {
-    const std::string& address = source.parts[static_cast<std::size_t>(origin.part)];
-    return fmt::format("{}:{}", split_address(address).file, origin.line);
+    return fmt::format("{}:{}", source.files[static_cast<std::size_t>(origin.file)], origin.line);
 }
 
-/// The lines of a part, and the number of the first in its file.
-struct PartText {
-    std::vector<std::string_view> lines;
-    int first_line = 1;
+/// A value that GLSL computes where it declares a global variable: "vec4 x = texture(...);".
+struct GlobalValue {
+    std::string_view declaration;  ///< "vec4 x"
+    std::string_view assignment;   ///< "x = texture(...);"
 };
 
-std::vector<std::string_view> lines_of(std::string_view text) {
-    std::vector<std::string_view> lines;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        lines.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return lines;
+std::optional<GlobalValue> global_value_of(std::string_view line) {
+    const std::size_t equals = line.find(" = ");
+    const std::size_t end = line.find(';');
+    if (equals == std::string_view::npos || end == std::string_view::npos) return std::nullopt;
+    const std::size_t space = line.find(' ');
+    const bool is_declared =
+        std::isalpha(static_cast<unsigned char>(line.front())) != 0 && space < equals;
+    // Constants and functions have more between the type and the sign than a name.
+    const std::string_view name = line.substr(space + 1, equals - space - 1);
+    if (!is_declared || name.find_first_of(" (") != std::string_view::npos) return std::nullopt;
+    return GlobalValue{line.substr(0, equals), line.substr(space + 1, end - space)};
 }
 
-constexpr std::string_view part_directive = "#part ";
-
-/// \throws GpuError if there is code, which no part would hold
-void check_head(std::string_view file, const std::vector<std::string_view>& lines) {
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (lines[i].starts_with(part_directive)) return;
-        if (lines[i].empty() || lines[i].starts_with("//")) continue;
-        throw GpuError(fmt::format("shader {}:{}: code before the first #part", file, i + 1));
-    }
-}
-
-/// Returns the part of this text, without empty lines at its ends; none if the text does not have
-/// it.
-std::optional<PartText> find_part(PartAddress address, std::string_view text) {
-    const std::vector<std::string_view> lines = lines_of(text);
-    if (address.part.empty()) return PartText{lines, 1};
-    check_head(address.file, lines);
-    const auto is_start = [](std::string_view line) { return line.starts_with(part_directive); };
-    const auto start = std::find_if(lines.begin(), lines.end(), [&](std::string_view line) {
-        return is_start(line) && line.substr(part_directive.size()) == address.part;
-    });
-    if (start == lines.end()) return std::nullopt;
-    auto end = std::find_if(start + 1, lines.end(), is_start);
-    while (end != start + 1 && (end - 1)->empty())
-        --end;
-    return PartText{{start + 1, end}, static_cast<int>(start - lines.begin()) + 2};
-}
-
-/// The texts of the files of one shader: each file is read once.
+/// The files of one shader: those of $RELIEF_SHADER_DIR are read once each.
 class ShaderFiles {
   public:
-    /// \throws GpuError if there is no such file or part
-    PartText part(std::string_view address) {
-        const PartAddress place = split_address(address);
-        if (const std::optional<std::string>& text = override_of(place.file)) {
-            if (const auto found = find_part(place, *text)) return *found;
+    /// Returns a part or neutral code.
+    /// \throws GpuError if there is no such file or part, or a file is malformed
+    const ShaderPart& part(std::string_view address) {
+        const std::string_view file = file_of(address);
+        const Override& override_file = override_of(file);
+        for (const ShaderPart& part : override_file.parts) {
+            if (part.address == address) return part;
+            if (part.address == file)
+                throw GpuError(fmt::format("shader {}: no line begins with //@part", file));
+            if (address == file)
+                throw GpuError(fmt::format("shader {}: a file of one part has no //@part", file));
         }
+        if (const ShaderPart* const part = find_embedded_part(address)) return *part;
         const auto& all = embedded_shaders();
-        const auto embedded = std::find_if(
-            all.begin(), all.end(), [&](const EmbeddedShader& s) { return s.name == place.file; });
-        if (embedded != all.end()) {
-            if (const auto found = find_part(place, embedded->text)) return *found;
-        } else if (!override_of(place.file)) {
-            throw GpuError(fmt::format("there is no shader file '{}'", place.file));
-        }
-        throw GpuError(
-            fmt::format("there is no part '{}' in shader file '{}'", place.part, place.file));
+        const bool is_known = std::any_of(
+            all.begin(), all.end(), [&](const EmbeddedShader& each) { return each.name == file; });
+        if (!is_known && !override_file.text)
+            throw GpuError(fmt::format("there is no shader file '{}'", file));
+        throw GpuError(fmt::format("there is no part '{}' in shader file '{}'",
+                                   address.substr(std::min(file.size() + 1, address.size())),
+                                   file));
     }
 
   private:
-    /// The text in $RELIEF_SHADER_DIR.
-    const std::optional<std::string>& override_of(std::string_view name) {
+    struct Override {
+        std::optional<std::string> text;
+        std::vector<ShaderPart> parts;
+    };
+
+    const Override& override_of(std::string_view name) {
         const auto [entry, is_new] = overrides_.try_emplace(std::string(name));
         const char* const folder = std::getenv("RELIEF_SHADER_DIR");
         if (is_new && folder != nullptr) {
             const std::filesystem::path path = std::filesystem::path(folder) / name;
             note_file(path);
             std::ifstream file(path, std::ios::binary);
-            if (file)
-                entry->second.emplace(std::istreambuf_iterator<char>(file),
-                                      std::istreambuf_iterator<char>());
+            if (!file) return entry->second;
+            entry->second.text.emplace(std::istreambuf_iterator<char>(file),
+                                       std::istreambuf_iterator<char>());
+            entry->second.parts = parts_of(entry->first, *entry->second.text);
         }
         return entry->second;
     }
 
-    std::map<std::string, std::optional<std::string>> overrides_;
+    std::map<std::string, Override> overrides_;
 };
 
 /// Assembles one shader.
 class Assembler {
   public:
-    explicit Assembler(const ShaderSteps& steps) : steps_(steps) {}
+    Assembler(const ShaderSteps& steps, GlslVersion version) : steps_(steps), version_(version) {}
 
     void add_line(std::string_view text, SourceLine origin) {
         source_.text += text;
@@ -186,13 +140,12 @@ class Assembler {
             throw GpuError(fmt::format("{}: {} includes itself: {} -> {}", place, address,
                                        fmt::join(open_, " -> "), address));
         }
-        auto& parts = source_.parts;
-        if (std::find(parts.begin(), parts.end(), address) != parts.end()) return;
-        parts.emplace_back(address);
+        if (!added_.insert(std::string(address)).second) return;
+        const ShaderPart& part = read(address, place);
+        if (!part.is_neutral) source_.parts.emplace_back(address);
         open_.emplace_back(address);
-        const PartText text = read(address, place);
-        SourceLine origin{static_cast<int>(parts.size()) - 1, text.first_line};
-        for (const std::string_view line : text.lines) {
+        SourceLine origin{file_number(part.file), part.first_line};
+        for (const std::string_view line : part.lines) {
             add_source_line(line, origin);
             ++origin.line;
         }
@@ -202,25 +155,31 @@ class Assembler {
     ShaderSource take() { return std::move(source_); }
 
   private:
-    PartText read(std::string_view address, const std::string& place) {
+    const ShaderPart& read(std::string_view address, const std::string& place) {
         try {
             return files_.part(address);
         } catch (const GpuError& error) {
-            throw GpuError(place.empty() ? error.what()
-                                         : fmt::format("{}: {}", place, error.what()));
+            const std::string_view message = error.what();
+            if (place.empty() || message.starts_with("shader ")) throw;
+            throw GpuError(fmt::format("{}: {}", place, message));
         }
     }
 
+    int file_number(std::string_view file) {
+        auto& files = source_.files;
+        const auto known = std::find(files.begin(), files.end(), file);
+        if (known != files.end()) return static_cast<int>(known - files.begin());
+        files.emplace_back(file);
+        return static_cast<int>(files.size()) - 1;
+    }
+
     void add_source_line(std::string_view line, SourceLine origin) {
-        const std::optional<Include> include = include_of(line);
+        const std::optional<ShaderInclude> include = include_of(line);
         if (!include) {
-            add_line(line, origin);
+            add_code(line, origin);
             return;
         }
         const std::string place = fmt::format("shader {}", origin_name(source_, origin));
-        if (include->name.empty()) {
-            throw GpuError(fmt::format("{}: '{}' names nothing", place, line));
-        }
         if (include->is_step) {
             add_step(include->name, place);
         } else {
@@ -229,35 +188,62 @@ class Assembler {
     }
 
     void add_step(std::string_view name, const std::string& place) {
-        const auto step = steps_.find(name);
-        if (step == steps_.end()) {
+        if (const auto step = steps_.find(name); step != steps_.end()) {
+            add_part(step->second, place);
+        } else if (const ShaderPart* const neutral = find_neutral_code(name)) {
+            add_part(neutral->address, place);
+        } else {
             throw GpuError(fmt::format("{}: no part is chosen for <{}>", place, name));
         }
-        if (!step->second.part.empty()) {
-            add_part(step->second.part, place);
-        } else if (neutral_.insert(name).second) {
-            add_line(step->second.neutral, {});
+    }
+
+    /// GLSL ES computes no values where it declares global variables: main() begins with them.
+    void add_code(std::string_view line, SourceLine origin) {
+        if (version_ == GlslVersion::core_330) {
+            add_line(line, origin);
+        } else if (const std::optional<GlobalValue> value = global_value_of(line)) {
+            add_line(fmt::format("{};", value->declaration), origin);
+            assignments_.emplace_back(value->assignment, origin);
+        } else {
+            add_line(line, origin);
+            if (line != "void main() {") return;
+            for (const auto& [assignment, place] : assignments_)
+                add_line(fmt::format("    {}", assignment), place);
         }
     }
 
     const ShaderSteps& steps_;
+    GlslVersion version_;
     ShaderFiles files_;
     std::vector<std::string> open_;
-    std::set<std::string_view> neutral_;  ///< Steps with a neutral value that is in the source.
+    std::set<std::string> added_;
+    std::vector<std::pair<std::string, SourceLine>> assignments_;
     ShaderSource source_;
 };
 
 }  // namespace
 
 ShaderSource assemble(std::string_view part, const ShaderSteps& steps,
-                      const ShaderConstants& constants) {
-    Assembler assembler(steps);
-    assembler.add_line("#version 330 core", {});
+                      const ShaderConstants& constants, GlslVersion version) {
+    const bool is_es = version == GlslVersion::es_300;
+    ShaderSteps all_steps = steps;
+    if (is_es) choose_part(all_steps, "version.glsl#es_buffers");
+    Assembler assembler(all_steps, version);
+    assembler.add_line(is_es ? "#version 300 es" : "#version 330 core", {});
+    if (is_es) assembler.add_part("version.glsl#es_precision", "");
     for (const auto& [name, value] : constants) {
         assembler.add_line(fmt::format("const int {} = {};", name, value), {});
     }
     assembler.add_part(part, "");
     return assembler.take();
+}
+
+void choose_part(ShaderSteps& steps, std::string_view part) {
+    const ShaderPart* const chosen = find_embedded_part(part);
+    if (chosen == nullptr || chosen->step.empty())
+        throw GpuError(fmt::format("no shader part '{}' implements a step", part));
+    [[maybe_unused]] const bool is_new = steps.emplace(chosen->step, chosen->address).second;
+    assert(is_new && "two parts for one step");
 }
 
 std::string with_file_names(const std::string& message, const ShaderSource& source) {
@@ -266,7 +252,7 @@ std::string with_file_names(const std::string& message, const ShaderSource& sour
     while (position < message.size()) {
         const std::optional<LineMention> mention = line_mention(message, position);
         if (!mention || mention->line == 0 || mention->line > source.lines.size() ||
-            source.lines[mention->line - 1].part < 0) {
+            source.lines[mention->line - 1].file < 0) {
             result += message[position++];
             continue;
         }

@@ -41,10 +41,9 @@ void check_frame_length(const std::optional<float>& share) {
         "vertex frames of {} times the scene's size; from above 0 to 1000 can be drawn", *share));
 }
 
-ShaderSteps overlay_steps(const char* color, const StepCode& shape, bool morphing, bool skinning) {
+ShaderSteps overlay_steps(const char* color, bool morphing, bool skinning) {
     ShaderSteps steps = pose_steps(morphing, skinning);
-    steps["overlay_color"].part = color;
-    steps["shape"] = shape;
+    choose_part(steps, color);
     return steps;
 }
 
@@ -117,10 +116,11 @@ OverlayDrawing::OverlayDrawing(const gl::Api& api, ProgramCache& programs, const
     if (overlays_.markers) check_markers(scene, *overlays_.markers);
     for (const DrawPlan& draw : plan.draws)
         instances_.insert(draw.instance);
-    if (overlays_.markers)
-        discs_program_ =
-            programs.get("overlay", overlay_steps("overlay.glsl#vertex_color",
-                                                  {.part = "overlay.glsl#disc"}, false, false));
+    if (overlays_.markers) {
+        ShaderSteps discs = overlay_steps("overlay.glsl#vertex_color", false, false);
+        choose_part(discs, "overlay.glsl#disc");
+        discs_program_ = programs.get("overlay", discs);
+    }
     if (overlays_.vertex_frames) {
         for (const std::size_t instance : instances_) {
             const std::size_t mesh = scene.instances[instance].mesh;
@@ -224,9 +224,8 @@ glm::vec3 OverlayDrawing::coded(const glm::vec3& srgb) const {
 std::shared_ptr<const gl::LinkedProgram> OverlayDrawing::use_lines(const glm::vec3& color,
                                                                    bool morphing,
                                                                    bool skinning) const {
-    std::shared_ptr<const gl::LinkedProgram> program = programs_->get(
-        "overlay",
-        overlay_steps("overlay.glsl#one_color", {.neutral = "void cut() {}"}, morphing, skinning));
+    std::shared_ptr<const gl::LinkedProgram> program =
+        programs_->get("overlay", overlay_steps("overlay.glsl#one_color", morphing, skinning));
     program->use();
     program->set("all_color", coded(color));
     return program;

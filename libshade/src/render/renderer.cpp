@@ -144,7 +144,7 @@ glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
 
 ShaderSteps finishing_steps(const Scene& scene, OutputCoding output, int samples) {
     ShaderSteps steps = output_steps(output, scene);
-    steps["samples"].part = samples > 1 ? "picture.glsl#four_samples" : "picture.glsl#one_sample";
+    choose_part(steps, samples > 1 ? "picture.glsl#four_samples" : "picture.glsl#one_sample");
     return steps;
 }
 

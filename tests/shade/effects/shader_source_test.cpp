@@ -23,8 +23,9 @@ namespace {
 
 using testing::Contains;
 using testing::ElementsAre;
-using ::testing::HasSubstr;
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
 
@@ -51,17 +52,16 @@ std::string refusal(std::string_view file, const ShaderSteps& steps) {
 }
 
 TEST_F(ShaderFolder, PutsFilesTogetherOnceEach) {
-    write("main.glsl", "#include \"a.glsl\"\n#include <step>\nmain\n");
+    write("main.glsl", "//@include \"a.glsl\"\n//@include <step>\nmain\n");
     write("a.glsl", "a\n");
-    write("b.glsl", "#include \"a.glsl\"\nb\n");
-    const ShaderSource source =
-        assemble("main.glsl", {{"step", {.part = "b.glsl"}}}, {{"count", 3}});
+    write("b.glsl", "//@include \"a.glsl\"\nb\n");
+    const ShaderSource source = assemble("main.glsl", {{"step", "b.glsl"}}, {{"count", 3}});
     EXPECT_EQ(source.text, "#version 330 core\nconst int count = 3;\na\nb\nmain\n");
     EXPECT_EQ(source.parts, (std::vector<std::string>{"main.glsl", "a.glsl", "b.glsl"}));
 }
 
 TEST_F(ShaderFolder, KnowsWhereEachLineCameFrom) {
-    write("main.glsl", "first\n#include \"a.glsl\"\nlast\n");
+    write("main.glsl", "first\n//@include \"a.glsl\"\nlast\n");
     write("a.glsl", "one\ntwo\n");
     const ShaderSource source = assemble("main.glsl", {}, {});
     // Lines of the source: 1: version, 2: main.glsl:1, 3: a.glsl:1, 4: a.glsl:2, 5: main.glsl:3.
@@ -80,27 +80,29 @@ TEST_F(ShaderFolder, LeavesOtherNumbersInMessagesAlone) {
 }
 
 TEST_F(ShaderFolder, RefusesCycles) {
-    write("a.glsl", "#include \"b.glsl\"\n");
-    write("b.glsl", "\n#include \"a.glsl\"\n");
+    write("a.glsl", "//@include \"b.glsl\"\n");
+    write("b.glsl", "\n//@include \"a.glsl\"\n");
     EXPECT_EQ(refusal("a.glsl", {}),
               "shader b.glsl:2: a.glsl includes itself: a.glsl -> b.glsl -> a.glsl");
 }
 
 TEST_F(ShaderFolder, NamesWhatIsMissingAndWhere) {
-    write("main.glsl", "\n#include \"nowhere.glsl\"\n");
+    write("main.glsl", "\n//@include \"nowhere.glsl\"\n");
     EXPECT_EQ(refusal("main.glsl", {}),
               "shader main.glsl:2: there is no shader file 'nowhere.glsl'");
-    write("main.glsl", "#include <step>\n");
+    write("main.glsl", "//@include <step>\n");
     EXPECT_EQ(refusal("main.glsl", {}), "shader main.glsl:1: no part is chosen for <step>");
-    write("main.glsl", "#include stray\n");
-    EXPECT_THAT(refusal("main.glsl", {}), HasSubstr("shader main.glsl:1"));
+    write("main.glsl", "//@include stray\n");
+    EXPECT_EQ(refusal("main.glsl", {}), "shader main.glsl:1: '//@include stray' is not a marker");
+    write("other.glsl", "//@include \"main.glsl\"\n");
+    EXPECT_EQ(refusal("other.glsl", {}), "shader main.glsl:1: '//@include stray' is not a marker");
     EXPECT_EQ(refusal("nowhere.glsl", {}), "there is no shader file 'nowhere.glsl'");
 }
 
 TEST_F(ShaderFolder, TakesPartsOutOfFiles) {
     write("main.glsl",
-          "// Comments.\n\n#part one\n1\n\n#part two\n#include \"main.glsl#three\"\n2\n#part "
-          "three\n3\n");
+          "// Comments.\n\n//@part one\n1\n\n//@part two\n//@include \"main.glsl#three\"\n2\n"
+          "//@part three\n3\n");
     const ShaderSource source = assemble("main.glsl#two", {}, {});
     EXPECT_EQ(source.text, "#version 330 core\n3\n2\n");
     EXPECT_EQ(source.parts, (std::vector<std::string>{"main.glsl#two", "main.glsl#three"}));
@@ -111,28 +113,55 @@ TEST_F(ShaderFolder, TakesPartsOutOfFiles) {
 }
 
 TEST_F(ShaderFolder, PutsNeutralCodeInOnce) {
-    write("main.glsl", "#include <step>\nfirst\n#include <step>\nlast\n");
-    const ShaderSource source = assemble("main.glsl", {{"step", {.neutral = "void f() {}"}}}, {});
-    EXPECT_EQ(source.text, "#version 330 core\nvoid f() {}\nfirst\nlast\n");
-    EXPECT_EQ(with_file_names("0:2(1): in no file; 0:4(1): here", source),
-              "0:2(1): in no file; main.glsl:4(1): here");
+    write("main.glsl", "//@include <occlusion>\nfirst\n//@include <occlusion>\nlast\n");
+    const ShaderSource source = assemble("main.glsl", {}, {});
+    EXPECT_EQ(source.text, "#version 330 core\nfloat occlusion() { return 1.0; }\nfirst\nlast\n");
+    EXPECT_EQ(source.parts, (std::vector<std::string>{"main.glsl"}));
+    EXPECT_THAT(with_file_names("0:2(1): neutral; 0:4(1): here", source),
+                MatchesRegex("ambient.glsl:[0-9]+\\(1\\): neutral; main.glsl:4\\(1\\): here"));
+}
+
+TEST_F(ShaderFolder, OverridesNeutralCode) {
+    write("main.glsl", "//@include <occlusion>\n");
+    write("ambient.glsl", "//@neutral occlusion\nmine\n");
+    EXPECT_EQ(assemble("main.glsl", {}, {}).text, "#version 330 core\nmine\n");
 }
 
 TEST_F(ShaderFolder, RefusesCodeThatIsInNoPart) {
-    write("main.glsl", "// A comment.\nuniform float x;\n#part one\n1\n");
-    EXPECT_EQ(refusal("main.glsl#one", {}), "shader main.glsl:2: code before the first #part");
+    write("main.glsl", "// A comment.\nuniform float x;\n//@part one\n1\n");
+    EXPECT_EQ(refusal("main.glsl#one", {}), "shader main.glsl:2: code before the first //@part");
+    write("main.glsl", "#part one\n1\n");
+    EXPECT_EQ(refusal("main.glsl#one", {}), "shader main.glsl: no line begins with //@part");
+    write("surface.frag.glsl", "//@part one\n1\n");
+    EXPECT_EQ(refusal("surface.frag.glsl", {}),
+              "shader surface.frag.glsl: a file of one part has no //@part");
 }
 
 TEST_F(ShaderFolder, OverridesEmbeddedPartsOneByOne) {
-    const ShaderSteps no_diffuse = {{"diffuse", {.neutral = "d"}},
-                                    {"specular", {.neutral = "s"}},
-                                    {"term_limit", {.neutral = "l"}}};
-    const std::string embedded = assemble("phong.glsl#receive", no_diffuse, {}).text;
+    const std::string embedded = assemble("phong.glsl#receive", {}, {}).text;
     EXPECT_THAT(embedded, HasSubstr("void receive("));
     EXPECT_THAT(assemble("phong.glsl#lambert", {}, {}).text, HasSubstr("diffuse_color"));
-    write("phong.glsl", "#part lambert\nmine\n");
+    write("phong.glsl", "//@part lambert\nmine\n");
     EXPECT_EQ(assemble("phong.glsl#lambert", {}, {}).text, "#version 330 core\nmine\n");
-    EXPECT_EQ(assemble("phong.glsl#receive", no_diffuse, {}).text, embedded);
+    EXPECT_EQ(assemble("phong.glsl#receive", {}, {}).text, embedded);
+}
+
+TEST_F(ShaderFolder, GivesGlobalVariablesTheirValuesInMainOfGlslEs) {
+    write("main.glsl",
+          "in vec2 at;\nvec4 looked_up = texture(map, at);  // A lookup.\n"
+          "const float kept = 1.0;\nfloat f(float x) { float y = x; return y; }\n"
+          "//@include <buffers>\nvoid main() {\n    color = looked_up;\n}\n");
+    const ShaderSource source = assemble("main.glsl", {}, {{"count", 3}}, GlslVersion::es_300);
+    EXPECT_THAT(source.text, StartsWith("#version 300 es\n"));
+    EXPECT_THAT(source.text, HasSubstr("precision highp float;\n"));
+    EXPECT_THAT(
+        source.text,
+        HasSubstr("const int count = 3;\nin vec2 at;\nvec4 looked_up;\n"
+                  "const float kept = 1.0;\nfloat f(float x) { float y = x; return y; }\n"));
+    EXPECT_THAT(source.text, HasSubstr("#define samplerBuffer sampler2D\n"));
+    EXPECT_THAT(source.text, EndsWith("void main() {\n    looked_up = texture(map, at);\n"
+                                      "    color = looked_up;\n}\n"));
+    EXPECT_EQ(source.lines.size(), std::count(source.text.begin(), source.text.end(), '\n'));
 }
 
 TEST(EmbeddedShaders, AreTheFilesOfTheProject) {
@@ -236,14 +265,12 @@ TEST(SurfaceProgram, ComesTogetherForEveryCanonicalSet) {
     });
 }
 
-/// Returns the parts that the steps of a stage name and its source does not contain. Neutral code
-/// is not a part.
+/// Returns the parts that the steps of a stage name and its source does not contain.
 std::vector<std::string> unused_parts(const ShaderSteps& steps, const ShaderSource& source) {
     const std::set<std::string> parts(source.parts.begin(), source.parts.end());
     std::vector<std::string> unused;
-    for (const auto& [step, code] : steps) {
-        if (!code.part.empty() && !parts.contains(std::string(code.part)))
-            unused.emplace_back(code.part);
+    for (const auto& [step, part] : steps) {
+        if (!parts.contains(std::string(part))) unused.emplace_back(part);
     }
     return unused;
 }
@@ -251,7 +278,6 @@ std::vector<std::string> unused_parts(const ShaderSteps& steps, const ShaderSour
 TEST(SurfaceProgram, ChoosesNoPartThatItDoesNotUse) {
     // These parts implement a step in every program, even if it is unused. They have no inputs.
     const std::set<std::string> idle = {"inputs.glsl#position", "color.glsl#tint",
-                                        "metallic_roughness.glsl#factors",
                                         "metallic_roughness.glsl#tint"};
     for (const Features& f : test::covering_features()) {
         const SurfaceProgram program = surface_program(f);
@@ -280,11 +306,12 @@ TEST(SurfaceProgram, OfADiffuseSurfaceHasNoCodeForAnythingElse) {
 TEST(SurfaceProgram, HasNeutralCodeForAnAbsentEffect) {
     Features f;
     f.ambient = true;
-    EXPECT_EQ(chosen_steps(f).fragment.at("occlusion"),
-              (StepCode{.neutral = "float occlusion() { return 1.0; }"}));
+    const std::string neutral = "\nfloat occlusion() { return 1.0; }\n";
+    EXPECT_FALSE(chosen_steps(f).fragment.contains("occlusion"));
+    EXPECT_THAT(surface_program(f).fragment.text, HasSubstr(neutral));
     f.occlusion_texture = true;
-    EXPECT_EQ(chosen_steps(f).fragment.at("occlusion"),
-              (StepCode{.part = "ambient.glsl#occlusion"}));
+    EXPECT_EQ(chosen_steps(f).fragment.at("occlusion"), "ambient.glsl#occlusion");
+    EXPECT_THAT(surface_program(f).fragment.text, Not(HasSubstr(neutral)));
 }
 
 TEST(PlannedInterface, IsKnownByHandForANormalMappedSurface) {

@@ -81,7 +81,7 @@ TEST_P(RendererPrograms, NameTheFileAndLineOfAnError) {
     const test::TemporaryDirectory folder;
     const test::ScopedVariable variable("RELIEF_SHADER_DIR", folder.path().c_str());
     std::ofstream(folder / "phong.glsl")
-        << "// One part replaces the embedded one.\n#part lambert\nuniform vec3 diffuse_color;\n"
+        << "// One part replaces the embedded one.\n//@part lambert\nuniform vec3 diffuse_color;\n"
            "vec3 diffuse_scattering(float n_dot_l) { return diffuse_colour * n_dot_l; }\n";
     Features f;
     f.directional_lights = 1;

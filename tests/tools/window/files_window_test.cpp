@@ -245,7 +245,7 @@ void change_texture(ViewerWindow& window, const Display& display, const Workplac
 void change_shader(ViewerWindow& window, const Display& display, const Workplace& workplace) {
     const json before = window.wait_for_rest();
     const Image plain = display.resting_picture();
-    const std::string head = "#part lambert\n#include \"inputs.glsl#diffuse_color\"\n";
+    const std::string head = "//@part lambert\n//@include \"inputs.glsl#diffuse_color\"\n";
     const std::string shader = "shaders/phong.glsl";
     workplace.write(shader, head +
                                 "vec3 diffuse_scattering(float n_dot_l) {\n"

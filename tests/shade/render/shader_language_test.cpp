@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every part of the shaders compiles: as GLSL 330 core in OpenGL and in glslangValidator, and as
+// GLSL ES 300 in glslangValidator.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "effects/shader_source.h"
+#include "render/program_cache.h"
+#include "shade/effects/feature_sets.h"
+#include "support/gl_environment.h"
+#include "support/shared_data.h"
+
+namespace relief {
+namespace {
+
+/// A program, and whether it belongs to covering_features(), which render_cache_test.cpp links.
+struct SampleProgram {
+    std::string name;
+    ShaderSource vertex;
+    ShaderSource fragment;
+    bool is_covering = false;
+};
+
+/// The lines of files that programs contain.
+class CoveredLines {
+  public:
+    /// Returns true if the source has a line that no source before it has.
+    bool add(const ShaderSource& source) {
+        bool is_new = false;
+        for (const SourceLine& origin : source.lines) {
+            if (origin.file < 0) continue;
+            const std::string& file = source.files[static_cast<std::size_t>(origin.file)];
+            is_new |= lines_[file].insert(origin.line).second;
+        }
+        return is_new;
+    }
+
+    [[nodiscard]] bool holds(const ShaderPart& part) const {
+        const auto lines = lines_.find(std::string(part.file));
+        if (lines == lines_.end()) return false;
+        const auto line = lines->second.lower_bound(part.first_line);
+        return line != lines->second.end() &&
+               *line < part.first_line + static_cast<int>(part.lines.size());
+    }
+
+  private:
+    std::map<std::string, std::set<int>> lines_;
+};
+
+/// Programs that contain all parts and all neutral code.
+class Samples {
+  public:
+    explicit Samples(GlslVersion version) : version_(version) {
+        for (const Features& f : test::covering_features())
+            add_surface(f, true);
+        std::size_t view = 0;
+        test::for_random_features(300, [&](const Features& random) {
+            Features f = random;
+            const auto last = static_cast<std::size_t>(DebugView::nothing_to_show);
+            f.view = static_cast<DebugView>(view++ % (last + 1));
+            add_surface(canonical(f), false);
+        });
+        add_passes();
+    }
+
+    [[nodiscard]] const std::vector<SampleProgram>& programs() const { return programs_; }
+
+    [[nodiscard]] bool holds(const ShaderPart& part) const { return covered_.holds(part); }
+
+  private:
+    void add_surface(const Features& f, bool is_covering) {
+        const SurfaceProgram program = surface_program(f, version_);
+        const bool adds = covered_.add(program.vertex) | covered_.add(program.fragment);
+        if (!adds) return;
+        programs_.push_back({describe(f), program.vertex, program.fragment, is_covering});
+    }
+
+    void add_pass(const std::string& name, const ShaderSteps& steps) {
+        programs_.push_back({name, assemble(name + ".glsl#vertex", steps, {}, version_),
+                             assemble(name + ".glsl#fragment", steps, {}, version_), false});
+        covered_.add(programs_.back().vertex);
+        covered_.add(programs_.back().fragment);
+    }
+
+    void add_passes() {
+        const Scene scene;
+        for (const char* sky : {"skybox.glsl#sharp", "skybox.glsl#blurred"}) {
+            ShaderSteps steps = output_steps(OutputCoding::srgb, scene);
+            choose_part(steps, sky);
+            add_pass("skybox", steps);
+        }
+        for (const char* samples : {"picture.glsl#one_sample", "picture.glsl#four_samples"}) {
+            // GLSL ES 3.00 has no textures of several samples.
+            if (version_ == GlslVersion::es_300 &&
+                samples == std::string_view("picture.glsl#four_samples"))
+                continue;
+            ShaderSteps steps = output_steps(OutputCoding::linear, scene);
+            choose_part(steps, samples);
+            add_pass("picture", steps);
+        }
+        ShaderSteps lines = pose_steps(true, true);
+        choose_part(lines, "overlay.glsl#one_color");
+        add_pass("overlay", lines);
+        ShaderSteps discs = pose_steps(false, false);
+        choose_part(discs, "overlay.glsl#vertex_color");
+        choose_part(discs, "overlay.glsl#disc");
+        add_pass("overlay", discs);
+    }
+
+    GlslVersion version_;
+    CoveredLines covered_;
+    std::vector<SampleProgram> programs_;
+};
+
+/// Returns the parts that the samples of a version lack.
+std::vector<std::string> missing_parts(const Samples& samples) {
+    std::vector<std::string> missing;
+    for (const ShaderPart& part : embedded_parts()) {
+        if (!samples.holds(part)) missing.push_back(part.address);
+    }
+    return missing;
+}
+
+TEST(ShaderLanguage, HasAProgramWithEveryPart) {
+    EXPECT_THAT(
+        missing_parts(Samples(GlslVersion::core_330)),
+        testing::UnorderedElementsAre("version.glsl#es_precision", "version.glsl#es_buffers"));
+    EXPECT_THAT(
+        missing_parts(Samples(GlslVersion::es_300)),
+        testing::UnorderedElementsAre("picture.glsl#four_samples", "version.glsl#<buffers>"));
+}
+
+class Validated : public testing::TestWithParam<GlslVersion> {};
+INSTANTIATE_TEST_SUITE_P(As, Validated, testing::Values(GlslVersion::core_330, GlslVersion::es_300),
+                         [](const auto& version) {
+                             return version.param == GlslVersion::core_330 ? "Core330" : "Es300";
+                         });
+
+TEST_P(Validated, ByGlslang) {
+    if (std::system("glslangValidator --version > /dev/null 2>&1") != 0)
+        GTEST_SKIP() << "needs glslangValidator (Debian: glslang-tools)";
+    const test::TemporaryDirectory folder;
+    const Samples samples(GetParam());
+    std::string command = "cd '" + folder.path().string() + "' && glslangValidator";
+    std::size_t count = 0;
+    for (const SampleProgram& program : samples.programs()) {
+        const std::string name = std::to_string(count++);
+        std::ofstream(folder / (name + ".vert")) << program.vertex.text;
+        std::ofstream(folder / (name + ".frag")) << program.fragment.text;
+        command += " " + name + ".vert " + name + ".frag";
+    }
+    const int status = std::system((command + " > log 2>&1").c_str());
+    std::ifstream log(folder / "log");
+    EXPECT_EQ(status, 0) << std::string{std::istreambuf_iterator<char>(log), {}};
+}
+
+class SamplePrograms : public test::GlTest {};
+RELIEF_ON_DEFAULT_BACKEND(SamplePrograms);
+
+/// The programs of covering_features() are linked in render_cache_test.cpp.
+TEST_P(SamplePrograms, Link) {
+    const Samples samples(GlslVersion::core_330);
+    for (const SampleProgram& program : samples.programs()) {
+        if (program.is_covering) continue;
+        EXPECT_NO_THROW((void)link(api(), program.name, program.vertex, program.fragment))
+            << program.name;
+    }
+}
+
+}  // namespace
+}  // namespace relief
