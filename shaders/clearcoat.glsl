@@ -8,6 +8,7 @@
 
 //@include <clearcoat_normal>
 //@include <clearcoat_lights>
+//@include <clearcoat_gain>
 //@include <clearcoat_ambient>
 //@include <clearcoat_reflection>
 //@include <clearcoat_texture>
@@ -17,7 +18,8 @@ uniform float clearcoat;
 vec3 with_clearcoat(Surface surface, vec3 radiance) {
     float m = 1.0 - clamp(dot(clearcoat_normal(surface), surface.view_world), 0.0, 1.0);
     float weight = clearcoat * clearcoat_texel() * (0.04 + 0.96 * (m * m * m * m * m));
-    vec3 coat = clearcoat_from_lights() + clearcoat_from_ambient() + clearcoat_reflection(surface);
+    vec3 coat = clearcoat_from_lights() * clearcoat_gain(surface) + clearcoat_from_ambient() +
+                clearcoat_reflection(surface);
     return radiance * (1.0 - weight) + coat * weight;
 }
 
@@ -145,15 +147,17 @@ vec3 clearcoat_from_ambient() { return vec3(0.0); }
 //@include "environment.glsl#blurred"
 //@include "environment.glsl#brdf_table"
 //@include <clearcoat_normal>
+//@include <clearcoat_bounces>
 //@include <occlusion>
 
 vec3 clearcoat_reflection(Surface surface) {
     vec3 normal = clearcoat_normal(surface);
     float n_dot_v = clamp(dot(normal, surface.view_world), 0.0, 1.0);
     vec2 factors = albedo_factors(n_dot_v, coat_roughness());
+    float mirrored = factors.x + factors.y;
     vec3 mirrored_world = reflect(-surface.view_world, normal);
-    return blurred_radiance(mirrored_world, coat_roughness()) *
-           ((factors.x + factors.y) * occlusion());
+    return blurred_radiance(mirrored_world, coat_roughness()) * (mirrored * occlusion()) +
+           clearcoat_bounces(normal, mirrored) * occlusion();
 }
 
 //@neutral clearcoat_reflection

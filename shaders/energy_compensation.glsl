@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that bounces between the facets of glTF's surfaces. A single bounce loses the share
-// 1 - A - B, with A and B of environment.glsl#brdf_table; it is 0.69 for roughness 1 at normal
-// incidence.
+// The light that bounces between the facets of glTF's surfaces and of their clear coat. A single
+// bounce loses the share 1 - A - B, with A and B of environment.glsl#brdf_table; it is 0.69 for
+// roughness 1 at normal incidence.
 
 //@part weight
 // 1 if the material keeps that light, else 0.
@@ -12,18 +12,57 @@ uniform float energy_compensation;
 // The factor of the light that facets mirror from light sources. Source: [Turquin 2019].
 
 //@include "energy_compensation.glsl#weight"
-//@include "environment.glsl#brdf_table"
+//@include <lobe_albedo>
 //@include <film>
 
 vec3 highlight_gain(Surface surface) {
     float n_dot_v = clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
-    vec2 factors = albedo_factors(n_dot_v, surface.roughness);
+    vec2 factors = lobe_albedo(surface, n_dot_v);
     vec3 f0 = min(with_film(surface, n_dot_v, 1.0, surface.f0), vec3(1.0));
     return vec3(1.0) + f0 * (energy_compensation * (1.0 / (factors.x + factors.y) - 1.0));
 }
 
 //@neutral highlight_gain
 vec3 highlight_gain(Surface surface) { return vec3(1.0); }
+
+//@part lobe_albedo implements lobe_albedo
+// The albedo of facets that are as rough in all directions.
+
+//@include "environment.glsl#brdf_table"
+
+vec2 lobe_albedo(Surface surface, float n_dot_v) {
+    return albedo_factors(n_dot_v, surface.roughness);
+}
+
+//@part coat_highlights implements clearcoat_gain
+// The factor of the coat's highlights. The coat's weight is outside, so its facets mirror all light.
+
+//@include "energy_compensation.glsl#weight"
+//@include "clearcoat.glsl#roughness"
+//@include "environment.glsl#brdf_table"
+//@include <clearcoat_normal>
+
+float clearcoat_gain(Surface surface) {
+    float n_dot_v = clamp(dot(clearcoat_normal(surface), surface.view_world), 0.0, 1.0);
+    vec2 factors = albedo_factors(n_dot_v, coat_roughness());
+    return 1.0 + energy_compensation * (1.0 / (factors.x + factors.y) - 1.0);
+}
+
+//@neutral clearcoat_gain
+float clearcoat_gain(Surface surface) { return 1.0; }
+
+//@part coat_reflection implements clearcoat_bounces
+// The light of the environment that the coat's first bounce loses.
+
+//@include "energy_compensation.glsl#weight"
+//@include "environment.glsl#blurred"
+
+vec3 clearcoat_bounces(vec3 normal, float mirrored) {
+    return blurred_radiance(normal, 1.0) * (energy_compensation * (1.0 - mirrored));
+}
+
+//@neutral clearcoat_bounces
+vec3 clearcoat_bounces(vec3 normal, float mirrored) { return vec3(0.0); }
 
 //@part share
 // The share of even light that facets mirror after the first bounce, from the share that they mirror

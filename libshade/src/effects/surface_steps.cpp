@@ -169,11 +169,15 @@ void choose_dielectric(ShaderSteps& steps, By f) {
 /// shows.
 void choose_energy(ShaderSteps& steps, By f, bool lit_in_this_stage) {
     const bool kept = f.energy_compensation;
-    choose(steps,
-           {{"energy_compensation.glsl#highlights",
-             kept && lit_in_this_stage && f.view != DebugView::diffuse},
-            {"energy_compensation.glsl#scattering", kept && f.environment_diffuse},
-            {"energy_compensation.glsl#reflection", kept && f.reflection != ReflectionTerm::none}});
+    const bool highlights = kept && lit_in_this_stage && f.view != DebugView::diffuse;
+    const bool reflection = kept && f.reflection != ReflectionTerm::none;
+    choose(steps, {{"energy_compensation.glsl#highlights", highlights},
+                   {"energy_compensation.glsl#lobe_albedo", highlights && !f.anisotropy},
+                   {"anisotropy.glsl#albedo", highlights && f.anisotropy},
+                   {"energy_compensation.glsl#coat_highlights", highlights && f.clearcoat},
+                   {"energy_compensation.glsl#coat_reflection", reflection && f.clearcoat},
+                   {"energy_compensation.glsl#scattering", kept && f.environment_diffuse},
+                   {"energy_compensation.glsl#reflection", reflection}});
 }
 
 /// Chooses the thin film on glTF's facets.

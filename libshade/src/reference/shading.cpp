@@ -604,12 +604,29 @@ Mirrored bounced(const Context& context, const Microfacets& facets, double n_dot
     return {share(once.mirrored, mean.mirrored), share(once.blocked, mean.blocked)};
 }
 
+/// Returns A and B of the material's lobe. A lobe that is wider along one axis has those of the
+/// isotropic lobe with the mean width, from the angle at which as many facets are masked.
+glm::dvec2 lobe_albedo(const Microfacets& facets, const Surface& at, double n_dot_v) {
+    const Anisotropy& a = facets.anisotropy;
+    if (a.strength == 0.0) return directional_albedo(n_dot_v, facets.roughness);
+    const double alpha = facets.roughness * facets.roughness;
+    const double along = glm::mix(alpha, 1.0, a.strength * a.strength);
+    const double width_squared =
+        0.5 * (along * along + alpha * alpha) - 0.05 * (along - alpha) * (along - alpha);
+    const double t_part = along * glm::dot(a.rough_axis, at.view_world);
+    const double t_dot_v = glm::dot(a.rough_axis, at.view_world);
+    const double b_squared = std::max(1.0 - n_dot_v * n_dot_v - t_dot_v * t_dot_v, 0.0);
+    const double stretched = (t_part * t_part + alpha * alpha * b_squared) / width_squared;
+    return directional_albedo(n_dot_v / std::sqrt(n_dot_v * n_dot_v + stretched),
+                              std::sqrt(std::sqrt(width_squared)));
+}
+
 /// Returns the factor of highlights that adds the light of further bounces [Turquin 2019].
 glm::dvec3 highlight_gain(const Context& context, const Microfacets& facets) {
     if (!compensates_energy(*context.material.metallic_roughness)) return glm::dvec3(1.0);
     const Surface& at = context.surface;
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
-    const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
+    const glm::dvec2 albedo = lobe_albedo(facets, at, n_dot_v);
     const glm::dvec3 f0 =
         glm::min(with_film(context, facets, n_dot_v, 1.0, {facets.f0, facets.f0}).mirrored, 1.0);
     return 1.0 + f0 * (1.0 / (albedo.x + albedo.y) - 1.0);
@@ -786,10 +803,14 @@ glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     glm::dvec3 coat = received(plain, at.normal_world, [&](double n_dot_l, const glm::dvec3& half) {
         return n_dot_l * ggx_lobe(at.normal_world, half, at, n_dot_l, roughness);
     });
+    // The weight is outside, so the coat's facets mirror all light in all bounces.
+    const glm::dvec2 albedo = directional_albedo(n_dot_v, roughness);
+    const double once = albedo.x + albedo.y;
+    coat /= once;
     glm::dvec3 around = ambient_of(context);
     if (context.prepared.environment) {
-        const glm::dvec2 albedo = directional_albedo(n_dot_v, roughness);
-        around += (albedo.x + albedo.y) * reflected(plain, at.normal_world, roughness);
+        around += once * reflected(plain, at.normal_world, roughness) +
+                  (1.0 - once) * along_normal(plain, 1.0);
     }
     coat += occlusion(context) * around;
     return glm::mix(base, coat, weight * (0.04 + 0.96 * portable::pow(1.0 - n_dot_v, 5.0)));

@@ -179,7 +179,8 @@ bool compensates_energy(const MetallicRoughness& model) {
     const glm::vec3 f0 = dielectric_reflectance(model);
     const bool is_dark = std::max({f0.r, f0.g, f0.b}) <= low_reflectance &&
                          model.metallic == 0.0F && model.iridescence == 0.0F;
-    return !(is_dark && model.roughness <= smooth);
+    const bool is_plain = model.clearcoat == 0.0F && model.anisotropy == 0.0F;
+    return !(is_dark && is_plain && model.roughness <= smooth);
 }
 
 float specular_normalization(const Material& material) {

@@ -278,7 +278,7 @@ Material material_calling_for(const Features& f) {
     m.diffuse = scatters ? glm::vec3(0.6F, 0.5F, 0.4F) : glm::vec3(0.0F);
     m.ambient = glm::vec3(0.3F, 0.2F, 0.4F);
     if (f.metallic_roughness) {
-        // Smooth dielectrics alone do without energy compensation.
+        // Only plain, smooth dielectrics do without energy compensation.
         m.metallic_roughness = {{0.7F, 0.5F, 0.3F}, 0.4F, 0.5F, {}};
         if (!f.energy_compensation) m.metallic_roughness = {{0.7F, 0.5F, 0.3F}, 0.0F, 0.03F, {}};
     }
@@ -373,7 +373,8 @@ Features attainable(Features f) {
     }
     if (f.metallic_roughness && environment) f.reflection = ReflectionTerm::glossy;
     if (lights && f.environment_diffuse) f.diffuse = true;
-    if (f.dielectric_reflectance || f.iridescence) f.energy_compensation = true;
+    if (f.dielectric_reflectance || f.iridescence || f.clearcoat || f.anisotropy)
+        f.energy_compensation = true;
     if (f.output == OutputCoding::half) f.output = OutputCoding::srgb;
     const bool casts = f.alpha != AlphaMode::blend && !f.transmission && !f.unlit;
     if (f.shadow != ShadowTerm::none) {

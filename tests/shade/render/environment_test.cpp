@@ -169,6 +169,35 @@ TEST_F(Environments, OfEvenLightAreReflectedWhollyByWhiteSurfaces) {
     }
 }
 
+/// The same under a clear coat and with anisotropic facets.
+TEST_F(Environments, OfEvenLightAreReflectedWhollyUnderCoatsAndByAnisotropicFacets) {
+    Material white = test::black_material();
+    white.metallic_roughness = {glm::vec3(1.0F), 1.0F, 0.5F, {}};
+    Scene scene = test::scene_of(test::sphere(48, 24), white);
+    scene.environment = computed(16, [](glm::dvec3) { return 1.0; });
+    const auto expect_white = [&] {
+        const Image picture = radiance(scene, 48, 48);
+        for (int y = 0; y < picture.height; ++y) {
+            for (int x = 0; x < picture.width; ++x) {
+                const glm::dvec4 color = test::pixel(picture, x, y);
+                if (color.a == 0.0) continue;
+                ASSERT_NEAR(color.x, 1.0, 0.005) << x << " " << y;
+            }
+        }
+    };
+    MetallicRoughness& model = *scene.materials[0].metallic_roughness;
+    for (const float roughness : {0.0F, 0.2F, 0.5F, 0.7F, 1.0F}) {
+        SCOPED_TRACE(roughness);
+        model.clearcoat = 1.0F;
+        model.clearcoat_roughness = roughness;
+        expect_white();
+        model.clearcoat = 0.0F;
+        model.anisotropy = roughness;
+        expect_white();
+        model.anisotropy = 0.0F;
+    }
+}
+
 /// The first bounce alone is the albedo of the table.
 TEST_F(Environments, OfEvenLightLoseWhatBouncesWithoutEnergyCompensation) {
     Material metal = test::black_material();
