@@ -8,8 +8,8 @@ COPY . /src
 RUN /src/scripts/install /usr/local
 
 FROM debian:12
-COPY --from=build /src/scripts/install-dependencies /tmp/install-dependencies
+COPY --from=build /src/scripts/dev/install-dependencies /tmp/install-dependencies
 RUN /tmp/install-dependencies --run && rm -rf /var/lib/apt/lists/* /tmp/install-dependencies
 COPY --from=build /usr/local /usr/local
-COPY scripts/check-assets /usr/local/bin/
+COPY scripts/dev/check-assets /usr/local/bin/
 WORKDIR /work

@@ -185,7 +185,7 @@ endfunction()
 # sets of effects or large files, and other cases run the same code on smaller inputs. A program of which no case runs
 # (`NOT_SANITIZED *`) is not built then.
 #
-# scripts/run-tests runs the programs. ctest has one entry for each program and label, which calls it.
+# scripts/dev/run-tests runs the programs. ctest has one entry for each program and label, which calls it.
 function(relief_add_test_program name)
     cmake_parse_arguments(ARG "" "LABEL" "GROUPS;OBJECTS;NOT_SANITIZED" ${ARGN})
     if(NOT ARG_LABEL IN_LIST RELIEF_TEST_LABELS)
@@ -234,13 +234,13 @@ function(relief_add_test_program name)
     list(REMOVE_ITEM used alone)
     list(REMOVE_DUPLICATES used)
     foreach(label ${used})
-        add_test(NAME ${name}.${label} COMMAND ${PROJECT_SOURCE_DIR}/scripts/run-tests ${PROJECT_BINARY_DIR}
+        add_test(NAME ${name}.${label} COMMAND ${PROJECT_SOURCE_DIR}/scripts/dev/run-tests ${PROJECT_BINARY_DIR}
                                                --program ${name} --labels ${label} --jobs 1)
         set_tests_properties(${name}.${label} PROPERTIES LABELS ${label} SKIP_RETURN_CODE 77 TIMEOUT 7200)
     endforeach()
 endfunction()
 
-# Writes tests/test-programs.json in the build folder, which scripts/run-tests reads. The target relief_tests is all
+# Writes tests/test-programs.json in the build folder, which scripts/dev/run-tests reads. The target relief_tests is all
 # test programs and what they run; the preset `sanitize` builds nothing else.
 function(relief_write_test_programs)
     get_property(targets GLOBAL PROPERTY RELIEF_TEST_TARGETS)

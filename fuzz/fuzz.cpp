@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One libFuzzer program with all targets; the environment variable RELIEF_FUZZ_TARGET names one, or
-// is "list". scripts/fuzz builds and runs it.
+// is "list". scripts/dev/fuzz builds and runs it.
 #include <fmt/format.h>
 
 #include <cstdio>

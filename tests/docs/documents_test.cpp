@@ -336,7 +336,7 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
 
 TEST(Site, HasNoBrokenLinkAndFitsAPhone) {
     const TemporaryDirectory folder;
-    const std::string script = "'" + (source_directory() / "scripts/site").string() + "'";
+    const std::string script = "'" + (source_directory() / "scripts/dev/site").string() + "'";
     const ProgramResult result = run_shell(script + " --check --output site", folder.path());
     constexpr int program_missing = 77;
     if (result.exit_code == program_missing) GTEST_SKIP() << result.error;

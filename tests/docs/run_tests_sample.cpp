@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test program with cases of every outcome, for the test of scripts/run-tests.
+// A test program with cases of every outcome, for the test of scripts/dev/run-tests.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// scripts/run-tests with cases that fail, crash, do not end, or pass in a second run.
+// scripts/dev/run-tests with cases that fail, crash, do not end, or pass in a second run.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ class RunTests : public testing::Test {
 
     [[nodiscard]] ProgramResult run(const std::string& options, const std::string& ci = "") const {
         return run_shell(fmt::format("CI={} '{}' . {}", ci,
-                                     (source_directory() / "scripts/run-tests").string(), options),
+                                     (source_directory() / "scripts/dev/run-tests").string(), options),
                          build_.path());
     }
 

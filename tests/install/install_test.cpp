@@ -388,11 +388,11 @@ TEST(StaticShade, DefinesNoNamesOfGlad) {
 
 TEST(Interface, IsTheCommittedOne) {
     const ProgramResult result =
-        run_clean("scripts/list-interface '" + build_folder + "'", source_directory());
+        run_clean("scripts/dev/list-interface '" + build_folder + "'", source_directory());
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.out, read_bytes(source_directory() / "tests/install/interface.txt"))
         << "The public interface has changed. If it is meant to, run\n"
-           "scripts/list-interface > tests/install/interface.txt and add the change to "
+           "scripts/dev/list-interface > tests/install/interface.txt and add the change to "
            "CHANGELOG.md.";
 }
 

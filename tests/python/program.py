@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the tests of the Python module as a GoogleTest program does, for scripts/run-tests.
+"""Runs the tests of the Python module as a GoogleTest program does, for scripts/dev/run-tests.
 
 It understands --gtest_list_tests, --gtest_filter, --gtest_output=xml:FILE and --gtest_flagfile=FILE. A case is
 "Class.test_name". Without the module, all cases are skipped.
@@ -55,7 +55,7 @@ class Result(unittest.TestResult):
         self.begin = getattr(self, "begin", time.monotonic())
         if isinstance(test, unittest.TestCase):
             self.fail(error)
-        else:  # setUpClass: its cases do not run, which scripts/run-tests reports.
+        else:  # setUpClass: its cases do not run, which scripts/dev/run-tests reports.
             traceback.print_exception(*error, file=sys.stdout)
 
     def addSubTest(self, test, subtest, error):

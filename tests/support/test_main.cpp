@@ -71,7 +71,7 @@ long processor_milliseconds() {
     return sum;
 }
 
-/// Also records the processor time of each case, which scripts/run-tests reports.
+/// Also records the processor time of each case, which scripts/dev/run-tests reports.
 class RestoredState : public testing::EmptyTestEventListener {
     void OnTestStart(const testing::TestInfo&) override {  // NOLINT(readability-identifier-naming)
         set_thread_limit(0);

@@ -96,7 +96,7 @@ class ValidOutputs : public testing::Test {
         const char* module = std::getenv("RELIEF_GLTF_VALIDATOR");
         if (module == nullptr) return;
         const ProgramResult result = workplace_.run(
-            fmt::format("node scripts/validate-gltf.mjs --module '{}'{}", module, pairs_));
+            fmt::format("node scripts/dev/validate-gltf.mjs --module '{}'{}", module, pairs_));
         EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
     }
 

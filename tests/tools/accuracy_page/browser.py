@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A browser without a window, driven as by hands: WebDriver [W3C 2018] spoken to chromedriver, by the
-standard library alone. Used by report_page_test.py and scripts/site.
+standard library alone. Used by report_page_test.py and scripts/dev/site.
 """
 import base64
 import json

@@ -102,7 +102,7 @@ TEST(WindowPage, PicturesExistAndAreSmall) {
 
 TEST(WindowPage, PicturesAreMadeByTheScript) {
     const std::string script =
-        test::contents_of(test::source_directory() / "scripts/window-pictures");
+        test::contents_of(test::source_directory() / "scripts/dev/window-pictures");
     const std::string text = page();
     const std::regex picture(R"(images/([^)]*)\.png)");
     for (std::sregex_iterator match(text.begin(), text.end(), picture), end; match != end; ++match)

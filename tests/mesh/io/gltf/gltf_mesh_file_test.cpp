@@ -519,7 +519,7 @@ class GltfValidator : public testing::Test {
         if (module == nullptr) GTEST_SKIP() << "needs $RELIEF_GLTF_VALIDATOR and node";
         command_ =
             fmt::format("node {} --module {}",
-                        quoted_for_shell(test::source_directory() / "scripts/validate-gltf.mjs"),
+                        quoted_for_shell(test::source_directory() / "scripts/dev/validate-gltf.mjs"),
                         quoted_for_shell(module));
         if (output_of("node --version").second != 0) GTEST_SKIP() << "needs node";
     }
