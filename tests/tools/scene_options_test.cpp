@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "common/options.h"
+#include "environment_options.h"
+#include "light_options.h"
+#include "material_options.h"
 #include "relief/shade/effects.h"
 #include "support/invariants.h"
 #include "tools/workplace.h"

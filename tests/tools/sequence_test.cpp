@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sequences of pictures: names of numbered files, turntables, animations, and what is refused.
-#include "view_command.h"
+#include "picture_sequence.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "picture_sink.h"
 #include "relief/mesh/image_file.h"
 #include "tools/workplace.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changes of scenes as text, and scenes with one change, without drawing them.
-#include "view_options.h"
+#include "variant_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 #include "relief/mesh/image_file.h"
 #include "scene_options.h"
 #include "tools/workplace.h"
+#include "view_options.h"
 
 namespace relief::tools {
 namespace {

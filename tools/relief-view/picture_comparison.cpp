@@ -10,6 +10,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
+#include "variant_options.h"
 #include "view_options.h"
 #include "window/orbit_camera.h"
 

@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The options of relief-view: parsing and validation. Angles are radians here and degrees on the
-/// command line. Lights have the following form:
-///
-///     directional:AZIMUTH,ELEVATION[,INTENSITY[,#RRGGBB]]    from this direction, in degrees
-///     point:X,Y,Z[,INTENSITY[,#RRGGBB]]                      in world space
-///     spot:X,Y,Z,TX,TY,TZ[,ANGLE[,INTENSITY[,#RRGGBB]]]      from (X,Y,Z) towards (TX,TY,TZ)
-///     none                                                   no lights
-///
-/// The intensity is irradiance over pi (at distance 1 for point and spot), so a white surface that
-/// faces a directional light of intensity 1 is white. Tests: tests/tools/relief_view_test.cpp,
-/// scene_options_test.cpp, variant_test.cpp.
+/// The values of the options of relief-view. Angles are radians here and degrees on the command
+/// line. command_line.h adds all options.
 #pragma once
 
 #include <filesystem>
@@ -31,6 +22,7 @@
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_fields.h"
 #include "relief/shade/scene_file.h"
 #include "relief/shade/scene_variant.h"
 
@@ -41,44 +33,7 @@ struct NoLight {};
 
 using LightOption = std::variant<NoLight, DirectionalLight, PointLight, SpotLight>;
 
-/// \param subject  the option for messages, for example "--light point:1,2"
-LightOption parse_light(const std::string& subject, const std::string& text);
-
-/// The unit vector of a direction.
-///
-/// \param azimuth  radians from +z towards +x
-/// \param elevation  radians above the horizon
-glm::vec3 towards(float azimuth, float elevation);
-
-// The variants of --compare as text, and their preparation from the options
-// (relief/shade/scene_variant.h):
-//
-//     interpolation=flat  map=bump_map  kernel=central3  tangents=lengyel  bits=8  normals=area
-
-struct ViewOptions;
-
 using Variant = SceneVariant;
-
-/// All variants of one property.
-struct VariantTopic {
-    std::string name;  ///< For example "kernel".
-    std::string what;  ///< For example "The kernel that computes slopes from heights".
-    std::vector<std::pair<std::string, Variant>> choices;
-};
-const std::vector<VariantTopic>& variant_topics();
-
-/// \throws UsageError with the valid names
-Variant parse_variant(const std::string& subject, const std::string& text);
-
-/// For example "kernel=central3". The inverse of parse_variant().
-std::string to_text(const Variant& variant);
-
-/// Prepares a variant.
-/// \param options  the options of the scene, which contain its height map
-/// \throws UsageError if the variant would change nothing
-/// \throws FileError if a map cannot be read
-PreparedVariant prepare(const Variant& variant, const Scene& scene, const ViewOptions& options,
-                        Report& report);
 
 inline constexpr float default_split = 0.5F;
 
@@ -245,27 +200,26 @@ struct ViewOptions {
     GeneralOptions general;
 };
 
-/// Parses "azimuth,elevation[,factor]" or "azimuth,elevation@x,y,z,distance", in degrees.
-/// \throws UsageError
-CameraOption parse_camera(const std::string& subject, const std::string& text);
-
-/// Parses 1 to 170 degrees. Returns radians. \throws UsageError
-float parse_fov(const std::string& subject, const std::string& text);
-
-void add_view_options(CLI::App& app, ViewOptions& options);
+/// The limits of an option that sets a field of the scene.
+template <typename Owner, typename Value>
+Range field_limits(Value Owner::*member) {
+    const FieldRange range = field_of(member).range;
+    return {static_cast<double>(range.min), static_cast<double>(range.max), ""};
+}
 
 /// Rejects an option without effect or with a contradiction.
 /// \throws UsageError "OPTION: PROBLEM (REMEDY)" if useless
 void refuse(bool useless, const std::string& option, const std::string& because,
             const std::string& remedy);
 
-/// Completes the options after parsing, and rejects contradictions. \throws UsageError
-void settle(ViewOptions& options);
+/// Returns whether the options ask for several pictures.
+bool is_sequence(const ViewOptions& options);
 
-/// Checks that no file is written twice, and that none replaces a file that is read.
-/// \param others  files that the scene reads, besides those of the command line
-/// \throws UsageError
-void check_written_files(const ViewOptions& options, std::vector<std::filesystem::path> others);
+/// The number of pictures; 1 without a sequence.
+int picture_count(const ViewOptions& options);
+
+/// Returns whether the model is a scene file (.json).
+bool is_scene_file(const ViewOptions& options);
 
 /// Returns whether the output, or else the reference, stores linear radiance (.exr, .hdr).
 bool is_linear_output(const ViewOptions& options);

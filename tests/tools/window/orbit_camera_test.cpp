@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "light_options.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
 

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <optional>
 
+#include "picture_sequence.h"
+#include "picture_sink.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/scene_file.h"
-#include "view_command.h"
+#include "saved_files.h"
 #include "window/background_jobs.h"
 #include "window/panels.h"
 

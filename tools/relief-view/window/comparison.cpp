@@ -7,6 +7,7 @@
 #include <array>
 
 #include "relief/mesh/image.h"
+#include "variant_options.h"
 #include "window/panels.h"
 
 namespace relief::tools {

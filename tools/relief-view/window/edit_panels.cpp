@@ -12,6 +12,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
+#include "light_options.h"
 #include "relief/mesh/image_file.h"
 #include "relief/shade/frame_settings.h"
 #include "view_options.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "window/orbit_camera.h"
+#include "light_options.h"
 
 #include <fmt/format.h>
 

@@ -9,10 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "material_options.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "scene_options.h"
+#include "variant_options.h"
 #include "window/panels.h"
 
 namespace relief::tools {

@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "effect_options.h"
+#include "environment_options.h"
+#include "light_options.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene_fields.h"
 #include "scene_options.h"

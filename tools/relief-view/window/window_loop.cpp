@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line.h"
 #include "common/command.h"
 #include "common/text.h"
 #include "file_replacement.h"

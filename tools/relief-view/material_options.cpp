@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "material_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/command.h"
+#include "common/options.h"
+#include "common/text.h"
+#include "environment_options.h"
+#include "near_names.h"
+#include "relief/mesh/bump.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
+#include "relief/shade/scene.h"
+#include "relief/shade/scene_file.h"
+
+namespace relief::tools {
+
+namespace {
+
+constexpr const char* maps_group = "Maps for all materials (the model needs texture coordinates)";
+
+void add_normal_options(CLI::App& app, ViewOptions& options) {
+    add_path(app, "--normal-map", options.normal_map, "Read a normal map from FILE.")
+        .group(maps_group);
+    add_choice(app, "--green", options.green, enum_choices<Green>(),
+               "Set the direction of the normal map's green channel: up (OpenGL, glTF) or down "
+               "(DirectX). Default: from the file's metadata, else up.")
+        .group(maps_group);
+    add_choice(app, "--normal-space", options.normal_space, enum_choices<NormalSpace>(),
+               "Set the space of the normal map's vectors. Default: from the file's metadata, else "
+               "tangent.")
+        .group(maps_group);
+    add_assume_option(app, options.assumed, {MapKind::normal, MapKind::height, MapKind::color})
+        .group(maps_group);
+    add_number(app, "--normal-scale", "S", options.normal_scale, {-100, 100, ""},
+               "Multiply the slopes of normal maps, including those of the model. Default: the "
+               "model's value, else 1.")
+        .group(maps_group);
+    add_choice(
+        app, "--tangent-frame", options.tangent_frame, enum_choices<TangentFrame>(),
+        "Choose the tangent frame of normal and bump maps: the mesh's tangents (MikkTSpace if it "
+        "has none), or screen-space derivatives of the texture coordinates. Default: stored.")
+        .group(maps_group);
+    add_choice(app, "--specular-antialiasing", options.specular_antialiasing,
+               Choices<bool>{{"on", true}, {"off", false}},
+               "Widen highlights where a normal map has more detail than the pixels show, so that "
+               "they do not flicker. Default: off.")
+        .group(maps_group);
+}
+
+void add_height_options(CLI::App& app, ViewOptions& options) {
+    add_path(app, "--height-map", options.height_map,
+             "Read a height map from FILE. It is converted to a normal map or drawn as a bump map.")
+        .group(maps_group);
+    add_choice(app, "--height-as", options.height_as,
+               Choices<HeightUse>{{"normal_map", HeightUse::normal_map},
+                                  {"bump_map", HeightUse::bump_map}},
+               "Convert the height map to a normal map once, or compute its slopes in the shader "
+               "at each pixel. Default: normal_map.")
+        .group(maps_group);
+    add_number(app, "--strength", "S", options.strength, {},
+               "Set the height in texels of the height map value 1.0. Default: 16.")
+        .group(maps_group);
+    add_choice(app, "--kernel", options.kernel, kernel_or_auto_choices(),
+               "Choose the derivative kernel for the height map. auto selects the most accurate "
+               "one for this map, as relief-bake bump does. Default: auto.")
+        .group(maps_group);
+}
+
+}  // namespace
+
+void add_map_options(CLI::App& app, ViewOptions& options) {
+    add_path(app, "--diffuse-map", options.diffuse_map,
+             "Replace the diffuse color of all materials by the color image FILE.")
+        .group(maps_group);
+    add_normal_options(app, options);
+    add_height_options(app, options);
+}
+
+void check_maps(const ViewOptions& options) {
+    const char* const give_height = "add --height-map, or leave it out";
+    const char* const give_normal = "add --normal-map, or leave it out";
+    refuse(options.normal_map && options.height_map, "--height-map",
+           "contradicts --normal-map, because both set the normals", "leave one of them out");
+    refuse(options.green && !options.normal_map, "--green", "needs --normal-map", give_normal);
+    refuse(options.normal_space && !options.normal_map, "--normal-space", "needs --normal-map",
+           give_normal);
+    refuse(options.strength && !options.height_map, "--strength", "needs --height-map",
+           give_height);
+    refuse(options.kernel && !options.height_map, "--kernel", "needs --height-map", give_height);
+    refuse(options.height_as && !options.height_map, "--height-as", "needs --height-map",
+           give_height);
+    const bool bump = options.height_as == HeightUse::bump_map;
+    refuse(bump && options.kernel, "--kernel", "applies to converted height maps, not to bump maps",
+           "leave it out");
+    refuse(bump && options.normal_scale, "--normal-scale",
+           "applies to normal maps, not to bump maps", "use --strength");
+    const bool has_one_normal =
+        options.interpolation.value_or(Interpolation::per_pixel) != Interpolation::per_pixel;
+    refuse(has_one_normal && (options.normal_map || options.height_map),
+           options.normal_map ? "--normal-map" : "--height-map",
+           "does not show with --interpolation gouraud or flat, which do not shade each pixel",
+           "leave one of them out");
+    refuse(options.tangent_frame && options.normal_space == NormalSpace::object, "--tangent-frame",
+           "object-space normal maps need no tangent frame", "leave it out");
+}
+
+namespace {
+
+constexpr const char* materials_group = "Properties of all materials";
+
+MetallicOption parse_metallic(const std::string& subject, const std::string& text) {
+    const std::vector<double> numbers = parse_numbers(subject, text);
+    if (numbers.size() != 2) throw UsageError(subject + ": not metallic,roughness");
+    for (const double number : numbers) {
+        if (number < 0 || number > 1)
+            throw UsageError(subject + ": both numbers must be between 0 and 1");
+    }
+    return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1])};
+}
+
+void add_shading_options(CLI::App& app, ViewOptions& options) {
+    using Model = SceneOptions::MaterialModel;
+    add_choice(app, "--shading", options.shading,
+               Choices<Model>{{"as_authored", Model::as_authored}, {"phong", Model::phong}},
+               "Shade glTF materials with their metallic-roughness model, or convert them to the "
+               "Phong model. Default: as_authored, unless an option needs the Phong model.")
+        .group(materials_group);
+    add_choice(app, "--interpolation", options.interpolation, enum_choices<Interpolation>(),
+               "Compute the lighting per pixel, per vertex (only with the Phong model), or with "
+               "the face normals. Default: the value in the scene file, else per_pixel.")
+        .group(materials_group);
+    add_value(app, "--material", "NAME",
+              "Use a classic material instead of the model's colors and their textures: gold, "
+              "chrome, emerald, \"red plastic\", ... An unknown name lists similar names.",
+              [&](const std::string&, const std::string& text) { options.material = text; })
+        .group(materials_group);
+    add_value(app, "--metallic-roughness", "METALLIC,ROUGHNESS",
+              "Use the glTF material model with these values and the material's color.",
+              [&](const std::string& subject, const std::string& text) {
+                  options.metallic_roughness = parse_metallic(subject, text);
+              })
+        .group(materials_group);
+}
+
+}  // namespace
+
+void add_material_options(CLI::App& app, ViewOptions& options) {
+    add_shading_options(app, options);
+    add_choice(app, "--specular", options.specular, enum_choices<SpecularModel>(),
+               "Choose the model of highlights. The normalized model preserves their energy for "
+               "every shininess. Materials without a specular color get gray 0.25. Default: the "
+               "model's value, else blinn_phong.")
+        .group(materials_group);
+    add_number(
+        app, "--shininess", "N", options.shininess, field_limits(&Material::shininess),
+        "Set the exponent of highlights; larger values make them smaller and sharper. Materials "
+        "without a specular color get gray 0.25. Default: the model's value, else 32.")
+        .group(materials_group);
+    add_switch(app, "--highlight-fresnel", options.highlight_fresnel,
+               "Make highlights brighter at grazing angles, by Schlick's approximation. Materials "
+               "without a specular color get gray 0.25.")
+        .group(materials_group);
+}
+
+void check_materials(const ViewOptions& options) {
+    const std::string phong = reason_for_phong(options);
+    refuse(options.shading == SceneOptions::MaterialModel::as_authored && !phong.empty(), phong,
+           "needs the Phong model, and --shading as_authored keeps the glTF model",
+           "leave one of them out");
+    refuse(options.metallic_roughness && !phong.empty(), "--metallic-roughness",
+           "needs the glTF model, and " + phong + " needs the Phong model",
+           "leave one of them out");
+    refuse(options.metallic_roughness && options.material, "--metallic-roughness",
+           "contradicts --material", "leave one of them out");
+}
+
+std::string reason_for_phong(const ViewOptions& options) {
+    const std::array<std::pair<bool, const char*>, 12> reasons{{
+        {options.shading == SceneOptions::MaterialModel::phong, "--shading phong"},
+        {options.interpolation == Interpolation::gouraud, "--interpolation gouraud"},
+        {options.specular.has_value(), "--specular"},
+        {options.shininess.has_value(), "--shininess"},
+        {options.highlight_fresnel, "--highlight-fresnel"},
+        {options.reflectivity.has_value(), "--reflectivity"},
+        {options.reflection_roughness.has_value(), "--reflection-roughness"},
+        {options.fresnel.has_value() || options.no_fresnel, "--fresnel"},
+        {options.transmission.has_value(), "--transmission"},
+        {options.environment_tint, "--environment-tint"},
+        {options.clamp_terms, "--clamp-terms"},
+        {options.material.has_value(), "--material"},
+    }};
+    for (const auto& [given, name] : reasons) {
+        if (given) return name;
+    }
+    return "";
+}
+
+namespace {
+
+/// The specular color of materials without one, if an option sets highlights.
+constexpr glm::vec3 default_specular{0.25F};
+
+bool has_overrides(const ViewOptions& o) {
+    return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.tangent_frame ||
+           o.specular_antialiasing || o.interpolation || o.material || o.metallic_roughness ||
+           o.specular || o.shininess || o.highlight_fresnel || o.reflectivity ||
+           o.reflection_roughness || o.fresnel || o.no_fresnel || o.transmission ||
+           o.environment_tint || o.clamp_terms;
+}
+
+/// A map requires that at least one mesh has texture coordinates. Meshes without them are noted.
+void require_texcoords(const Scene& scene, const ViewOptions& options, const std::string& option,
+                       std::vector<std::string>& notes) {
+    const auto bare = std::count_if(scene.meshes.begin(), scene.meshes.end(),
+                                    [](const Mesh& mesh) { return mesh.texcoords.empty(); });
+    const auto all = static_cast<std::ptrdiff_t>(scene.meshes.size());
+    if (bare == all) {
+        throw failure(options.model, "no texture coordinates for " + option,
+                      "unwrap the model first, or leave " + option + " out");
+    }
+    if (bare > 0) {
+        notes.push_back(
+            fmt::format("{} of {} meshes have no texture coordinates, so {} has no effect on them",
+                        bare, all, option));
+    }
+}
+
+/// Images that an option names must be readable, unlike the images of models.
+Texture add_texture(Scene& scene, ImageSource image) {
+    image.is_required = true;
+    scene.images.push_back(std::move(image));
+    return {.image = scene.images.size() - 1};
+}
+
+void set_diffuse_map(Scene& scene, const std::filesystem::path& file) {
+    const Texture texture = add_texture(scene, {file.string(), file});
+    for (Material& material : scene.materials) {
+        material.diffuse = glm::vec3(1.0F);
+        material.ambient = glm::vec3(1.0F);
+        if (material.metallic_roughness) material.metallic_roughness->base_color = glm::vec3(1.0F);
+        material.diffuse_texture = texture;
+    }
+}
+
+void set_normal_map(Scene& scene, const NormalMap& map) {
+    for (Material& material : scene.materials) {
+        material.normal_map = map;
+        material.bump_map.reset();
+    }
+}
+
+/// Checks the kind of a map. Whether a file is missing shows when it is drawn.
+/// \return what the file states
+MapDescription checked_map(const std::filesystem::path& file, const std::vector<MapKind>& accepted,
+                           const ViewOptions& options) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return {};
+    return read_description(check_kind(file, accepted, options.assumed));
+}
+
+/// Returns a normal map with the conventions of the options, else of its metadata.
+NormalMap normal_map_of_file(Scene& scene, const std::filesystem::path& file,
+                             const ViewOptions& options) {
+    const MapDescription stated =
+        checked_map(file, {MapKind::normal, MapKind::object_normal}, options);
+    NormalMap map;
+    map.texture = add_texture(scene, {file.string(), file});
+    map.green = options.green.value_or(stated.green.value_or(map.green));
+    map.space = options.normal_space.value_or(
+        stated.kind == MapKind::object_normal ? NormalSpace::object : map.space);
+    return map;
+}
+
+void set_bump_map(Scene& scene, const ViewOptions& options) {
+    BumpMap map;
+    map.texture = add_texture(scene, {options.height_map->string(), *options.height_map});
+    map.strength = static_cast<float>(options.strength.value_or(BumpOptions{}.strength));
+    for (Material& material : scene.materials) {
+        material.bump_map = map;
+        material.normal_map.reset();
+    }
+}
+
+/// Converts the height map to a normal map with 16 bits.
+NormalMap normal_map_of_heights(Scene& scene, const ViewOptions& options, Stages& stages,
+                                Report& report) {
+    const std::filesystem::path& file = *options.height_map;
+    BumpOptions bump;
+    bump.strength = options.strength.value_or(bump.strength);
+    bump.kernel = options.kernel;
+    Image map = stages.run("height map", [&] {
+        return about(file, [&] {
+            return converted_heights(read_image(file, ImageUse::data), bump, 16, report);
+        });
+    });
+    return converted_map(add_texture(scene, {file.string(), std::move(map)}));
+}
+
+void set_normal_scale(Scene& scene, float scale) {
+    bool any = false;
+    for (Material& material : scene.materials) {
+        if (!material.normal_map) continue;
+        material.normal_map->scale = scale;
+        any = true;
+    }
+    if (!any) {
+        throw UsageError("--normal-scale: the model has no normal map to scale",
+                         "give one with --normal-map or --height-map");
+    }
+}
+
+void set_highlights(Scene& scene, const ViewOptions& options, std::vector<std::string>& notes) {
+    std::size_t added = 0;
+    for (Material& material : scene.materials) {
+        if (material.specular == glm::vec3(0.0F)) {
+            material.specular = default_specular;
+            ++added;
+        }
+        material.specular_model = options.specular.value_or(material.specular_model);
+        material.shininess = options.shininess.value_or(material.shininess);
+        material.highlight_fresnel |= options.highlight_fresnel;
+    }
+    if (added != 0) {
+        notes.push_back(fmt::format("{} without a specular color got gray {:g}",
+                                    counted(added, "material"), default_specular.r));
+    }
+}
+
+/// \throws UsageError with similar names, if the material is unknown
+Material named_material(const std::string& name) {
+    if (const std::optional<Material> material = material_by_name(name)) return *material;
+    throw UsageError(fmt::format("--material {}: unknown material{}", name,
+                                 did_you_mean(name, material_names())),
+                     fmt::format("there are {}", fmt::join(material_names(), ", ")));
+}
+
+/// Sets the colors and highlights of a named material, in place of the model's colors and their
+/// textures. Other properties stay.
+void set_named_material(Scene& scene, const std::string& name) {
+    const Material named = named_material(name);
+    for (Material& material : scene.materials) {
+        // The alpha of the diffuse texture cuts holes, so a material with holes keeps it.
+        if (material.alpha_mode == AlphaMode::opaque) material.diffuse_texture.reset();
+        material.specular_texture.reset();
+        material.ambient = named.ambient;
+        material.diffuse = named.diffuse;
+        material.specular = named.specular;
+        material.shininess = named.shininess;
+        material.specular_model = named.specular_model;
+        material.metallic_roughness.reset();
+    }
+}
+
+void set_metallic_roughness(Scene& scene, const MetallicOption& option) {
+    for (Material& material : scene.materials) {
+        MetallicRoughness model;
+        const glm::vec3 color = material.metallic_roughness
+                                    ? material.metallic_roughness->base_color
+                                    : material.diffuse;
+        model.base_color = glm::min(color, glm::vec3(1.0F));
+        model.metallic = option.metallic;
+        model.roughness = option.roughness;
+        material.metallic_roughness = model;
+        material.transmission = 0.0F;
+    }
+}
+
+void set_shading(Scene& scene, const ViewOptions& options) {
+    for (Material& material : scene.materials) {
+        material.interpolation = options.interpolation.value_or(material.interpolation);
+        material.tangent_frame = options.tangent_frame.value_or(material.tangent_frame);
+        material.specular_antialiasing =
+            options.specular_antialiasing.value_or(material.specular_antialiasing);
+        material.environment_tint |= options.environment_tint;
+        set_reflection(material, options);
+    }
+    scene.clamp_terms |= options.clamp_terms;
+}
+
+/// Notes materials whose normal or bump map cannot show.
+void note_hidden_maps(const Scene& scene, std::vector<std::string>& notes) {
+    const auto count = static_cast<std::size_t>(
+        std::count_if(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+            return (material.normal_map || material.bump_map) && !material.unlit &&
+                   material.interpolation != Interpolation::per_pixel;
+        }));
+    if (count == 0) return;
+    notes.push_back(fmt::format(
+        "the normal or bump map of {} does not show, because Gouraud and flat shading do not shade "
+        "each pixel",
+        counted(count, "material")));
+}
+
+}  // namespace
+
+SceneHeights scene_heights(const ViewOptions& options) {
+    return {.file = options.height_map,
+            .is_bump_map = options.height_as == HeightUse::bump_map,
+            .strength = options.strength,
+            .kernel = options.kernel};
+}
+
+void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
+                        std::vector<std::string>& notes) {
+    if (!has_overrides(options)) return;
+    name_default_material(scene);
+    // Options for the Phong model replace metallic-roughness materials.
+    if (!reason_for_phong(options).empty()) {
+        for (Material& material : scene.materials)
+            material.metallic_roughness.reset();
+    }
+    if (options.material) set_named_material(scene, *options.material);
+    if (options.metallic_roughness) set_metallic_roughness(scene, *options.metallic_roughness);
+    if (options.diffuse_map) {
+        require_texcoords(scene, options, "--diffuse-map", notes);
+        checked_map(*options.diffuse_map, {MapKind::color}, options);
+        set_diffuse_map(scene, *options.diffuse_map);
+    }
+    if (options.normal_map) {
+        require_texcoords(scene, options, "--normal-map", notes);
+        const std::filesystem::path& file = *options.normal_map;
+        set_normal_map(scene, normal_map_of_file(scene, file, options));
+    }
+    if (options.height_map) {
+        require_texcoords(scene, options, "--height-map", notes);
+        checked_map(*options.height_map, {MapKind::height}, options);
+        if (options.height_as == HeightUse::bump_map) {
+            set_bump_map(scene, options);
+        } else {
+            set_normal_map(scene, normal_map_of_heights(scene, options, stages, report));
+        }
+    }
+    if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);
+    if (options.specular || options.shininess || options.highlight_fresnel)
+        set_highlights(scene, options, notes);
+    set_shading(scene, options);
+    note_hidden_maps(scene, notes);
+}
+
+}  // namespace relief::tools
