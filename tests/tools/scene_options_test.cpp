@@ -54,7 +54,7 @@ TEST(SceneOptions, MeshesWithoutAMaterialTakePartInAllMaterials) {
     workplace.write("two.obj",
                     "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl red\nf 1 2 3\n");
     ViewOptions options = of(workplace / "two.obj");
-    options.shininess = 77.0F;
+    options.material_fields.set(&Material::shininess, 77.0F);
     const Scene scene = composed(options).scene();
     for (const Mesh& mesh : scene.meshes) {
         for (const MaterialRange& range : mesh.material_ranges) {
@@ -103,26 +103,28 @@ TEST(SceneOptions, NotesMapsThatDoNotShow) {
     workplace.write("m.mtl", "newmtl wall\nnorm c.png\n");
     workplace.write("model.obj", "mtllib m.mtl\nusemtl wall\n" + workplace.read("plain.obj"));
     ViewOptions options = of(workplace / "model.obj");
-    options.interpolation = Interpolation::gouraud;
+    options.material_fields.set(&Material::interpolation, Interpolation::gouraud);
     EXPECT_THAT(composed(options).notes,
                 testing::Contains(HasSubstr("the normal or bump map of 1 material does not show")));
-    options.interpolation = Interpolation::per_pixel;
+    options.material_fields.set(&Material::interpolation, Interpolation::per_pixel);
     EXPECT_THAT(composed(options).notes, testing::Not(testing::Contains(HasSubstr("bump map"))));
 }
 
 TEST(SceneOptions, TransmissionComesWithTheReflectivityOfGlass) {
     ViewOptions options;
-    options.transmission = 0.75F;
-    options.refractive_index = 1.5F;
+    options.material_fields.set(&Material::transmission, 0.75F);
+    options.material_fields.set(&Material::refractive_index, 1.5F);
     Material material;
-    set_reflection(material, options);
+    options.material_fields.apply(material);
+    complete_reflection(material, options);
     EXPECT_EQ(material.transmission, 0.75F);
     EXPECT_EQ(material.refractive_index, 1.5F);
     EXPECT_EQ(material.reflectivity, glm::vec3(0.04F));
 
     Material mirror;
     mirror.reflectivity = glm::vec3(0.5F);
-    set_reflection(mirror, options);
+    options.material_fields.apply(mirror);
+    complete_reflection(mirror, options);
     EXPECT_EQ(mirror.transmission, 0.75F);
     EXPECT_EQ(mirror.reflectivity, glm::vec3(0.5F)) << "its own";
 }
@@ -332,7 +334,7 @@ TEST(SceneOptions, AmbientLightOfALightIsReplacedWithIt) {
     EXPECT_EQ(ambient_light(composed(options).scene()), glm::vec3(0.75F));
     options.lights = {parse_light("--light", "point:0,0,1,2,#ffffff,0.125")};
     EXPECT_EQ(ambient_light(composed(options).scene()), glm::vec3(0.5F));
-    options.ambient = 0.0F;
+    options.scene_fields.set(&Scene::ambient, glm::vec3(0.0F));
     EXPECT_EQ(ambient_light(composed(options).scene()), glm::vec3(0.25F));
 }
 
@@ -341,7 +343,8 @@ TEST(SceneOptions, TermsAreClampedAndTintedOnRequest) {
     workplace.write_square("square.obj");
     ViewOptions options = of(workplace / "square.obj");
     options.environment = {"studio"};
-    options.environment_tint = options.clamp_terms = true;
+    options.material_fields.set(&Material::environment_tint, true);
+    options.scene_fields.set(&Scene::clamp_terms, true);
     const Scene scene = composed(options).scene();
     EXPECT_TRUE(scene.clamp_terms);
     ASSERT_EQ(scene.materials.size(), 1U);

@@ -148,8 +148,13 @@ AddedOption add_repeatable(CLI::App& app, const std::string& name, const std::st
 
 AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
                        const std::string& description) {
+    return add_switch(app, name, description, [&target] { target = true; });
+}
+
+AddedOption add_switch(CLI::App& app, const std::string& name, const std::string& description,
+                       const std::function<void()>& take) {
     return {app, *app.add_flag(
-                     name, [&target](std::int64_t) { target = true; }, description)};
+                     name, [take](std::int64_t) { take(); }, description)};
 }
 
 AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,

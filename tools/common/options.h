@@ -120,6 +120,8 @@ AddedOption add_repeatable(
 /// Adds a flag without a value.
 AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
                        const std::string& description);
+AddedOption add_switch(CLI::App& app, const std::string& name, const std::string& description,
+                       const std::function<void()>& take);
 
 /// Adds a required file argument.
 AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
@@ -156,10 +158,10 @@ AddedOption add_number(CLI::App& app, const std::string& name, const std::string
                      });
 }
 
-/// Adds an option with one of several words. Target: the enumeration or an optional of it.
-template <typename Enum, typename Target>
-AddedOption add_choice(CLI::App& app, const std::string& name, Target& target,
-                       const Choices<Enum>& choices, const std::string& description) {
+/// Adds an option with one of several words. `take` receives the value.
+template <typename Enum>
+AddedOption add_choice(CLI::App& app, const std::string& name, const Choices<Enum>& choices,
+                       const std::string& description, const std::function<void(Enum)>& take) {
     std::vector<std::string_view> names;
     for (const auto& choice : choices)
         names.push_back(choice.first);
@@ -168,10 +170,18 @@ AddedOption add_choice(CLI::App& app, const std::string& name, Target& target,
     const std::string list = fmt::format("{}", fmt::join(names, "|"));
     const std::string value_name = list.size() > max_list_length ? "WORD" : list;
     return add_value(app, name, value_name, description,
-                     [&target, choices](const std::string& subject, const std::string& text) {
-                         target = parse_choice(subject, text, choices);
+                     [choices, take](const std::string& subject, const std::string& text) {
+                         take(parse_choice(subject, text, choices));
                      })
         .words({names.begin(), names.end()});
+}
+
+/// Adds an option with one of several words. Target: the enumeration or an optional of it.
+template <typename Enum, typename Target>
+AddedOption add_choice(CLI::App& app, const std::string& name, Target& target,
+                       const Choices<Enum>& choices, const std::string& description) {
+    return add_choice<Enum>(app, name, choices, description,
+                            [&target](Enum value) { target = value; });
 }
 
 /// Adds --max-memory, --max-pixels and --allow-outside, which set the limits of this process at

@@ -15,6 +15,7 @@
 #include "environment_options.h"
 #include "light_options.h"
 #include "material_options.h"
+#include "option_conflicts.h"
 #include "picture_comparison.h"
 #include "picture_sequence.h"
 #include "portable_math.h"
@@ -47,9 +48,10 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
     add_value(app, "--background", "#RRGGBB|transparent",
               "Set the color behind the model where no environment is visible. Default: #1e2126.",
               [&](const std::string& subject, const std::string& text) {
-                  options.background = text == "transparent"
-                                           ? glm::vec4(0.0F)
-                                           : glm::vec4(parse_color(subject, text), 1.0F);
+                  options.scene_fields.set(&Scene::background,
+                                           text == "transparent"
+                                               ? glm::vec4(0.0F)
+                                               : glm::vec4(parse_color(subject, text), 1.0F));
               })
         .group(group);
     add_value(app, "--exposure", "STOPS",
@@ -57,13 +59,15 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
               "the scene file, else 0.",
               [&](const std::string& subject, const std::string& text) {
                   const Range range{-30, 30, "stops"};
-                  options.exposure = static_cast<float>(
-                      portable::exp(std::numbers::ln2 * parse_number(subject, text, range)));
+                  const double stops = parse_number(subject, text, range);
+                  options.scene_fields.set(
+                      &Scene::exposure,
+                      static_cast<float>(portable::exp(std::numbers::ln2 * stops)));
               })
         .group(group);
-    add_choice(app, "--tone-mapping", options.tone_mapping, enum_choices<ToneMapping>(),
-               "Choose the curve for light brighter than white; none clips it. Default: the curve "
-               "in the scene file, else none.")
+    add_field(app, options.scene_fields, "--tone-mapping", "", &Scene::tone_mapping,
+              "Choose the curve for light brighter than white; none clips it. Default: the curve "
+              "in the scene file, else none.")
         .group(group);
     add_switch(app, "--explain-effects", options.explain_effects,
                "Print which effects the scene needs, which it does not need, and why. With "
@@ -98,22 +102,6 @@ void add_window_options(CLI::App& app, ViewOptions& options) {
 }
 
 void check_output(const ViewOptions& options) {
-    refuse(options.dump_state && !options.wants_window(), "--dump-state", "no window is opened",
-           "leave --output out");
-    refuse(options.wants_window() && options.backend != Backend::automatic, "--backend",
-           "applies to pictures; the window uses the OpenGL of its display",
-           "add --output, or leave it out");
-    refuse(options.ui_scale && !options.wants_window(), "--ui-scale", "no window is opened",
-           "leave it out");
-    refuse(options.no_state && !options.wants_window(), "--no-state", "no window is opened",
-           "leave it out");
-    refuse(options.wants_window() && options.json, "--json", "the window prints no summary",
-           "add --output");
-    refuse(options.wants_window() && options.strict, "--strict",
-           "the window shows the findings and has no exit code for them", "add --output");
-    refuse(is_linear_output(options) && (options.exposure || options.tone_mapping),
-           options.exposure ? "--exposure" : "--tone-mapping",
-           "applies to display colors, not to linear radiance", "write a .png, or leave it out");
     if (!options.output) return;
     const std::string extension = extension_of(*options.output);
     constexpr std::array formats = {".png", ".exr", ".apng", ".mp4", ".webm"};
@@ -180,17 +168,14 @@ void settle(ViewOptions& options) {
     recover_model(options);
     if (options.model.empty() && !options.wants_window() && !options.list_bindings)
         throw UsageError("MODEL is missing");
+    check_conflicts(options);
     check_output(options);
     check_written_files(options, {});
     check_save_options(options);
-    check_sequence(options);
     check_reference(options);
     check_compare_options(options);
-    check_model(options);
-    check_maps(options);
     check_materials(options);
     check_environment(options);
-    check_lights(options);
     check_debug_options(options);
 }
 

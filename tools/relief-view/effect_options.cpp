@@ -549,8 +549,6 @@ void add_debug_options(CLI::App& app, ViewOptions& options) {
 
 void check_debug_options(ViewOptions& options) {
     const DebugChoices& choices = options.debug;
-    refuse(choices.frame_length && !choices.vertex_frames, "--frame-length",
-           "needs --vertex-frames", "add --vertex-frames, or leave it out");
     const bool overlaid =
         choices.wireframe || choices.vertex_frames || choices.grid || choices.health_markers;
     const bool draws =
@@ -561,14 +559,10 @@ void check_debug_options(ViewOptions& options) {
            : choices.grid          ? "--grid"
                                    : "--health-markers",
            "there is no --output", "add one");
-    if (choices.view == DebugView::picture) return;
-    refuse(options.explain_effects, "--show",
-           "contradicts --explain-effects, which needs all effects", "leave one of them out");
-    refuse(options.effects.budget.has_value(), "--show",
-           "contradicts --budget, which drops effects of the picture", "leave one of them out");
     if (!is_data(choices.view)) return;
-    refuse(options.exposure || options.tone_mapping,
-           options.exposure ? "--exposure" : "--tone-mapping",
+    const bool exposes = options.scene_fields.has(&Scene::exposure);
+    refuse(exposes || options.scene_fields.has(&Scene::tone_mapping),
+           exposes ? "--exposure" : "--tone-mapping",
            fmt::format("does not apply to data, which --show {} shows",
                        debug_view_info(choices.view).name),
            "leave it out");

@@ -46,37 +46,38 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
     add_switch(app, "--left-handed", options.left_handed_environment,
                "Convert six images that were made for a left-handed coordinate system.")
         .group(environment_group);
-    add_number(app, "--environment-intensity", "I", options.environment_intensity,
-               field_limits(&Environment::intensity),
-               "Multiply the environment's light. Default: 1.")
+    add_field(app, options.environment_fields, "--environment-intensity", "I",
+              &Environment::intensity, "Multiply the environment's light. Default: 1.")
         .group(environment_group);
-    add_number(app, "--environment-rotation", "DEG", options.environment_rotation,
-               {-360, 360, "degrees"},
-               "Rotate the environment about the y axis, counterclockwise from above. Default: 0.")
+    add_value(app, "--environment-rotation", "DEG",
+              "Rotate the environment about the y axis, counterclockwise from above. Default: 0.",
+              [&](const std::string& subject, const std::string& text) {
+                  const double degrees = parse_number(subject, text, {-360, 360, "degrees"});
+                  options.environment_fields.set(&Environment::rotation,
+                                                 glm::radians(static_cast<float>(degrees)));
+              })
         .group(environment_group);
-    add_number(app, "--background-blur", "B", options.background_blur,
-               field_limits(&Environment::skybox_blur),
-               "Blur the visible environment: 1 as a mirror of roughness 1 shows it. Default: 0.")
+    add_field(app, options.environment_fields, "--background-blur", "B", &Environment::skybox_blur,
+              "Blur the visible environment: 1 as a mirror of roughness 1 shows it. Default: 0.")
         .group(environment_group);
-    add_choice(
-        app, "--environment-light", options.environment_light,
-        Choices<bool>{{"on", true}, {"off", false}},
+    add_field(
+        app, options.environment_fields, "--environment-light", "", &Environment::lights,
         "Light surfaces with the environment. Default: on if a material is metallic-roughness.")
         .group(environment_group);
-    add_switch(app, "--no-skybox", options.no_skybox,
-               "Do not show the environment behind the model.")
-        .group(environment_group);
+    add_switch(app, "--no-skybox", "Do not show the environment behind the model.", [&] {
+        options.environment_fields.set(&Environment::skybox, false);
+    }).group(environment_group);
 }
 
 void add_reflection_options(CLI::App& app, ViewOptions& options) {
-    add_number(
-        app, "--reflectivity", "R", options.reflectivity, field_limits(&Material::reflectivity),
+    add_field(
+        app, options.material_fields, "--reflectivity", "R", &Material::reflectivity,
         "Set the reflectivity of materials at normal incidence. It increases at grazing angles. "
         "With an exact --fresnel model, it is a factor. Default: the model's value, else 0.")
         .group(environment_group);
-    add_number(app, "--reflection-roughness", "R", options.reflection_roughness,
-               field_limits(&Material::reflection_roughness),
-               "Blur reflections: 0 is a mirror, 1 is the maximum. Default: the model's value.")
+    add_field(app, options.material_fields, "--reflection-roughness", "R",
+              &Material::reflection_roughness,
+              "Blur reflections: 0 is a mirror, 1 is the maximum. Default: the model's value.")
         .group(environment_group);
     add_value(app, "--fresnel", "none|schlick|dielectric|conductor",
               "Choose the increase of reflections at grazing angles: none, Schlick's "
@@ -87,21 +88,22 @@ void add_reflection_options(CLI::App& app, ViewOptions& options) {
                       {"none", -1}, {"schlick", 0}, {"dielectric", 1}, {"conductor", 2}};
                   const int chosen = parse_choice(subject, text, names);
                   options.no_fresnel = chosen < 0;
-                  if (chosen >= 0) options.fresnel = static_cast<FresnelModel>(chosen);
+                  if (chosen >= 0)
+                      options.material_fields.set(&Material::fresnel,
+                                                  static_cast<FresnelModel>(chosen));
               })
         .group(environment_group);
-    add_number(app, "--refractive-index", "N", options.refractive_index,
-               field_limits(&Material::refractive_index),
-               "Set the refractive index for --fresnel dielectric and --transmission. Default: "
-               "1.5, glass.")
+    add_field(app, options.material_fields, "--refractive-index", "N", &Material::refractive_index,
+              "Set the refractive index for --fresnel dielectric and --transmission. Default: "
+              "1.5, glass.")
         .group(environment_group);
-    add_switch(app, "--environment-tint", options.environment_tint,
-               "Multiply ambient, diffuse and specular light by the environment along the normal.")
+    add_switch(app, "--environment-tint",
+               "Multiply ambient, diffuse and specular light by the environment along the normal.",
+               [&] { options.material_fields.set(&Material::environment_tint, true); })
         .group(environment_group);
-    add_number(app, "--transmission", "T", options.transmission,
-               field_limits(&Material::transmission),
-               "Set the fraction of the light that is not reflected and passes through the surface "
-               "with one refraction. Default: the model's value, else 0.")
+    add_field(app, options.material_fields, "--transmission", "T", &Material::transmission,
+              "Set the fraction of the light that is not reflected and passes through the surface "
+              "with one refraction. Default: the model's value, else 0.")
         .group(environment_group);
 }
 
@@ -132,15 +134,15 @@ bool is_word(const ViewOptions& options, const char* word) {
     return options.environment.size() == 1 && options.environment.front() == word;
 }
 
+}  // namespace
+
 bool uses_studio(const ViewOptions& options) {
     return is_word(options, "studio");
 }
 
-bool uses_none(const ViewOptions& options) {
+bool uses_no_environment(const ViewOptions& options) {
     return is_word(options, "none");
 }
-
-}  // namespace
 
 void add_environment_options(CLI::App& app, ViewOptions& options) {
     add_image_options(app, options);
@@ -148,48 +150,9 @@ void add_environment_options(CLI::App& app, ViewOptions& options) {
 }
 
 void check_environment(const ViewOptions& options) {
-    const std::size_t files = uses_none(options) ? 0 : options.environment.size();
-    const char* const give = "give one, or leave it out";
+    const std::size_t files = uses_no_environment(options) ? 0 : options.environment.size();
     refuse(files != 0 && files != 1 && files != 6, "--environment",
            fmt::format("takes one file, six files or a folder, not {} files", files), "");
-    // A scene file may have its own environment, which is not known yet.
-    const bool none = files == 0 && (uses_none(options) || !is_scene_file(options));
-    refuse(options.no_skybox && none, "--no-skybox", "there is no --environment", "");
-    const auto need_environment = [&](bool given, const char* option) {
-        refuse(given && none, option, "there is no --environment", give);
-    };
-    need_environment(options.reflectivity.has_value(), "--reflectivity");
-    need_environment(options.reflection_roughness.has_value(), "--reflection-roughness");
-    need_environment(options.fresnel.has_value() || options.no_fresnel, "--fresnel");
-    need_environment(options.transmission.has_value(), "--transmission");
-    need_environment(options.environment_tint, "--environment-tint");
-    const auto describe_environment = [&](bool given, const char* option) {
-        refuse(given && none, option, "there is no --environment", give);
-    };
-    describe_environment(options.environment_light.has_value(), "--environment-light");
-    describe_environment(options.environment_intensity.has_value(), "--environment-intensity");
-    describe_environment(options.environment_rotation.has_value(), "--environment-rotation");
-    describe_environment(options.background_blur.has_value(), "--background-blur");
-    const auto describe_images = [&](bool given, const char* option) {
-        refuse(given && files == 0, option, "there is no --environment", give);
-    };
-    describe_images(options.environment_layout.has_value(), "--environment-layout");
-    describe_images(options.left_handed_environment, "--left-handed");
-    refuse(options.refractive_index && options.fresnel != FresnelModel::dielectric &&
-               !options.transmission,
-           "--refractive-index", "neither --fresnel dielectric nor --transmission uses it",
-           "give one of them, or leave it out");
-    const bool one = files == 1 && !std::filesystem::is_directory(options.environment.front());
-    refuse(options.environment_layout && (!one || uses_studio(options)), "--environment-layout",
-           "applies to one image, not to six or to the studio", "leave it out");
-    refuse(options.no_skybox && uses_studio(options), "--no-skybox",
-           "the studio is not visible behind the model", "leave it out");
-    refuse(options.background_blur && (options.no_skybox || uses_studio(options)),
-           "--background-blur", "the environment is not visible behind the model", "leave it out");
-    refuse(options.left_handed_environment && one, "--left-handed", "applies to six images",
-           "leave it out");
-    refuse(options.background && files != 0 && !options.no_skybox && !uses_studio(options),
-           "--background", "the environment hides it", "add --no-skybox, or leave one of them out");
 }
 
 Environment environment_of(const ViewOptions& options) {
@@ -208,37 +171,27 @@ Environment environment_of(const ViewOptions& options) {
     }
     if (auto* faces = std::get_if<CubeFaces>(&environment.source))
         faces->left_handed = options.left_handed_environment;
-    environment.intensity = options.environment_intensity.value_or(1.0F);
-    environment.rotation = glm::radians(options.environment_rotation.value_or(0.0F));
-    environment.skybox &= !options.no_skybox;
-    environment.skybox_blur = options.background_blur.value_or(0.0F);
+    options.environment_fields.apply(environment);
     return environment;
 }
 
-void set_reflection(Material& material, const ViewOptions& options) {
-    if (options.reflectivity) {
-        material.reflectivity = glm::vec3(*options.reflectivity);
-        material.grazing_reflectivity = glm::vec3(1.0F);
-    }
+void complete_reflection(Material& material, const ViewOptions& options) {
+    const FieldChanges<Material>& fields = options.material_fields;
+    if (fields.has(&Material::reflectivity)) material.grazing_reflectivity = glm::vec3(1.0F);
     if (options.no_fresnel) material.grazing_reflectivity = material.reflectivity;
-    if (options.fresnel) {
-        material.fresnel = *options.fresnel;
+    if (fields.has(&Material::fresnel)) {
         // Gold at 611, 549 and 466 nm [Johnson and Christy 1972].
         material.conductor_index = {0.21F, 0.42F, 1.35F};
         material.conductor_absorption = {3.27F, 2.35F, 1.77F};
         // Metals do not scatter light.
-        if (*options.fresnel == FresnelModel::conductor)
+        if (material.fresnel == FresnelModel::conductor)
             material.diffuse = material.ambient = glm::vec3(0.0F);
-        const bool exact = *options.fresnel != FresnelModel::schlick;
-        if (exact && !options.reflectivity) material.reflectivity = glm::vec3(1.0F);
+        const bool exact = material.fresnel != FresnelModel::schlick;
+        if (exact && !fields.has(&Material::reflectivity)) material.reflectivity = glm::vec3(1.0F);
     }
-    if (options.reflection_roughness) material.reflection_roughness = *options.reflection_roughness;
-    if (options.refractive_index) material.refractive_index = *options.refractive_index;
-    if (options.transmission) {
-        material.transmission = *options.transmission;
-        // Transmission needs a reflectivity. The default is that of glass.
-        if (material.reflectivity == glm::vec3(0.0F)) material.reflectivity = glm::vec3(0.04F);
-    }
+    // Transmission needs a reflectivity. The default is that of glass.
+    if (fields.has(&Material::transmission) && material.reflectivity == glm::vec3(0.0F))
+        material.reflectivity = glm::vec3(0.04F);
 }
 
 namespace {
@@ -249,24 +202,16 @@ bool is_physical(const Material& material) {
 
 /// Applies options to the environment of a scene file.
 void override_scene_environment(Scene& scene, const ViewOptions& options) {
-    if (!scene.environment) {
-        const bool has_options =
-            options.no_skybox || options.environment_light || options.environment_intensity ||
-            options.environment_rotation || options.background_blur || options.reflectivity ||
-            options.reflection_roughness || options.fresnel || options.no_fresnel ||
-            options.transmission || options.environment_tint;
-        if (!has_options) return;
-        throw UsageError("the scene has no environment for these options",
-                         "add --environment, or leave the options out");
-    }
-    if (options.no_skybox) scene.environment->skybox = false;
-    scene.environment->lights = options.environment_light.value_or(scene.environment->lights);
-    scene.environment->intensity =
-        options.environment_intensity.value_or(scene.environment->intensity);
-    if (options.environment_rotation)
-        scene.environment->rotation = glm::radians(*options.environment_rotation);
-    scene.environment->skybox_blur =
-        options.background_blur.value_or(scene.environment->skybox_blur);
+    if (scene.environment) return options.environment_fields.apply(*scene.environment);
+    const FieldChanges<Material>& fields = options.material_fields;
+    const bool needs_environment =
+        !options.environment_fields.empty() || options.no_fresnel ||
+        fields.has(&Material::reflectivity) || fields.has(&Material::reflection_roughness) ||
+        fields.has(&Material::fresnel) || fields.has(&Material::transmission) ||
+        fields.has(&Material::environment_tint);
+    if (!needs_environment) return;
+    throw UsageError("the scene has no environment for these options",
+                     "add --environment, or leave the options out");
 }
 
 /// Lights materials by the studio that would be nearly black without surroundings.
@@ -282,7 +227,7 @@ void light_by_studio(Scene& scene, std::vector<std::string>& notes) {
 }  // namespace
 
 void set_environment(Scene& scene, const ViewOptions& options, std::vector<std::string>& notes) {
-    if (uses_none(options)) return scene.environment.reset();
+    if (uses_no_environment(options)) return scene.environment.reset();
     if (options.environment.empty() && !is_scene_file(options))
         return light_by_studio(scene, notes);
     if (options.environment.empty()) return override_scene_environment(scene, options);
@@ -296,8 +241,8 @@ void set_environment(Scene& scene, const ViewOptions& options, std::vector<std::
                         options.environment.front().string()));
     }
     const bool physical = std::any_of(scene.materials.begin(), scene.materials.end(), is_physical);
-    scene.environment->lights =
-        options.environment_light.value_or(physical || scene.environment->lights);
+    if (!options.environment_fields.has(&Environment::lights))
+        scene.environment->lights |= physical;
     const bool reflected =
         std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
             return material.reflectivity != glm::vec3(0.0F) || material.environment_tint;

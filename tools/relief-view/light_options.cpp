@@ -170,6 +170,12 @@ float parse_fov(const std::string& subject, const std::string& text) {
     return radians_from(parse_number(subject, text, {1, 170, "degrees"}));
 }
 
+void set_occlusion(ViewOptions& options, float distance) {
+    options.scene_fields.set(
+        &Scene::ambient_occlusion,
+        distance > 0.0F ? std::optional(AmbientOcclusion{distance}) : std::nullopt);
+}
+
 void add_light_options(CLI::App& app, ViewOptions& options) {
     const std::string group = "Lights and camera";
     add_repeatable(
@@ -186,23 +192,37 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
             options.lights.push_back(parse_light(subject, text));
         })
         .group(group);
-    add_number(app, "--ambient", "A", options.ambient, {0, 1000, ""},
-               "Set the ambient light of the scene, to which lights may add. Default: 0, or 0.08 "
-               "with the key light and fill light.")
+    add_value(app, "--ambient", "A",
+              "Set the ambient light of the scene, to which lights may add. Default: 0, or 0.08 "
+              "with the key light and fill light.",
+              [&](const std::string& subject, const std::string& text) {
+                  const double gray = parse_number(subject, text, {0, 1000, ""});
+                  options.scene_fields.set(&Scene::ambient, glm::vec3(static_cast<float>(gray)));
+              })
         .group(group);
-    add_switch(app, "--clamp-terms", options.clamp_terms,
+    add_switch(app, "--clamp-terms",
                "Clamp each term of the Phong model to 0 to 1 before the sum, for each light, as "
-               "hardware with fixed functions did.")
+               "hardware with fixed functions did.",
+               [&] { options.scene_fields.set(&Scene::clamp_terms, true); })
         .group(group);
-    add_number(app, "--shadow", "DEG", options.shadow_size, {0, 30, "degrees"},
-               "Show the shadow of the first directional light, else of the first spot or point "
-               "light. DEG is the size of the light as an angle: 0 gives hard edges, 2 soft ones. "
-               "Default: that of the scene file, else no shadow.")
+    add_value(app, "--shadow", "DEG",
+              "Show the shadow of the first directional light, else of the first spot or point "
+              "light. DEG is the size of the light as an angle: 0 gives hard edges, 2 soft ones. "
+              "Default: that of the scene file, else no shadow.",
+              [&](const std::string& subject, const std::string& text) {
+                  const auto degrees =
+                      static_cast<float>(parse_number(subject, text, {0, 30, "degrees"}));
+                  options.scene_fields.set(&Scene::shadow, Shadow{glm::radians(degrees)});
+              })
         .group(group);
-    add_number(app, "--ambient-occlusion", "D", options.ambient_occlusion, {0, 100, ""},
-               "Dim ambient light and the environment's light where surfaces within D times the "
-               "scene's size hide it: 0.5 is usual, 0 is none. It is computed once for every "
-               "vertex. Default: that of the scene file, else 0.")
+    add_value(
+        app, "--ambient-occlusion", "D",
+        "Dim ambient light and the environment's light where surfaces within D times the "
+        "scene's size hide it: 0.5 is usual, 0 is none. It is computed once for every "
+        "vertex. Default: that of the scene file, else 0.",
+        [&](const std::string& subject, const std::string& text) {
+            set_occlusion(options, static_cast<float>(parse_number(subject, text, {0, 100, ""})));
+        })
         .group(group);
     add_number(
         app, "--light-markers", "R", options.light_markers, {1e-6, 1, ""},
@@ -232,14 +252,6 @@ void add_light_options(CLI::App& app, ViewOptions& options) {
               "camera.",
               [&](const std::string&, const std::string& text) { options.model_camera = text; })
         .group(group);
-}
-
-void check_lights(const ViewOptions& options) {
-    const bool has_none = std::any_of(
-        options.lights.begin(), options.lights.end(),
-        [](const LightOption& light) { return std::holds_alternative<NoLight>(light); });
-    refuse(has_none && options.lights.size() > 1, "--light none", "contradicts the other lights",
-           "");
 }
 
 }  // namespace relief::tools

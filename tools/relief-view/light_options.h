@@ -37,7 +37,7 @@ float parse_fov(const std::string& subject, const std::string& text);
 
 void add_light_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if options contradict each other
-void check_lights(const ViewOptions& options);
+/// Sets the distance of ambient occlusion, times the scene's size; 0 is none.
+void set_occlusion(ViewOptions& options, float distance);
 
 }  // namespace relief::tools

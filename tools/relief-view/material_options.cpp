@@ -42,15 +42,15 @@ void add_normal_options(CLI::App& app, ViewOptions& options) {
                "Multiply the slopes of normal maps, including those of the model. Default: the "
                "model's value, else 1.")
         .group(maps_group);
-    add_choice(
-        app, "--tangent-frame", options.tangent_frame, enum_choices<TangentFrame>(),
+    add_field(
+        app, options.material_fields, "--tangent-frame", "", &Material::tangent_frame,
         "Choose the tangent frame of normal and bump maps: the mesh's tangents (MikkTSpace if it "
         "has none), or screen-space derivatives of the texture coordinates. Default: stored.")
         .group(maps_group);
-    add_choice(app, "--specular-antialiasing", options.specular_antialiasing,
-               Choices<bool>{{"on", true}, {"off", false}},
-               "Widen highlights where a normal map has more detail than the pixels show, so that "
-               "they do not flicker. Default: off.")
+    add_field(app, options.material_fields, "--specular-antialiasing", "",
+              &Material::specular_antialiasing,
+              "Widen highlights where a normal map has more detail than the pixels show, so that "
+              "they do not flicker. Default: off.")
         .group(maps_group);
 }
 
@@ -83,34 +83,6 @@ void add_map_options(CLI::App& app, ViewOptions& options) {
     add_height_options(app, options);
 }
 
-void check_maps(const ViewOptions& options) {
-    const char* const give_height = "add --height-map, or leave it out";
-    const char* const give_normal = "add --normal-map, or leave it out";
-    refuse(options.normal_map && options.height_map, "--height-map",
-           "contradicts --normal-map, because both set the normals", "leave one of them out");
-    refuse(options.green && !options.normal_map, "--green", "needs --normal-map", give_normal);
-    refuse(options.normal_space && !options.normal_map, "--normal-space", "needs --normal-map",
-           give_normal);
-    refuse(options.strength && !options.height_map, "--strength", "needs --height-map",
-           give_height);
-    refuse(options.kernel && !options.height_map, "--kernel", "needs --height-map", give_height);
-    refuse(options.height_as && !options.height_map, "--height-as", "needs --height-map",
-           give_height);
-    const bool bump = options.height_as == HeightUse::bump_map;
-    refuse(bump && options.kernel, "--kernel", "applies to converted height maps, not to bump maps",
-           "leave it out");
-    refuse(bump && options.normal_scale, "--normal-scale",
-           "applies to normal maps, not to bump maps", "use --strength");
-    const bool has_one_normal =
-        options.interpolation.value_or(Interpolation::per_pixel) != Interpolation::per_pixel;
-    refuse(has_one_normal && (options.normal_map || options.height_map),
-           options.normal_map ? "--normal-map" : "--height-map",
-           "does not show with --interpolation gouraud or flat, which do not shade each pixel",
-           "leave one of them out");
-    refuse(options.tangent_frame && options.normal_space == NormalSpace::object, "--tangent-frame",
-           "object-space normal maps need no tangent frame", "leave it out");
-}
-
 namespace {
 
 constexpr const char* materials_group = "Properties of all materials";
@@ -132,9 +104,9 @@ void add_shading_options(CLI::App& app, ViewOptions& options) {
                "Shade glTF materials with their metallic-roughness model, or convert them to the "
                "Phong model. Default: as_authored, unless an option needs the Phong model.")
         .group(materials_group);
-    add_choice(app, "--interpolation", options.interpolation, enum_choices<Interpolation>(),
-               "Compute the lighting per pixel, per vertex (only with the Phong model), or with "
-               "the face normals. Default: the value in the scene file, else per_pixel.")
+    add_field(app, options.material_fields, "--interpolation", "", &Material::interpolation,
+              "Compute the lighting per pixel, per vertex (only with the Phong model), or with "
+              "the face normals. Default: the value in the scene file, else per_pixel.")
         .group(materials_group);
     add_value(app, "--material", "NAME",
               "Use a classic material instead of the model's colors and their textures: gold, "
@@ -153,19 +125,20 @@ void add_shading_options(CLI::App& app, ViewOptions& options) {
 
 void add_material_options(CLI::App& app, ViewOptions& options) {
     add_shading_options(app, options);
-    add_choice(app, "--specular", options.specular, enum_choices<SpecularModel>(),
-               "Choose the model of highlights. The normalized model preserves their energy for "
-               "every shininess. Materials without a specular color get gray 0.25. Default: the "
-               "model's value, else blinn_phong.")
+    add_field(app, options.material_fields, "--specular", "", &Material::specular_model,
+              "Choose the model of highlights. The normalized model preserves their energy for "
+              "every shininess. Materials without a specular color get gray 0.25. Default: the "
+              "model's value, else blinn_phong.")
         .group(materials_group);
-    add_number(
-        app, "--shininess", "N", options.shininess, field_limits(&Material::shininess),
+    add_field(
+        app, options.material_fields, "--shininess", "N", &Material::shininess,
         "Set the exponent of highlights; larger values make them smaller and sharper. Materials "
         "without a specular color get gray 0.25. Default: the model's value, else 32.")
         .group(materials_group);
-    add_switch(app, "--highlight-fresnel", options.highlight_fresnel,
+    add_switch(app, "--highlight-fresnel",
                "Make highlights brighter at grazing angles, by Schlick's approximation. Materials "
-               "without a specular color get gray 0.25.")
+               "without a specular color get gray 0.25.",
+               [&] { options.material_fields.set(&Material::highlight_fresnel, true); })
         .group(materials_group);
 }
 
@@ -177,23 +150,22 @@ void check_materials(const ViewOptions& options) {
     refuse(options.metallic_roughness && !phong.empty(), "--metallic-roughness",
            "needs the glTF model, and " + phong + " needs the Phong model",
            "leave one of them out");
-    refuse(options.metallic_roughness && options.material, "--metallic-roughness",
-           "contradicts --material", "leave one of them out");
 }
 
 std::string reason_for_phong(const ViewOptions& options) {
+    const FieldChanges<Material>& fields = options.material_fields;
     const std::array<std::pair<bool, const char*>, 12> reasons{{
         {options.shading == SceneOptions::MaterialModel::phong, "--shading phong"},
-        {options.interpolation == Interpolation::gouraud, "--interpolation gouraud"},
-        {options.specular.has_value(), "--specular"},
-        {options.shininess.has_value(), "--shininess"},
-        {options.highlight_fresnel, "--highlight-fresnel"},
-        {options.reflectivity.has_value(), "--reflectivity"},
-        {options.reflection_roughness.has_value(), "--reflection-roughness"},
-        {options.fresnel.has_value() || options.no_fresnel, "--fresnel"},
-        {options.transmission.has_value(), "--transmission"},
-        {options.environment_tint, "--environment-tint"},
-        {options.clamp_terms, "--clamp-terms"},
+        {fields.get(&Material::interpolation) == Interpolation::gouraud, "--interpolation gouraud"},
+        {fields.has(&Material::specular_model), "--specular"},
+        {fields.has(&Material::shininess), "--shininess"},
+        {fields.has(&Material::highlight_fresnel), "--highlight-fresnel"},
+        {fields.has(&Material::reflectivity), "--reflectivity"},
+        {fields.has(&Material::reflection_roughness), "--reflection-roughness"},
+        {fields.has(&Material::fresnel) || options.no_fresnel, "--fresnel"},
+        {fields.has(&Material::transmission), "--transmission"},
+        {fields.has(&Material::environment_tint), "--environment-tint"},
+        {options.scene_fields.has(&Scene::clamp_terms), "--clamp-terms"},
         {options.material.has_value(), "--material"},
     }};
     for (const auto& [given, name] : reasons) {
@@ -208,11 +180,16 @@ namespace {
 constexpr glm::vec3 default_specular{0.25F};
 
 bool has_overrides(const ViewOptions& o) {
-    return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.tangent_frame ||
-           o.specular_antialiasing || o.interpolation || o.material || o.metallic_roughness ||
-           o.specular || o.shininess || o.highlight_fresnel || o.reflectivity ||
-           o.reflection_roughness || o.fresnel || o.no_fresnel || o.transmission ||
-           o.environment_tint || o.clamp_terms;
+    return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.material ||
+           o.metallic_roughness || o.no_fresnel || !o.material_fields.empty() ||
+           o.scene_fields.has(&Scene::clamp_terms);
+}
+
+/// Returns whether an option sets highlights, for which materials need a specular color.
+bool sets_highlights(const ViewOptions& options) {
+    const FieldChanges<Material>& fields = options.material_fields;
+    return fields.has(&Material::specular_model) || fields.has(&Material::shininess) ||
+           fields.has(&Material::highlight_fresnel);
 }
 
 /// A map requires that at least one mesh has texture coordinates. Meshes without them are noted.
@@ -316,16 +293,12 @@ void set_normal_scale(Scene& scene, float scale) {
     }
 }
 
-void set_highlights(Scene& scene, const ViewOptions& options, std::vector<std::string>& notes) {
+void add_specular_colors(Scene& scene, std::vector<std::string>& notes) {
     std::size_t added = 0;
     for (Material& material : scene.materials) {
-        if (material.specular == glm::vec3(0.0F)) {
-            material.specular = default_specular;
-            ++added;
-        }
-        material.specular_model = options.specular.value_or(material.specular_model);
-        material.shininess = options.shininess.value_or(material.shininess);
-        material.highlight_fresnel |= options.highlight_fresnel;
+        if (material.specular != glm::vec3(0.0F)) continue;
+        material.specular = default_specular;
+        ++added;
     }
     if (added != 0) {
         notes.push_back(fmt::format("{} without a specular color got gray {:g}",
@@ -370,18 +343,6 @@ void set_metallic_roughness(Scene& scene, const MetallicOption& option) {
         material.metallic_roughness = model;
         material.transmission = 0.0F;
     }
-}
-
-void set_shading(Scene& scene, const ViewOptions& options) {
-    for (Material& material : scene.materials) {
-        material.interpolation = options.interpolation.value_or(material.interpolation);
-        material.tangent_frame = options.tangent_frame.value_or(material.tangent_frame);
-        material.specular_antialiasing =
-            options.specular_antialiasing.value_or(material.specular_antialiasing);
-        material.environment_tint |= options.environment_tint;
-        set_reflection(material, options);
-    }
-    scene.clamp_terms |= options.clamp_terms;
 }
 
 /// Notes materials whose normal or bump map cannot show.
@@ -438,9 +399,11 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
         }
     }
     if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);
-    if (options.specular || options.shininess || options.highlight_fresnel)
-        set_highlights(scene, options, notes);
-    set_shading(scene, options);
+    if (sets_highlights(options)) add_specular_colors(scene, notes);
+    for (Material& material : scene.materials) {
+        options.material_fields.apply(material);
+        complete_reflection(material, options);
+    }
     note_hidden_maps(scene, notes);
 }
 

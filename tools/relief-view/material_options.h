@@ -16,9 +16,6 @@ namespace relief::tools {
 
 void add_map_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if an option needs another one
-void check_maps(const ViewOptions& options);
-
 void add_material_options(CLI::App& app, ViewOptions& options);
 
 /// \throws UsageError if options contradict each other

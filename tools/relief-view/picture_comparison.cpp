@@ -255,12 +255,8 @@ void add_compare_options(CLI::App& app, ViewOptions& options) {
 
 void check_compare_options(const ViewOptions& options) {
     const CompareChoices& choices = options.compare;
-    refuse(choices.split && !choices.compares(), "--split", "needs --compare or --compare-to",
-           "add one of them, or leave it out");
     if (!choices.compares()) return;
     const std::string option = choices.variant ? "--compare" : "--compare-to";
-    refuse(choices.variant && choices.file, "--compare", "contradicts --compare-to",
-           "leave one of them out");
     refuse(options.reference.has_value(), option, "contradicts --reference",
            "leave one of them out");
     refuse(options.turntable || options.frames, option, "compares one picture, not a sequence",

@@ -80,29 +80,6 @@ void add_sequence_options(CLI::App& app, ViewOptions& options) {
         .group(group);
 }
 
-void check_sequence(const ViewOptions& options) {
-    const bool has_video = options.output && is_video(*options.output);
-    const bool animated = options.output && is_animation(*options.output);
-    refuse(options.turntable && options.frames, "--turntable", "contradicts --frames",
-           "leave one of them out");
-    refuse(options.seconds && !options.frames, "--seconds", "needs --frames",
-           "add --frames, or leave it out");
-    refuse(options.frames_per_second && !animated, "--fps", "applies to animations and videos",
-           "write an .apng, .mp4 or .webm, or leave it out");
-    refuse(has_video && options.background && options.background->a < 1.0F, "--background",
-           "a video has no transparent pixels", "choose a color, or write an .apng");
-    refuse(has_video && options.size_given && (options.size.x % 2 != 0 || options.size.y % 2 != 0),
-           "--size", "the width and the height of a video must be even", "");
-    refuse(animated && !is_sequence(options), "--output " + options.output.value_or("").string(),
-           "an animation needs several pictures", "add --turntable or --frames, or write a .png");
-    refuse(options.time && options.frames, "--time", "contradicts --frames, which sets the times",
-           "leave one of them out");
-    refuse(is_sequence(options) && options.reference, "--reference",
-           "applies to one picture, not to a sequence", "leave one of them out");
-    refuse(is_sequence(options) && !options.output, options.turntable ? "--turntable" : "--frames",
-           "there is no --output", "add one");
-}
-
 void pose_for(ComposedScene& composed, const ViewOptions& options, int index) {
     pose(composed.graph, time_of(composed, options, index));
     if (options.turntable) turn(composed, 2.0 * std::numbers::pi * index / *options.turntable);

@@ -17,9 +17,6 @@ namespace relief::tools {
 
 void add_sequence_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if options contradict each other, or the output cannot store several pictures
-void check_sequence(const ViewOptions& options);
-
 /// Poses the scene for picture `index`, counted from 0: rotated, or at the time of the picture.
 void pose_for(ComposedScene& composed, const ViewOptions& options, int index);
 

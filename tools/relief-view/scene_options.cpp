@@ -77,28 +77,6 @@ void add_model_options(CLI::App& app, ViewOptions& options) {
         .group(model_group);
 }
 
-void check_model(const ViewOptions& options) {
-    const bool is_scene = extension_of(options.model) == ".json";
-    const auto refuse_for_scene = [&](bool given, const char* option, const char* remedy) {
-        refuse(given && is_scene, option, "applies to model files, not to scene files", remedy);
-    };
-    refuse_for_scene(options.up.has_value(), "--up", "rotate the nodes of the scene");
-    refuse_for_scene(options.normals.has_value(), "--normals",
-                     "set 'normals' beside 'model' in the scene");
-    refuse_for_scene(options.crease_degrees.has_value(), "--crease",
-                     "set 'crease' beside 'model' in the scene");
-    refuse(options.crease_degrees && options.normals == NormalMode::flat, "--crease",
-           "contradicts --normals flat, which makes all edges hard", "leave one of them out");
-    const std::string extension = extension_of(options.model);
-    const bool is_gltf = extension == ".gltf" || extension == ".glb";
-    refuse(options.material_variant && !is_gltf, "--material-variant",
-           "only glTF files have material variants", "leave it out");
-    refuse(options.model_camera && !is_gltf, "--model-camera", "only glTF files have cameras",
-           "use --camera");
-    refuse(options.model_camera && options.camera, "--model-camera", "contradicts --camera",
-           "leave one of them out");
-}
-
 SceneOptions scene_options(const ViewOptions& options) {
     using Model = SceneOptions::MaterialModel;
     SceneOptions read;
@@ -189,24 +167,11 @@ void set_lights(ComposedScene& composed, const ViewOptions& options) {
         composed.notes.emplace_back(
             "the model has no light, so a key light and a fill light were added");
     }
-    if (options.ambient) scene.ambient = glm::vec3(*options.ambient);
-    if (!options.shadow_size) return;
-    if (light_count(scene) == 0) {
+    options.scene_fields.apply(scene);
+    if (options.scene_fields.has(&Scene::shadow) && light_count(scene) == 0) {
         throw UsageError("--shadow: there is no light that could cast one",
                          "add one with --light, or leave it out");
     }
-    scene.shadow = Shadow{glm::radians(*options.shadow_size)};
-}
-
-/// Computes ambient occlusion if the options or the scene request it.
-void occlude(Scene& scene, const ViewOptions& options, Stages& stages) {
-    if (options.ambient_occlusion) {
-        scene.ambient_occlusion.reset();
-        if (*options.ambient_occlusion > 0.0F)
-            scene.ambient_occlusion = AmbientOcclusion{*options.ambient_occlusion};
-    }
-    if (scene.ambient_occlusion)
-        stages.run("ambient occlusion", [&] { add_ambient_occlusion(scene); });
 }
 
 /// Shows point lights and spotlights as spheres, relative to the size of the scene.
@@ -273,14 +238,12 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
     override_materials(scene, options, stages, report, composed.notes);
     set_environment(scene, options, composed.notes);
     // Only scene files have a background.
-    scene.background =
-        options.background.value_or(is_scene_file(options) ? scene.background : default_background);
-    scene.exposure = options.exposure.value_or(scene.exposure);
-    scene.tone_mapping = options.tone_mapping.value_or(scene.tone_mapping);
+    if (!is_scene_file(options)) scene.background = default_background;
     composed.camera_follows_scene = scene.camera && !options.camera;
     composed.camera = default_camera(scene, options);
     set_lights(composed, options);
-    occlude(scene, options, stages);
+    if (scene.ambient_occlusion)
+        stages.run("ambient occlusion", [&] { add_ambient_occlusion(scene); });
     const Bounds bounds = world_bounds(scene);
     if (!bounds.empty()) composed.middle = 0.5F * (bounds.min + bounds.max);
     for (const Instance& instance : scene.instances)

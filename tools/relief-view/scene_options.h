@@ -23,9 +23,6 @@ namespace relief::tools {
 
 void add_model_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if an option has no effect on this file
-void check_model(const ViewOptions& options);
-
 /// The options with which the model file is read.
 SceneOptions scene_options(const ViewOptions& options);
 

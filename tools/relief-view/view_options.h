@@ -14,6 +14,7 @@
 
 #include "common/map_kind.h"
 #include "common/options.h"
+#include "field_options.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normal_map.h"
@@ -22,7 +23,6 @@
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
-#include "relief/shade/scene_fields.h"
 #include "relief/shade/scene_file.h"
 #include "relief/shade/scene_variant.h"
 
@@ -110,8 +110,12 @@ struct ViewOptions {
     glm::ivec2 size{1024, 1024};
     bool size_given = false;  ///< Otherwise a scene file may set the size.
     int samples = 4;
-    std::optional<float> exposure;  ///< As a factor, not in stops.
-    std::optional<ToneMapping> tone_mapping;
+
+    // Fields of all materials, of the environment and of the scene.
+    FieldChanges<Material> material_fields;
+    FieldChanges<Environment> environment_fields;
+    FieldChanges<Scene> scene_fields;
+    bool no_fresnel = false;  ///< --fresnel none
 
     std::optional<std::filesystem::path> reference;
     std::optional<double> max_difference;  ///< From the reference. If absent, it is 0.
@@ -122,13 +126,11 @@ struct ViewOptions {
     AssumedKinds assumed;
     std::optional<Green> green;
     std::optional<NormalSpace> normal_space;
-    std::optional<TangentFrame> tangent_frame;
     std::optional<std::filesystem::path> height_map;
     std::optional<HeightUse> height_as;
     std::optional<double> strength;
     std::optional<Kernel> kernel;
     std::optional<std::filesystem::path> diffuse_map;
-    std::optional<bool> specular_antialiasing;
 
     std::optional<NormalMode> normals;
     std::optional<double> crease_degrees;
@@ -136,41 +138,20 @@ struct ViewOptions {
     std::optional<std::string> material_variant;  ///< Its name or number in a glTF file.
 
     std::optional<SceneOptions::MaterialModel> shading;
-    std::optional<Interpolation> interpolation;
     std::optional<std::string> material;  ///< A name of the table of classic materials.
     std::optional<MetallicOption> metallic_roughness;
-    std::optional<float> shininess;
-    bool highlight_fresnel = false;
-    std::optional<SpecularModel> specular;
 
     /// One image, one folder, six files, "studio" or "none".
     std::vector<std::filesystem::path> environment;
     std::optional<EnvironmentLayout> environment_layout;
-    std::optional<bool> environment_light;  ///< If absent, metallic-roughness materials decide.
-    std::optional<float> environment_intensity;
-    std::optional<float> environment_rotation;  ///< Degrees.
-    std::optional<float> background_blur;
     bool left_handed_environment = false;
-    bool no_skybox = false;
-    std::optional<float> reflectivity;
-    std::optional<float> reflection_roughness;
-    std::optional<FresnelModel> fresnel;
-    bool no_fresnel = false;
-    std::optional<float> refractive_index;
-    std::optional<float> transmission;
-    bool environment_tint = false;
 
     std::vector<LightOption> lights;
-    std::optional<float> ambient_occlusion;  ///< Share of the scene's size; 0 is none.
-    std::optional<float> shadow_size;        ///< Degrees; 0 is a hard edge.
-    std::optional<float> ambient;
-    bool clamp_terms = false;
     std::optional<float> light_markers;  ///< Radius relative to the size of the scene.
     std::optional<CameraOption> camera;
     std::optional<float> vertical_fov;
     bool orthographic = false;
     std::optional<std::string> model_camera;  ///< The name or number of a camera of the file.
-    std::optional<glm::vec4> background;      ///< Linear RGB and alpha.
 
     std::optional<int> turntable;  ///< Pictures per turn.
     std::optional<int> frames;     ///< Pictures of the animation.
@@ -199,13 +180,6 @@ struct ViewOptions {
     bool strict = false;
     GeneralOptions general;
 };
-
-/// The limits of an option that sets a field of the scene.
-template <typename Owner, typename Value>
-Range field_limits(Value Owner::*member) {
-    const FieldRange range = field_of(member).range;
-    return {static_cast<double>(range.min), static_cast<double>(range.max), ""};
-}
 
 /// Rejects an option without effect or with a contradiction.
 /// \throws UsageError "OPTION: PROBLEM (REMEDY)" if useless

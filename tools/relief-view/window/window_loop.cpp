@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "command_line.h"
+#include "light_options.h"
 #include "common/command.h"
 #include "common/text.h"
 #include "file_replacement.h"
@@ -852,7 +853,7 @@ class WindowLoop {
     void use_occlusion(const std::optional<float>& distance) {
         if (!distance) return;
         read_with([&](ViewOptions options) {
-            options.ambient_occlusion = distance;
+            set_occlusion(options, *distance);
             return options;
         });
     }
