@@ -29,13 +29,9 @@ namespace {
 struct ProcessRequest {
     std::filesystem::path input;
     std::filesystem::path output;
-    NormalMode normals = NormalMode::keep;
-    TangentMethod tangents = TangentMethod::keep;
+    FrameOptions frames;
     std::optional<int> uv_set;  ///< For computed tangents. Default: the set of the normal texture.
-    std::optional<double> crease_degrees;  ///< For averaged normals, see frames.h.
-    double weld_tolerance = 0.0;           ///< For averaged or repaired normals, see frames.h.
-    bool ignore_smoothing_groups = false;
-    bool repair_normals = false;  ///< Replaces invalid normals among those that are kept.
+    std::optional<double> crease_degrees;  ///< Becomes frames.crease_angle.
     /// A model without texture coordinates is an error if tangents are to be computed. Otherwise it
     /// gets none, which is a finding.
     bool requires_tangents = false;
@@ -50,11 +46,7 @@ struct Processed {
 };
 
 FrameOptions frame_options(const ProcessRequest& request) {
-    FrameOptions options{.normals = request.normals,
-                         .tangents = request.tangents,
-                         .weld_tolerance = request.weld_tolerance,
-                         .smoothing_groups = !request.ignore_smoothing_groups,
-                         .repair = request.repair_normals};
+    FrameOptions options = request.frames;
     if (request.crease_degrees)
         options.crease_angle = *request.crease_degrees * std::numbers::pi / 180.0;
     return options;
@@ -87,7 +79,7 @@ void check_texcoords(const ProcessRequest& request, const Model& model) {
     const auto* document = std::get_if<GltfDocument>(&model);
     if (document != nullptr && document->triangle_primitives().empty()) return;
     const std::set<int> sets = texcoord_sets(model);
-    if (sets.empty() && computes_tangents(request.tangents) && request.requires_tangents) {
+    if (sets.empty() && computes_tangents(request.frames.tangents) && request.requires_tangents) {
         throw failure(request.input, "no texture coordinates, so there can be no tangents",
                       "unwrap the model first, or leave --tangents out");
     }
@@ -111,7 +103,7 @@ Processed process(const ProcessRequest& request, Stages& stages) {
         check_texcoords(request, model);
         FrameOptions options = frame_options(request);
         Report report;
-        if (has_no_texcoords(model) && computes_tangents(request.tangents)) {
+        if (has_no_texcoords(model) && computes_tangents(request.frames.tangents)) {
             options.tangents = TangentMethod::none;
             report.add("model without texture coordinates", "model", 0, "gets no tangents");
         }
@@ -315,11 +307,11 @@ std::string line_of(const ProcessRequest& request, const Processed& done, const 
 
 /// The head of the report, without the files.
 Json head_json(const ProcessRequest& request) {
-    Json options = {{"normals", enum_name(request.normals)},
-                    {"tangents", enum_name(request.tangents)}};
+    Json options = {{"normals", enum_name(request.frames.normals)},
+                    {"tangents", enum_name(request.frames.tangents)}};
     if (request.uv_set) options["uv_set"] = *request.uv_set;
     if (request.crease_degrees) options["crease_degrees"] = *request.crease_degrees;
-    options["weld_tolerance"] = request.weld_tolerance;
+    options["weld_tolerance"] = request.frames.weld_tolerance;
     return {
         {"tool", "relief-mesh process"}, {"version", version()}, {"options", std::move(options)}};
 }
@@ -360,10 +352,11 @@ struct ProcessOptions {
 void check_formats(const ProcessRequest& request) {
     const ModelFormat input = readable_format(request.input);
     const ModelFormat output = writable_format(request.output);
-    if (computes_tangents(request.tangents) && !is_document(output)) {
-        throw UsageError(fmt::format("--tangents {}: {} cannot store tangents",
-                                     enum_name(request.tangents), extension_of(request.output)),
-                         "write .glb or .gltf");
+    if (computes_tangents(request.frames.tangents) && !is_document(output)) {
+        throw UsageError(
+            fmt::format("--tangents {}: {} cannot store tangents",
+                        enum_name(request.frames.tangents), extension_of(request.output)),
+            "write .glb or .gltf");
     }
     if (request.uv_set.value_or(0) > 0 && !is_document(input)) {
         throw UsageError(fmt::format("--uv-set {}: {}: has only texture coordinate set 0",
@@ -375,31 +368,31 @@ void check_formats(const ProcessRequest& request) {
 /// Refuses normal options without effect.
 void check_normal_options(const ProcessRequest& request) {
     const bool averages =
-        request.normals != NormalMode::keep && request.normals != NormalMode::flat;
+        request.frames.normals != NormalMode::keep && request.frames.normals != NormalMode::flat;
     const auto require = [](bool condition, const char* option, const char* what) {
         if (!condition) throw UsageError(fmt::format("{}: {}", option, what));
     };
     const char* averaged = "applies only to averaged normals: --normals auto, angle, max, ...";
     require(averages || !request.crease_degrees, "--crease", averaged);
-    require(averages || !request.ignore_smoothing_groups, "--ignore-smoothing-groups", averaged);
-    require(averages || request.repair_normals || request.weld_tolerance == 0.0, "--weld",
+    require(averages || request.frames.smoothing_groups, "--ignore-smoothing-groups", averaged);
+    require(averages || request.frames.repair || request.frames.weld_tolerance == 0.0, "--weld",
             averaged);
-    require(request.normals == NormalMode::keep || !request.repair_normals, "--repair-normals",
-            "applies only to kept normals: omit --normals");
+    require(request.frames.normals == NormalMode::keep || !request.frames.repair,
+            "--repair-normals", "applies only to kept normals: omit --normals");
 }
 
 /// Refuses --uv-set if no tangents are computed.
 void check_tangent_options(const ProcessRequest& request) {
-    const bool follow_normals =
-        request.tangents == TangentMethod::keep && request.normals != NormalMode::keep;
-    if (!request.uv_set || computes_tangents(request.tangents) || follow_normals) return;
+    const bool follow_normals = request.frames.tangents == TangentMethod::keep &&
+                                request.frames.normals != NormalMode::keep;
+    if (!request.uv_set || computes_tangents(request.frames.tangents) || follow_normals) return;
     throw UsageError(fmt::format("--uv-set {}: applies only to computed tangents", *request.uv_set),
                      "give --tangents mikktspace");
 }
 
 /// Refuses --require-tangents if no tangents are computed.
 void check_required_tangents(const ProcessRequest& request) {
-    if (!request.requires_tangents || computes_tangents(request.tangents)) return;
+    if (!request.requires_tangents || computes_tangents(request.frames.tangents)) return;
     throw UsageError("--require-tangents: has no effect without computed tangents",
                      "give --tangents mikktspace");
 }
@@ -449,7 +442,7 @@ ExitCode run(const CLI::App& app, const ProcessOptions& options) {
 
 void add_normal_options(CLI::App& app, ProcessRequest& request) {
     const char* group = "Normals";
-    add_choice(app, "--normals", request.normals, enum_choices<NormalMode>(),
+    add_choice(app, "--normals", request.frames.normals, enum_choices<NormalMode>(),
                "The source of normals: the file (keep), one per triangle (flat), or an average "
                "around each vertex with the named weights. auto uses max, the most accurate on "
                "smooth meshes, and area at folded triangles. docs/normals.md lists errors and "
@@ -461,15 +454,16 @@ void add_normal_options(CLI::App& app, ProcessRequest& request) {
                "and between triangles that share only a vertex. Default: hard edges only between "
                "the smoothing groups of an OBJ file.")
         .group(group);
-    add_switch(app, "--ignore-smoothing-groups", request.ignore_smoothing_groups,
-               "Smooth across the smoothing groups of an OBJ file, also if they are off.")
+    add_switch(app, "--ignore-smoothing-groups",
+               "Smooth across the smoothing groups of an OBJ file, also if they are off.",
+               [&request] { request.frames.smoothing_groups = false; })
         .group(group);
-    add_number(app, "--weld", "TOLERANCE", request.weld_tolerance,
+    add_number(app, "--weld", "TOLERANCE", request.frames.weld_tolerance,
                {0.0, std::numeric_limits<float>::max(), "units"},
                "Vertices within this distance, in the unit of the model, share a normal. Default: "
                "0 (equal positions).")
         .group(group);
-    add_switch(app, "--repair-normals", request.repair_normals,
+    add_switch(app, "--repair-normals", request.frames.repair,
                "Replace zero and non-finite normals of the file by averaged ones, and normalize "
                "the others. Default: such normals are kept and reported.")
         .group(group);
@@ -477,7 +471,7 @@ void add_normal_options(CLI::App& app, ProcessRequest& request) {
 
 void add_tangent_options(CLI::App& app, ProcessRequest& request) {
     const char* group = "Tangents";
-    add_choice(app, "--tangents", request.tangents, tangent_choices(),
+    add_choice(app, "--tangents", request.frames.tangents, tangent_choices(),
                "Tangents for normal maps: those of the file (keep; recomputed if normals are), "
                "none, or computed, with split vertices where necessary: by the standard of bakers "
                "and glTF (mikktspace), weighted by area, so that thin bevels do not affect large "

@@ -108,7 +108,7 @@ struct Reshaping {
     NormalMode normals = NormalMode::keep;
     TriangleChange change;
     Measuring measuring = Measuring::off;
-    std::optional<int> max_triangles{};  ///< --triangles
+    std::optional<std::size_t> max_triangles{};  ///< --triangles
 };
 
 /// Reads, changes and writes a model.
@@ -132,8 +132,7 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     for (const PartReport& part : done.changed.reports)
         done.findings.add(part.part, part.report);
     done.is_small =
-        reshaping.max_triangles &&
-        done.changed.triangles_read <= static_cast<std::size_t>(*reshaping.max_triangles);
+        reshaping.max_triangles && done.changed.triangles_read <= *reshaping.max_triangles;
     if (reshaping.measuring == Measuring::on)
         done.distance = stages.run("measure", [&] {
             std::vector<SurfaceDistance> distances;
@@ -269,7 +268,7 @@ ExitCode reshape_all(const CLI::App& app, const ReshapeRequest& request, const J
 /// \throws UsageError, FileError; then no file is written
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const TriangleChange& change,
                  Measuring measuring, const Json& options,
-                 std::optional<int> max_triangles = std::nullopt) {
+                 std::optional<std::size_t> max_triangles = std::nullopt) {
     const JobList list = model_jobs_of(request.words, request.format);
     check_files(request, list);
     set_thread_limit(request.general.threads);
@@ -282,14 +281,9 @@ ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const Trian
 
 struct DecimateCommand {
     ReshapeRequest request;
-    std::optional<int> triangles;
+    DecimateOptions options{.fit_positions = true};  ///< `triangles` is that of all meshes.
     std::optional<double> ratio;
-    std::optional<double> max_error;
-    std::optional<double> max_normal_error;  ///< In degrees.
-    AttributeWeights weights;
-    bool keep_borders = false;
-    bool keep_seams = false;
-    bool keep_positions = false;
+    std::optional<double> max_normal_degrees;  ///< --max-normal-error
 };
 
 /// The attributes of --weights.
@@ -336,11 +330,11 @@ double parse_ratio(const std::string& subject, const std::string& text) {
 }
 
 void check_limits(const DecimateCommand& command) {
-    if (command.triangles && command.ratio)
+    if (command.options.triangles && command.ratio)
         throw UsageError("--triangles and --ratio contradict each other", "give one of them");
-    if (!command.triangles && !command.ratio && !command.max_error)
+    if (!command.options.triangles && !command.ratio && !command.options.max_error)
         throw UsageError("no limit is given", "give --triangles N, --ratio R or --max-error E");
-    if (command.weights.normal > 0.0 && command.request.normals != NormalMode::keep) {
+    if (command.options.weights.normal > 0.0 && command.request.normals != NormalMode::keep) {
         throw UsageError(
             fmt::format("--weights normals: has no effect with --normals {}, which replaces them",
                         enum_name(command.request.normals)),
@@ -351,26 +345,27 @@ void check_limits(const DecimateCommand& command) {
 /// Returns the number of triangles for one of several meshes, in proportion to its size.
 std::optional<std::size_t> wanted_triangles(const DecimateCommand& command, std::size_t count,
                                             std::size_t all) {
-    if (!command.triangles && !command.ratio) return std::nullopt;
+    if (!command.options.triangles && !command.ratio) return std::nullopt;
     const double ratio = command.ratio ? *command.ratio
-                                       : static_cast<double>(*command.triangles) /
+                                       : static_cast<double>(*command.options.triangles) /
                                              static_cast<double>(std::max<std::size_t>(all, 1));
     const double wanted = std::round(ratio * static_cast<double>(count));
     return static_cast<std::size_t>(std::max(wanted, 1.0));
 }
 
 Json options_json(const DecimateCommand& command) {
+    const DecimateOptions& options = command.options;
     Json json = Json::object();
-    if (command.triangles) json["triangles"] = *command.triangles;
+    if (options.triangles) json["triangles"] = *options.triangles;
     if (command.ratio) json["ratio"] = *command.ratio;
-    if (command.max_error) json["max_error"] = *command.max_error;
-    if (command.max_normal_error) json["max_normal_error"] = *command.max_normal_error;
-    json["keep_borders"] = command.keep_borders;
-    json["keep_seams"] = command.keep_seams;
-    json["keep_positions"] = command.keep_positions;
+    if (options.max_error) json["max_error"] = *options.max_error;
+    if (command.max_normal_degrees) json["max_normal_error"] = *command.max_normal_degrees;
+    json["keep_borders"] = options.keep_borders;
+    json["keep_seams"] = options.keep_seams;
+    json["keep_positions"] = !options.fit_positions;
     Json weights = Json::object();
     for (const WeightWord& entry : weight_words)
-        weights[std::string(entry.word)] = command.weights.*(entry.weight);
+        weights[std::string(entry.word)] = options.weights.*(entry.weight);
     json["weights"] = std::move(weights);
     json["normals"] = enum_name(command.request.normals);
     return json;
@@ -379,22 +374,17 @@ Json options_json(const DecimateCommand& command) {
 ExitCode decimate(const CLI::App& app, const DecimateCommand& command) {
     check_limits(command);
     const auto change = [&](const TriangleInput& input, Report& report) {
-        DecimateOptions options;
+        DecimateOptions options = command.options;
         options.triangles =
             wanted_triangles(command, input.mesh.triangles.size(), input.all_triangles);
-        options.max_error = command.max_error;
         options.frames.normals = command.request.normals;
-        options.weights = command.weights;
-        if (command.max_normal_error)
-            options.max_normal_error = *command.max_normal_error * std::numbers::pi / 180.0;
-        options.keep_borders = command.keep_borders;
-        options.keep_seams = command.keep_seams;
-        options.fit_positions = !command.keep_positions;
+        if (command.max_normal_degrees)
+            options.max_normal_error = *command.max_normal_degrees * std::numbers::pi / 180.0;
         return decimated(input.mesh, options, report, input.deformation);
     };
     const bool reports = !command.request.general.quiet || command.request.report.file;
     return reshape(app, command.request, change, reports ? Measuring::on : Measuring::off,
-                   options_json(command), command.triangles);
+                   options_json(command), command.options.triangles);
 }
 
 void add_decimate_options(CLI::App& app, DecimateCommand& command) {
@@ -406,8 +396,8 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
     add_value(app, "--triangles", "N",
               "Stop at N triangles in total. Several meshes are reduced by the same ratio.",
               [&command](const std::string& subject, const std::string& text) {
-                  command.triangles =
-                      parse_integer(subject, text, 1, std::numeric_limits<int>::max());
+                  command.options.triangles = static_cast<std::size_t>(
+                      parse_integer(subject, text, 1, std::numeric_limits<int>::max()));
               })
         .group(limits);
     add_value(app, "--ratio", "R", "Stop at this fraction of the triangles: 0 to 1, or 0% to 100%.",
@@ -415,28 +405,29 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
                   command.ratio = parse_ratio(subject, text);
               })
         .group(limits);
-    add_number(app, "--max-error", "E", command.max_error, {0.0, Range().max, ""},
+    add_number(app, "--max-error", "E", command.options.max_error, {0.0, Range().max, ""},
                "Stop while no point of IN is farther than E from OUT, and no point of OUT farther "
                "than E from IN, in the unit of the model (relief-mesh info prints its size). The "
                "distance is measured several times, so this takes longer.")
         .group(limits);
     const std::string preserved = "What is preserved";
     add_number(
-        app, "--max-normal-error", "DEGREES", command.max_normal_error, {0.001, 180.0, "degrees"},
+        app, "--max-normal-error", "DEGREES", command.max_normal_degrees, {0.001, 180.0, "degrees"},
         "Omit collapses that would turn a triangle by more than this angle from the triangles "
         "of IN at one of its corners, 0.001 to 180.")
         .group(preserved);
-    add_switch(app, "--keep-borders", command.keep_borders,
+    add_switch(app, "--keep-borders", command.options.keep_borders,
                "Keep all vertices of boundaries. Default: boundaries are simplified.")
         .group(preserved);
-    add_switch(app, "--keep-seams", command.keep_seams,
+    add_switch(app, "--keep-seams", command.options.keep_seams,
                "Keep all vertices of texture seams, hard edges and borders between materials, "
                "colors, joints or morph targets. Default: they are simplified.")
         .group(preserved);
     add_switch(
-        app, "--keep-positions", command.keep_positions,
+        app, "--keep-positions",
         "Keep the positions of the vertices that remain. Default: they move to where OUT fits "
-        "IN best, which about halves the distance on curved surfaces.")
+        "IN best, which about halves the distance on curved surfaces.",
+        [&command] { command.options.fit_positions = false; })
         .group(preserved);
     add_value(app, "--weights", "NAME=W,...",
               "How much differences of attributes count, each at least 0: texcoords, in lengths on "
@@ -444,7 +435,7 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
               "fraction of the model's size that a difference of 1 counts (default: 0, 0.01 and "
               "0.01); targets, displacements by morph targets, as lengths (default: 1).",
               [&command](const std::string& subject, const std::string& text) {
-                  command.weights = parse_weights(subject, text);
+                  command.options.weights = parse_weights(subject, text);
               })
         .group(preserved);
     set_examples(
