@@ -281,9 +281,15 @@ ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const Trian
 
 struct DecimateCommand {
     ReshapeRequest request;
-    DecimateOptions options{.fit_positions = true};  ///< `triangles` is that of all meshes.
+    DecimateOptions options = default_options();  ///< `triangles` is that of all meshes.
     std::optional<double> ratio;
     std::optional<double> max_normal_degrees;  ///< --max-normal-error
+
+    static DecimateOptions default_options() {
+        DecimateOptions options;
+        options.fit_positions = true;
+        return options;
+    }
 };
 
 /// The attributes of --weights.

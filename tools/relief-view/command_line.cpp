@@ -18,6 +18,7 @@
 #include "option_conflicts.h"
 #include "picture_comparison.h"
 #include "picture_sequence.h"
+#include "picture_sink.h"
 #include "portable_math.h"
 #include "saved_files.h"
 #include "scene_options.h"
@@ -103,6 +104,9 @@ void add_window_options(CLI::App& app, ViewOptions& options) {
 
 void check_output(const ViewOptions& options) {
     if (!options.output) return;
+    refuse(is_animation(*options.output) && !is_sequence(options),
+           "--output " + options.output->string(), "an animation needs several pictures",
+           "add --turntable or --frames, or write a .png");
     const std::string extension = extension_of(*options.output);
     constexpr std::array formats = {".png", ".exr", ".apng", ".mp4", ".webm"};
     refuse(std::find(formats.begin(), formats.end(), extension) == formats.end(),

@@ -589,9 +589,10 @@ void draw_scene_panel(const PanelInput& input, PanelRequests& requests) {
     draw_tree(state);
     draw_findings(input);
     choose_variant(state, requests);
-    const bool is_chosen = input.loading != nullptr && input.loading->ambient_occlusion;
-    bool is_occluded = is_chosen ? *input.loading->ambient_occlusion > 0.0F
-                                 : state.scene().ambient_occlusion.has_value();
+    const auto chosen = input.loading != nullptr
+                            ? input.loading->scene_fields.get(&Scene::ambient_occlusion)
+                            : std::nullopt;
+    bool is_occluded = chosen.value_or(state.scene().ambient_occlusion).has_value();
     if (check("Ambient occlusion", is_occluded))
         requests.ambient_occlusion = is_occluded ? AmbientOcclusion{}.distance : 0.0F;
     if (ImGui::IsItemHovered())
