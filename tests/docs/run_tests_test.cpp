@@ -33,9 +33,10 @@ class RunTests : public testing::Test {
     }
 
     [[nodiscard]] ProgramResult run(const std::string& options, const std::string& ci = "") const {
-        return run_shell(fmt::format("CI={} '{}' . {}", ci,
-                                     (source_directory() / "scripts/dev/run-tests").string(), options),
-                         build_.path());
+        return run_shell(
+            fmt::format("CI={} '{}' . {}", ci,
+                        (source_directory() / "scripts/dev/run-tests").string(), options),
+            build_.path());
     }
 
     [[nodiscard]] std::string results() const {
