@@ -224,7 +224,7 @@ TEST(AnalyticReference, FansLieOnACubicWhoseNormalAtTheOriginIsUp) {
     EXPECT_GT(furthest_bend, 0.03) << "fans that were flat would show nothing";
 }
 
-TEST(AnalyticReference, FansThatLeanAreFoundToLean) {
+TEST(AnalyticReference, DetectsTiltedFans) {
     constexpr double lean = 1e-3;  // Of z, along x: 0.0573 degrees.
     std::vector<glm::vec3> points = points_of_fans(1);
     for (glm::vec3& p : points)

@@ -101,7 +101,7 @@ TEST(AssetHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
     EXPECT_THAT(taken.method, HasSubstr("float32, 8 bit"));
 }
 
-TEST(AssetHeights, OfFewBitsAreAlsoSmoothed) {
+TEST(AssetHeights, WithFewBitsAreAlsoSmoothed) {
     const BumpField field = waves(FieldCoding::bits8);
     const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map());
     EXPECT_THAT(own.experiment.measurements, SizeIs(70));
@@ -119,7 +119,7 @@ TEST(AssetHeights, AreTriedInTheBitsAskedForAlone) {
         EXPECT_THAT(one.method, ::testing::EndsWith(", 16 bit"));
 }
 
-TEST(AssetHeights, OfLargeMapsAreMeasuredOnParts) {
+TEST(AssetHeights, LargeMapsAreMeasuredOnParts) {
     const BumpField field = waves(FieldCoding::float32);
     const AssetExperiment own =
         measure_asset_heights(field.heights, field.options, untimed_map(), 48 * 48);
@@ -145,7 +145,7 @@ double error_half_a_texel_off(const HeightWave& wave, int side) {
     return std::sqrt(squares / (side * side));
 }
 
-TEST(AssetHeights, OfAKernelHalfATexelOffAreThatFarOff) {
+TEST(AssetHeights, HalfTexelShiftOfAKernelIsItsError) {
     constexpr int side = 128;
     const double turn = 2.0 * std::numbers::pi / side;
     const HeightWave wave{2.0, {4.0 * turn, -2.0 * turn}, 0.7};  // 29 texels long, slope 0.4.
@@ -164,7 +164,7 @@ TEST(AssetHeights, OfAKernelHalfATexelOffAreThatFarOff) {
     EXPECT_LT(found(own, "central5, float64, 32 bit").error.rms, 0.01 * expected);
 }
 
-TEST(AssetHeights, AreTimedWhereThatIsWished) {
+TEST(AssetHeights, AreTimedIfRequested) {
     const BumpField field = waves(FieldCoding::bits8);
     AssetOptions options = untimed_map();
     options.run.is_timed = true;
@@ -181,7 +181,7 @@ Image normals_of(const BumpField& field) {
     return normals_from_height(field.heights, field.options, report);
 }
 
-TEST(AssetNormalMaps, AreComparedWithWhatTheFileHolds) {
+TEST(AssetNormalMaps, AreComparedWithTheFile) {
     Report report;
     NormalMapFormat format;
     format.bits = 8;
@@ -207,7 +207,7 @@ TEST(AssetNormalMaps, AreComparedWithWhatTheFileHolds) {
                           "0.183, this method adds 0) at 3 bytes"));
 }
 
-TEST(AssetNormalMaps, AreOffByWhatTheirBitsHold) {
+TEST(AssetNormalMaps, HaveTheErrorOfTheirBits) {
     const AssetExperiment own =
         measure_asset_normals(normals_of(waves(FieldCoding::float32)), {.bits = 32}, untimed_map());
     // An 8-bit code is 2 / 255, so the error per axis is at most half of it, and 257 times less
@@ -220,7 +220,7 @@ TEST(AssetNormalMaps, AreOffByWhatTheirBitsHold) {
     EXPECT_EQ(found(own, "xy 16 bit").cost.stored_bytes, 4.0);
 }
 
-TEST(AssetNormalMaps, OfCodesThatCannotHoldThemAreAsFarOffAsTheyMustBe) {
+TEST(AssetNormalMaps, UnsuitableCodesHaveTheExpectedError) {
     // Normals that point 10 degrees below the surface. Without the sign of z they point above it.
     constexpr double below = 10.0;
     std::vector<glm::dvec3> directions;
@@ -295,7 +295,7 @@ TEST(AssetBake, GetsTruerWithSamplesAndBits) {
     EXPECT_THAT(own.command(), HasSubstr(" --size 32 --samples 64"));
 }
 
-TEST(AssetBake, OfAFlatSurfaceIsExactWithOneSample) {
+TEST(AssetBake, FlatSurfaceIsExactWithOneSample) {
     const AssetExperiment own = measured(test::grid(4), true);
     EXPECT_LE(found(own, "1 sample, 16 bit").error.max, 0.0013);
     // Zero is halfway between two codes, so both axes have an error of half a code.
@@ -334,7 +334,7 @@ Mesh striped(double degrees) {
     return mesh;
 }
 
-TEST(AssetBake, OfSamplesThatAreADegreeOffIsADegreeOff) {
+TEST(AssetBake, SamplesTiltedByADegreeHaveAnErrorOfADegree) {
     // One sample in the middle meets only normals that lean right. The means of 4 and of 256
     // samples meet both kinds and point straight up.
     for (const double degrees : {1.0, 5.0}) {

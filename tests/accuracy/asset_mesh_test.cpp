@@ -39,7 +39,7 @@ AssetExperiment normals_of(const Mesh& mesh, const AssetMeshOptions& how = {}) {
     return measure_asset_mesh(mesh, how, untimed_mesh()).front();
 }
 
-TEST(AssetNormals, AreJudgedAsByTheTruthThatNobodyTold) {
+TEST(AssetNormals, FittedSurfaceAgreesWithTheKnownOne) {
     const AnalyticMesh ground_truth =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 48, 1);
     const AssetExperiment own = normals_of(ground_truth.mesh);
@@ -53,7 +53,7 @@ TEST(AssetNormals, AreJudgedAsByTheTruthThatNobodyTold) {
     EXPECT_THAT(own.experiment.finding, HasSubstr(". To do it: relief-mesh process"));
 }
 
-TEST(AssetNormals, OfAMethodThatIsOffAreOffByThat) {
+TEST(AssetNormals, ErrorOfAWrongMethodIsMeasured) {
     AnalyticMesh ground_truth =
         analytic_mesh(AnalyticSurface::saddle, Triangulation::regular, 48, 1);
     // The file's normals: exact ones, each rotated by one degree about a perpendicular axis.
@@ -68,7 +68,7 @@ TEST(AssetNormals, OfAMethodThatIsOffAreOffByThat) {
     EXPECT_FALSE(own.command().empty());
 }
 
-TEST(AssetNormals, OfTheFileCanBeTheTruth) {
+TEST(AssetNormals, FileNormalsCanBeTheGroundTruth) {
     Mesh mesh = test::sphere(24, 16);
     Report report;
     mesh.normals = vertex_normals(mesh.positions, mesh.triangles, NormalWeight::area, report);
@@ -115,7 +115,7 @@ Mesh capped_cylinder(int sides, int rings) {
     return mesh;
 }
 
-TEST(AssetNormals, SayWhereNoMethodWasJudged) {
+TEST(AssetNormals, ReportVerticesWithoutGroundTruth) {
     const AssetExperiment smooth = normals_of(capped_cylinder(32, 16));
     EXPECT_THAT(smooth.recommendation.description, HasSubstr("of the vertices are not judged"));
     EXPECT_THAT(smooth.recommendation.description,
@@ -130,7 +130,7 @@ TEST(AssetNormals, SayWhereNoMethodWasJudged) {
     EXPECT_THAT(normals_of(whole.mesh).recommendation.description, Not(HasSubstr("not judged")));
 }
 
-TEST(AssetNormals, SayWhichMethodsTheReferenceCannotTellApart) {
+TEST(AssetNormals, ListMethodsWithinTheUncertaintyOfTheReference) {
     // On a coarse mesh, the error of the fitted surface exceeds the differences of some methods.
     const AnalyticMesh coarse =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 12, 1);
@@ -157,14 +157,14 @@ TEST(AssetNormals, AreThoseThatTheToolComputes) {
         EXPECT_THAT(one.method, Not(HasSubstr("float"))) << "relief-mesh has no such option";
 }
 
-TEST(AssetNormals, RecommendNothingWhereThereIsNoSurface) {
+TEST(AssetNormals, RecommendNoMethodWithoutASurface) {
     const AssetExperiment own = normals_of(test::cube());
     EXPECT_EQ(own.recommendation.method, std::nullopt);
     EXPECT_THAT(own.recommendation.description, HasSubstr("too coarse"));
     EXPECT_TRUE(own.command().empty());
 }
 
-TEST(CreaseRule, AreTheOnesToldOrThoseOfTheFile) {
+TEST(CreaseRule, IsTheRequestedOneOrThatOfTheFile) {
     Mesh mesh = test::cube();
     const CreaseRule by_normals = crease_rule(mesh, std::nullopt);
     EXPECT_NEAR(by_normals.edges.crease_angle.value(), glm::radians(45.0), 1e-9);
@@ -227,7 +227,7 @@ TEST(AssetTangents, LeaveOutTrianglesWithoutADirection) {
     EXPECT_EQ(all[1].recommendation.method, std::nullopt);
 }
 
-TEST(AssetMesh, OfManyTrianglesIsMeasuredOnEightRuns) {
+TEST(AssetMesh, LargeMeshIsMeasuredOnEightRuns) {
     const Mesh mesh = test::grid(32);
     EXPECT_THAT(part_to_measure(mesh, 10000).triangles, SizeIs(2048));
     const Mesh part = part_to_measure(mesh, 160);
@@ -253,7 +253,7 @@ TEST(AssetMesh, IsTimedAndRecommendedByTime) {
     EXPECT_THAT(own.recommendation.description, HasSubstr("no method is within 1e-06 degrees"));
 }
 
-TEST(AssetMesh, EndsWhenThatIsWished) {
+TEST(AssetMesh, CanBeCancelled) {
     Progress progress;
     const ProgressScope scope(progress);
     progress.cancel();

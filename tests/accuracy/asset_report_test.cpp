@@ -47,7 +47,7 @@ TEST(Recommended, IsTheKnee) {
               "long for 0.01 degrees less");
 }
 
-TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
+TEST(Recommended, AcceptsTimeUpToTheCubeOfTheAccuracyGain) {
     // Half the error is worth eight times the time, but not more.
     const auto second_for = [](double seconds) {
         return recommended(experiment_of({measured("a", 1.0, 0.01), measured("b", 0.5, seconds)}),
@@ -59,7 +59,7 @@ TEST(Recommended, TakesTheTruerAsLongAsTheCubeOfTheGainPaysForIt) {
     EXPECT_THAT(second_for(0.079).description, HasSubstr("no other method is more accurate"));
 }
 
-TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
+TEST(Recommended, PrefersTheSmallestOfEquals) {
     Experiment experiment =
         experiment_of({measured("wide", 0.5, 0.010), measured("narrow", 0.505, 0.0105),
                        measured("flat", 0.5, 0.012)});
@@ -69,7 +69,7 @@ TEST(Recommended, OfAlikeOnesTheSmallestIsTaken) {
     EXPECT_EQ(recommended(experiment, {}).method, 1U);
 }
 
-TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeAboutAsLong) {
+TEST(Recommended, NextMethodOfEqualTimeIsDescribedAsEqual) {
     RecommendationRule rule;
     rule.request.max_error = 0.5;
     EXPECT_EQ(
@@ -79,7 +79,7 @@ TEST(Recommended, ANextOneThatCostsTheSameIsSaidToTakeAboutAsLong) {
         "degrees less");
 }
 
-TEST(Recommended, WhatTheTruthIsNotKnownBetterThanIsNotPaidFor) {
+TEST(Recommended, IgnoresGainsBelowTheUncertaintyOfTheReference) {
     RecommendationRule rule;
     // Errors become 2.24 and 2.0004, worth 1.4 times the cost at most; "good" costs 4.1 times as
     // much.
@@ -119,7 +119,7 @@ TEST(Recommended, KeepsWithinATime) {
         "with best");
 }
 
-TEST(Recommended, LeavesOutWhatCannotBeTaken) {
+TEST(Recommended, ExcludesUnusableMethods) {
     Experiment experiment = usual();
     const std::vector<unsigned char> choosable = {1, 1, 0, 1};
     RecommendationRule rule;
@@ -131,7 +131,7 @@ TEST(Recommended, LeavesOutWhatCannotBeTaken) {
     EXPECT_EQ(recommended(experiment_of({}), {}).description, "nothing could be measured");
 }
 
-TEST(Recommended, GoesByBytesWhereThoseAreDear) {
+TEST(Recommended, MinimizesBytesIfRequested) {
     Experiment experiment = usual();
     experiment.measurements[0].cost.stored_bytes = 4;
     experiment.measurements[1].cost.stored_bytes = 4;
@@ -173,7 +173,7 @@ TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
     EXPECT_EQ(recommended(experiment, {}).method, 0U);
 }
 
-TEST(Recommended, WithoutTimesTakesTheFewestBytesThenTheLeastWork) {
+TEST(Recommended, WithoutTimesMinimizesBytesThenWork) {
     Experiment experiment =
         experiment_of({measured("large", 0.01, 0.1), measured("work", 0.2, 0.1),
                        measured("least", 0.3, 0.1), measured("rough", 2.0, 0.1)});

@@ -92,7 +92,7 @@ double rms_between(const Image& a, const Image& b) {
     return std::sqrt(squares * 3.0 / static_cast<double>(one.size()));
 }
 
-TEST(BakeTruth, OfManyRaysIsThatOfTheFormula) {
+TEST(BakeTruth, ManyRaysConvergeToTheFormula) {
     const BumpyBake bake(stacks, side);
     const std::vector<test::TexelReference> all = references(bake);
     ASSERT_GT(all.size(), 150U);
@@ -139,7 +139,7 @@ TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
     EXPECT_NEAR(samples.charts.front().curves.back().order.value(), -1.0, 0.35);
 }
 
-TEST(BakeExperiments, ShowWhereMapsErrAndWhatTheyLookLike) {
+TEST(BakeExperiments, HavePicturesOfErrorsAndMaps) {
     const std::vector<Experiment>& all = quick_experiments();
     for (const Experiment& one : all) {
         ASSERT_EQ(one.heat_maps.size(), 3U) << one.id;

@@ -134,7 +134,7 @@ struct PublishedCodes {
     double in_16_bits;
 };
 
-TEST(WaveErrors, OfFewCodesAreAsPublished) {
+TEST(WaveErrors, MatchPublishedErrorsOfFewCodes) {
     // The error of codes depends on their phase, so the last digits differ.
     constexpr double codes_fall_otherwise = 0.05;
     for (const PublishedCodes& row : {PublishedCodes{"forward", 8.11, 0.345},
@@ -153,7 +153,7 @@ TEST(WaveErrors, OfFewCodesAreAsPublished) {
     }
 }
 
-TEST(BumpErrors, OfAKernelAHundredthTooStrongAreThatHundredth) {
+TEST(BumpErrors, MeasureAWrongGainOfOnePercent) {
     constexpr double slope = 0.5;
     constexpr int size = 64;
     BumpField ramp;
@@ -255,7 +255,7 @@ const Experiment& quick(const std::string& title) {
     return titled(quick_experiments(), title);
 }
 
-TEST(BumpExperiments, AreWhole) {
+TEST(BumpExperiments, AreComplete) {
     expect_whole(quick_experiments(), Subject::bump);
 }
 
@@ -305,7 +305,7 @@ TEST(BumpExperiments, CodesOfEightBitsMakeLongWavesWorseForSmallKernels) {
     EXPECT_GT(small.points.back().error, 4.0 * wide.points.back().error);
 }
 
-TEST(BumpExperiments, HeatMapsShowWhereKernelsErr) {
+TEST(BumpExperiments, HeatMapsShowErrorsOfKernels) {
     const Experiment mixed = quick("Bump: mixed, 8 bit");
     ASSERT_EQ(mixed.heat_maps.size(), 2U);
     const auto mean_of_columns = [](const HeatMap& map, int begin, int end) {

@@ -127,7 +127,7 @@ TEST(CompareReports, AMethodThatGainedLessThanTheOthersIsNotSlower) {
     EXPECT_NEAR(other.times[8].counted, 0.9 / 0.7, rounding);
 }
 
-TEST(CompareReports, ABoundFinerThanTheResolutionCannotBeTold) {
+TEST(CompareReports, BoundBelowTheResolutionIsUndecidable) {
     // The resolution is 1.242 of all methods, and 1.255 of each.
     const std::vector<double> ratios = {0.98, 0.99, 0.99, 1.0, 1.0, 1.0, 1.01, 1.01, 2.0};
     const ReportComparison narrow = compared_by_ratios(ratios, true, 1.1);
@@ -140,7 +140,7 @@ TEST(CompareReports, ABoundFinerThanTheResolutionCannotBeTold) {
     EXPECT_EQ(wide.one_thread.verdict, TimeVerdict::unchanged);
 }
 
-TEST(CompareReports, OfFewerThanEightMethodsNoTimeIsJudged) {
+TEST(CompareReports, NeedsEightMethodsToJudgeTimes) {
     const std::vector<double> ratios = {1, 1, 1, 1, 1, 1, 5.0};
     const ReportComparison result = compared_by_ratios(ratios);
     EXPECT_FALSE(result.one_thread.is_judged);
@@ -204,7 +204,7 @@ std::vector<Experiment> simulated(std::mt19937_64& random, const Simulation& sim
     return timed(all);
 }
 
-TEST(CompareReports, OfEqualRunsOnABusyMachineNoChangeIsReported) {
+TEST(CompareReports, EqualRunsOnABusyMachineHaveNoChange) {
     std::mt19937_64 random(7);
     for (int trial = 0; trial < 200; ++trial) {
         const ReportComparison result =
@@ -218,7 +218,7 @@ TEST(CompareReports, OfEqualRunsOnABusyMachineNoChangeIsReported) {
     }
 }
 
-TEST(CompareReports, AMethodThatTakesTwiceAsLongOnABusyMachineIsFoundOrCannotBeTold) {
+TEST(CompareReports, DoubledTimeOnABusyMachineIsDetectedOrUndecidable) {
     std::mt19937_64 random(8);
     int found = 0;
     for (int trial = 0; trial < 200; ++trial) {
@@ -295,7 +295,7 @@ TEST(CompareReports, CurvesAreComparedPointByPoint) {
     EXPECT_TRUE(std::isinf(result.errors[0].worst().growth()));
 }
 
-TEST(CompareReports, PointsOfACurveAreToldApartByTheirPlaceAlone) {
+TEST(CompareReports, PointsOfACurveMatchByIndex) {
     Experiment before = one_measurement({});
     before.charts.push_back({"angle", "", "", "", false, {}, {{"fit", {}, {}, {}, {}}}});
     before.charts[0].curves[0].points = {{-1.0, 0.5}, {0.0, 0.1}, {1e-30, 0.2}, {1.0, 0.3}};
@@ -323,7 +323,7 @@ TEST(CompareReports, CurvesAndPointsWithoutAPartnerAreListed) {
     EXPECT_THAT(result.errors, IsEmpty());
 }
 
-TEST(CompareReports, ListsWhatHasNoPartner) {
+TEST(CompareReports, ListsUnmatchedMethods) {
     Experiment before = one_measurement({});
     Experiment after = before;
     after.measurements[0].method = "scharr3";

@@ -75,7 +75,7 @@ const std::vector<Experiment>& quick_experiments() {
     return all;
 }
 
-TEST(DecimationExperiments, AreWhole) {
+TEST(DecimationExperiments, AreComplete) {
     expect_whole(quick_experiments(), Subject::decimation);
     EXPECT_EQ(quick_experiments().size(), 5U);
 }
@@ -104,7 +104,7 @@ TEST(DecimationExperiments, AllMethodsReachTheSameNumberOfTriangles) {
     }
 }
 
-TEST(DecimationExperiments, WhatIsPreservedCostsAccuracy) {
+TEST(DecimationExperiments, PreservedFeaturesCostAccuracy) {
     const auto error = [](const char* method) -> const ErrorStats& {
         return measurement_of(titled(quick_experiments(), "Decimation: torus, distance"), method)
             .error;

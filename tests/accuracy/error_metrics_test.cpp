@@ -39,7 +39,7 @@ TEST(MapErrors, AreTheLeanOfEachTexel) {
     EXPECT_EQ(map_errors(map, level, 1).count, 4U);
 }
 
-TEST(MapErrors, CountWhatHasNoDirectionAndRefuseOtherSizes) {
+TEST(MapErrors, CountZeroVectorsAndRefuseOtherSizes) {
     Image map = leaning_map(1.0);
     map.as<float>()[2] = 0.0F;
     map.as<float>()[0] = 0.0F;
@@ -57,7 +57,7 @@ Image gray(int code, int size = 32) {
     return image;
 }
 
-TEST(PictureError, OfTheSamePictureIsNone) {
+TEST(PictureError, EqualPicturesHaveNone) {
     const Image picture = gray(100);
     const PictureError error = picture_error(to_linear(picture), picture);
     EXPECT_EQ(error.figures.count, 32U * 32U);
@@ -75,14 +75,14 @@ TEST(PictureError, IsInDecibelsOfCodes) {
     EXPECT_GT(error.figures.mean, 0.02);
 }
 
-TEST(PictureError, OfBlackForWhiteIsNearlyAllThereIs) {
+TEST(PictureError, BlackForWhiteIsNearlyTheMaximum) {
     const PictureError error = picture_error(to_linear(gray(255)), gray(0));
     EXPECT_GT(error.figures.mean, 0.95);
     EXPECT_LE(error.figures.max, 1.0);
     EXPECT_NEAR(error.figures.psnr.value(), 0.0, 1e-4);
 }
 
-TEST(PictureError, IsOfWhatAScreenShows) {
+TEST(PictureError, ComparesDisplayedColors) {
     // The difference is less than half a code everywhere, so the codes are equal.
     Image ground_truth = to_linear(gray(100));
     for (float& sample : ground_truth.as<float>())
@@ -109,7 +109,7 @@ TEST(Averaged, IsTheMeanOfEachSquare) {
     EXPECT_THROW(averaged(image, 3), InvalidInput);
 }
 
-TEST(WithoutAlpha, KeepsTheColours) {
+TEST(WithoutAlpha, KeepsTheColors) {
     Image image = make_image(2, 1, 4, 8, ColorSpace::srgb);
     for (std::size_t i = 0; i < 8; ++i)
         image.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i);

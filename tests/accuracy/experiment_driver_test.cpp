@@ -81,7 +81,7 @@ TEST(Measured, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
     EXPECT_EQ(of(Fruit::pear).error.rms, 2.0);
 }
 
-TEST(Measured, RunsNothingWhereNothingIsTimed) {
+TEST(Measured, RunsNoRepetitionsWithoutTiming) {
     PreparedExperiment prepared;
     prepared.methods = {method_of({}, "one", 1.0, [] { FAIL(); })};
     const Experiment experiment = measured(prepared, untimed());
@@ -144,7 +144,7 @@ TEST(MeasurementOf, RefusesMethodsThatWereLeftOut) {
                  std::out_of_range);
 }
 
-TEST(Truest, HasTheLeastErrorOfThoseThatAreDefined) {
+TEST(Truest, HasTheSmallestDefinedError) {
     Experiment experiment;
     EXPECT_EQ(most_accurate(experiment), nullptr);
     for (const double rms : {3.0, 1.0, 2.0}) {
@@ -214,7 +214,7 @@ TEST(RunPlanned, TellsOfEachBeforeItAndNamesIt) {
     EXPECT_EQ(found[1].subject, Subject::bump);
 }
 
-TEST(RunPlanned, EndsWhereTheTellerThrows) {
+TEST(RunPlanned, EndsIfTheCallbackThrows) {
     RunOptions options = untimed();
     options.tell = [](const RunProgress& progress) {
         if (progress.done == 1) throw std::runtime_error("enough");
@@ -226,7 +226,7 @@ TEST(RunPlanned, EndsWhereTheTellerThrows) {
     EXPECT_EQ(runs, 1U);
 }
 
-TEST(RunPlanned, DoesNotRunWhatIsLeftOut) {
+TEST(RunPlanned, SkipsExcludedMethods) {
     std::string calls;
     PlannedExperiment taken = planned("taken");
     taken.prepare = [&] {
@@ -262,7 +262,7 @@ const std::vector<double>& rounds_of(const Experiment& experiment, std::size_t m
     return experiment.measurements.at(method).cost.one_thread.value().rounds;
 }
 
-TEST(Passes, ShareTheRoundsAndTheLastOneHasAll) {
+TEST(Passes, DivideTheRounds) {
     double clock = 0.0;
     const auto next = [&] { return ++clock; };
     RunOptions options = rounds(7);
@@ -288,7 +288,7 @@ TEST(Passes, ABusyMomentIsInOneOfThem) {
     EXPECT_EQ(found[0].measurements[0].cost.one_thread->spread().p90, 2.0);
 }
 
-TEST(Passes, AreNoMoreThanThereIsToDo) {
+TEST(Passes, AreAtMostTheNumberOfRounds) {
     std::size_t runs = 0;
     RunOptions options = rounds(3);
     options.passes = 5;

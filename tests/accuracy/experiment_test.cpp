@@ -25,24 +25,24 @@ std::vector<bool> of(std::vector<MethodCost> prices) {
     return pareto_optimal(prices);
 }
 
-TEST(Frontier, HoldsWhatNothingBeats) {
+TEST(Frontier, ContainsParetoOptimalMethods) {
     EXPECT_THAT(of({{1.0, 3.0}, {2.0, 2.0}, {2.5, 2.5}, {3.0, 1.0}}),
                 ElementsAre(true, true, false, true));
     EXPECT_THAT(of({}), IsEmpty());
     EXPECT_THAT(of({{5.0, 5.0}}), ElementsAre(true));
 }
 
-TEST(Frontier, OfEqualTimesTakesTheTruerAndOfEqualErrorsTheFaster) {
+TEST(Frontier, BreaksTiesByErrorAndTime) {
     EXPECT_THAT(of({{1.0, 1.0}, {2.0, 1.0}}), ElementsAre(true, false));
     EXPECT_THAT(of({{1.0, 2.0}, {1.0, 1.0}}), ElementsAre(false, true));
 }
 
-TEST(Frontier, EqualOnesStandOrFallTogether) {
+TEST(Frontier, ContainsAllOrNoneOfEqualMethods) {
     EXPECT_THAT(of({{1.0, 1.0}, {1.0, 1.0}, {2.0, 2.0}, {2.0, 2.0}}),
                 ElementsAre(true, true, false, false));
 }
 
-TEST(Frontier, WhatIsNotKnownIsNeverOnIt) {
+TEST(Frontier, ExcludesUnknownResults) {
     EXPECT_THAT(of({{unknown, 0.0}, {0.0, unknown}, {1.0, 1.0}}), ElementsAre(false, false, true));
     EXPECT_THAT(of({{infinity, 0.5}, {1.0, 1.0}}), ElementsAre(true, true));
 }
@@ -73,7 +73,7 @@ Measurement measured(double rms, double seconds) {
     return measurement;
 }
 
-TEST(MarkEfficient, GoesByTheMedianOnOneThread) {
+TEST(MarkEfficient, UsesTheMedianOnOneThread) {
     Experiment experiment;
     experiment.measurements = {measured(1.0, 2.0), measured(2.0, 1.0), measured(2.0, 3.0)};
     experiment.measurements[1].cost.one_thread = Timing{{1.0, 9.0, 1.0}};
@@ -84,7 +84,7 @@ TEST(MarkEfficient, GoesByTheMedianOnOneThread) {
     EXPECT_FALSE(experiment.measurements[2].is_pareto_optimal);
 }
 
-TEST(MarkEfficient, LeavesOutWhatIsUndefinedOrWasNotTimed) {
+TEST(MarkEfficient, ExcludesUndefinedAndUntimedMethods) {
     Experiment experiment;
     experiment.measurements = {measured(0.0, 0.5), measured(1.0, 1.0), measured(0.5, 1.0)};
     experiment.measurements[0].error.undefined = 1;
@@ -105,7 +105,7 @@ TEST(FittedOrder, IsThePowerOfAPowerLaw) {
     EXPECT_NEAR(fitted_order(points).value(), -4.0, 1e-12);
 }
 
-TEST(FittedOrder, NeedsTwoPlaces) {
+TEST(FittedOrder, NeedsTwoPoints) {
     EXPECT_FALSE(fitted_order({}));
     EXPECT_FALSE(fitted_order({{8.0, 1.0}}));
     EXPECT_FALSE(fitted_order({{8.0, 1.0}, {8.0, 2.0}}));
@@ -132,7 +132,7 @@ TEST(NanIfEmpty, DistinguishesNoErrorFromZero) {
     EXPECT_TRUE(experiment.measurements[1].is_pareto_optimal);
 }
 
-TEST(CurveError, HasNoNumberWhereASingleResultHasNone) {
+TEST(CurveError, IsNaNIfOneResultIsUndefined) {
     EXPECT_EQ(curve_error(error_stats({3.0F, 4.0F, 0.0F, 0.0F})), 2.5);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_TRUE(std::isnan(curve_error(error_stats({3.0F, nan}))));

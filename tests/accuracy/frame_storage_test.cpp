@@ -50,7 +50,7 @@ TEST(SampleFrames, EvenOnesAreFramesSpreadEvenly) {
     EXPECT_EQ(frames.float_tangents[1].w, -1.0F);
 }
 
-TEST(FrameErrors, OfTurnedFramesAreTheTurn) {
+TEST(FrameErrors, RotatedFramesHaveTheAngleOfRotation) {
     const SampleFrames ground_truth = even_frames(500);
     EXPECT_LE(frame_errors(ground_truth, turned(ground_truth, 0.0)).both.max, rounding);
     const FrameCodeErrors errors = frame_errors(ground_truth, turned(ground_truth, 1.0));
@@ -73,7 +73,7 @@ TEST(FrameErrors, CountHandsThatAreLost) {
     EXPECT_EQ(frame_errors(ground_truth, found).flipped_frames, 2U);
 }
 
-TEST(FrameExperiments, AreWhole) {
+TEST(FrameExperiments, AreComplete) {
     expect_whole(run_quick(Subject::storage), Subject::storage);
 }
 
@@ -106,7 +106,7 @@ TEST(FrameExperiments, ErrorsAreThoseOfTheEncodings) {
                 HasSubstr("in 8 bytes 'quaternion16, best' has the smallest error, 0.0005"));
 }
 
-TEST(FrameExperiments, WritingSaysWhatTheBestCodesBring) {
+TEST(FrameExperiments, FindingStatesTheGainOfOptimalCodes) {
     const Experiment experiment = run_one("storage/frames-written");
     EXPECT_THAT(
         experiment.finding,

@@ -34,7 +34,7 @@ std::size_t turned_over(const AnalyticMesh& reference) {
     return count;
 }
 
-TEST(AnalyticMesh, FacesItsNormalsAndTurnsOverOnlyWhereFolded) {
+TEST(AnalyticMesh, FacesItsNormalsExceptAtFolds) {
     for (const AnalyticSurface surface : all_surfaces) {
         for (const Triangulation triangulation :
              {Triangulation::regular, Triangulation::jittered, Triangulation::anisotropic}) {
@@ -75,7 +75,7 @@ TEST(AnalyticMesh, NormalsAreThoseOfTheSurfaceItself) {
     }
 }
 
-TEST(AnalyticMesh, CountsAsInnerWhatHasTrianglesAllAround) {
+TEST(AnalyticMesh, InnerVerticesAreSurroundedByTriangles) {
     for (const AnalyticSurface surface : all_surfaces) {
         const AnalyticMesh reference = analytic_mesh(surface, Triangulation::regular, 8, 1);
         validate(reference.mesh);
@@ -158,7 +158,7 @@ TEST(TexturedMesh, FramesAreTheLimitOfItsTrianglesOwn) {
     }
 }
 
-TEST(TexturedMesh, HasASeamWhereTheSurfaceClosesAndAFoldWhereTheImageIsMirrored) {
+TEST(TexturedMesh, HasASeamAndAMirroredFold) {
     const TexturedMesh torus = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
                                              TextureLayout::upright, 8, 1);
     ASSERT_EQ(torus.mesh.positions.size(), 81U);
@@ -339,7 +339,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Situation{AnalyticSurface::ellipsoid, Triangulation::anisotropic, 192},
                     Situation{AnalyticSurface::cubic, Triangulation::anisotropic, 64}));
 
-TEST(FittedNormals, OwnErrorIsNoLessThanTheErrorWhereAveragedOnesAreExact) {
+TEST(FittedNormals, UncertaintyCoversTheirErrorOnSpheres) {
     // Max's weights are exact on spheres and, by symmetry, on regular grids of a torus.
     for (const auto& [surface, triangulation] :
          {std::pair(AnalyticSurface::sphere, Triangulation::jittered),
@@ -405,7 +405,7 @@ Mesh graph_of(const Height& height, int cells) {
     return mesh;
 }
 
-TEST(FittedNormals, AreExactWhereTheSurfaceIsSuchAPolynomial) {
+TEST(FittedNormals, AreExactOnPolynomialSurfaces) {
     // The surface is horizontal in the middle, so that the axes of the tangent plane are those of
     // the polynomial.
     const Mesh mesh = graph_of(
@@ -450,7 +450,7 @@ TEST(FittedNormals, EndAtHardEdges) {
     EXPECT_LT(smooth.corners.size(), parted.corners.size() * 9 / 10);
 }
 
-TEST(FittedNormals, SayNothingWhereTrianglesBendAway) {
+TEST(FittedNormals, ExcludeFoldedFans) {
     // A steep, symmetric roof: both fits agree on its ridge, but there is no normal.
     const Mesh roof = graph_of([](double x, double) { return 2.0 - 2.0 * std::abs(x); }, 16);
     FitOptions options;
@@ -469,7 +469,7 @@ TEST(FittedNormals, SayNothingWhereTrianglesBendAway) {
     EXPECT_EQ(beside_the_ridge(found), beside_the_ridge(all));
 }
 
-TEST(FittedNormals, SayNothingWhereThereIsNoSurface) {
+TEST(FittedNormals, AreEmptyWithoutASurface) {
     Mesh tetrahedron;
     tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -483,7 +483,7 @@ TEST(FittedNormals, SayNothingWhereThereIsNoSurface) {
     EXPECT_TRUE(fitted_normals(Mesh{}, {}).corners.empty());
 }
 
-TEST(FittedNormals, OfLargeMeshesAreASampleTheSameForAnyThreads) {
+TEST(FittedNormals, SampleLargeMeshesIndependentlyOfThreads) {
     const AnalyticMesh reference =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 32, 1);
     FitOptions options;

@@ -62,7 +62,7 @@ TEST(BumpFields, TheirNormalsAreThoseOfDifferencesOfHighOrder) {
     EXPECT_LT(share_beyond(2e-3, make_bump_field(recipe_of(FieldShape::terraces), 160, 160)), 0.5);
 }
 
-TEST(BumpFields, AFieldOfItsOwnIsSampledWithTheSlopeOfItsFormula) {
+TEST(BumpFields, CustomFieldHasTheSlopeOfItsFormula) {
     const AnalyticHeights field = sampled_heights(5, 4, [](const glm::dvec2& p) {
         return HeightSample{p.x * p.x * 0.25 - 2.0 * p.y, {0.5 * p.x, -2.0}};
     });
@@ -71,7 +71,7 @@ TEST(BumpFields, AFieldOfItsOwnIsSampledWithTheSlopeOfItsFormula) {
               1e-15);
 }
 
-TEST(BumpFields, TerracesHaveNoNormalBesideWallsAndOneElsewhere) {
+TEST(BumpFields, TerracesHaveNoNormalNextToWalls) {
     const BumpField field = make_bump_field(recipe_of(FieldShape::terraces), 160, 160);
     const std::span<const float> heights = field.heights.as<float>();
     std::size_t without = 0;
@@ -114,7 +114,7 @@ TEST(BumpFields, AreStoredAsTheySay) {
     }
 }
 
-TEST(BumpFields, NoiseHasItsDeviationAndTheTruthHasNone) {
+TEST(BumpFields, NoiseAffectsHeightsButNotTheGroundTruth) {
     const BumpField clean = make_bump_field(recipe_of(FieldShape::waves), 128, 128);
     const BumpField noisy =
         make_bump_field(recipe_of(FieldShape::waves, FieldCoding::float32, 0.2), 128, 128);
@@ -276,7 +276,7 @@ TEST(BumpExperiment, OnAKnownFieldTheErrorsAreThoseOfTheirMethods) {
               100.0 * rms(Kernel::central5, Arithmetic::float64, 32));
 }
 
-TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
+TEST(BumpExperiment, ReferenceOfAMapIsTheMostAccurateMethod) {
     const BumpField field = field_of(FieldCoding::bits8);
     const auto methods = bump_methods(4, all_depths, both_arithmetics, both_ways);
     const BumpExperiment experiment =
@@ -298,7 +298,7 @@ TEST(BumpExperiment, OnAMapTheReferenceIsTheTruestKnownAndSaysSo) {
     EXPECT_LT(known.measurements[0].error.rms, of_plain);
 }
 
-TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
+TEST(BumpExperiment, CheapestMethodWithinALimitIsSelected) {
     const BumpField field = field_of(FieldCoding::float32);
     const auto methods = bump_methods(4, all_depths, both_arithmetics, as_stored);
     const BumpExperiment experiment =
@@ -332,7 +332,7 @@ TEST(BumpExperiment, TheCheapestWithinABoundIsNoDearerThanNeeded) {
     EXPECT_EQ(most_accurate(experiment, ErrorKind::rms)->method.bits, 32);
 }
 
-TEST(BumpExperiment, TheExpectedErrorIsThatOfTheMapAndWhatIsAdded) {
+TEST(BumpExperiment, ExpectedErrorCombinesMapAndConversion) {
     const BumpField field =
         make_bump_field({"", FieldShape::waves, 32.0, 0.3, FieldCoding::bits8, 1.0, 5}, 256, 256);
     const int radius = best_gaussian_radius(choose_kernel(field.heights, field.options));

@@ -36,7 +36,7 @@ TEST(ProcessorSeconds, ExcludeTimeOfWaiting) {
     EXPECT_GE(working, 4.9e-3);  // Allow for the difference of two clocks.
 }
 
-TEST(PeakBytes, AreWhatWorkHoldsAtTheMost) {
+TEST(PeakBytes, AreTheMaximumAllocated) {
     constexpr std::size_t size = 64U << 20U;
     const auto touch = [] {
         std::vector<char> memory(size);

@@ -41,7 +41,7 @@ std::vector<glm::dvec3> leaning(double degrees) {
     return normals;
 }
 
-TEST(PatchErrors, OfTurnedNormalsAreTheTurnWhateverThePatch) {
+TEST(PatchErrors, RotatedNormalsHaveTheAngleForAnyPatch) {
     const Image ground_truth = image_of_normals(leaning(0.0), 16);
     const Image turned = image_of_normals(leaning(1.0), 16);
     for (const int block : {1, 2, 4, 8, 16}) {
@@ -61,7 +61,7 @@ std::string choice_of(const NormalCode& code, const std::string& name) {
     return {};
 }
 
-TEST(NormalCodes, FlatComesBackFlatUnlessItsZeroIsNoCode) {
+TEST(NormalCodes, FlatIsExactIfZeroIsACode) {
     const std::vector<glm::dvec3> flat(16, glm::dvec3(0.0, 0.0, 1.0));
     const Image normals = image_of_normals(flat, 4);
     for (const NormalCode& code : normal_codes()) {
@@ -86,7 +86,7 @@ ErrorStats errors_by_gltf(const Image& codes, std::span<const glm::dvec3> ground
     return map_errors(read, ground_truth);
 }
 
-TEST(NormalCodes, RowsTellWhatEitherDecoderReads) {
+TEST(NormalCodes, RowsCoverBothDecoders) {
     std::vector<glm::dvec3> directions = even_directions(2 * 256 * 256);
     directions.resize(directions.size() / 2);
     const Image normals = image_of_normals(directions, 256);
@@ -212,7 +212,7 @@ TEST(NormalCodes, ErrAsPublished) {
     }
 }
 
-TEST(NormalCodes, TheBestOfFourCodesIsNoFartherThanTheNearest) {
+TEST(NormalCodes, BestOfFourCodesIsAtLeastAsCloseAsTheNearest) {
     const std::vector<glm::dvec3> directions = even_directions(64 * 64);
     const Image normals = image_of_normals(directions, 64);
     for (const char* bits : {"8", "10", "12", "16"}) {
@@ -273,7 +273,7 @@ TEST(NormalCodeExperiments, HaveTheErrorsOfThePage) {
                   "still 0.025; with blue noise the errors are 0.26 and 0.011."));
 }
 
-TEST(NormalCodeExperiments, SayWhatIsNearestInSoManyBytes) {
+TEST(NormalCodeExperiments, NameTheBestCodeForEachSize) {
     const Experiment sphere = run_one("storage/normals");
     EXPECT_EQ(sphere.measurements.size(), normal_codes().size());
     EXPECT_THAT(sphere.finding, HasSubstr("in 2 bytes 'octahedral 2 x 8 bit, best', 0.3"));
@@ -289,7 +289,7 @@ const Experiment& quick_compression() {
     return quick_compressions().front();
 }
 
-TEST(CompressionExperiment, IsWhole) {
+TEST(CompressionExperiment, IsComplete) {
     expect_whole(quick_compressions(), Subject::compression);
     EXPECT_EQ(quick_compression().measurements.size(), 14U);
 }

@@ -29,7 +29,7 @@ std::vector<glm::vec3> turned_normals(const AnalyticMesh& ground_truth, double d
     return normals;
 }
 
-TEST(NormalErrors, OfTrueNormalsAreFloatsOwnAndOfTurnedOnesTheTurn) {
+TEST(NormalErrors, RotatedNormalsHaveTheAngleOfRotation) {
     // Rounding to float: 2^-24 of a component, 3.4e-6 degrees each.
     constexpr double rounding = 1e-5;
     for (const AnalyticSurface surface : all_surfaces) {
@@ -43,7 +43,7 @@ TEST(NormalErrors, OfTrueNormalsAreFloatsOwnAndOfTurnedOnesTheTurn) {
     }
 }
 
-TEST(NormalErrors, AreOfInnerVerticesAndCountWhatIsNoDirection) {
+TEST(NormalErrors, CoverInnerVerticesAndCountZeroVectors) {
     const AnalyticMesh ground_truth =
         analytic_mesh(AnalyticSurface::saddle, Triangulation::regular, 8, 1);
     std::vector<glm::vec3> normals = turned_normals(ground_truth, 0.0);
@@ -107,7 +107,7 @@ const Experiment& quick(const std::string& title) {
     return titled(quick_experiments(), title);
 }
 
-TEST(NormalsExperiments, AreWhole) {
+TEST(NormalsExperiments, AreComplete) {
     expect_whole(quick_experiments(), Subject::normals);
 }
 
@@ -127,7 +127,7 @@ TEST(NormalsExperiments, HaveTheErrorsOfThePage) {
     EXPECT_NEAR(measurement_of(folded, "max, float64").error.max, 180.0, 5e-2);
 }
 
-TEST(NormalsExperiments, FloatVotesMoveNothingThatMatters) {
+TEST(NormalsExperiments, FloatContributionsHaveNegligibleError) {
     for (const Experiment& experiment : quick_experiments()) {
         if (experiment.id == "normals/fans") continue;
         for (const char* weighting : {"uniform", "area", "max"}) {

@@ -46,7 +46,7 @@ double left_of_slope(double roughness) {
     return above / below;
 }
 
-TEST(TrueMirror, IsWhatTheReferenceShaderDraws) {
+TEST(TrueMirror, MatchesTheReferenceShader) {
     const Scene ball = mirror_ball(cube_map_of(waves_and_lights, 512), 0.0);
     const Image traced = supersampled_reference(ball, cube_side, 4);
     EXPECT_LT(furthest(traced, exact_mirror(waves_and_lights, cube_side, 4)), 0.006);
@@ -55,7 +55,7 @@ TEST(TrueMirror, IsWhatTheReferenceShaderDraws) {
     EXPECT_GT(furthest(traced, exact_mirror(turned, cube_side, 4)), 0.1);
 }
 
-TEST(RoughMirror, OfConstantSurroundingsIsThose) {
+TEST(RoughMirror, ConstantEnvironmentIsReflectedUnchanged) {
     const auto constant = [](const glm::dvec3&) { return glm::dvec3(0.25, 0.5, 0.75); };
     for (const double roughness : {0.1, 0.5, 1.0}) {
         const Image blurred =
@@ -64,7 +64,7 @@ TEST(RoughMirror, OfConstantSurroundingsIsThose) {
     }
 }
 
-TEST(RoughMirror, OfASlopeIsFlatterAsTheClosedFormSays) {
+TEST(RoughMirror, FlattensGradientsByTheClosedForm) {
     const Environment environment =
         cube_map_of([](const glm::dvec3& d) { return slope(d, 1.0); }, 64);
     for (const double roughness : {0.2, 0.5, 0.9}) {
@@ -138,7 +138,7 @@ double sum_of_errors(const Curve& curve) {
     return sum;
 }
 
-TEST(GlossyLevels, MoreOfThemErrLessAndEachIsRightWhereItLies) {
+TEST(GlossyLevels, MoreLevelsHaveSmallerErrors) {
     if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const Experiment experiment = test::run_one("shading/glossy-levels");
     ASSERT_EQ(experiment.measurements.size(), 3U);
@@ -163,7 +163,7 @@ TEST(GlossyLevels, MoreOfThemErrLessAndEachIsRightWhereItLies) {
         EXPECT_GT(none.points[i].error, none.points[i - 1].error) << none.points[i].x;
 }
 
-TEST(GlossyLevels, OfAnotherRoughnessOrOtherSurroundingsAreFarOff) {
+TEST(GlossyLevels, WrongRoughnessOrEnvironmentHasALargeError) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
     constexpr int ball_side = 32;

@@ -35,7 +35,7 @@ Experiment render(const std::shared_ptr<const GlDevice>& device,
         options);
 }
 
-TEST(RenderedMethods, FindALampThatIsTurnedRound) {
+TEST(RenderedMethods, DetectARotatedLight) {
     const auto device = std::make_shared<const GlDevice>();
     if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
     Scene broken = ball();
@@ -57,7 +57,7 @@ TEST(RenderedMethods, FindALampThatIsTurnedRound) {
               std::string::npos);
 }
 
-TEST(RenderedMethods, AverageWhatTheyDrawMoreOf) {
+TEST(RenderedMethods, AverageRepeatedPictures) {
     const auto device = std::make_shared<const GlDevice>();
     if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<RenderedMethod> methods = {
@@ -90,7 +90,7 @@ TEST(RenderedMethods, AreTimedInTurnsInSeconds) {
     }
 }
 
-TEST(RenderedMethods, SayTheirTimesOnlyWhereAllWereTimed) {
+TEST(RenderedMethods, ReportTimesOnlyIfAllWereTimed) {
     Measurement stored;
     stored.cost.one_thread = Timing{{1.0e-3, 1.2e-3, 5.0e-3}};
     Measurement derived;
@@ -100,7 +100,7 @@ TEST(RenderedMethods, SayTheirTimesOnlyWhereAllWereTimed) {
     EXPECT_EQ(frame_times({{"stored", stored}, {"derived", Measurement{}}}), "");
 }
 
-TEST(RenderedMethods, SayInWordsThatThereIsNoOpenGL) {
+TEST(RenderedMethods, ReportMissingOpenGL) {
     const test::ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", "libnone.so");
     const PlanOptions plan_options{true, SharedInput<GlDevice>([] {
                                        return std::make_shared<const GlDevice>(Backend::osmesa);
@@ -147,7 +147,7 @@ glm::dvec3 radiance_on_sphere(const glm::dvec3& normal, const glm::dvec3& eye) {
     return glm::min(radiance, 1.0);
 }
 
-TEST(ManySamples, OfASphereAreTheClosedForm) {
+TEST(ManySamples, OfASphereMatchTheClosedForm) {
     constexpr int size = 24;
     constexpr double distance = 3.0;
     constexpr double fov = 0.5;  // The whole image shows the sphere.
@@ -174,7 +174,7 @@ TEST(ManySamples, OfASphereAreTheClosedForm) {
     EXPECT_GT(brightest, 0.6) << "the highlight is in the picture";
 }
 
-TEST(ManySamples, CoverWhatADiscCovers) {
+TEST(ManySamples, CoverTheAreaOfADisc) {
     constexpr int size = 24;
     constexpr double distance = 4.0;
     Material white;

@@ -79,7 +79,7 @@ TEST_F(RenderedExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
     EXPECT_LT(widened.points[5].error, 1.3 * widened.points[2].error);
 }
 
-TEST(ShadingExperiments, AreWhole) {
+TEST(ShadingExperiments, AreComplete) {
     if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<Experiment> all = test::run_quick(Subject::shading);
     EXPECT_EQ(all.size(), 9U);

@@ -26,7 +26,7 @@ ErrorStats error_of(const std::string& name, std::complex<double> index) {
                          exact_reflectances(index, cosines));
 }
 
-TEST(SchlicksError, IsWhatItIsKnownToBe) {
+TEST(SchlicksError, MatchesPublishedValues) {
     // Computed independently, over angles.
     EXPECT_NEAR(error_of("Schlick", 1.33).max, 0.060, 0.0005);
     EXPECT_NEAR(error_of("Schlick", 1.5).max, 0.036, 0.0005);
@@ -137,7 +137,7 @@ double radiance_by_angles(const glm::vec3& interpolated) {
 /// on a highlight 0.45 of exponent 40 is 18 times as large.
 constexpr double radiance_rounding = 1e-6;
 
-TEST(UnitNormalReference, IsAFormulaOfAnglesAtEveryPlace) {
+TEST(UnitNormalReference, IsAFormulaOfAngles) {
     for (const double degrees : {1.0, 30.0, 90.0}) {
         const NormalSamples samples(degrees, 32);
         const std::vector<double> ground_truth = samples.exact_radiances();

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-TEST(Sweeps, FindWhereEachMethodBreaks) {
+TEST(Sweeps, FindTheFailurePointOfEachMethod) {
     Sweeps sweeps({"good", "growing", "lost"}, 1.0);
     sweeps.add("size", "Larger", "size", 6, 2, [](std::size_t method, double value) {
         if (method == 0) return std::vector<float>{0.25F, 0.25F};
@@ -155,7 +155,7 @@ TEST(BumpByOffset, BreaksWhenHeightsAreRounded) {
     }
 }
 
-TEST(StabilityExperiments, AreWholeButForWhatPlainCodeLoses) {
+TEST(StabilityExperiments, AreCompleteExceptForNaiveCode) {
     std::vector<Experiment> all = test::run_quick(Subject::stability);
     for (Experiment& experiment : all) {
         EXPECT_NE(experiment.finding.find("docs/hard-cases.md"), std::string::npos);

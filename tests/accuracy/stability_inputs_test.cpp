@@ -23,7 +23,7 @@ Mesh sound_torus() {
     return make_torus(0.4F, 24, 12);
 }
 
-TEST(HardTriangles, LieBesideTheMeshAsItWas) {
+TEST(HardTriangles, AreAddedToTheUnchangedMesh) {
     const Mesh sound = sound_torus();
     for (const HardTriangleName& one : hard_triangle_names) {
         SCOPED_TRACE(one.id);
@@ -39,7 +39,7 @@ TEST(HardTriangles, LieBesideTheMeshAsItWas) {
               2 * sound.triangles.size());
 }
 
-TEST(HardTriangles, AreWhatTheirNamesSay) {
+TEST(HardTriangles, HaveTheNamedDefects) {
     const Mesh sound = sound_torus();
     const auto last = [&](HardTriangle kind) {
         const Mesh hard = with_hard_triangles(sound, kind, 3);
@@ -146,7 +146,7 @@ TEST(Needles, HaveTheNormalsOfAnotherFormulaDownToTheNarrowest) {
     }
 }
 
-TEST(Needles, OfANormalThatIsAHairOffAreFoundToBe) {
+TEST(Needles, SmallErrorsOfNormalsAreDetected) {
     const Needles needles = make_needles(1, 1e-12, 7);
     const glm::uvec3 t = needles.mesh.triangles.front();
     const auto corner = [&](int i) { return LongVector(needles.mesh.positions[t[i]]); };
@@ -175,7 +175,7 @@ TEST(Needles, AreAsNarrowAsAsked) {
     }
 }
 
-TEST(PlainNormals, OfATorusAreNearlyThoseOfItsFormula) {
+TEST(PlainNormals, OfATorusAreCloseToItsFormula) {
     const Mesh torus = make_torus();
     for (const auto& normals : {textbook_area_normals(torus), textbook_angle_normals(torus)}) {
         ASSERT_EQ(normals.size(), torus.positions.size());
@@ -188,7 +188,7 @@ TEST(PlainNormals, OfATorusAreNearlyThoseOfItsFormula) {
     }
 }
 
-TEST(PlainNormals, VanishWhereAProductLeavesFloat) {
+TEST(PlainNormals, VanishIfAProductUnderflows) {
     Mesh quad = make_quad();
     for (glm::vec3& position : quad.positions)
         position *= 1e-25F;

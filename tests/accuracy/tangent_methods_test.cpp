@@ -135,7 +135,7 @@ double texel_turn(double degrees) {
     return 2.0 * std::asin(0.5 * std::sin(half)) * 180.0 / std::numbers::pi;
 }
 
-TEST(TangentErrors, OfTurnedTangentsAreTheTurn) {
+TEST(TangentErrors, RotatedTangentsHaveTheAngleOfRotation) {
     const TexturedMesh square = level_square();
     for (const ShaderBasis basis : {ShaderBasis::as_interpolated, ShaderBasis::made_unit}) {
         EXPECT_LE(texel_errors(square, turned(0.0), basis).max, rounding);
@@ -147,7 +147,7 @@ TEST(TangentErrors, OfTurnedTangentsAreTheTurn) {
     EXPECT_EQ(corner_tangent_errors(square, turned(1.0)).count, 6U);
 }
 
-TEST(TangentErrors, OfAWrongHandAreThoseOfAMirroredTexel) {
+TEST(TangentErrors, WrongHandednessMirrorsTheTexel) {
     const TexturedMesh square = level_square();
     const CornerTangents mirrored(6, glm::vec4(1.0F, 0.0F, 0.0F, -1.0F));
     const ErrorStats errors = texel_errors(square, mirrored, ShaderBasis::as_interpolated);

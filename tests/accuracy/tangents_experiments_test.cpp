@@ -22,7 +22,7 @@ const Experiment& quick(const std::string& title) {
     return titled(quick_experiments(), title);
 }
 
-TEST(TangentsExperiments, AreWhole) {
+TEST(TangentsExperiments, AreComplete) {
     expect_whole(quick_experiments(), Subject::tangents);
 }
 

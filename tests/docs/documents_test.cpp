@@ -98,7 +98,7 @@ std::string called_script(const std::string& command) {
     return path.starts_with("scripts/") ? path : "";
 }
 
-TEST(ShownCommands, StandBehindAPromptOrInAShellBlock) {
+TEST(ShownCommands, FollowAPromptOrAreInAShellBlock) {
     const std::vector<ShownCommand> commands = shown_commands(
         "relief-mesh turns meshes\n"            // prose
         "$ relief-mesh info a.obj\n"            // 2

@@ -36,7 +36,7 @@ std::string test_name(const testing::TestParamInfo<HardCase>& row) {
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, HardCases, testing::ValuesIn(hard_cases()), test_name);
 
-TEST(HardCasesTable, NamesEachRowOnceAndSaysWhereItIsKnownFrom) {
+TEST(HardCasesTable, NamesEachRowOnceAndItsSource) {
     std::set<std::string> names;
     for (const HardCase& row : hard_cases()) {
         EXPECT_TRUE(names.insert(row.name).second) << row.name;
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(EveryMethod, HostileMeshes, testing::ValuesIn(all_tange
                              return name;
                          });
 
-TEST(HostileMeshesThemselves, HoldEveryKindOfTrouble) {
+TEST(HostileMeshesThemselves, HaveEveryKindOfProblem) {
     std::vector<std::size_t> meshes_with(mesh_conditions().size());
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
         Mesh mesh = hostile_mesh(seed);

@@ -182,7 +182,7 @@ TEST_F(Installed, TheRenderedSphereFacesTheLight) {
     EXPECT_LT(covered, M_PI / 4.0);
 }
 
-TEST_F(Installed, TheExplanationNamesWhatIsNeeded) {
+TEST_F(Installed, ExplanationListsTheInputs) {
     const std::string output = output_of("explain_effects");
     EXPECT_THAT(output, HasSubstr("\non  directional lights: "));
     EXPECT_THAT(output, HasSubstr("\noff emission: "));
@@ -306,7 +306,7 @@ TEST(AddedFolder, GivesTheMeshComponentAlone) {
 }
 
 // A shared library of the objects of the static one, which are position independent.
-TEST(SharedMesh, ExportsWhatPublicHeadersDeclare) {
+TEST(SharedMesh, ExportsTheFunctionsOfPublicHeaders) {
     const TemporaryDirectory folder;
     const std::string library = (folder / "librelief_mesh.so").string();
     expect_success("'" + compiler + "' -shared -Wl,--no-undefined -Wl,--whole-archive '" +

@@ -54,7 +54,7 @@ ProgramResult compared(const Workplace& workplace, const AccuracyReport& before,
     return workplace.run("relief-accuracy compare old.json new.json " + options);
 }
 
-TEST(AccuracyCompare, OfTheSameFindsNothing) {
+TEST(AccuracyCompare, EqualReportsHaveNoChange) {
     const Workplace workplace;
     const ProgramResult result = compared(workplace, steady_report(), steady_report(),
                                           "--max-slower 10 --max-error-growth 0");
@@ -70,7 +70,7 @@ TEST(AccuracyCompare, OfTheSameFindsNothing) {
         EXPECT_THAT(result.out, Not(HasSubstr(word)));
 }
 
-TEST(AccuracyCompare, ASlowerMethodIsToldAndHeldAgainstItsBound) {
+TEST(AccuracyCompare, ReportsASlowerMethodAndChecksItsLimit) {
     const Workplace workplace;
     AccuracyReport after = steady_report();
     slow_down(after, 3, 1.2);
@@ -89,7 +89,7 @@ TEST(AccuracyCompare, ASlowerMethodIsToldAndHeldAgainstItsBound) {
               "thread (at most 10 %)\n");
 }
 
-TEST(AccuracyCompare, AMachineThatIsSlowerAllInAllIsToldAsSuch) {
+TEST(AccuracyCompare, ReportsASlowerMachine) {
     const Workplace workplace;
     AccuracyReport after = steady_report();
     for (std::size_t i = 0; i < 12; ++i)
@@ -196,7 +196,7 @@ TEST(AccuracyCompare, MemoryThatHardlyDiffersIsTheSameMachine) {
                 HasSubstr("machine   memory: 1.0 MB, then 2.0 MB\n"));
 }
 
-TEST(AccuracyCompare, OfManyFiguresThoseThatGrewMostAreTold) {
+TEST(AccuracyCompare, ListsTheLargestIncreases) {
     const Workplace workplace;
     AccuracyReport before = steady_report();
     AccuracyReport after = before;
@@ -210,7 +210,7 @@ TEST(AccuracyCompare, OfManyFiguresThoseThatGrewMostAreTold) {
                           "more\n"));
 }
 
-TEST(AccuracyCompare, MemoryIsToldAndHeldAgainstItsBound) {
+TEST(AccuracyCompare, ReportsMemoryAndChecksItsLimit) {
     const Workplace workplace;
     AccuracyReport before = steady_report();
     before.experiments[0].measurements[2].cost.peak_bytes = 20'000'000;
@@ -243,7 +243,7 @@ TEST(AccuracyCompare, MemoryIsToldAndHeldAgainstItsBound) {
     EXPECT_THAT(unknown.error, HasSubstr("so --max-memory-growth cannot be checked"));
 }
 
-TEST(AccuracyCompare, WhatIsGoneKeepsNoBound) {
+TEST(AccuracyCompare, MissingMethodsExceedLimits) {
     const Workplace workplace;
     AccuracyReport after = steady_report();
     after.experiments[0].measurements.pop_back();
@@ -281,7 +281,7 @@ TEST(AccuracyCompare, ErrorsThatGrewAreHeldAgainstTheirBound) {
               "no result (at most 1 % more), and 1 more above limits\n");
 }
 
-TEST(AccuracyCompare, WhatHasNoPartnerIsListed) {
+TEST(AccuracyCompare, ListsUnmatchedMethods) {
     const Workplace workplace;
     AccuracyReport before = steady_report();
     before.experiments[0].measurements.pop_back();
@@ -294,7 +294,7 @@ TEST(AccuracyCompare, WhatHasNoPartnerIsListed) {
                                       "added     storage/sample: method 11\n"));
 }
 
-TEST(AccuracyCompare, ItsJsonIsWhatThePageDescribes) {
+TEST(AccuracyCompare, JsonMatchesItsDocument) {
     const Workplace workplace;
     AccuracyReport before = steady_report();
     AccuracyReport after = steady_report();

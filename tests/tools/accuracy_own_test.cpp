@@ -30,7 +30,7 @@ const json& measurement(const json& experiment, const std::string& method) {
     throw std::runtime_error("no method " + method);
 }
 
-TEST(AccuracyOwn, MeasuresAMeshAndSaysWhatToTake) {
+TEST(AccuracyOwn, MeasuresAMeshAndRecommends) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ProgramResult result =
@@ -57,7 +57,7 @@ TEST(AccuracyOwn, JsonHoldsTheCommandThatRepeatsIt) {
                 0.0, 1e-4);
 }
 
-TEST(AccuracyOwn, TellsHeightsFromNormalsAndSaysSo) {
+TEST(AccuracyOwn, DistinguishesHeightsFromNormals) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
     const ProgramResult heights =
@@ -78,7 +78,7 @@ TEST(AccuracyOwn, TellsHeightsFromNormalsAndSaysSo) {
     EXPECT_THAT(told.out, Not(HasSubstr("if not:")));
 }
 
-TEST(AccuracyOwn, TakesAPairOnlyWhereItIsCalledOne) {
+TEST(AccuracyOwn, NeedsHighAndLowForAPair) {
     const Workplace workplace;
     workplace.write_square("high.obj");
     workplace.write_square("low.obj");
@@ -96,7 +96,7 @@ TEST(AccuracyOwn, TakesAPairOnlyWhereItIsCalledOne) {
     EXPECT_EQ(json::parse(two.out)["experiments"].size(), 8U);
 }
 
-TEST(AccuracyOwn, ABoundThatNothingKeepsIsExitOne) {
+TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
     const std::string line = "relief-accuracy own bricks.png --quick --no-times --max-error ";
@@ -152,7 +152,7 @@ Image image_of_bumps(int channels, const std::function<double(int channel, doubl
     return image;
 }
 
-TEST(AccuracyOwn, SaysThatAPhotographIsHardlyAHeightMap) {
+TEST(AccuracyOwn, WarnsAboutPhotographs) {
     const Workplace workplace;
     const auto in_color = [](int channel, double bump) {
         return channel == 0 ? bump : channel == 1 ? bump * bump : 0.2;
@@ -203,7 +203,7 @@ TEST(AccuracyOwn, MeasuresHeightsInAlpha) {
     EXPECT_EQ(workplace.run(done).exit_code, 0) << done;
 }
 
-TEST(AccuracyOwn, SaysWhichHeightsAreNotFinite) {
+TEST(AccuracyOwn, ReportsNonFiniteHeights) {
     const Workplace workplace;
     Image heights = to_float(image_of_bumps(1, [](int, double bump) { return bump; }));
     heights.as<float>()[70] = std::numeric_limits<float>::quiet_NaN();
@@ -215,7 +215,7 @@ TEST(AccuracyOwn, SaysWhichHeightsAreNotFinite) {
                 HasSubstr("findings  2 x non-finite height (column 6, row 1; column 4, row 14): "));
 }
 
-TEST(AccuracyOwn, KeepsANormalMapAsItIs) {
+TEST(AccuracyOwn, CanKeepANormalMapUnchanged) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
     ASSERT_EQ(workplace.run("relief-bake bump bricks.png map.png --bits 8").exit_code, 0);

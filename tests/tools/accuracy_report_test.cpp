@@ -27,7 +27,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-TEST(AccuracyJson, IsWhatItsPageDescribes) {
+TEST(AccuracyJson, MatchesItsDocument) {
     const std::vector<test::SchemaRow> rows = test::schema_rows("## accuracy.json");
     ASSERT_GT(rows.size(), 50U);
     EXPECT_THAT(test::schema_faults(json_of(sample_report(), true), rows, true), IsEmpty());
@@ -63,7 +63,7 @@ TEST(AccuracyJson, ReadsBackAsTheSame) {
     EXPECT_EQ(is.charts[0].curves[0].points[1].x, 0.001);
 }
 
-TEST(AccuracyJson, HasNoFileNamesWhereThereAreNoFiles) {
+TEST(AccuracyJson, HasNoFileNamesWithoutFiles) {
     const json report = json_of(sample_report(), false);
     EXPECT_TRUE(report["experiments"][0]["heat_maps"][0]["file"].is_null());
     EXPECT_TRUE(report["experiments"][0]["pictures"][0]["before"].is_null());
@@ -76,7 +76,7 @@ struct Broken {
     const char* error;
 };
 
-TEST(BrokenReport, IsRefusedWithThePlace) {
+TEST(BrokenReport, IsRefusedWithAPointer) {
     const json gone = json(json::value_t::discarded);
     const std::vector<Broken> rows = {
         {"/format", "glTF", "/format: is 'glTF', not 'relief-accuracy'"},
@@ -120,7 +120,7 @@ TEST(BrokenReport, IsRefusedWithThePlace) {
     }
 }
 
-TEST(AccuracyJson, TextThatIsNoneIsRefused) {
+TEST(AccuracyJson, RefusesInvalidText) {
     const Workplace workplace;
     workplace.write("report.json", "{\"format\": ");
     EXPECT_THROW(read_report(workplace / "report.json"), FileError);
@@ -167,7 +167,7 @@ TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
     EXPECT_THAT(table_of(untimed), Not(HasSubstr("thread")));
 }
 
-TEST(AccuracyTable, SaysTimesInTheUnitThatSuitsThem) {
+TEST(AccuracyTable, ChoosesUnitsOfTimes) {
     EXPECT_EQ(format_seconds(8.4e-8), "84.0 ns");
     EXPECT_EQ(format_seconds(4.126e-6), "4.13 µs");
     EXPECT_EQ(format_seconds(9.996e-4), "1.00 ms");
@@ -176,7 +176,7 @@ TEST(AccuracyTable, SaysTimesInTheUnitThatSuitsThem) {
     EXPECT_EQ(format_seconds(0.0), "0.00 ns");
 }
 
-TEST(AccuracyFiles, PicturesStandWhereTheJsonSays) {
+TEST(AccuracyFiles, PicturesHaveThePathsOfTheJson) {
     const Workplace workplace;
     write_report(workplace / "out", sample_report());
     EXPECT_EQ(workplace.outputs(),
@@ -230,7 +230,7 @@ TEST(AccuracyReportCommand, MakesThePageThatTheRunMade) {
     EXPECT_EQ(workplace.read("page.html"), first);
 }
 
-TEST(AccuracyReportCommand, SaysWhereAReportHasNoPictures) {
+TEST(AccuracyReportCommand, ReportsMissingPictures) {
     const Workplace workplace;
     workplace.write("printed.json", json_of(sample_report(), false).dump());
     const ProgramResult result = workplace.run("relief-accuracy report printed.json");

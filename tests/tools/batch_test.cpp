@@ -47,7 +47,7 @@ Batch six_files() {
     return batch;
 }
 
-TEST(Batch, SaysWhatBecameOfFilesInTheirOrderWhoeverIsDoneFirst) {
+TEST(Batch, ReportsFilesInOrder) {
     const CLI::App app("", "relief-test");
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
@@ -99,7 +99,7 @@ std::string model_refusal(const FileWords& words, std::optional<ModelFormat> for
     return message_of<UsageError>([&] { model_jobs_of(words, format); });
 }
 
-TEST(ProcessJobs, InAFolderModelsKeepTheirNamesAndFormatsWhereThoseCanBeWritten) {
+TEST(ProcessJobs, InAFolderModelsKeepNamesAndWritableFormats) {
     EXPECT_EQ(
         jobs_text(model_jobs_of({{"x/a.obj", "b.PLY", "c.stl", "d.off", "e.v2.gltf"}, "out/"}, {})),
         "x/a.obj -> out/a.obj, b.PLY -> out/b.PLY, c.stl -> out/c.glb, d.off -> out/d.glb, "
@@ -237,7 +237,7 @@ TEST(ProcessBatch, RefusesBeforeAnythingIsDone) {
     }
 }
 
-TEST(ProcessBatch, AFileInTheFoldersPlaceIsToldAsSuch) {
+TEST(ProcessBatch, RefusesAFileAsFolder) {
     const Workplace workplace;
     workplace.write_square("a.obj");
     workplace.write("out/taken", "old");

@@ -105,7 +105,7 @@ TEST(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
     }
 }
 
-TEST(AllToolsAlike, SayTheirVersionAndNothingElse) {
+TEST(AllToolsAlike, PrintOnlyTheirVersion) {
     const Workplace workplace;
     for (const char* tool : {"relief-mesh", "relief-bake", "relief-view"}) {
         const ProgramResult result = workplace.run(std::string(tool) + " --version");

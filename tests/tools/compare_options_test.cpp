@@ -74,7 +74,7 @@ TEST(Compare, SplitsAtTheNearestColumn) {
     EXPECT_FLOAT_EQ(apart.as<float>()[3], 5.0F / 255.0F);
 }
 
-TEST(CompareRefuses, WhatCouldShowNothing) {
+TEST(CompareRefuses, OptionsWithoutEffect) {
     const Workplace workplace;
     test::expect_refusals(
         workplace, "relief-view", "picture.png",

@@ -49,7 +49,7 @@ Mesh answer_to(const KitMesh& kit) {
     return mesh;
 }
 
-TEST(ConformanceJudge, PassesWhatIsExpected) {
+TEST(ConformanceJudge, PassesExpectedTangents) {
     const KitMesh kit = square();
     const Judgment judgment = judge(kit, answer_to(kit));
     EXPECT_TRUE(judgment.passes(kit.group));
@@ -69,7 +69,7 @@ TEST(ConformanceJudge, FindsTrianglesInAnyOrderBegunAnywhereWithMinusZeros) {
     EXPECT_TRUE(judgment.passes(kit.group));
 }
 
-TEST(ConformanceJudge, SaysWhatIsMissingAndWhatIsTooMuch) {
+TEST(ConformanceJudge, ListsMissingAndExtraCorners) {
     const KitMesh kit = square();
     Mesh theirs = answer_to(kit);
     theirs.triangles = {{0, 1, 2}, {0, 1, 3}};
@@ -135,7 +135,7 @@ TEST(ConformanceJudge, CountsEveryFault) {
     EXPECT_TRUE(judge(kit, near).passes(kit.group)) << "0.0097 degrees";
 }
 
-TEST(ConformanceJudge, JudgesHardMeshesOnlyByWhatIsUsable) {
+TEST(ConformanceJudge, ChecksOnlyUsabilityOnHardMeshes) {
     KitMesh kit = square(KitGroup::stability);
     kit.expected.clear();
     Mesh theirs = answer_to(kit);
@@ -163,7 +163,7 @@ void process_kit(const Workplace& workplace) {
     ASSERT_EQ(result.exit_code, 0) << result.error;
 }
 
-TEST(ConformanceCommand, SaysThatReliefConforms) {
+TEST(ConformanceCommand, ReliefConforms) {
     const Workplace workplace;
     process_kit(workplace);
     const ProgramResult result = workplace.run("relief-mesh conformance out/kit --strict");
@@ -187,7 +187,7 @@ TEST(ConformanceCommand, SaysThatReliefConforms) {
     EXPECT_FALSE(report["meshes"][39].contains("degrees")) << "nothing to compare with";
 }
 
-TEST(ConformanceCommand, JudgesWhatBecameOfQuads) {
+TEST(ConformanceCommand, AcceptsTriangulatedQuads) {
     const Workplace workplace;
     process_kit(workplace);
     const ProgramResult quads = workplace.run(
@@ -199,7 +199,7 @@ TEST(ConformanceCommand, JudgesWhatBecameOfQuads) {
     EXPECT_THAT(result.out, HasSubstr("quads                   conforms: 384 of 384 corners"));
 }
 
-TEST(ConformanceCommand, ExitsWith1WhereTangentsDiffer) {
+TEST(ConformanceCommand, ExitsWith1IfTangentsDiffer) {
     const Workplace workplace;
     process_kit(workplace);
     std::filesystem::copy_file(workplace / "conformance/kit/sphere.glb",
@@ -238,7 +238,7 @@ TEST(ConformanceCommand, IsStrictAboutHardMeshesWhenAsked) {
               "--strict)\n");
 }
 
-TEST(ConformanceCommand, SaysWhereTheKitAndTheResultsShouldBe) {
+TEST(ConformanceCommand, NamesTheFoldersOfKitAndResults) {
     const Workplace workplace;
     EXPECT_EQ(workplace.run("relief-mesh conformance out --kit data").error,
               "relief-mesh: error: data/kit.json: cannot be read (--kit names the folder of the "
@@ -299,7 +299,7 @@ bool is_beyond_the_definition(const KitMesh& mesh) {
            mesh.name == "folded-over";
 }
 
-TEST(ConformanceKit, IsWhatItsProgramWrites) {
+TEST(ConformanceKit, MatchesItsGenerator) {
     const test::TemporaryDirectory folder;
     const test::ProgramResult result =
         test::run_program({"relief-make-conformance-kit", "again"}, folder.path());

@@ -42,7 +42,7 @@ glm::ivec3 middle(const Image& image) {
     return {codes[at], codes[at + 1], codes[at + 2]};
 }
 
-TEST_F(DebugOptions, ShowWhatIsAskedFor) {
+TEST_F(DebugOptions, ShowTheRequestedView) {
     EXPECT_EQ(middle(picture("--show handedness")), glm::ivec3(51, 153, 255));
     const glm::ivec3 normal = middle(picture("--show geometric-normal"));
     EXPECT_NEAR(normal.x, 127.5, 0.5);
@@ -56,7 +56,7 @@ TEST_F(DebugOptions, TakeOneSampleForDataAndSaySo) {
     EXPECT_EQ(json::parse(result.out)["picture"]["samples"], 1);
 }
 
-TEST_F(DebugOptions, SayWhyThereIsNothingToShow) {
+TEST_F(DebugOptions, ExplainEmptyViews) {
     const ProgramResult result = run("--show height --output h.png");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.error, HasSubstr("square.obj: height cannot be shown"));
@@ -83,7 +83,7 @@ TEST_F(DebugOptions, PrintTheShadersOfTheView) {
     EXPECT_THAT(result.out, HasSubstr("view.glsl#texcoords"));
 }
 
-TEST_F(DebugOptions, ThatShowNothingAreRefused) {
+TEST_F(DebugOptions, WithoutEffectAreRefused) {
     const auto refused = [&](const std::string& options, const std::string& words) {
         const ProgramResult result = run(options);
         EXPECT_EQ(result.exit_code, 2) << options;
@@ -98,7 +98,7 @@ TEST_F(DebugOptions, ThatShowNothingAreRefused) {
     refused("--vertex-frames --frame-length 0 --output x.png", "--frame-length");
 }
 
-TEST(CommandLineOf, WritesWhatWasChosen) {
+TEST(CommandLineOf, WritesTheChosenOptions) {
     DebugChoices choices;
     EXPECT_EQ(command_line_of(choices), "");
     choices.view = DebugView::shading_normal;

@@ -113,7 +113,7 @@ TEST_F(EffectOptions, ForceNeutralEffectsWithoutAChangeAndTakeOutOthersWithOne) 
     EXPECT_TRUE(told);
 }
 
-TEST_F(EffectOptions, RefuseWhatIsUnknownOrImpossible) {
+TEST_F(EffectOptions, RefuseUnknownAndImpossibleEffects) {
     EXPECT_EQ(run("--effects +emision --explain-effects").error,
               "relief-view: error: --effects: 'emision' is not an effect; did you mean 'emission'? "
               "(--explain-effects lists the effects and their reasons)\n");
@@ -154,7 +154,7 @@ TEST_F(EffectOptions, ExplainedWithABenchmarkArePriced) {
     EXPECT_FALSE(summary("--explain-effects").contains("effect_costs"));
 }
 
-TEST_F(EffectOptions, BudgetThatIsKeptDropsNothingAndOneThatCannotBeIsAnError) {
+TEST_F(EffectOptions, ReachableBudgetDropsNothingAndUnreachableFails) {
     EXPECT_THAT(run("--budget 100000").out, HasSubstr(": no effect is dropped"));
     EXPECT_TRUE(summary("--budget 100000").at("budget").at("dropped").empty());
     const ProgramResult impossible = run("--budget 0.001 --output p.png");

@@ -106,7 +106,7 @@ class FileFaults : public testing::Test {
     Contents old_;
 };
 
-TEST_F(FileFaults, LeaveAGltfFileWithItsBufferAndImageWhole) {
+TEST_F(FileFaults, KeepAGltfFileWithItsBufferAndImage) {
     ASSERT_EQ(place_.run("relief-mesh process square.obj square.gltf").exit_code, 0);
     ASSERT_EQ(place_.run("relief-bake bump bump.png n.png --kernel sobel3").exit_code, 0);
     set_command({"relief-mesh", "material", "square.gltf", "out/a.gltf", "--normal", "n.png"});
@@ -114,7 +114,7 @@ TEST_F(FileFaults, LeaveAGltfFileWithItsBufferAndImageWhole) {
     try_all_errors_and_signals(3);
 }
 
-TEST_F(FileFaults, LeaveAnObjFileWithItsMaterialsWhole) {
+TEST_F(FileFaults, KeepAnObjFileWithItsMaterials) {
     place_.write("a.mtl", "newmtl a\nKd 1 0 0\n");
     place_.write("a.obj", "mtllib a.mtl\n" + place_.read("square.obj") + "usemtl a\nf 1 2 3\n");
     set_command({"relief-mesh", "process", "a.obj", "out/a.obj"});
@@ -124,28 +124,28 @@ TEST_F(FileFaults, LeaveAnObjFileWithItsMaterialsWhole) {
         try_all({.signal = signal}, 2);
 }
 
-TEST_F(FileFaults, LeaveNewFilesWhole) {
+TEST_F(FileFaults, KeepNewFilesConsistent) {
     place_.write("a.mtl", "newmtl a\nKd 1 0 0\n");
     place_.write("a.obj", "mtllib a.mtl\n" + place_.read("square.obj") + "usemtl a\nf 1 2 3\n");
     set_command({"relief-mesh", "process", "a.obj", "out/a.obj"});
     try_all_errors_and_signals(2);
 }
 
-TEST_F(FileFaults, LeaveASetWholeWithoutHardLinks) {
+TEST_F(FileFaults, KeepASetConsistentWithoutHardLinks) {
     set_command({"relief-mesh", "process", "square.obj", "out/a.gltf"});
     set_old({{"a.gltf", "old"}, {"a.bin", "old"}});
     try_all({.error = EIO, .has_no_links = true}, 2);
     try_all({.signal = SIGTERM, .has_no_links = true}, 2);
 }
 
-TEST_F(FileFaults, LeaveMipLevelsWhole) {
+TEST_F(FileFaults, KeepMipLevelsConsistent) {
     ASSERT_EQ(place_.run("relief-bake bump bump.png normals.png --kernel sobel3").exit_code, 0);
     set_command({"relief-bake", "convert", "normals.png", "out/n.png", "--mips"});
     set_old({{"n.png", "old"}, {"n-mip01.png", "old"}});
     try_all_errors_and_signals(3);
 }
 
-TEST_F(FileFaults, LeaveAMapAndTheModelThatShowsItWhole) {
+TEST_F(FileFaults, KeepAMapAndItsModelConsistent) {
     ASSERT_EQ(place_.run("relief-mesh process square.obj out/m.gltf").exit_code, 0);
     set_old_from_folder();
     old_["n.png"] = "old";
@@ -154,14 +154,14 @@ TEST_F(FileFaults, LeaveAMapAndTheModelThatShowsItWhole) {
     try_all_errors_and_signals(3);
 }
 
-TEST_F(FileFaults, LeaveSeparateLevelsOfDetailWhole) {
+TEST_F(FileFaults, KeepSeparateLevelsOfDetailConsistent) {
     set_command({"relief-mesh", "lods", "square.obj", "out/l.gltf", "--separate", "--levels", "1",
                  "--switch", "distance"});
     set_old({{"l_LOD0.gltf", "old"}, {"l_LOD1.bin", "old"}});
     try_all_errors_and_signals(4);
 }
 
-TEST_F(FileFaults, LeaveBakedMapsAndTheirModelWhole) {
+TEST_F(FileFaults, KeepBakedMapsAndTheirModelConsistent) {
     ASSERT_EQ(place_.run("relief-mesh subdivide square.obj high.obj --levels 1").exit_code, 0);
     ASSERT_EQ(place_.run("relief-mesh process square.obj out/m.gltf").exit_code, 0);
     set_old_from_folder();

@@ -73,7 +73,7 @@ TEST(FileJobs, InAFolderEachHasTheNameThatTheCallerGives) {
     EXPECT_FALSE(jobs({{"a.png"}, "out/"}).is_single()) << "in a folder one is a batch of one";
 }
 
-TEST(FileJobs, WhatExistsAsAFolderNeedsNoSlash) {
+TEST(FileJobs, ExistingFolderNeedsNoSlash) {
     const TemporaryDirectory folder;
     EXPECT_EQ(jobs_text(jobs({{"a.png"}, folder.path().string()})),
               "a.png -> " + (folder / "a.png").string());
@@ -91,7 +91,7 @@ TEST(FileJobs, AFileMayReplaceItselfButNoOther) {
               here + "x/a.png and " + here + "a.png: have the same output " + here + "x/a.png");
 }
 
-TEST(FileJobs, RefusesWhatCouldBeReadInTwoWays) {
+TEST(FileJobs, RefusesAmbiguousNames) {
     EXPECT_EQ(refusal({{}, {}}), "IN is missing");
     EXPECT_EQ(refusal({{}, "out/"}), "IN is missing");
     EXPECT_EQ(refusal({{"a.png"}, {}}), "OUT is missing");
@@ -104,7 +104,7 @@ TEST(FileJobs, RefusesWhatCouldBeReadInTwoWays) {
               "a.png and x/a.png: have the same output out/a.png");
 }
 
-TEST(FileJobs, AUdimNameStandsForItsTilesInOrder) {
+TEST(FileJobs, UdimNameYieldsItsTilesInOrder) {
     const TemporaryDirectory folder;
     // The last three are not tiles: a small number, a letter, five digits.
     for (const char* name : {"w.1012.png", "w.1001.png", "w.1002.exr", "v.1003.png", "w.1000.png",
@@ -214,7 +214,7 @@ TEST_F(FileLists, LeaveFoldersOutWithAWarning) {
     EXPECT_EQ(place_.run("relief-mesh process models/inner -o out/").exit_code, 2);
 }
 
-TEST_F(FileLists, AreRefusedIfTheyListNothing) {
+TEST_F(FileLists, AreRefusedIfEmpty) {
     place_.write("empty.txt", "\n\n");
     const ProgramResult empty = place_.run("relief-mesh process @empty.txt -o out/");
     EXPECT_EQ(empty.exit_code, 2);

@@ -33,7 +33,7 @@ bool is_writing(const std::filesystem::path& folder) {
     return false;
 }
 
-TEST(Interruption, LeavesTheOldFileAndNothingElseAndDiesByTheSignal) {
+TEST(Interruption, LeavesOnlyTheOldFileAndDiesByTheSignal) {
     const Workplace place;
     write_noise(place / "heights.png", 2400);
     // Both writers under one signal, and each signal once.
@@ -52,7 +52,7 @@ TEST(Interruption, LeavesTheOldFileAndNothingElseAndDiesByTheSignal) {
     }
 }
 
-TEST(Interruption, OfABakeOfSeveralMapsLeavesNone) {
+TEST(Interruption, OfABakeLeavesNoMap) {
     const Workplace place;
     place.write("low.obj",
                 "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"

@@ -46,7 +46,7 @@ Outcome outcome_of(const Workplace& workplace, const ProgramResult& result) {
     return outcome;
 }
 
-TEST(LinkedTools, DoWhatTheProgramsDo) {
+TEST(LinkedTools, BehaveLikeThePrograms) {
     const Workplace linked;
     const Workplace programs;
     for (const char* line :

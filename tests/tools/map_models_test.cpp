@@ -106,7 +106,7 @@ TEST_F(MapModels, NormalsAreFlatAndTextureCoordinatesThoseOfTheNormalTexture) {
     EXPECT_THAT(report.findings(), Contains(Field(&Finding::kind, "tangents without normals")));
 }
 
-TEST_F(MapModels, WorldSpaceHasEveryInstanceWhereItIs) {
+TEST_F(MapModels, WorldSpaceHasEveryInstance) {
     Report report;
     MapModel model = read(ModelSpace::world, report);
     ASSERT_EQ(model.parts.size(), 2U);
@@ -121,7 +121,7 @@ TEST_F(MapModels, WorldSpaceHasEveryInstanceWhereItIs) {
     EXPECT_EQ(read(ModelSpace::world, report).world_from_object, glm::dmat3(2.0));
 }
 
-TEST_F(MapModels, JoinedKeepsWhatAllPartsHave) {
+TEST_F(MapModels, JoinedKeepsCommonAttributes) {
     Report report;
     MapModel model = read(ModelSpace::world, report);
     model.parts[1].mesh.texcoords.clear();
@@ -133,7 +133,7 @@ TEST_F(MapModels, JoinedKeepsWhatAllPartsHave) {
     EXPECT_THAT(all.texcoords, IsEmpty());
 }
 
-TEST_F(MapModels, PartsWithoutColoursAreWhiteWhereOthersHaveSome) {
+TEST_F(MapModels, PartsWithoutColorsAreWhiteIfOthersHaveColors) {
     Report report;
     MapModel model = read(ModelSpace::world, report);
     EXPECT_THAT(joined(model.parts).colors, IsEmpty());

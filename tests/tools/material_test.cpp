@@ -130,7 +130,7 @@ TEST_F(MaterialCommand, ReplacesImagesOfTextureExtensions) {
     EXPECT_EQ(after["images"].size(), 1U);
 }
 
-TEST_F(MaterialCommand, WritesImagesBesideAGltf) {
+TEST_F(MaterialCommand, WritesImagesNextToAGltf) {
     std::filesystem::create_directory(workplace_ / "maps");
     workplace_.write("maps/a.png", workplace_.read(normal_map));
     const json after = stored(
@@ -184,7 +184,7 @@ TEST_F(MaterialCommand, RefusesAModelWithoutTextureCoordinates) {
     EXPECT_FALSE(std::filesystem::exists(workplace_ / "out/after.gltf"));
 }
 
-TEST_F(MaterialCommand, RefusesWhatItCannotStore) {
+TEST_F(MaterialCommand, RefusesUnsupportedContent) {
     write_vase([](json& root) {
         root["materials"].push_back({{"name", "glass"}});
         root["materials"].push_back({{"name", "glass"}});

@@ -25,13 +25,13 @@ std::string refusal_by(Call&& call) {
     return "accepted";
 }
 
-TEST(OptionNumbers, AreReadWhole) {
+TEST(OptionNumbers, AreParsedCompletely) {
     EXPECT_EQ(parse_number("--x", "-1.5e3"), -1500.0);
     EXPECT_EQ(parse_number("--x", "+2"), 2.0);
     EXPECT_EQ(parse_integer("--n", "12", 1, 16), 12);
 }
 
-TEST(OptionNumbers, RefuseTextTrailingTextAndWhatIsNotFinite) {
+TEST(OptionNumbers, RefuseTextTrailingTextAndNonFiniteValues) {
     for (const char* text : {"abc", "", "12abc", "1,5", "inf", "nan", "1e999", "0x10", " 1"}) {
         EXPECT_EQ(refusal_by([&] { parse_number("--strength X", text); }),
                   "--strength X: not a number")
@@ -65,7 +65,7 @@ TEST(OptionColors, AreSrgbCodedAndBecomeLinear) {
     }
 }
 
-TEST(OptionSizes, AreTwoWholeNumbers) {
+TEST(OptionSizes, AreTwoIntegers) {
     EXPECT_EQ(parse_size("--size", "1920x1080"), glm::ivec2(1920, 1080));
     EXPECT_EQ(refusal_by([] { parse_size("--size 640", "640"); }),
               "--size 640: not a size like 1920x1080");
@@ -74,7 +74,7 @@ TEST(OptionSizes, AreTwoWholeNumbers) {
     EXPECT_EQ(refusal_by([] { parse_size("--size 5x", "5x"); }), "--size 5x: not a whole number");
 }
 
-TEST(OptionChoices, ListWhatTheyTake) {
+TEST(OptionChoices, ListTheirValues) {
     const Choices<int> choices = {{"one", 1}, {"two", 2}};
     EXPECT_EQ(parse_choice("--n two", "two", choices), 2);
     EXPECT_EQ(refusal_by([&] { parse_choice("--n three", "three", choices); }),
@@ -117,7 +117,7 @@ TEST(OptionValues, AreNeededAndTakenOnce) {
     EXPECT_EQ(refusal_by([] { Parsed({"--number", "x"}); }), "--number x: not a number");
 }
 
-TEST(OptionValues, OfARepeatableOptionComeInOrder) {
+TEST(OptionValues, OfARepeatedOptionKeepTheirOrder) {
     EXPECT_THAT(Parsed({"--list", "b", "--list", "a", "--number", "1"}).list,
                 ElementsAre("b", "a"));
 }

@@ -87,7 +87,7 @@ TEST_F(Reference, AndItsNumbersAreInTheJson) {
     EXPECT_TRUE(same["picture"]["output"].is_null());
 }
 
-TEST_F(Reference, GivesAMapOfWhatTheEyeSees) {
+TEST_F(Reference, WritesAMapOfVisibleDifferences) {
     write_near();
     EXPECT_EQ(run("--reference near.png --max-difference 9 --quiet --difference-map out/map.png "
                   "--output out/new.png")
@@ -106,7 +106,7 @@ TEST_F(Reference, GivesAMapOfWhatTheEyeSees) {
     EXPECT_GT(flip.max, 0.0);
 }
 
-TEST_F(Reference, OfLinearLightIsDrawnAndComparedInLinearLight) {
+TEST_F(Reference, LinearPicturesAreComparedInLinearLight) {
     ASSERT_EQ(run("--output right.exr --quiet --light directional:0,0,10").exit_code, 0);
     EXPECT_EQ(run("--reference right.exr --light directional:0,0,10").exit_code, 0);
     const ProgramResult brighter = run("--reference right.exr --light directional:0,0,11");
@@ -129,7 +129,7 @@ TEST_F(Reference, WithFullAlphaIsTheSameAsWithout) {
         << "the reference has a background there";
 }
 
-TEST(ReferenceRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(ReferenceRefusal, StatesTheReasonAndWritesNoFile) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     write_image(workplace / "small.png", make_image(8, 4, 3, 8, ColorSpace::srgb));

@@ -137,7 +137,7 @@ TEST_F(ProcessTangents, FollowTheNormalTextureByDefault) {
                                      "coordinate set 1, the tangents use 0\n"));
 }
 
-TEST_F(ProcessTangents, OfNewNormalsComeFromTheNormalTexturesSetToo) {
+TEST_F(ProcessTangents, OfNewNormalsUseTheSetOfTheNormalTexture) {
     json attributes = both_;
     attributes["TANGENT"] = tangent;
     write(attributes, {{"normalTexture", {{"index", 0}, {"texCoord", 1}}}});
@@ -173,7 +173,7 @@ TEST_F(ProcessTangents, AreMadeByTheMethodNamed) {
     EXPECT_EQ(report()["primitives"][0]["tangent_method"], "mikktspace");
 }
 
-TEST_F(ProcessTangents, BelongToTheCoordinatesAsStoredWhateverTheTransform) {
+TEST_F(ProcessTangents, UseStoredCoordinatesForAnyTransform) {
     const auto tangent_with = [&](const json& transform) {
         write(both_, {{"normalTexture",
                        {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}}}});
@@ -194,7 +194,7 @@ TEST_F(ProcessTangents, BelongToTheCoordinatesAsStoredWhateverTheTransform) {
     expect_along(tangent_with({{"texCoord", 1}}), {0, 1, 0}, 1);
 }
 
-TEST_F(ProcessTangents, OfMorphTargetsComeFromTheSameSet) {
+TEST_F(ProcessTangents, OfMorphTargetsUseTheSameSet) {
     write(both_, {{"normalTexture", {{"index", 0}, {"texCoord", 1}}}},
           json::array({{{"POSITION", lift}}}));
     // The third corner moves to (0,1,1), and the tangent along y with it.
@@ -236,7 +236,7 @@ TEST_F(ProcessTangents, GivenWithoutNormalsAndTexcoordsAreRemoved) {
     EXPECT_TRUE(written().mesh({0, 0}).tangents.empty());
 }
 
-TEST_F(ProcessTangents, AreKeptWhereNothingBetterCanBeHad) {
+TEST_F(ProcessTangents, AreKeptIfTheyCannotBeComputed) {
     write_all(
         json::array({primitive({{"POSITION", position}, {"NORMAL", normal}, {"TANGENT", tangent}}),
                      primitive(both_), primitive({{"POSITION", position}})}));
@@ -255,7 +255,7 @@ TEST_F(ProcessTangents, AreKeptWhereNothingBetterCanBeHad) {
     EXPECT_TRUE(written().mesh({0, 0}).tangents.empty());
 }
 
-TEST_F(ProcessTangents, OfASetThatAPrimitiveLacks) {
+TEST_F(ProcessTangents, ReportAMissingSetOfAPrimitive) {
     write_all(json::array(
         {primitive(both_),
          primitive({{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", set_0}})}));
@@ -266,7 +266,7 @@ TEST_F(ProcessTangents, OfASetThatAPrimitiveLacks) {
     EXPECT_TRUE(written().mesh({0, 1}).tangents.empty());
 }
 
-TEST_F(ProcessTangents, OfASetThatNoPrimitiveHasAreRefused) {
+TEST_F(ProcessTangents, RefuseASetThatNoPrimitiveHas) {
     write(both_);
     expect_refusal(workplace_, "relief-mesh",
                    {"relief-mesh process model.gltf out/old.glb --tangents mikktspace --uv-set 2",
@@ -274,7 +274,7 @@ TEST_F(ProcessTangents, OfASetThatNoPrimitiveHasAreRefused) {
                    "old.glb");
 }
 
-TEST_F(ProcessTangents, OfATextureOnAMissingSetComeFromTheFirst) {
+TEST_F(ProcessTangents, OfATextureOnAMissingSetUseTheFirst) {
     write({{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", set_0}},
           {{"normalTexture", {{"index", 0}, {"texCoord", 1}}}});
     const ProgramResult result = process("--tangents mikktspace --strict");
@@ -284,7 +284,7 @@ TEST_F(ProcessTangents, OfATextureOnAMissingSetComeFromTheFirst) {
     expect_along(first_tangent(), {1, 0, 0}, 1);
 }
 
-TEST_F(ProcessTangents, SetsAreRefusedWhereTheyMeanNothing) {
+TEST_F(ProcessTangents, RefuseSetsWithoutEffect) {
     write(both_);
     workplace_.write_square("square.obj");
     for (const test::Refused& refused :

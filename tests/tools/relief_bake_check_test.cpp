@@ -424,7 +424,7 @@ TEST_F(Verify, TheSameOutliersInsideAreAnEdit) {
                   "from edges); none of "));
 }
 
-TEST(MapCheckCommand, LeavesOpenWhatOnlyTheModelsOfABakeShow) {
+TEST(MapCheckCommand, ListsConditionsThatNeedTheModels) {
     const Workplace workplace;
     const Image map = changed(hills(), [n = 0](auto c, int s) mutable {
         const bool is_bent = n++ / 3 == 64 * 5 + 7;

@@ -110,7 +110,7 @@ std::vector<Sample> texel(const Workplace& workplace, const std::string& file, s
     return {first, first + image.channels};
 }
 
-TEST(MeshBakeLayers, AreWrittenBesideTheMapWithTheirRange) {
+TEST(MeshBakeLayers, AreWrittenWithTheirRange) {
     const Workplace workplace;
     workplace.write_square("low.obj");
     workplace.write("high.obj", raised_square());

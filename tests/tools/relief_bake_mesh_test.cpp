@@ -237,7 +237,7 @@ class Sets : public testing::Test {
 const char* const leaning_right = "0.6 0 0.8";
 const char* const leaning_up = "0 0.6 0.8";
 
-TEST_F(Sets, MaterialsThatShareTheUnitSquareHaveSeparateMaps) {
+TEST_F(Sets, MaterialsInTheUnitSquareHaveSeparateMaps) {
     write({{"Skin", 0, 0, leaning_right}, {"Cloth/red", 0, 0, leaning_up}});
     const ProgramResult result = bake("out/<material>_n.png", "--report out/report.json");
     EXPECT_EQ(result.error, "");
@@ -339,7 +339,7 @@ TEST(MeshPairs, AreBakedByTheNamesOfTheirFiles) {
                 HasSubstr("a.obj: has no pair name (name the models X_high and X_low)"));
 }
 
-TEST_F(Sets, IslandsBesideTheMapThatFitIntoItAreAdvisedToRepeat) {
+TEST_F(Sets, SuggestsRepeatForIslandsOutsideTheMap) {
     const auto finding = [&](const std::string& corners) {
         place_.write("high.obj",
                      "v 0 0 0.1\nv 1 0 0.1\nv 1 1 0.1\nv 0 1 0.1\nv 2 0 0.1\n"

@@ -105,7 +105,7 @@ TEST_F(BakeFit, AHighModelFarAwayIsAnErrorThatNamesBothBoxes) {
         "has the size of the low one: was one of them exported without its transform?");
 }
 
-TEST_F(BakeFit, AHighModelBesideTheLowOneMissesTooMuch) {
+TEST_F(BakeFit, ShiftedHighModelMissesTooMuch) {
     write_spheres({.x = 3});
     const std::string error =
         "% of --max-missed; the bounding box of high.obj is (2, -1, -1) to (4, 1, 1)";

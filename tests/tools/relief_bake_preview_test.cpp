@@ -238,7 +238,7 @@ TEST(MeshPreview, OpenGLIsLoadedFirstAndOnlyForPreviews) {
     EXPECT_EQ(workplace.run(line).exit_code, 0);
 }
 
-TEST(MeshPreview, AFailureSaysThatTheMapsAreComplete) {
+TEST(MeshPreview, FailureReportsThatTheMapsAreComplete) {
     const Workplace workplace;
     write_pair(workplace);
     const auto result = workplace.run(

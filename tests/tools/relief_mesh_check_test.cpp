@@ -24,7 +24,7 @@ void write_bad(const Workplace& workplace, const std::string& name) {
                     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nf 1 2 3\nf 2 4 3\nf 1 5 2\n");
 }
 
-TEST(CheckCommand, SaysThatASoundModelIsSound) {
+TEST(CheckCommand, ReportsASoundModel) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ProgramResult result = workplace.run("relief-mesh check square.obj --strict");
@@ -36,7 +36,7 @@ TEST(CheckCommand, SaysThatASoundModelIsSound) {
               "details   docs/hard-cases.md describes each condition\n");
 }
 
-TEST(CheckCommand, NamesTroubleAndIsStrictAboutItWhenAsked) {
+TEST(CheckCommand, ReportsProblemsAndStrictFails) {
     const Workplace workplace;
     write_bad(workplace, "bad.obj");
     workplace.write_square("square.obj");
@@ -58,7 +58,7 @@ TEST(CheckCommand, NamesTroubleAndIsStrictAboutItWhenAsked) {
               "relief-mesh: warning: 1 file with problems (exit code 3, because of --strict)\n");
 }
 
-TEST(CheckCommand, GoesOnAfterAFileThatCannotBeRead) {
+TEST(CheckCommand, ContinuesAfterUnreadableFiles) {
     const Workplace workplace;
     workplace.write("broken.obj", "v 0 0 zero\n");
     workplace.write_square("square.obj");
@@ -101,7 +101,7 @@ TEST(CheckCommand, PrintsOneJsonObject) {
     EXPECT_EQ(part["notes"][0]["kind"], "boundary edge");
 }
 
-TEST(CheckCommand, WhatAFormatHoldsBesideTheMeshIsNoTrouble) {
+TEST(CheckCommand, OtherContentOfAFormatIsNotAProblem) {
     const Workplace workplace;
     workplace.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\np 1\nl 1 2\n");
     workplace.write("lost.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/9 3/9\n");
@@ -115,7 +115,7 @@ TEST(CheckCommand, WhatAFormatHoldsBesideTheMeshIsNoTrouble) {
                                     "0, 1, 2): read as none\n"));
 }
 
-TEST(CheckCommand, TextureWithoutGradientIsTroubleWhereTangentsAreWanted) {
+TEST(CheckCommand, TextureWithoutGradientIsAProblemForTangents) {
     const Workplace workplace;
     const std::string mesh =
         "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
@@ -128,7 +128,7 @@ TEST(CheckCommand, TextureWithoutGradientIsTroubleWhereTangentsAreWanted) {
     EXPECT_EQ(workplace.run("relief-mesh check a.obj --strict").exit_code, 3);
 }
 
-TEST(CheckCommand, OverlappingTextureIsTroubleForABake) {
+TEST(CheckCommand, OverlappingTextureIsAProblemForBaking) {
     const Workplace workplace;
     workplace.write("mirror.obj",
                     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
@@ -152,7 +152,7 @@ TEST(CheckCommand, OutputDoesNotDependOnThreads) {
     EXPECT_EQ(one.out, workplace.run(line + "3").out);
 }
 
-TEST(CheckCommand, RefusesWhatCannotBe) {
+TEST(CheckCommand, RefusesInvalidUse) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     EXPECT_EQ(workplace.run("relief-mesh check").exit_code, 2);
@@ -163,7 +163,7 @@ TEST(CheckCommand, RefusesWhatCannotBe) {
 }
 
 // The samples of Khronos are sound models, so their findings are only notes.
-TEST(CheckCommand, RealModelsThatAreFineAreSaidToBe) {
+TEST(CheckCommand, RealModelsAreSound) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const Workplace workplace;
     const std::string folder = models.string();
@@ -176,7 +176,7 @@ TEST(CheckCommand, RealModelsThatAreFineAreSaidToBe) {
     EXPECT_THAT(result.out, HasSubstr("5 files: 5 sound, 0 with problems, 0 unreadable\n"));
 }
 
-TEST(CheckCommand, RealModelsWithTroubleAreNamed) {
+TEST(CheckCommand, RealModelsHaveTheirProblems) {
     RELIEF_NEEDS_SHARED(models, "data/models");
     const Workplace workplace;
     const std::string folder = models.string();
@@ -228,7 +228,7 @@ void negate_signs(const Workplace& workplace, std::size_t count) {
     workplace.write("out/vase.bin", bytes);
 }
 
-TEST(CheckTangents, EachMethodIsTold) {
+TEST(CheckTangents, IdentifiesEachMethod) {
     const Workplace workplace;
     for (const std::string method : {"mikktspace", "area-weighted", "lengyel"}) {
         write_vase(workplace, method);
@@ -244,7 +244,7 @@ TEST(CheckTangents, EachMethodIsTold) {
     }
 }
 
-TEST(CheckTangents, NegatedSignsAreSaid) {
+TEST(CheckTangents, ReportsNegatedSigns) {
     const Workplace workplace;
     write_vase(workplace, "mikktspace");
     negate_signs(workplace, 0);
@@ -266,7 +266,7 @@ TEST(CheckTangents, FilesWithoutHaveNoLine) {
     EXPECT_EQ(tangents_of(workplace, "data/vase.obj"), json());
 }
 
-TEST(CheckTangents, PrimitivesOfWhichTheSameIsSaidShareALine) {
+TEST(CheckTangents, EqualPrimitivesAppearOnOneLine) {
     const Workplace workplace;
     write_vase(workplace, "mikktspace");
     json document = json::parse(workplace.read("out/vase.gltf"));
@@ -277,7 +277,7 @@ TEST(CheckTangents, PrimitivesOfWhichTheSameIsSaidShareALine) {
     EXPECT_THAT(text, Not(HasSubstr("primitive 1")));
 }
 
-TEST(CheckTangents, OfRealModels) {
+TEST(CheckTangents, IdentifiesRealModels) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const Workplace workplace;
     const auto said_of = [&](const std::string& file) {

@@ -57,7 +57,7 @@ TEST(CompareCommand, FormatsOrderAndSplitsDoNotMatter) {
     EXPECT_TRUE(same["complete"].get<bool>());
 }
 
-TEST(CompareCommand, WhatOneFileLacksDoesNotPassUnnoticed) {
+TEST(CompareCommand, ReportsAttributesOfOneFileOnly) {
     const Workplace workplace;
     ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj out/vase.glb --tangents mikktspace")
                   .exit_code,
@@ -81,7 +81,7 @@ TEST(CompareCommand, WhatOneFileLacksDoesNotPassUnnoticed) {
                                          "with data/vase.obj, so --max-angle cannot be checked"));
 }
 
-TEST(CompareCommand, SaysWhereAndByHowMuchNormalsDiffer) {
+TEST(CompareCommand, LocatesDifferencesOfNormals) {
     const Workplace workplace;
     workplace.write_square("plain.obj");
     ASSERT_EQ(workplace.run("relief-mesh process plain.obj square.obj --normals flat").exit_code,
@@ -146,7 +146,7 @@ TEST(CompareCommand, SignsOfTangentsCount) {
     EXPECT_THAT(failed.error, HasSubstr("6 tangent signs"));
 }
 
-TEST(CompareCommand, WhatHasNoPartnerIsCounted) {
+TEST(CompareCommand, CountsUnmatchedTriangles) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write("less.obj",
@@ -176,7 +176,7 @@ TEST(CompareCommand, NearPositionsMatchWithinTheTolerance) {
     EXPECT_EQ(workplace.run("relief-mesh compare square.obj near.obj --tolerance 0").exit_code, 1);
 }
 
-TEST(CompareCommand, FarMeshesAreComparedWhereTheyAre) {
+TEST(CompareCommand, ComparesFarMeshesExactly) {
     const Workplace workplace;
     workplace.write("far.obj",
                     "v 5000000.25 0 0\nv 5000001.25 0 0\nv 5000000.25 1 0\n"
@@ -215,7 +215,7 @@ TEST(CompareCommand, PrimitivesAreListed) {
     EXPECT_EQ(all["corners"], corners);
 }
 
-TEST(CompareCommand, QuantisedModelsAreComparedInWorldSpace) {
+TEST(CompareCommand, QuantizedModelsAreComparedInWorldSpace) {
     RELIEF_NEEDS_SHARED(folder, "data/models/gltf/Duck");
     const Workplace workplace;
     const std::string files = (folder / "glTF-Binary/Duck.glb").string() + " " +
@@ -229,7 +229,7 @@ TEST(CompareCommand, QuantisedModelsAreComparedInWorldSpace) {
     EXPECT_LT(result["normals"]["max"].get<double>(), 1.0);
 }
 
-TEST(CompareCommand, RealModelsKeepWhatProcessingKeeps) {
+TEST(CompareCommand, ProcessingKeepsRealModels) {
     RELIEF_NEEDS_SHARED(folder, "data/models/gltf-ext/misc/DuplicateMeshes");
     const std::string file = (folder / "duplicate_meshes.gltf").string();
     const Workplace workplace;

@@ -182,7 +182,7 @@ TEST(ProcessCommand, GltfWithoutNormalsGetsFlatOnes) {
                                       "tangents  none\n"));
 }
 
-TEST(ProcessCommand, GltfOutputNamesABufferThatStandsBesideIt) {
+TEST(ProcessCommand, GltfOutputNamesItsBuffer) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ProgramResult result = workplace.run("relief-mesh process square.obj out/square.gltf");
@@ -192,7 +192,7 @@ TEST(ProcessCommand, GltfOutputNamesABufferThatStandsBesideIt) {
     EXPECT_EQ(read_document(workplace / "out/square.gltf").mesh({0, 0}).normals.size(), 4U);
 }
 
-TEST(ProcessCommand, APrimitiveThatCannotHaveTangentsIsFoundAndTheOthersGetThem) {
+TEST(ProcessCommand, ReportsPrimitivesWithoutTangents) {
     const Workplace workplace;
     write_two_primitives(workplace, "pair");
     const ProgramResult result = workplace.run(
@@ -212,7 +212,7 @@ TEST(ProcessCommand, APrimitiveThatCannotHaveTangentsIsFoundAndTheOthersGetThem)
     EXPECT_EQ(report["primitives"][1]["tangents"], "none");
 }
 
-TEST(ProcessCommand, StrictExitsWith3WhenSomethingWasFoundAndWritesAllTheSame) {
+TEST(ProcessCommand, StrictExitsWith3AfterWriting) {
     const Workplace workplace;
     workplace.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
     const std::string line = "relief-mesh process bad.obj out/bad.ply --normals angle";
@@ -252,7 +252,7 @@ TEST(ProcessCommand, OutputDoesNotDependOnThreads) {
     EXPECT_EQ(workplace.read("out/1.glb"), workplace.read("out/7.glb"));
 }
 
-TEST(ProcessCommand, AMissingTextureOfMtlIsLeftOutOfGltfAndFound) {
+TEST(ProcessCommand, MissingTexturesOfMtlAreOmittedAndReported) {
     const Workplace workplace;
     workplace.write_square("plain.obj");
     workplace.write("square.mtl", "newmtl wall\nKd 0.5 0.25 1\nmap_Kd gone.png\n");
@@ -273,7 +273,7 @@ TEST(ProcessCommand, AMissingTextureOfMtlIsLeftOutOfGltfAndFound) {
     }
 }
 
-TEST(ProcessCommand, SaysWhatTheOutputFormatLeavesBehind) {
+TEST(ProcessCommand, ReportsContentThatTheFormatCannotStore) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     ASSERT_EQ(
@@ -284,7 +284,7 @@ TEST(ProcessCommand, SaysWhatTheOutputFormatLeavesBehind) {
     EXPECT_THAT(result.out, HasSubstr("omitted   tangents (cannot be stored in .obj)\n"));
 }
 
-TEST(ProcessCommand, KeepsARealModelsTangentsAndTexturesUntilAskedOtherwise) {
+TEST(ProcessCommand, KeepsTangentsAndTexturesByDefault) {
     RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
     const Workplace workplace;
     const std::string input = bottle.string();
@@ -303,7 +303,7 @@ TEST(ProcessCommand, KeepsARealModelsTangentsAndTexturesUntilAskedOtherwise) {
                 HasSubstr("normals   computed, averaged by angle\ntangents  removed\n"));
 }
 
-TEST(InfoCommand, CountsWhatIsThere) {
+TEST(InfoCommand, CountsContent) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ProgramResult result = workplace.run("relief-mesh info square.obj");
@@ -335,7 +335,7 @@ TEST(InfoCommand, PrintsOneJsonObject) {
     EXPECT_EQ(info["primitives"][1]["bounds"]["min"], json({0.0, 0.0, 0.0}));
 }
 
-TEST(InfoCommand, SaysWhatARealSceneHolds) {
+TEST(InfoCommand, DescribesARealScene) {
     RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
     const Workplace workplace;
     const json info = json::parse(workplace.run("relief-mesh info --json " + bottle.string()).out);
@@ -346,7 +346,7 @@ TEST(InfoCommand, SaysWhatARealSceneHolds) {
                 ElementsAre("base color", "metallic-roughness", "normal", "emission"));
 }
 
-TEST(InfoCommand, SaysHowAFileIsCompressed) {
+TEST(InfoCommand, DescribesCompression) {
     RELIEF_NEEDS_SHARED(pirate, "data/models/gltf-ext/meshopt/pirate.glb");
     const Workplace workplace;
     EXPECT_THAT(workplace.run("relief-mesh info " + pirate.string()).out,
@@ -355,7 +355,7 @@ TEST(InfoCommand, SaysHowAFileIsCompressed) {
     EXPECT_EQ(info["compression"], json({"EXT_meshopt_compression of 3 buffer views"}));
 }
 
-TEST(ProcessCommand, SaysThatACompressedFileIsWrittenUncompressed) {
+TEST(ProcessCommand, ReportsDecompression) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const Workplace workplace;
     const auto file = models / "MorphPrimitivesTest/glTF-Draco/MorphPrimitivesTest.gltf";
@@ -370,7 +370,7 @@ TEST(ProcessCommand, SaysThatACompressedFileIsWrittenUncompressed) {
     EXPECT_EQ(info["compression"], json::array());
 }
 
-TEST(MeshRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(MeshRefusal, StatesTheReasonAndWritesNoFile) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write_square("plain.obj", true);

@@ -72,7 +72,7 @@ TEST(ViewCommand, NoLightAndNoAmbientLightIsBlack) {
     EXPECT_EQ(middle_of(workplace, "--light none --ambient 1"), white_lit);
 }
 
-TEST(ViewCommand, LightsAreAddedWhereThereAreNoneAndItSaysSo) {
+TEST(ViewCommand, AddsLightsWithANote) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ProgramResult result =
@@ -103,7 +103,7 @@ TEST(ViewCommand, MentionsAmbientLightOnlyIfASurfaceShowsIt) {
                 HasSubstr("light     1 point light and ambient light\n"));
 }
 
-TEST(ViewCommand, BackgroundIsTheColorOrNothing) {
+TEST(ViewCommand, BackgroundIsAColorOrTransparent) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const auto corner = [&](const std::string& options) {
@@ -220,7 +220,7 @@ void write_sky(const Workplace& workplace) {
         write_plain(workplace / "sky" / (std::string(name) + ".png"), color);
 }
 
-TEST(ViewCommand, TheEnvironmentStandsBehindTheModelHoweverItIsNamed) {
+TEST(ViewCommand, EnvironmentIsBehindTheModelInEveryForm) {
     const Workplace workplace;
     write_sky(workplace);
     workplace.write_square("square.obj");
@@ -251,7 +251,7 @@ TEST(ViewCommand, TheEnvironmentStandsBehindTheModelHoweverItIsNamed) {
     EXPECT_GT(blurred[1], 60) << "it contains light of faces with green";
 }
 
-TEST(ViewCommand, ShadowsAndOcclusionDarkenWhatIsBehindASurface) {
+TEST(ViewCommand, ShadowsAndOcclusionDarkenHiddenSurfaces) {
     const Workplace workplace;
     workplace.write("box.json", R"({"relief_scene": 1, "ambient": 0.5, "background": 0,
         "camera": {"eye": [0, 0, 8]},
@@ -279,7 +279,7 @@ TEST(ViewCommand, ShadowsAndOcclusionDarkenWhatIsBehindASurface) {
     EXPECT_EQ(middle("saved.json --ambient-occlusion 0"), shaded);
 }
 
-TEST(ViewCommand, AMirrorShowsWhatIsBehindTheCamera) {
+TEST(ViewCommand, MirrorShowsTheEnvironmentBehindTheCamera) {
     const Workplace workplace;
     write_sky(workplace);
     EXPECT_EQ(middle_of(workplace, "--environment sky --reflectivity 1 --light none"),
@@ -494,7 +494,7 @@ TEST(ViewCommand, SavedScenesKeepTheUpAxisAndTheNormals) {
     EXPECT_EQ(draw("out/smooth.json"), smooth);
 }
 
-TEST(ViewRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(ViewRefusal, StatesTheReasonAndWritesNoFile) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write_square("plain.obj", true);

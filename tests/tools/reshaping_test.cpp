@@ -131,7 +131,7 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
     EXPECT_EQ(workplace.read("out/b.ply"), workplace.read("out/c.ply"));
 }
 
-TEST(DecimateCommand, TakesTheRatioAsPercentToo) {
+TEST(DecimateCommand, AcceptsPercent) {
     const Workplace workplace;
     ASSERT_EQ(workplace.run("relief-mesh decimate data/vase.obj out/a.ply --ratio 25%").exit_code,
               0);
@@ -140,7 +140,7 @@ TEST(DecimateCommand, TakesTheRatioAsPercentToo) {
     EXPECT_EQ(workplace.read("out/a.ply"), workplace.read("out/b.ply"));
 }
 
-TEST(DecimateCommand, SaysIfTheInputIsWithinTheLimitOfTriangles) {
+TEST(DecimateCommand, ReportsAnInputWithinTheLimit) {
     const Workplace workplace;
     const ProgramResult one =
         workplace.run("relief-mesh decimate data/urn-low.obj out/a.glb --triangles 5000");
@@ -284,7 +284,7 @@ TEST(DecimateCommand, BordersSeamsAndAnglesAreKeptOnRequest) {
               free["distance"]["of_output"]["mean_degrees"]);
 }
 
-TEST(DecimateCommand, WeightsChangeWhatCounts) {
+TEST(DecimateCommand, WeightsAffectTheResult) {
     const Workplace workplace;
     const auto result = [&](const std::string& options) {
         EXPECT_EQ(workplace
@@ -412,7 +412,7 @@ TEST(SubdivideCommand, ARiggedModelIsRefused) {
     EXPECT_EQ(workplace.outputs(), "");
 }
 
-TEST(ReshapingRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(ReshapingRefusal, StatesTheReasonAndWritesNoFile) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write("flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n");
@@ -566,7 +566,7 @@ json lods_report(const Workplace& workplace, const std::string& arguments) {
     return json::parse(workplace.read("out/lods.json"));
 }
 
-TEST(LodsCommand, ALevelTakesOverWhereItDiffersNoMoreThanTheMovedInput) {
+TEST(LodsCommand, SwitchesAtTheDistanceOfEqualDifference) {
     const Workplace workplace;
     const std::string line = "data/vase.obj out/lods.gltf --triangles 700,150";
     const json half = lods_report(workplace, line + " --error 0.5px");
@@ -591,7 +591,7 @@ TEST(LodsCommand, ALevelTakesOverWhereItDiffersNoMoreThanTheMovedInput) {
     EXPECT_LT(half["levels"][1]["pixels"], half["levels"][0]["pixels"]);
 }
 
-TEST(LodsCommand, WithoutOpenGLTheDistanceDecidesAndThatIsSaid) {
+TEST(LodsCommand, WithoutOpenGLUsesDistanceWithANote) {
     const Workplace workplace;
     const std::string arguments = "relief-mesh lods data/vase.obj out/a.gltf --levels 1";
     const ProgramResult result =

@@ -35,7 +35,7 @@ ViewOptions of(const std::filesystem::path& model) {
     return options;
 }
 
-TEST(SceneOptions, NothingAskedForChangesNoMaterial) {
+TEST(SceneOptions, DefaultsChangeNoMaterial) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ComposedScene plain = composed(of(workplace / "square.obj"));
@@ -64,7 +64,7 @@ TEST(SceneOptions, MeshesWithoutAMaterialTakePartInAllMaterials) {
     }
 }
 
-TEST(SceneOptions, AMapReplacesTheDiffuseColourOfEveryMaterial) {
+TEST(SceneOptions, MapReplacesTheDiffuseColorOfEveryMaterial) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     ViewOptions options = of(workplace / "square.obj");
@@ -129,7 +129,7 @@ TEST(SceneOptions, TransmissionComesWithTheReflectivityOfGlass) {
     EXPECT_EQ(mirror.reflectivity, glm::vec3(0.5F)) << "its own";
 }
 
-TEST(SceneOptions, DefaultLightsShineFromTheViewersSideWhereverTheCameraIs) {
+TEST(SceneOptions, DefaultLightsFollowTheCamera) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     ViewOptions options = of(workplace / "square.obj");
@@ -144,7 +144,7 @@ TEST(SceneOptions, DefaultLightsShineFromTheViewersSideWhereverTheCameraIs) {
     }
 }
 
-TEST(SceneOptions, ACameraWithItsPlaceMovesNoLight) {
+TEST(SceneOptions, CameraWithAPositionMovesNoLight) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     ViewOptions options = of(workplace / "square.obj");
@@ -221,7 +221,7 @@ TEST(SceneOptions, ACameraOfTheFileCanBeChosen) {
     EXPECT_THROW(composed(options), UsageError);
 }
 
-TEST(SceneOptions, AnOrthographicCameraShowsTheWholeModel) {
+TEST(SceneOptions, OrthographicCameraShowsTheModel) {
     const Workplace workplace;
     workplace.write_square("square.obj");  // From (-1,-1,0) to (1,1,0).
     ViewOptions options = of(workplace / "square.obj");
@@ -258,7 +258,7 @@ void write_triangle(const Workplace& workplace, const std::string& name,
         "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0})");
 }
 
-TEST(SceneOptions, TheStudioLightsModelsThatShowTheirSurroundings) {
+TEST(SceneOptions, StudioLightsReflectiveModels) {
     const Workplace workplace;
     const std::string dielectric = R"("pbrMetallicRoughness": {"metallicFactor": 0})";
     const auto coated = [&](const std::string& extension, const std::string& member) {
@@ -381,7 +381,7 @@ std::string light_refusal(const std::string& text) {
     return "accepted";
 }
 
-TEST(LightOption, ADirectionalLightComesFromWhereItIsNamed) {
+TEST(LightOption, DirectionalLightHasItsDirection) {
     // From the right (+x), so it travels to the left.
     const auto right = parsed<DirectionalLight>("directional:90,0");
     EXPECT_LT(degrees_between(right.direction_world, {-1, 0, 0}), light_tolerance);
@@ -397,7 +397,7 @@ TEST(LightOption, ADirectionalLightComesFromWhereItIsNamed) {
     EXPECT_EQ(around.ambient, glm::vec3(0.5F, 0.0F, 0.0F));
 }
 
-TEST(LightOption, APointLightStandsWhereItIsNamed) {
+TEST(LightOption, PointLightHasItsPosition) {
     const auto light = parsed<PointLight>("point:1,-2,3.5,4,#0000ff");
     EXPECT_EQ(light.position_world, glm::vec3(1.0F, -2.0F, 3.5F));
     EXPECT_EQ(light.intensity, glm::vec3(0.0F, 0.0F, 4.0F));
@@ -415,11 +415,11 @@ TEST(LightOption, ASpotLightShinesAtItsTargetWithinItsCone) {
     EXPECT_FLOAT_EQ(parsed<SpotLight>("spot:0,5,0,0,0,0").outer_cone, glm::radians(30.0F));
 }
 
-TEST(LightOption, NoneIsNoLight) {
+TEST(LightOption, NoneRemovesLights) {
     EXPECT_TRUE(std::holds_alternative<NoLight>(parse_light("--light none", "none")));
 }
 
-TEST(LightOption, RefusesWhatIsNotALight) {
+TEST(LightOption, RefusesInvalidLights) {
     EXPECT_EQ(light_refusal("sun"), "--light sun: not a light");
     EXPECT_EQ(light_refusal("sun:1,2"), "--light sun:1,2: not a light");
     EXPECT_EQ(light_refusal("point"), "--light point: '': not a number");

@@ -22,14 +22,14 @@ using test::ProgramResult;
 using test::Workplace;
 using testing::HasSubstr;
 
-TEST(NumberedFile, HasItsNumberBehindTheNameOrInPlaceOfTheHashes) {
+TEST(NumberedFile, AppendsANumberOrReplacesHashes) {
     EXPECT_EQ(numbered_file("out/spin.png", 7), "out/spin-0007.png");
     EXPECT_EQ(numbered_file("spin.exr", 12345), "spin-12345.exr");
     EXPECT_EQ(numbered_file("out/a##b.png", 3), "out/a03b.png");
     EXPECT_EQ(numbered_file("out/#.png", 12), "out/12.png");
 }
 
-TEST(Turntable, ComesRoundToWhereItBegan) {
+TEST(Turntable, ReturnsToItsStart) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     const ProgramResult turned = workplace.run(
@@ -46,7 +46,7 @@ TEST(Turntable, ComesRoundToWhereItBegan) {
     EXPECT_THAT(turned.out, HasSubstr("t-0001.png to out/t-0004.png"));
 }
 
-TEST(Turntable, TurnsTheModelAndLeavesWhatShowsLampsWhereItIs) {
+TEST(Turntable, RotatesTheModelButNotLightMarkers) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     ViewOptions options;
@@ -147,7 +147,7 @@ TEST(Video, ReceivesEveryPictureAndReplacesTheFileAtTheEnd) {
     }
 }
 
-TEST(Video, OfAProgramThatFailsLeavesTheOldFile) {
+TEST(Video, FailedProgramKeepsTheOldFile) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     workplace.write("ffmpeg", "#!/bin/sh\n/bin/cat > /dev/null\nexit 1\n");
@@ -224,7 +224,7 @@ TEST(Frames, ShowMaterialsThatMove) {
     EXPECT_NEAR(middle("f2.png").second, 255 * srgb_from_linear(0.75F * 0.625F), 2);
 }
 
-TEST(SequenceRefusal, SaysWhyAndLeavesNothingBehind) {
+TEST(SequenceRefusal, StatesTheReasonAndWritesNoFile) {
     const Workplace workplace;
     workplace.write_square("square.obj");
     expect_refusals(

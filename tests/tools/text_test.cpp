@@ -23,7 +23,7 @@ TEST(SummaryText, CountsThings) {
     EXPECT_EQ(counted(3, "light"), "3 lights");
 }
 
-TEST(SummaryText, RoundsSizesToWhatMatters) {
+TEST(SummaryText, RoundsSizes) {
     EXPECT_EQ(byte_size(999), "999 B");
     EXPECT_EQ(byte_size(1000), "1.0 kB");
     EXPECT_EQ(byte_size(12345), "12 kB");
@@ -33,7 +33,7 @@ TEST(SummaryText, RoundsSizesToWhatMatters) {
     EXPECT_EQ(byte_size(5000000000), "5.0 GB");
 }
 
-TEST(SummaryText, RoundsTimesToWhatMatters) {
+TEST(SummaryText, RoundsTimes) {
     EXPECT_EQ(duration(0.04), "0.0 ms");
     EXPECT_EQ(duration(9.94), "9.9 ms");
     EXPECT_EQ(duration(9.96), "10 ms");
@@ -46,7 +46,7 @@ TEST(SummaryText, ExtensionsAreLowerCase) {
     EXPECT_EQ(extension_of("a.b/c"), "");
 }
 
-TEST(SummaryText, EscapesControlCharactersAndWhatIsNotUtf8) {
+TEST(SummaryText, EscapesControlCharactersAndInvalidUtf8) {
     const std::string kept = "a\xC2\xA0\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80~";
     EXPECT_EQ(printable(kept), kept);
     EXPECT_EQ(printable("a\x1B[2J\n\x7F"), "a\\x1b[2J\\x0a\\x7f");
@@ -84,7 +84,7 @@ Report report_of(const std::string& kind) {
     return report;
 }
 
-TEST(Findings, SayWhereTheyAre) {
+TEST(Findings, NameTheirFile) {
     Findings findings;
     EXPECT_TRUE(findings.empty());
     findings.add("", report_of("degenerate triangle"));

@@ -104,7 +104,7 @@ class ValidOutputs : public testing::Test {
     std::string pairs_;
 };
 
-TEST_F(ValidOutputs, OfBrokenAndHostileModels) {
+TEST_F(ValidOutputs, FromBrokenAndHostileModels) {
     RELIEF_NEEDS_SHARED(broken, "data/broken/gltf");
     RELIEF_NEEDS_SHARED(hostile, "data/hostile");
     RELIEF_NEEDS_SHARED(more_hostile, "data/hostile2");
@@ -117,7 +117,7 @@ TEST_F(ValidOutputs, OfBrokenAndHostileModels) {
     EXPECT_GT(written_, 50);
 }
 
-TEST_F(ValidOutputs, OfRealModels) {
+TEST_F(ValidOutputs, FromRealModels) {
     RELIEF_NEEDS_SHARED(folder, "data/models");
     run_one_each(models_below(folder));
     EXPECT_GT(written_, 60);

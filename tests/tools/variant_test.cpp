@@ -30,7 +30,7 @@ std::string refusal_of(const std::string& text) {
     return "";
 }
 
-TEST(Variant, EachHasATextOfItsOwnThatBringsItBack) {
+TEST(Variant, TextRoundTrips) {
     std::set<std::string> texts;
     for (const VariantTopic& topic : variant_topics()) {
         for (const auto& [word, variant] : topic.choices) {
@@ -47,7 +47,7 @@ TEST(Variant, TopicsAreInTheOrderOfTheirTypes) {
         EXPECT_EQ(variant_topics()[i].choices.front().second.index(), i);
 }
 
-TEST(Variant, WhatIsNoneIsRefusedWithWhatThereIs) {
+TEST(Variant, RefusesUnknownNamesWithAList) {
     using testing::HasSubstr;
     EXPECT_THAT(refusal_of("kernel=box"), HasSubstr("kernel: not one of forward, central3"));
     EXPECT_THAT(refusal_of("colour=red"), HasSubstr("not one of interpolation=, map=, kernel="));
@@ -99,7 +99,7 @@ class VariantScene : public testing::Test {
     ViewOptions options_;
 };
 
-TEST_F(VariantScene, InterpolationIsThatOfAllMaterialsAndSharesTheMeshes) {
+TEST_F(VariantScene, InterpolationAppliesToAllMaterialsAndSharesMeshes) {
     const Scene before = scene();
     const Scene flat = changed(before, "interpolation=flat");
     EXPECT_EQ(flat.materials[0].interpolation, Interpolation::flat);
@@ -195,7 +195,7 @@ TEST_F(VariantScene, FramesAreThoseOfTheMode) {
               with_frames(*before.meshes[0], frames, report).mesh.normals);
 }
 
-TEST_F(VariantScene, WhatCouldShowNothingIsRefusedWithTheReason) {
+TEST_F(VariantScene, RefusesVariantsWithoutEffect) {
     const Scene plain = scene();
     EXPECT_THAT(refusal(plain, "kernel=central3"), HasSubstr("no height map"));
     EXPECT_THAT(refusal(plain, "tangents=lengyel"), HasSubstr("that needs tangents"));
@@ -221,7 +221,7 @@ TEST_F(VariantScene, EditsAfterwardsComeAlong) {
     EXPECT_NO_THROW(validate(other));
 }
 
-TEST_F(VariantScene, AnotherModelStandsInTheSameLight) {
+TEST_F(VariantScene, OtherModelHasTheSameLights) {
     Scene before = scene();
     before.directional_lights.resize(1);
     before.exposure = 2.0F;

@@ -100,7 +100,7 @@ TEST(BakeCheck, NormalsTurnedByOneDegreeAreOneDegreeOff) {
     EXPECT_FALSE(check.convention.is_explained);
 }
 
-TEST(BakeCheck, AMeshOntoItselfIsFlatWithinQuantisation) {
+TEST(BakeCheck, MeshOntoItselfIsFlatWithinQuantization) {
     for (const Mesh& mesh : {make_sphere(), make_torus(), make_cube(), make_cylinder()}) {
         for (const int bits : {8, 16}) {
             const BakeOptions options = sized(96, 64);
@@ -116,7 +116,7 @@ TEST(BakeCheck, AMeshOntoItselfIsFlatWithinQuantisation) {
     }
 }
 
-TEST(BakeCheck, QuantisationAloneIsWhatRoundingToCodesDoes) {
+TEST(BakeCheck, QuantizationIsTheErrorOfRounding) {
     const Mesh high = tilted_square({0.6F, 0.0F, 0.8F}, 0.1F);
     const BakeOptions options = sized(32, 32);
     const Image map = baked_map(high, make_quad(), options, 8);
@@ -136,7 +136,7 @@ TEST(BakeCheck, QuantisationAloneIsWhatRoundingToCodesDoes) {
     EXPECT_NEAR(all_shares(check), 1.0, 1e-9);
 }
 
-TEST(BakeCheck, SamplingAloneIsWhatOneSampleMissesOfTheMean) {
+TEST(BakeCheck, SamplingIsTheErrorOfOneSample) {
     // A texel has a width of one sixteenth. The waves are three times shorter, so one sample cannot
     // resolve them.
     const Mesh high = waves(512, 100.0);
@@ -157,7 +157,7 @@ TEST(BakeCheck, SamplingAloneIsWhatOneSampleMissesOfTheMean) {
     EXPECT_GT(sixteen.center.rms, 5.0);
 }
 
-TEST(BakeCheck, BasisIsWhatASkewedFrameMakesOfRounding) {
+TEST(BakeCheck, BasisIsTheAmplificationBySkewedFrames) {
     const Mesh high = tilted_square({0.6F, 0.0F, 0.8F}, 0.1F);
     Mesh low = make_quad();
     // The tangent leaves the plane by 60 degrees, which changes the angle between x and z.
@@ -175,7 +175,7 @@ TEST(BakeCheck, BasisIsWhatASkewedFrameMakesOfRounding) {
     EXPECT_LT(stage(right, BakeStage::basis).error.rms, 1e-3);
 }
 
-TEST(BakeCheck, ProjectionIsWhereTheSurfaceJumpsWithinATexel) {
+TEST(BakeCheck, ProjectionCountsTexelsWithDiscontinuities) {
     // Two squares at different heights, tilted to opposite sides, that meet within the same texels.
     Mesh high = tilted_square({0.6F, 0.0F, 0.8F}, 0.3F);
     Mesh other = tilted_square({-0.6F, 0.0F, 0.8F}, 0.0F);
@@ -202,7 +202,7 @@ TEST(BakeCheck, ProjectionIsWhereTheSurfaceJumpsWithinATexel) {
     EXPECT_TRUE(check.worst[0].is_discontinuous);
 }
 
-TEST(BakeCheck, WhatRaysMissHasNoTruthAndIsCounted) {
+TEST(BakeCheck, MissedTexelsAreCountedWithoutReference) {
     Mesh high = tilted_square({0.0F, 0.0F, 1.0F});
     for (glm::vec3& position : high.positions)
         position.x = (position.x - 1.0F) / 2.0F;
@@ -263,7 +263,7 @@ TEST(BakeCheck, IsTheSameForAnyNumberOfThreads) {
         EXPECT_EQ(usual.stages[i].share, alone.stages[i].share);
 }
 
-TEST(BakeCheck, OfObjectSpaceNeedsNoFrames) {
+TEST(BakeCheck, ObjectSpaceNeedsNoFrames) {
     const Mesh high = make_torus(0.43F, 200, 100);
     BakeOptions options = sized(64, 64);
     options.space = VectorSpace::object;
@@ -275,7 +275,7 @@ TEST(BakeCheck, OfObjectSpaceNeedsNoFrames) {
     EXPECT_LT(check.center.max, 0.003);
 }
 
-TEST(BakeCheck, RefusesWhatIsNoMapOfThatSize) {
+TEST(BakeCheck, RefusesMapsOfAnotherSize) {
     const BakeOptions options = sized(16, 16);
     EXPECT_EQ(test::message_of<InvalidInput>([&] {
                   checked(make_quad(), make_quad(), options,

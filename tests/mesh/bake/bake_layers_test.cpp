@@ -95,7 +95,7 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
     }
 }
 
-TEST(BakeLayers, PositionsAreWhereRaysHaveHitInTheAxesAskedFor) {
+TEST(BakeLayers, PositionsAreHitsInTheRequestedAxes) {
     BakeOptions options = sized(8, 4);
     options.map.layers.positions = true;
     options.map.layers.position_from_mesh =
@@ -147,7 +147,7 @@ TEST(BakeLayers, OcclusionIsThatOfTheHighMeshes) {
     }
 }
 
-TEST(BakeLayers, OfTexelsThatMissAreBackgroundOrPadded) {
+TEST(BakeLayers, MissedTexelsAreBackgroundOrPadding) {
     Mesh high = moved(make_quad(), 1.0F, {0, 0, 0.25F});
     for (glm::vec3& position : high.positions)
         position.x = (position.x - 1.0F) / 2.0F;
@@ -187,7 +187,7 @@ TEST(BakeLayers, ColorsOfVerticesAreMixedInLight) {
     EXPECT_EQ(image.report.findings()[0].first, (std::vector<std::size_t>{1}));
 }
 
-TEST(BakeLayers, SaysWhatIsWrong) {
+TEST(BakeLayers, RefusesInvalidOptions) {
     BakeOptions options = sized(4, 4);
     options.map.layers.occlusion = OcclusionOptions{.rays = 0, .distance = {}};
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
@@ -197,7 +197,7 @@ TEST(BakeLayers, SaysWhatIsWrong) {
               "a distance of occlusion of -1 is negative or not finite");
 }
 
-TEST(BakeLayers, OfAMapAreSomeOfThoseThatItsBakerWasMadeFor) {
+TEST(BakeLayers, OfAMapMustBeThoseOfItsBaker) {
     const std::vector<Mesh> high = {make_quad()};
     BakeOptions options = sized(4, 4);
     Report report;
@@ -319,7 +319,7 @@ TEST(Occlusion, ErrorFallsFasterThanThatOfRaysAtRandom) {
     EXPECT_LT(before, 0.003);
 }
 
-TEST(Occlusion, SamplesShareTheRaysOfATexel) {
+TEST(Occlusion, SamplesDivideTheRaysOfATexel) {
     const Mesh mesh = disc(1.0F);
     const RayScene scene({ray_mesh(mesh)});
     Report report;
@@ -338,7 +338,7 @@ TEST(Occlusion, SamplesShareTheRaysOfATexel) {
     EXPECT_LT(error_of(means, 0.5).root_mean_square, 0.009);
 }
 
-TEST(Occlusion, EveryPlaceInABowlSeesTheShareOfTheSphereThatIsMissing) {
+TEST(Occlusion, InABowlIsTheOpenFractionOfTheSphere) {
     // The inner side of a sphere, cut off above y = 0 and above y = 0.5.
     for (const int kept : {32, 48}) {
         constexpr int stacks = 64;
@@ -393,7 +393,7 @@ TEST(Occlusion, NothingHidesItself) {
     EXPECT_TRUE(report.empty());
 }
 
-TEST(Occlusion, AboutATriangleWhereTheNormalIsOfNoUse) {
+TEST(Occlusion, UsesTheTriangleIfTheNormalIsUnusable) {
     const Mesh mesh = disc(1.0F);
     const RayScene scene({ray_mesh(mesh)});
     std::vector<OcclusionPlace> places = from_origin(300);
@@ -418,7 +418,7 @@ Mesh disc_above(float radius, float height) {
     return disc;
 }
 
-TEST(VertexOcclusion, OfADiscIsItsFormFactor) {
+TEST(VertexOcclusion, UnderADiscIsItsFormFactor) {
     Mesh floor = make_quad();
     floor.positions[0] = glm::vec3(0.0F);
     floor.normals.assign(floor.positions.size(), glm::vec3(0.0F, 0.0F, 1.0F));

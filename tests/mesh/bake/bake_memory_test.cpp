@@ -49,7 +49,7 @@ TEST(BakeMemory, DoesNotGrowWithSamplesNorWithTheMap) {
 }
 
 /// The file has 15 bytes per texel: 250 MB.
-TEST(BakeMemory, OfMapsFilledToTheBorderIsTheirFiles) {
+TEST(BakeMemory, FillsToTheBorderInFiles) {
     const test::TemporaryDirectory folder;
     set_thread_limit(2);
     const double before = test::peak_megabytes();

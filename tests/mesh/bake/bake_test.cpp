@@ -38,7 +38,7 @@ Mesh gentle_waves(int cells) {
     return mesh;
 }
 
-TEST(Bake, OfAMeshOntoItselfIsFlat) {
+TEST(Bake, MeshOntoItselfIsFlat) {
     for (const Mesh& mesh :
          {make_quad(), make_sphere(), make_torus(), make_cube(), make_cylinder()}) {
         const BakedImage image = bake({mesh}, mesh, sized(128, 96));
@@ -100,7 +100,7 @@ TEST(Bake, IsTheSameForAnyNumberOfThreadsAndOrderOfHighTriangles) {
     EXPECT_EQ(usual.normals, turned.normals);
 }
 
-TEST(Bake, TexelsThatMeetNothingAreCountedAndFilledFromTheNearest) {
+TEST(Bake, MissedTexelsAreCountedAndFilledFromTheNearest) {
     // A tilted high mesh above the left half only.
     Mesh high = make_quad();
     high.normals.assign(high.positions.size(), glm::normalize(glm::vec3(0.6F, 0, 0.8F)));
@@ -120,7 +120,7 @@ TEST(Bake, TexelsThatMeetNothingAreCountedAndFilledFromTheNearest) {
     EXPECT_EQ(padded.normal(37), straight_up);
 }
 
-TEST(Bake, NothingHighIsAllMissed) {
+TEST(Bake, EmptyHighMeshMissesAllTexels) {
     const BakedImage image = bake({}, make_quad(), sized(8, 8));
     EXPECT_EQ(image.count(TexelState::missed), 64U);
     EXPECT_EQ(image.result.min_height, 0.0);
@@ -235,7 +235,7 @@ TEST(Bake, RaysWithoutADirectionRunAlongTheTrianglesNormal) {
         EXPECT_NEAR(height, 0.25F, 1e-6F);
 }
 
-TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
+TEST(Bake, AutoSamplesTexelsWhoseFirstSamplesDiffer) {
     const Mesh high = gentle_waves(64);
     BakeOptions options = sized(16, 16);
     const BakedImage one = bake({high}, make_quad(), options);
@@ -272,7 +272,7 @@ TEST(Bake, SamplesAreMeansAndAutoCastsThemWhereTheyDisagree) {
     EXPECT_LT(error(some), 0.5 * error(one));
 }
 
-TEST(Bake, SaysWhatIsWrong) {
+TEST(Bake, RefusesInvalidInput) {
     Mesh bare = make_quad();
     bare.texcoords.clear();
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, bare, sized(4, 4)); }),
@@ -378,7 +378,7 @@ Errors errors_of(const Mesh& high, const Mesh& low, const BakedImage& baked, int
     return errors;
 }
 
-TEST(BakeSphere, IsTheHighMeshsNormalsWithinWhatCodesHold) {
+TEST(BakeSphere, HasTheHighNormalsWithinRounding) {
     const Mesh high = bumpy_sphere(100);
     Report report;
     const Mesh low =

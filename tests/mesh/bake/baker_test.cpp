@@ -102,7 +102,7 @@ TEST(Baker, ReportsItsRowsAndCanBeCancelledThere) {
     EXPECT_THROW(bake_with(ending), Cancelled);
 }
 
-TEST(Baker, AMapOfSomeTrianglesHasTheirTexelsAsTheWholeMapHasThem) {
+TEST(Baker, MapOfSomeTrianglesEqualsTheWholeMapThere) {
     // A hard edge lies between the faces of a cube. The rays of one face must not depend on the
     // omitted faces.
     const Mesh low = make_cube();
@@ -200,7 +200,7 @@ TEST(Baker, EveryTriangleIsInOnePart) {
     EXPECT_EQ(message({{high, {0, 1, 2}}}), "triangle 2 of the low mesh is not there");
 }
 
-TEST(Baker, SaysWhatIsWrongWithAMap) {
+TEST(Baker, RefusesInvalidMapOptions) {
     const std::vector<Mesh> high = {make_quad()};
     Report report;
     const Baker baker(high, make_quad(), sized(1, 1), report);

@@ -26,7 +26,7 @@ Image gray(int width, int height, std::vector<float> samples) {
     return {width, height, 1, ColorSpace::linear, std::move(samples)};
 }
 
-TEST(SurfaceTexture, LiesBetweenTexelCentresAndGoesOnBeyondItsBorder) {
+TEST(SurfaceTexture, InterpolatesAndWraps) {
     const Image image = gray(4, 1, {0.0F, 0.25F, 0.5F, 1.0F});
     SurfaceTexture texture;
     texture.image = std::make_shared<const Image>(image);
@@ -197,7 +197,7 @@ TEST(HighMaterials, NormalMapsComeThroughOntoTheSameMesh) {
     }
 }
 
-TEST(HighMaterials, NormalMapsAreScaledTurnedAndLeftOutWhereTheyCannotBe) {
+TEST(HighMaterials, NormalMapsAreScaledTransformedOrReported) {
     // Slopes of 3/4 to the right.
     const Image map{1, 1, 3, ColorSpace::data, std::vector<float>{0.8F, 0.5F, 0.9F}};
     std::vector<Mesh> high = {make_quad()};

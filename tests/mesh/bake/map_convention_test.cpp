@@ -137,7 +137,7 @@ void expect_explained(const ConventionFit& found, const std::vector<ConventionPa
     EXPECT_LT(found.found_degrees, 1.5 * found.expected_degrees + 0.02);
 }
 
-TEST(MapConvention, WhatReliefBakesIsAsTold) {
+TEST(MapConvention, RecognizesItsOwnBakes) {
     for (const int bits : {8, 16, 32}) {
         const ConventionFit found = fit(encoded(tangent_normals(), {.bits = bits}));
         EXPECT_FALSE(found.was_searched) << bits;
@@ -195,7 +195,7 @@ TEST(MapConvention, CurvesAreRecognised) {
     EXPECT_EQ(found.convention.curve, StoredCurve::srgb_encoded);
 }
 
-TEST(MapConvention, ImagesLyingOtherwiseAreRecognised) {
+TEST(MapConvention, RecognizesFlippedImages) {
     Image turned = tangent_normals();
     const auto from = tangent_normals().as<float>();
     for (std::size_t y = 0; y < map_height; ++y) {
@@ -380,7 +380,7 @@ TEST(NormalSpace, TurnsAQuadsMapByItsOwnAxes) {
     EXPECT_TRUE(report.empty());
 }
 
-TEST(NormalSpace, CountsWhereThereIsNoMeshNoFrameAndNoNormal) {
+TEST(NormalSpace, CountsTexelsWithoutMeshFrameOrNormal) {
     Mesh quad = test::with_tangents(make_quad());
     for (glm::vec2& texcoord : quad.texcoords)
         texcoord *= 0.5F;

@@ -46,7 +46,7 @@ CoveredTexel at(float second, float third) {
     return {0, second, third, false};
 }
 
-TEST(BorderSample, MovesToTheDistanceFromTheEdgesThatItIsOn) {
+TEST(BorderSample, MovesAwayFromItsEdges) {
     const Mesh mesh = right_triangle();
     // The points are on the leg along x and on the corner of both legs.
     const auto on_edge = moved_inside(mesh, at(0.25F, 0.0F), 0.01);
@@ -59,18 +59,18 @@ TEST(BorderSample, MovesToTheDistanceFromTheEdgesThatItIsOn) {
     EXPECT_EQ(on_corner->triangle, 0U);
 }
 
-TEST(BorderSample, StaysWhereItIsFarEnoughInside) {
+TEST(BorderSample, StaysInsideTheTriangle) {
     EXPECT_FALSE(moved_inside(right_triangle(), at(0.25F, 0.25F), 0.01));
     EXPECT_FALSE(moved_inside(right_triangle(), at(0.25F, 0.0F), 0.0));
 }
 
-TEST(BorderSample, GoesToTheCenterOfTheInscribedCircleOfATriangleThatIsTooSmall) {
+TEST(BorderSample, MovesToTheIncenterOfSmallTriangles) {
     const auto moved = moved_inside(right_triangle(), at(1.0F, 0.0F), 2.0);
     ASSERT_TRUE(moved);
     EXPECT_LT(glm::distance(place(right_triangle(), *moved), {1, 1, 0}), 1e-6);
 }
 
-TEST(BorderSample, HasNowhereToGoWhereThereIsNoArea) {
+TEST(BorderSample, IsAbsentWithoutArea) {
     Mesh line = right_triangle();
     line.positions[2] = {2, 0, 0};
     EXPECT_FALSE(moved_inside(line, at(0.5F, 0.0F), 0.01));
@@ -172,7 +172,7 @@ TEST(OpenBorders, AreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(usual.result.rays, alone.result.rays);
 }
 
-TEST(OpenBorders, WhatIsReallyMissedStaysMissed) {
+TEST(OpenBorders, TrueMissesStayMissed) {
     // The high mesh ends a thousandth of its size before the low one, which is far less than a
     // texel.
     const Mesh low = strip_of_one();
@@ -214,7 +214,7 @@ void expect_as_tried(const std::vector<Place>& places, int width) {
     }
 }
 
-TEST(NearestColumns, FindsAllThatAreEquallyNear) {
+TEST(NearestColumns, FindsAllTies) {
     std::mt19937 random(5);
     for (int round = 0; round < 400; ++round) {
         std::vector<Place> places;
@@ -285,7 +285,7 @@ Map dilated(Map map, int texels, int rows_at_once) {
     return result;
 }
 
-TEST(Dilation, FillsWithTheMeanOfAllThatAreNearest) {
+TEST(Dilation, FillsWithTheMeanOfTheNearest) {
     const Map map = sparse(61, 150, 60);
     const int texels = 6;
     const Map filled = dilated(map, texels, 64);
@@ -343,7 +343,7 @@ TEST(Dilation, FillsTheLayersThatThereAre) {
 }
 
 /// A receiver may modify its rows. The following rows are filled from the baked values.
-TEST(Dilation, DoesNotReadWhatItHandedOn) {
+TEST(Dilation, DoesNotReadEmittedRows) {
     const Map map = sparse(40, 400, 300);
     std::vector<float> heights;
     Dilation dilation(map.width, map.height, 50, [&](const BakedRows& rows) {
@@ -428,7 +428,7 @@ TEST(BorderFill, IsPaddingWithoutALimit) {
     }
 }
 
-TEST(BorderFill, LayersThatThereAreNotStayEmptyAndNothingBakedStaysAsItIs) {
+TEST(BorderFill, KeepsAbsentLayersEmptyAndUnbakedMapsUnchanged) {
     const test::TemporaryDirectory folder;
     BakedImage image = sparse(64 * 70, 500);
     const BakedImage all = filled(image, 64, 70, 64, folder);
@@ -442,7 +442,7 @@ TEST(BorderFill, LayersThatThereAreNotStayEmptyAndNothingBakedStaysAsItIs) {
     EXPECT_EQ(none.normals, image.normals);
 }
 
-TEST(BorderFill, OfABakeReachesTheBorder) {
+TEST(BorderFill, ReachesTheBorderOfABake) {
     const test::TemporaryDirectory folder;
     Mesh low = make_quad();
     for (glm::vec2& texcoord : low.texcoords)

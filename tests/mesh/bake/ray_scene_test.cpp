@@ -147,7 +147,7 @@ TEST(Projection, FindsTheFoldsOfNeedlesHoweverNearTheyAre) {
     EXPECT_GT(fronts, 4000U);
 }
 
-TEST(RayScene, HitsAPlaneWhereTheRayMeetsItAtEveryScale) {
+TEST(RayScene, HitsPlanesExactlyAtEveryScale) {
     for (const double scale : {1e-20, 1e-3, 1.0, 1e5, 1e20}) {
         for (const double away : {0.0, 100.0}) {
             const glm::dvec3 by(away * scale, 0.0, 0.0);
@@ -172,7 +172,7 @@ TEST(RayScene, HitsAPlaneWhereTheRayMeetsItAtEveryScale) {
     }
 }
 
-TEST(RayScene, OnAnEdgeOrAVertexThereIsOneHitWhateverTheOrder) {
+TEST(RayScene, EdgesAndVerticesHaveOneHitInAnyOrder) {
     // 8 x 8 cells: rays along their edges, diagonals and vertices, and one in the opposite
     // direction.
     const Mesh quad = make_quad(8);
@@ -251,7 +251,7 @@ TEST(RayScene, NumbersThatAreNoneAndTrianglesWithoutAreaAreNotHit) {
     EXPECT_FALSE(scene.nearest({{2, 0, 1}, {0, 0, -1}, 0.0, 2.0}).is_hit());
 }
 
-TEST(RayScene, RaysFromFarAwayHitTheSamePlace) {
+TEST(RayScene, DistantRaysHitTheSamePoint) {
     const Mesh quad = placed_at(make_quad(8), 1.0, {3.0, 0.0, 0.0});  // The scene uses it, so it
                                                                       // must stay alive.
     const RayScene scene = scene_of(quad);
@@ -386,7 +386,7 @@ double found(const std::vector<Sheet>& sheets, BackFaces back_faces = BackFaces:
     return point.hit.is_hit() ? point.height : -100.0;
 }
 
-TEST(Projection, OneSheetIsFoundOnEitherSideOfThePoint) {
+TEST(Projection, HitsASheetOnEitherSide) {
     for (const float height : {0.5F, 0.01F, 0.0F, -0.01F, -0.5F})
         EXPECT_NEAR(found({{height, true}}), height, 1e-12);
     EXPECT_EQ(found({}), -100.0);
@@ -394,7 +394,7 @@ TEST(Projection, OneSheetIsFoundOnEitherSideOfThePoint) {
     EXPECT_EQ(found({{-1.5F, true}}), -100.0);
 }
 
-TEST(Projection, OfTwoParallelSheetsTheOuterOneIsFound) {
+TEST(Projection, HitsTheOuterOfTwoSheets) {
     EXPECT_NEAR(found({{0.1F, true}, {-0.1F, true}}), 0.1F, 1e-12);
     EXPECT_NEAR(found({{0.1F, true}, {0.3F, true}}), 0.3F, 1e-12);
     EXPECT_NEAR(found({{-0.3F, true}, {-0.1F, true}}), -0.1F, 1e-12);
@@ -412,7 +412,7 @@ TEST(Projection, TheOtherSideOfAThinWallIsNot) {
     EXPECT_NEAR(found({{-0.3F, true}, {-0.32F, false}}), -0.3F, 1e-12);
 }
 
-TEST(Projection, OfSolidsThatPassThroughEachOtherTheOutermostSideIsFound) {
+TEST(Projection, HitsTheOutermostOfIntersectingSolids) {
     // A plate with a bolt whose foot is above the point.
     EXPECT_NEAR(found({{-0.5F, false}, {0.1F, true}, {0.05F, false}, {0.4F, true}}), 0.4F, 1e-12);
     // The same with a wall behind.
@@ -425,7 +425,7 @@ TEST(Projection, OfSolidsThatPassThroughEachOtherTheOutermostSideIsFound) {
                 0.4F, 1e-12);
 }
 
-TEST(Projection, BackFacesArePassedOrTakenAsTold) {
+TEST(Projection, BackFacesAreIgnoredIfRequested) {
     EXPECT_EQ(found({{0.2F, false}}), -100.0);
     EXPECT_NEAR(found({{0.2F, false}}, BackFaces::take), 0.2F, 1e-12);
     EXPECT_NEAR(found({{-0.2F, false}, {-0.4F, true}}), -0.4F, 1e-12);

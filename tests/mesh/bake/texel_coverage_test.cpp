@@ -229,7 +229,7 @@ TEST(TexelCoverage, TellsMirroredTrianglesFromOtherOverlaps) {
     }
 }
 
-TEST(TexelCoverage, CountsTrianglesThatCoverNothing) {
+TEST(TexelCoverage, CountsTrianglesWithoutTexels) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<glm::vec2> texcoords = {{0, 0},   {0.5F, 0.5F}, {1, 1},
                                               {nan, 0}, {1e30F, 0},   {0, 1}};
@@ -261,7 +261,7 @@ TEST(TexelCoverage, ReachesTheLargestMapsInBands) {
     EXPECT_EQ(coverage.empty, 0U);
 }
 
-TEST(TexelCoverage, RefusesWhatIsNoMap) {
+TEST(TexelCoverage, RefusesInvalidSizes) {
     Report report;
     const auto message = [&](const CoverageOptions& options, const glm::uvec3& triangle) {
         const std::vector<glm::vec2> texcoords(3);
@@ -310,14 +310,14 @@ TEST(MapTiles, AreNumberedFromTheLeftAndUpwards) {
     EXPECT_THAT(tiles.outside, IsEmpty());
 }
 
-TEST(MapTiles, WhatEndsOnABorderDoesNotEnterTheNextOne) {
+TEST(MapTiles, TrianglesThatEndOnABorderStayInTheirTile) {
     EXPECT_THAT(numbers(sorted({{0, 0}, {1, 0}, {1, 1}})), ElementsAre(1001));
     EXPECT_THAT(numbers(sorted({{0, 0}, {1.000005F, 0}, {1, 1.000005F}})), ElementsAre(1001));
     EXPECT_THAT(numbers(sorted({{0, 0}, {1.0001F, 0}, {1, 1}})), ElementsAre(1001, 1002));
     EXPECT_THAT(numbers(sorted({{1, 0}, {2, 0}, {1, 1}})), ElementsAre(1002));
 }
 
-TEST(MapTiles, ATriangleAcrossACornerEntersOnlyWhereItIs) {
+TEST(MapTiles, TriangleAcrossACornerEntersOnlyItsTiles) {
     // Its box has four tiles. Its long side passes the corner of the fourth one on the near side.
     EXPECT_THAT(numbers(sorted({{0.5F, 0.9F}, {0.5F, -0.2F}, {2, 0.9F}})),
                 ElementsAre(1001, 1002, 1011));
@@ -328,7 +328,7 @@ TEST(MapTiles, ATriangleAcrossACornerEntersOnlyWhereItIs) {
     EXPECT_THAT(numbers(sorted({{0.1F, 0.9F}, {1.9F, -0.9F}, {1, 0}})), ElementsAre(1001, 1012));
 }
 
-TEST(MapTiles, WhatHasNoNumberIsSaid) {
+TEST(MapTiles, RefusesTilesWithoutUdimNumber) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const MapTiles tiles = sorted({{-0.5F, 0.5F},
                                    {-0.1F, 0.5F},

@@ -33,7 +33,7 @@ std::size_t file_count(const std::filesystem::path& folder) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-TEST(FileReplacement, AnAbandonedFileLeavesTheOldOneAndNothingElse) {
+TEST(FileReplacement, AbandonedFileLeavesOnlyTheOldOne) {
     const test::TemporaryDirectory folder;
     std::ofstream(folder / "a.txt") << "old";
     {
@@ -245,7 +245,7 @@ TEST(FileSet, HasTheFilesOfItsParallelLoops) {
     EXPECT_EQ(text_of(folder / "in set 99"), "new");
 }
 
-TEST(FileSet, OfALoopPieceHasItsOwnFilesOnly) {
+TEST(FileSet, PiecesOfALoopHaveSeparateFiles) {
     const test::TemporaryDirectory folder;
     std::atomic<std::size_t> failures = 0;
     // Nested loops let a thread take a piece of the outer loop while it waits in another one.

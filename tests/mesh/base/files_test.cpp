@@ -19,7 +19,7 @@
 namespace relief {
 namespace {
 
-TEST(FileContents, AreThoseOfTheFileWhateverItsSize) {
+TEST(FileContents, EqualTheFileOfAnySize) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / "relief-file-contents-test";
     for (const std::size_t size : {0U, 1U, 4194304U, 9000001U}) {
@@ -65,7 +65,7 @@ TEST(RandomAccessFile, GivesThePartsThatAreAskedFor) {
         testing::HasSubstr("could be read only up to byte 10 of 10"));
 }
 
-TEST(RandomAccessFile, MissingFilesAndFoldersAreSaidToBeSo) {
+TEST(RandomAccessFile, ReportsMissingFilesAndFolders) {
     const test::TemporaryDirectory folder;
     EXPECT_THAT(test::message_of<FileError>([&] { RandomAccessFile(folder / "none"); }),
                 testing::HasSubstr("no such file"));
@@ -73,7 +73,7 @@ TEST(RandomAccessFile, MissingFilesAndFoldersAreSaidToBeSo) {
                 testing::HasSubstr("is not a file"));
 }
 
-TEST(LargeMemory, AdviceLeavesWhatIsThere) {
+TEST(LargeMemory, AdviceKeepsTheContent) {
     std::vector<std::uint8_t> bytes(std::size_t{9} << 20);
     for (std::size_t i = 0; i < bytes.size(); ++i)
         bytes[i] = static_cast<std::uint8_t>(i % 251);

@@ -231,7 +231,7 @@ TEST(Parallel, ACallersTasksThatAreCancelledEndNoLoop) {
     }
 }
 
-TEST(Parallel, OfSeveralExceptionsThatOfTheFirstPieceReachesTheCaller) {
+TEST(Parallel, ThrowsTheExceptionOfTheFirstPiece) {
     if (thread_count() == 1) GTEST_SKIP() << "needs two threads";
     FailureBeside beside;
     const auto run = [&] {
@@ -579,11 +579,11 @@ void expect_failures_arrive(const std::function<std::string()>& run, std::size_t
     EXPECT_EQ(run() == expected, true) << "after the failures";
 }
 
-TEST_P(ParallelFailures, ReachTheCallerAndLeaveNothingBehind) {
+TEST_P(ParallelFailures, ReachTheCallerWithoutLeaks) {
     expect_failures_arrive(GetParam().run, 2);
 }
 
-TEST_P(ParallelFailures, CancellationReachesTheCallerAndLeavesNothingBehind) {
+TEST_P(ParallelFailures, CancellationReachesTheCallerWithoutLeaks) {
     const std::function<std::string()>& run = GetParam().run;
     const std::string expected = run();
     Injection none;

@@ -27,7 +27,7 @@ TEST(Progress, WithoutAScopeNothingIsCountedOrStopped) {
     EXPECT_EQ(progress.state().stage, "");
 }
 
-TEST(Progress, AnInnerStageTakesTheOuterOnesPlaceAndGivesItBack) {
+TEST(Progress, InnerStageReplacesTheOuterOneTemporarily) {
     Progress progress;
     const ProgressScope scope(progress);
     ProgressStage outer("meshes", 4);
@@ -46,7 +46,7 @@ TEST(Progress, AnInnerStageTakesTheOuterOnesPlaceAndGivesItBack) {
     EXPECT_EQ(progress.state().part, 1.0) << "never beyond the whole";
 }
 
-TEST(Progress, PercentsAreToldOnceEach) {
+TEST(Progress, ReportsEachPercentOnce) {
     std::vector<int> told;
     Progress progress([&](const Progress::State& state) {
         if (state.part) told.push_back(static_cast<int>(100 * *state.part + 0.5));
@@ -88,7 +88,7 @@ TEST(Progress, LoopsThatAreSharedOutCountAndStop) {
         << "a wish stays";
 }
 
-TEST(Progress, StagesOfPiecesSayNothing) {
+TEST(Progress, StagesWithinPiecesAreSilent) {
     Progress progress;
     const ProgressScope scope(progress);
     ProgressStage stage("images", 2);

@@ -21,7 +21,7 @@ TEST(Report, IsEmptyUntilSomethingIsAdded) {
     EXPECT_EQ(report.count("isolated vertex"), 1U);
 }
 
-TEST(Report, KeepsTheEightSmallestIndicesWhateverTheOrder) {
+TEST(Report, KeepsTheEightSmallestIndicesInAnyOrder) {
     Report descending;
     Report ascending;
     for (std::size_t i = 0; i < 20; ++i) {
@@ -59,7 +59,7 @@ TEST(Report, MergesCountsAndIndices) {
     EXPECT_EQ(a.count("only in b"), 1U);
 }
 
-TEST(Report, TakesWhatWasCountedElsewhere) {
+TEST(Report, AcceptsExternalCounts) {
     Report report;
     report.add("kind", "vertex", 4, "outcome");
     report.add(Finding{"kind", "vertex", "another outcome", 100, {0, 1, 9}});
@@ -69,7 +69,7 @@ TEST(Report, TakesWhatWasCountedElsewhere) {
     EXPECT_EQ(report.count("new"), 1U);
 }
 
-TEST(Report, SaysAFindingInOneLine) {
+TEST(Report, PrintsAFindingInOneLine) {
     Report report;
     report.add("degenerate triangle", "triangle", 17, "does not contribute");
     report.add("degenerate triangle", "triangle", 3, "does not contribute");
@@ -100,7 +100,7 @@ TEST(NearNames, AreThoseThatContainTheWord) {
     EXPECT_THAT(near_names("gold", materials), ElementsAre("gold", "polished gold"));
 }
 
-TEST(DidYouMean, IsAQuestionOrNothing) {
+TEST(DidYouMean, IsAQuestionOrEmpty) {
     const std::vector<std::string> known = {"diffuse", "specular"};
     EXPECT_EQ(did_you_mean("difuse", known), "; did you mean 'diffuse'?");
     EXPECT_EQ(did_you_mean("shine", known), "");

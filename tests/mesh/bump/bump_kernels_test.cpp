@@ -131,7 +131,7 @@ TEST(GradientKernel, TheErrorOfTheResponseFallsWithTheOrder) {
     }
 }
 
-TEST(GradientKernel, TheGaussianOneIsTheLeastSquaresPlane) {
+TEST(GradientKernel, GaussianIsTheLeastSquaresPlane) {
     // With radius 1, the weights beside the center are exp(-2). The slope of h(1) = 1 is g / (2 g).
     const GradientKernel one = gradient_kernel(Kernel::gaussian, 1);
     const double g = std::exp(-2.0);
@@ -460,7 +460,7 @@ TEST(BumpAccuracy, TheErrorsOnWavesAreTheKnownOnes) {
     EXPECT_GT(wave_error(Kernel::central5, 256.0, 8) / wave_error(Kernel::sobel3, 256.0, 8), 2.8);
 }
 
-TEST(BumpAccuracy, EveryKernelHasTheOrderItSays) {
+TEST(BumpAccuracy, KernelsHaveTheirDocumentedOrder) {
     for (const Kernel kernel : all_kernels) {
         const int order = gradient_kernel(kernel).order;
         // A wavelength at which the error is far above the rounding of heights to float, and the

@@ -238,7 +238,7 @@ TEST(Bump, SteepAndHugeHeightsStayUnit) {
     }
 }
 
-TEST(Bump, WhatIsNoHeightFieldIsRefused) {
+TEST(Bump, RefusesInvalidHeightFields) {
     Report report;
     EXPECT_THROW(normals_from_height(Image{}, {}, report), InvalidInput);
     EXPECT_THROW(normals_from_height(make_image(2, 2, 3, 32, ColorSpace::data), {}, report),

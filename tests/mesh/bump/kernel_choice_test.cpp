@@ -49,7 +49,7 @@ double root_mean_square(const HeightTile& tile, int margin) {
     return std::sqrt(squares / count);
 }
 
-TEST(PowerSpectrum, TheTransformIsThatOfItsDefinitionAndGoesBack) {
+TEST(PowerSpectrum, TransformMatchesItsDefinitionAndInverts) {
     constexpr int side = 8;
     Random random(3);
     std::vector<Complex> square(side * side);
@@ -73,7 +73,7 @@ TEST(PowerSpectrum, TheTransformIsThatOfItsDefinitionAndGoesBack) {
         EXPECT_LT(std::abs(transformed[i] / 64.0 - square[i]), 1e-13);
 }
 
-TEST(PowerSpectrum, NothingIsLeftOfNoiseAndNearlyAllOfWaves) {
+TEST(PowerSpectrum, FilterRemovesNoiseAndKeepsWaves) {
     const HeightTile noise[] = {noise_of(0.5, 1), noise_of(0.5, 2), noise_of(0.5, 3)};
     const PowerSpectrum of_noise(noise);
     EXPECT_LT(root_mean_square(without_noise(noise[0], of_noise, NoiseSpectrum::white(0.5)), 8),
@@ -94,7 +94,7 @@ TEST(PowerSpectrum, NothingIsLeftOfNoiseAndNearlyAllOfWaves) {
     EXPECT_GT(root_mean_square(rest, 8), 0.02);
 }
 
-TEST(PowerSpectrum, TheFilterIsTheShareOfPowerThatIsNotNoise) {
+TEST(PowerSpectrum, FilterIsTheFractionOfSignalPower) {
     const HeightTile noise[] = {noise_of(1.0, 5), noise_of(1.0, 6)};
     const PowerSpectrum spectrum(noise);
     // With a power of 1 everywhere, noise of 0.3 of the deviation gives a gain of 0.91.
@@ -112,7 +112,7 @@ TEST(PowerSpectrum, TheFilterIsTheShareOfPowerThatIsNotNoise) {
     EXPECT_LT(PowerSpectrum(pattern).white_floor(), 1e-9);
 }
 
-TEST(PowerSpectrum, GrainIsWhatFallsMoreSlowlyThanASurface) {
+TEST(PowerSpectrum, GrainDecaysMoreSlowlyThanASurface) {
     const auto wave = [](int x, int y) { return 20.0 * std::sin(0.1 * x + 0.05 * y); };
     Random random(9);
     const auto noisy = [&](int x, int y) { return wave(x, y) + random.normal(); };
@@ -209,7 +209,7 @@ KernelChoice choice_on(const FieldRecipe& recipe) {
     return choose_kernel(field.heights, field.options);
 }
 
-TEST(KernelChoice, SaysWhatItSawAndWhy) {
+TEST(KernelChoice, StatesItsReason) {
     using enum FieldShape;
     using enum FieldCoding;
     const KernelChoice smooth = choice_on({"", waves, 32, 0.3, float32, 0, 1});
@@ -230,7 +230,7 @@ TEST(KernelChoice, SaysWhatItSawAndWhy) {
     EXPECT_THAT(walls.reason, HasSubstr("beside sharp walls"));
 }
 
-TEST(KernelChoice, StatesTheShareOfTexelsThatStickOut) {
+TEST(KernelChoice, StatesTheFractionOfOutliers) {
     const FieldRecipe recipe{"", FieldShape::waves, 32.0, 0.3, FieldCoding::bits16, 0.0, 1};
     BumpField field = make_bump_field(recipe, 256, 256);
     const std::span<std::uint16_t> codes = field.heights.as<std::uint16_t>();
@@ -270,7 +270,7 @@ TEST(KernelChoice, ExpectsTheErrorOfNoiseOnMapsOfAnyWidth) {
     }
 }
 
-TEST(KernelChoice, OfAConstantMapIsTheCheapestAndOfTinyMapsSomeKernel) {
+TEST(KernelChoice, HandlesConstantAndTinyMaps) {
     const Image flat = test::heights_of(64, 64, [](int, int) { return 0.25; });
     const KernelChoice choice = choose_kernel(flat, {});
     EXPECT_EQ(choice.kernel, Kernel::central3);
@@ -304,7 +304,7 @@ TEST(KernelChoice, IsTheSameForAnyNumberOfThreadsAndFromPartsReadInTurn) {
     EXPECT_EQ(one.reason, all.reason);
 }
 
-TEST(KernelChoice, LooksAtAFewPartsFromTopToBottom) {
+TEST(KernelChoice, SamplesPartsFromTopToBottom) {
     EXPECT_EQ(parts_to_analyze(128, 128).size(), 1U);
     EXPECT_EQ(parts_to_analyze(191, 128).size(), 1U);
     EXPECT_EQ(parts_to_analyze(192, 128).size(), 2U);
@@ -327,7 +327,7 @@ TEST(KernelChoice, LooksAtAFewPartsFromTopToBottom) {
     }
 }
 
-TEST(KernelChoice, WhatAreNoPartsOfAHeightMapIsRefused) {
+TEST(KernelChoice, RefusesInvalidParts) {
     EXPECT_THROW(choose_kernel(std::span<const Image>{}, {}), InvalidInput);
     EXPECT_THROW(choose_kernel(Image{}, {}), InvalidInput);
     EXPECT_THROW(choose_kernel(make_image(9, 9, 3, 8, ColorSpace::data), {}), InvalidInput);

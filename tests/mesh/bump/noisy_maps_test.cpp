@@ -399,7 +399,7 @@ TEST(KernelChoiceOnMasks, AntialiasedEdgesAreNotBlurred) {
                        1.05);
 }
 
-TEST(KernelChoiceOnGrain, SaysWhatFollowsFromBothReadings) {
+TEST(KernelChoiceOnGrain, StatesBothInterpretations) {
     // A map of grain only: the grain counts as detail, since a map of noise alone is useless.
     Surface flat{std::vector<double>(static_cast<std::size_t>(side) * side, 0.0),
                  std::vector<glm::dvec3>(static_cast<std::size_t>(side) * side, {0.0, 0.0, 1.0})};

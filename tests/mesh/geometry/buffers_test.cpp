@@ -245,7 +245,7 @@ Image waves(int bits) {
     return image;
 }
 
-TEST(Views, OfPaddedPixelsGiveTheNormalMapOfAnImage) {
+TEST(Views, PaddedPixelsConvertLikeImages) {
     NormalMapFormat format;
     format.bits = 8;
     Report report;
@@ -268,7 +268,7 @@ TEST(Views, OfPaddedPixelsGiveTheNormalMapOfAnImage) {
     EXPECT_TRUE(report.empty());
 }
 
-TEST(Views, OfHeightsThatAreNotFiniteGiveTheNormalMapAndFindings) {
+TEST(Views, NonFiniteHeightsConvertWithFindings) {
     Image heights = waves(32);
     heights.as<float>()[150 * 40 + 30] = std::numeric_limits<float>::quiet_NaN();
     NormalMapFormat format;
@@ -295,7 +295,7 @@ TEST(Views, ResultsOfAnotherFormatAreRefused) {
               "must have 150 x 90 of 3 with 16");
 }
 
-TEST(Views, OfPaddedPixelsGiveTheCheckOfAnImage) {
+TEST(Views, PaddedPixelsAreCheckedLikeImages) {
     Report report;
     NormalMapFormat format;
     format.bits = 8;
@@ -314,7 +314,7 @@ TEST(Views, OfPaddedPixelsGiveTheCheckOfAnImage) {
     EXPECT_EQ(text_of(to_report(check)), text_of(to_report(expected)));
 }
 
-TEST(Views, OfPaddedPixelsDecodeAndEncodeAsImages) {
+TEST(Views, PaddedPixelsAreCodedLikeImages) {
     BumpOptions options;
     options.kernel = Kernel::sobel3;
     options.strength = 9.0;

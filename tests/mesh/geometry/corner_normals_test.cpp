@@ -57,7 +57,7 @@ TEST(CornerNormals, ACubeIsFlatBelowItsEdgesAngleAndRoundFromThereOn) {
     }
 }
 
-TEST(CornerNormals, AnEdgeAtTheLimitIsSmoothWhateverRoundingDid) {
+TEST(CornerNormals, EdgeAtTheLimitIsSmoothDespiteRounding) {
     for (const double angle : {1.0, 15.0, 30.0, 45.0, 60.0, 89.0, 120.0, 179.0}) {
         for (const double scale : {1e-20, 0.37, 1.0, 1e20}) {
             const Mesh sheet = folded_sheet(angle, scale);
@@ -200,7 +200,7 @@ TEST(CornerNormals, OrderOfTrianglesAndCornersChangesNoBit) {
     }
 }
 
-TEST(CornerNormals, ABookOfAHundredThousandPagesTakesNoTime) {
+TEST(CornerNormals, EdgeOfAHundredThousandTrianglesIsFast) {
     // All triangles share one edge. A comparison of every pair would take 5e9 steps.
     Mesh book;
     book.positions = {{0, 0, 0}, {0, 1, 0}};
@@ -231,7 +231,7 @@ TEST(CornerNormals, OptionsOutOfRangeAreRefused) {
             testing::StrEq("there are 3 smoothing groups, but 4 triangles")));
 }
 
-TEST(InferredCreases, OfACubeAreItsEdgesAtHalfARightAngle) {
+TEST(InferredCreases, CubeHasItsEdgesAtHalfARightAngle) {
     const InferredCreases found = inferred_creases(test::cube());
     EXPECT_EQ(found.edges, 18U);
     EXPECT_EQ(found.hard, 12U);
@@ -239,14 +239,14 @@ TEST(InferredCreases, OfACubeAreItsEdgesAtHalfARightAngle) {
     EXPECT_EQ(found.misclassified, 0U);
 }
 
-TEST(InferredCreases, OfASmoothMeshAreNone) {
+TEST(InferredCreases, SmoothMeshHasNone) {
     const InferredCreases found = inferred_creases(test::sphere(12, 8));
     EXPECT_GT(found.edges, 100U);
     EXPECT_EQ(found.hard, 0U);
     EXPECT_EQ(found.crease_angle, std::numbers::pi);
 }
 
-TEST(InferredCreases, OfFacetsTellNoAngleFromNone) {
+TEST(InferredCreases, FacetsHaveNoSeparatingAngle) {
     Mesh facets = test::soup(test::sphere(12, 8));
     Report report;
     const std::vector<glm::vec3> normals =

@@ -58,7 +58,7 @@ void expect_second_order(const std::function<Mesh(int)>& mesh_of,
     EXPECT_LT(before, finest);
 }
 
-TEST(Curvature, OfASphereIsOneOverItsRadius) {
+TEST(Curvature, SphereHasTheInverseRadius) {
     for (const float radius : {1e-6F, 0.5F, 1.0F, 1e6F}) {
         Mesh mesh = make_sphere(128, 64);
         for (glm::vec3& position : mesh.positions)
@@ -74,7 +74,7 @@ TEST(Curvature, OfASphereIsOneOverItsRadius) {
                         [](const glm::dvec3&) { return 1.0; }, 2e-4);
 }
 
-TEST(Curvature, OfATorusIsThatOfItsClosedForm) {
+TEST(Curvature, TorusHasItsClosedForm) {
     constexpr double tube = 0.4;
     // H = (R + 2 r cos t) / (2 r (R + r cos t)); the distance to the axis is R + r cos t.
     const auto reference = [&](const glm::dvec3& place) {
@@ -85,7 +85,7 @@ TEST(Curvature, OfATorusIsThatOfItsClosedForm) {
                         2e-3);
 }
 
-TEST(Curvature, OfACylinderIsHalfOfThatOfItsCircle) {
+TEST(Curvature, CylinderHasHalfThatOfItsCircle) {
     const Mesh mesh = make_cylinder(128);
     Mesh side;
     side.positions = mesh.positions;
@@ -116,7 +116,7 @@ TEST(Curvature, OfACylinderIsHalfOfThatOfItsCircle) {
         EXPECT_NEAR(value, 0.25, 2e-4);
 }
 
-TEST(Curvature, OfAPlaneIsNoneAndOfAnEdgeItsAngleOverItsWidth) {
+TEST(Curvature, PlaneHasNoneAndAnEdgeItsAngleOverItsWidth) {
     Report report;
     for (const float value : curvatures(make_quad(8), report))
         EXPECT_EQ(value, 0.0F);
@@ -162,7 +162,7 @@ TEST(Curvature, IsTheSameForAnyOrderOfTrianglesNumberOfThreadsAndSplitVertices) 
     }
 }
 
-TEST(Curvature, CountsWhatHasNone) {
+TEST(Curvature, CountsVerticesWithoutCurvature) {
     Mesh mesh = make_sphere(16, 8);
     const std::vector<float> sound = curvatures(mesh);
     const auto count = static_cast<std::uint32_t>(mesh.positions.size());

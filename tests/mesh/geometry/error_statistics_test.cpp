@@ -21,14 +21,14 @@ namespace {
 using testing::ElementsAre;
 using testing::Pair;
 
-TEST(DegreesBetween, ResolvesWhatArcCosinesCannot) {
+TEST(DegreesBetween, ResolvesTinyAngles) {
     EXPECT_DOUBLE_EQ(degrees_between({2, 0, 0}, {0, 0, 5}), 90.0);
     EXPECT_DOUBLE_EQ(degrees_between({1, 0, 0}, {-3, 0, 0}), 180.0);
     EXPECT_EQ(degrees_between({1, 2, 3}, {2, 4, 6}), 0.0);
     EXPECT_NEAR(degrees_between({1, 0, 0}, {1, 1e-9, 0}), 57.29577951e-9, 1e-17);
 }
 
-TEST(DegreesBetween, OfNoDirectionIsNoNumber) {
+TEST(DegreesBetween, IsNaNForZeroVectors) {
     EXPECT_TRUE(std::isnan(degrees_between({0, 0, 0}, {0, 0, 1})));
     EXPECT_TRUE(
         std::isnan(degrees_between({std::numeric_limits<double>::infinity(), 0, 0}, {0, 0, 1})));
@@ -57,11 +57,11 @@ TEST(DirectionErrors, DoesNotHideADirectionThatIsNone) {
     EXPECT_THROW(direction_error(found, std::span(reference).first(2)), InvalidInput);
 }
 
-TEST(ErrorStats, OfNothingIsAllZeros) {
+TEST(ErrorStats, EmptyIsAllZeros) {
     EXPECT_EQ(error_stats({}), ErrorStats());
 }
 
-TEST(ErrorStats, SumsUpWhatItIsGiven) {
+TEST(ErrorStats, SummarizesItsValues) {
     const ErrorStats result = error_stats({4.0F, 0.0F, 3.0F, 0.0F});
     EXPECT_EQ(result.count, 4U);
     EXPECT_EQ(result.undefined, 0U);
@@ -89,7 +89,7 @@ TEST(ErrorStats, BinsHoldTheirUpperEnd) {
     EXPECT_THAT(result.histogram, ElementsAre(2, 1, 1, 2, 1, 2, 3));
 }
 
-TEST(ErrorStats, WhatIsNoAngleIsCountedApart) {
+TEST(ErrorStats, CountsNaNSeparately) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const ErrorStats result = error_stats({nan, 2.0F, nan});
     EXPECT_EQ(result.count, 1U);
@@ -109,7 +109,7 @@ std::vector<float> angles_of_all_sizes() {
     return degrees;
 }
 
-TEST(ErrorMoments, AreRmsMeanAndGreatest) {
+TEST(ErrorMoments, AreRmsMeanAndMaximum) {
     ErrorMoments moments;
     for (const double degrees : {4.0, 0.0, 3.0, 0.0})
         moments.add(degrees);
@@ -119,7 +119,7 @@ TEST(ErrorMoments, AreRmsMeanAndGreatest) {
     EXPECT_EQ(moments.max(), 4.0);
 }
 
-TEST(ErrorMoments, OfNothingAreZeros) {
+TEST(ErrorMoments, EmptyAreZeros) {
     const ErrorMoments nothing;
     EXPECT_EQ(nothing.count(), 0U);
     EXPECT_EQ(nothing.rms(), 0.0);
@@ -127,7 +127,7 @@ TEST(ErrorMoments, OfNothingAreZeros) {
     EXPECT_EQ(nothing.max(), 0.0);
 }
 
-TEST(ErrorMoments, OfPartsAreThoseOfTheWhole) {
+TEST(ErrorMoments, PartsCombineToTheWhole) {
     ErrorMoments whole, first, second;
     for (int i = 0; i < 90; ++i) {  // Sums of whole degrees are exact.
         whole.add(i);
@@ -141,7 +141,7 @@ TEST(ErrorMoments, OfPartsAreThoseOfTheWhole) {
     EXPECT_EQ(first.max(), whole.max());
 }
 
-TEST(ErrorMoments, KeepWhatIsNoNumberInTheMeans) {
+TEST(ErrorMoments, PropagateNaN) {
     ErrorMoments moments;
     for (const double degrees : {2.0, std::numeric_limits<double>::quiet_NaN(), 5.0})
         moments.add(degrees);
@@ -183,7 +183,7 @@ TEST(ErrorAccumulator, HasAPercentileNoFurtherOffThanABin) {
     }
 }
 
-TEST(ErrorAccumulator, OfPartsIsThatOfTheWhole) {
+TEST(ErrorAccumulator, PartsCombineToTheWhole) {
     ErrorAccumulator whole, first, second;
     for (int i = 0; i < 180; ++i) {  // Sums of whole degrees are exact.
         whole.add(i);
@@ -199,7 +199,7 @@ TEST(ErrorAccumulator, OfPartsIsThatOfTheWhole) {
     EXPECT_EQ(both.stats().max, 179.0);
 }
 
-TEST(ErrorAccumulator, OfNothingIsAllZerosAndOfExactAnglesExact) {
+TEST(ErrorAccumulator, EmptyIsZeroAndZeroAnglesAreExact) {
     EXPECT_EQ(ErrorAccumulator().stats().count, 0U);
     EXPECT_EQ(ErrorAccumulator().stats().p99, 0.0);
     ErrorAccumulator exact;
@@ -244,7 +244,7 @@ TEST(TimeStatistics, IsTakenBetweenMeasurements) {
     EXPECT_NEAR(even.p90, 3.7, 1e-12);
 }
 
-TEST(TimeStatistics, OfOneIsThatOneAndOfNoneNothing) {
+TEST(TimeStatistics, HandleOneAndNoTime) {
     EXPECT_EQ(time_statistics({7}).median, 7.0);
     EXPECT_EQ(time_statistics({7}).p10, 7.0);
     EXPECT_EQ(time_statistics({7}).p90, 7.0);
@@ -272,7 +272,7 @@ TEST(SecondsOf, IsTheTimeOfTheWorkWhichIsDoneOnce) {
     EXPECT_LE(seconds, around.seconds());
 }
 
-TEST(Interleave, TakesTurnsAndWarmsUpFirst) {
+TEST(Interleave, AlternatesAfterAWarmUp) {
     std::vector<std::pair<std::size_t, bool>> calls;
     interleave(2, {.counted = 2, .warm_up = 1},
                [&](std::size_t thing, bool counted) { calls.emplace_back(thing, counted); });
@@ -280,7 +280,7 @@ TEST(Interleave, TakesTurnsAndWarmsUpFirst) {
                                    Pair(0, true), Pair(1, true)));
 }
 
-TEST(MedianDifference, IsFreeOfWhatBothShare) {
+TEST(MedianDifference, CancelsCommonDrift) {
     EXPECT_EQ(median_difference({12, 110, 52}, {10, 109, 49}), 2.0);
     EXPECT_EQ(test::message_of<InvalidInput>([] {
                   median_difference({1, 2}, {1});

@@ -139,7 +139,7 @@ constexpr std::array expected_errors = {
     Expected{angle16, best, 0.00122, 0.00244, 0.00078, 0.00243},
 };
 
-TEST(FrameEncoding, ErrsByWhatIsStatedAndNeverLosesTheHand) {
+TEST(FrameEncoding, HasTheStatedErrorAndKeepsHandedness) {
     const ReferenceFrames reference = random_frames(100000);
     for (const Expected& expected : expected_errors) {
         const RoundTrip found = round_trip(reference, expected.encoding, expected.rounding);
@@ -213,7 +213,7 @@ TEST(FrameEncoding, LayoutsAreAsDescribed) {
     }
 }
 
-TEST(FrameEncoding, ComponentsLieWhereTheLayoutSays) {
+TEST(FrameEncoding, ComponentsFollowTheLayout) {
     Report report;
     // By hand: an octahedral normal (0.8, 0, 0.6) has x = 0.8 / 1.4 = 0.5714 of 127 = 72.57. Its
     // tangent (0, 1, 0) is at (0, 127): odd, so the frame is left-handed; with y = 126 it is
@@ -366,7 +366,7 @@ TEST(FrameEncoding, DecodesAnyWordsToFrames) {
     }
 }
 
-TEST(FrameEncoding, CountsWordsThatAreNoFrame) {
+TEST(FrameEncoding, CountsInvalidWords) {
     Report report;
     Frames frames = decode_frames(std::vector<std::uint32_t>{0, 0x00000001}, quaternion8, report);
     EXPECT_EQ(report.count("quaternion of length 0"), 1U);
@@ -389,7 +389,7 @@ TEST(FrameEncoding, CountsWordsThatAreNoFrame) {
     EXPECT_EQ(report.findings().size(), 6U);
 }
 
-TEST(FrameEncoding, WhatIsNoFrameBecomesOneAndIsCounted) {
+TEST(FrameEncoding, RepairsInvalidFramesAndCountsThem) {
     const float inf = std::numeric_limits<float>::infinity();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     struct Case {
@@ -516,7 +516,7 @@ TEST(FrameEncoding, TheSmallestWithinABoundIsChosen) {
     EXPECT_THROW(chosen(std::numeric_limits<double>::quiet_NaN(), best), InvalidInput);
 }
 
-TEST(FrameEncoding, GivesTheSameBitsWhateverCompiledIt) {
+TEST(FrameEncoding, HasTheSameBitsForAnyCompiler) {
     // FNV-1a over codes and decoded frames. GCC 12 and Clang 14 give the same value at every
     // optimization level.
     const ReferenceFrames reference = random_frames(50000);

@@ -83,7 +83,7 @@ TEST(Frames, MissingNormalsAreMadeAsAsked) {
     }
 }
 
-TEST(Frames, FlatNormalsSplitOnlyWhereTrianglesBend) {
+TEST(Frames, FlatNormalsSplitOnlyBentEdges) {
     Mesh cube = test::cube();
     EXPECT_EQ(framed(cube, {NormalMode::flat}).mesh.positions.size(), 24U);
     // A roof: four vertices in a plane and two beyond the ridge. Only the ridge is split.
@@ -130,7 +130,7 @@ TEST(Frames, ACreaseSplitsVerticesAlongSharperEdgesAlone) {
     EXPECT_EQ(framed(folded_sheet(), {NormalWeight::max}).mesh.positions.size(), 7U);
 }
 
-TEST(Frames, SmoothingGroupsAreFollowedUnlessAllAreOffOrToldNotTo) {
+TEST(Frames, SmoothingGroupsApplyUnlessDisabled) {
     Mesh mesh = folded_sheet();
     mesh.smoothing_groups = {1, 1, 0, 0};
     FrameOptions options{NormalMode::automatic};
@@ -272,7 +272,7 @@ TEST(Frames, TheOrderOfTrianglesChangesNoVertex) {
     }
 }
 
-TEST(Frames, WhatCannotBeDoneIsRefusedWithAReason) {
+TEST(Frames, RefusesImpossibleRequests) {
     Mesh mesh = test::grid(1);
     EXPECT_THAT(
         [&] {

@@ -79,7 +79,7 @@ TEST(Mesh, CornersThatCannotBeNumberedAreRefused) {
                           "numbered")));
 }
 
-TEST(Mesh, BoundsLeaveOutWhatIsNotFinite) {
+TEST(Mesh, BoundsIgnoreNonFinitePositions) {
     EXPECT_TRUE(bounds_of(Mesh{}).empty());
     Mesh mesh;
     mesh.positions = {{1, 5, -2}, {-1, 2, 3}};
@@ -112,7 +112,7 @@ TEST(Corners, AreListedByVertexInAscendingOrder) {
     EXPECT_THAT(corners.at(4), ElementsAre(5));
 }
 
-TEST(Corners, OfTrianglesThatDoNotCountAreLeftOut) {
+TEST(Corners, ExcludedTrianglesHaveNone) {
     const CornersByVertex corners(5, skewed_quad,
                                   [](std::size_t triangle) { return triangle == 1; });
     EXPECT_THAT(corners.at(0), ElementsAre(3));
@@ -148,7 +148,7 @@ TEST(MeshPart, HasTheVerticesThatItsTrianglesUseInTheirOrder) {
                             MaterialRange{2, 1, std::nullopt}));
 }
 
-TEST(MeshPart, OfNothingIsEmptyAndOfWhatIsNotThereRefused) {
+TEST(MeshPart, IsEmptyWithoutTrianglesAndRefusesMissingOnes) {
     EXPECT_THAT(part_of(make_quad(), {}).positions, IsEmpty());
     const std::vector<std::uint32_t> beyond = {2};
     EXPECT_EQ(test::message_of<InvalidInput>([&] { part_of(make_quad(), beyond); }),
@@ -175,7 +175,7 @@ TEST(Placed, AMirrorTurnsTrianglesAndSigns) {
               glm::uvec3(quad.triangles[0].x, quad.triangles[0].z, quad.triangles[0].y));
 }
 
-TEST(Placed, NormalsStayPerpendicularWhereScalesDiffer) {
+TEST(Placed, NormalsStayPerpendicularUnderUnevenScale) {
     const Mesh sphere = framed(make_sphere(24, 12), NormalMode::keep);
     const Mesh ellipsoid = placed(sphere, glm::scale(glm::mat4(1.0F), {3.0F, 1.0F, 0.5F}));
     for (std::size_t v = 0; v < sphere.positions.size(); ++v) {
@@ -383,7 +383,7 @@ TEST(Shapes, MeetExactlyAtTheirSeams) {
         EXPECT_EQ(torus.positions[slice], torus.positions[6 * 9 + slice]);
 }
 
-TEST(Shapes, OfNoUsableSizeAreRefused) {
+TEST(Shapes, RefuseInvalidSizes) {
     EXPECT_THROW((void)make_quad(0), InvalidInput);
     EXPECT_THROW((void)make_sphere(2, 8), InvalidInput);
     EXPECT_THROW((void)make_sphere(8, 1), InvalidInput);

@@ -136,7 +136,7 @@ TEST(VertexNormals, ArithmeticInFloatKeepsItsBitsInAnyOrderAndAtAnyScale) {
     }
 }
 
-TEST(VertexNormals, MinusZeroIsTheSamePlaceAsZero) {
+TEST(VertexNormals, MinusZeroEqualsZero) {
     // Two perpendicular triangles whose shared corner has zeros of different signs.
     const std::vector<glm::vec3> positions = {{0, 0, 0},         {1, 0, 0}, {0, 1, 0},
                                               {-0.0F, 0, -0.0F}, {0, 1, 0}, {0, 0, 1}};
@@ -175,7 +175,7 @@ TEST(VertexNormals, ScalingByAPowerOfTwoChangesNoBit) {
     }
 }
 
-TEST(VertexNormals, AnOffsetCostsOnlyWhatItTakesFromThePositions) {
+TEST(VertexNormals, OffsetCostsOnlyThePrecisionOfPositions) {
     // Positions that are multiples of 1/16 stay exact at an offset of 2^19.
     Mesh mesh = test::grid(8);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)

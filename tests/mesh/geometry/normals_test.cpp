@@ -101,7 +101,7 @@ TEST(VertexNormals, AngleWeightsGiveACubeItsDiagonalsHoweverItsFacesAreSplit) {
     EXPECT_NEAR(worst_by_area, std::acos(4.0 / std::sqrt(18.0)) * 180.0 / std::numbers::pi, 1e-4);
 }
 
-TEST(VertexNormals, MaxIsExactOnEverySphereHoweverItIsCut) {
+TEST(VertexNormals, MaxIsExactOnAnyTriangulationOfASphere) {
     // Any closed polyhedron with its vertices on a sphere [Max 1999], here with irregular
     // triangles.
     Mesh mesh = test::sphere(24, 12);
@@ -391,7 +391,7 @@ TEST(TriangleNormals, WithoutAreaOrFiniteCornersPointUpAndAreCounted) {
     EXPECT_EQ(report.count("triangle with a non-finite corner"), 1U);
 }
 
-TEST(ChosenNormals, AreMaxWhereNothingFoldsOver) {
+TEST(ChosenNormals, AreMaxWithoutFolds) {
     const Mesh mesh = bumpy_ball();
     Report report;
     const ChosenNormals chosen = chosen_normals(mesh.positions, mesh.triangles, {}, report);

@@ -23,7 +23,7 @@ void each_between(double first, double last, const Each& each) {
         each(first + (last - first) * (i / 4000.0) * 0.99991234567);
 }
 
-TEST(PortableMath, IsWithinAFewUnitsOfTheLastPlace) {
+TEST(PortableMath, IsWithinAFewUlps) {
     each_between(-30.0, 30.0, [](double x) {
         // Near zeros, the error is that of the reduced angle.
         EXPECT_NEAR(portable::sin(x), std::sin(x), 2.0 * ulp * std::abs(std::sin(x)) + 1e-19) << x;
@@ -115,13 +115,13 @@ double worst_error() {
     return worst;
 }
 
-TEST(UpperAngle, IsWithinThreeUnitsOfTheLastPlace) {
+TEST(UpperAngle, IsWithinThreeUlps) {
     EXPECT_LE(worst_error<double>(), 3.0);
     EXPECT_LE(worst_error<float>(), 3.0);
     EXPECT_GT(worst_error<double>(), 0.0);
 }
 
-TEST(UpperAngle, IsExactWhereItCanBe) {
+TEST(UpperAngle, IsExactAtRepresentableAngles) {
     EXPECT_EQ(upper_angle(0.0, 1.0), 0.0);
     EXPECT_EQ(upper_angle(0.0, -1.0), std::numbers::pi);
     EXPECT_EQ(upper_angle(2.0, 0.0), std::numbers::pi / 2);
@@ -129,7 +129,7 @@ TEST(UpperAngle, IsExactWhereItCanBe) {
     EXPECT_EQ(upper_angle(3.0, -3.0), 3 * (std::numbers::pi / 4));
 }
 
-TEST(UpperAngle, KeepsItsDigitsWhereArcCosinesLoseThem) {
+TEST(UpperAngle, IsAccurateForTinyAngles) {
     // For an angle of 1e-6, acos of a float cosine would be 0.
     EXPECT_NEAR(upper_angle(1e-6F, 1.0F), 1e-6F, 1e-13F);
     EXPECT_NEAR(upper_angle(1e-300, 1e-294), 1e-6, 1e-18);
@@ -157,7 +157,7 @@ TEST(DoubleDouble, MultipliesWithoutError) {
     EXPECT_EQ(product.low, 0x1p-80);
 }
 
-TEST(DoubleDouble, DividesAndTakesRoots) {
+TEST(DoubleDouble, DividesAndComputesRoots) {
     const DoubleDouble third = DoubleDouble(1.0) / 3.0;
     EXPECT_LT(distance(third * 3.0, 1.0), unit);
     EXPECT_NE(third.low, 0.0);

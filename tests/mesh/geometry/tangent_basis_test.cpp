@@ -71,7 +71,7 @@ glm::vec4 turned(const Mesh& mesh, std::size_t v, double degrees) {
 
 class TangentBasisTest : public testing::TestWithParam<TangentMethod> {};
 
-TEST_P(TangentBasisTest, IsToldFromTheOthers) {
+TEST_P(TangentBasisTest, IsIdentified) {
     const Mesh mesh = made_by(GetParam());
     const IdentifiedTangents identified = identify_tangents(mesh);
     ASSERT_EQ(identified.method, GetParam());
@@ -91,7 +91,7 @@ TEST_P(TangentBasisTest, IsToldFromTheOthers) {
     }
 }
 
-TEST_P(TangentBasisTest, IsToldThroughNoise) {
+TEST_P(TangentBasisTest, IsIdentifiedDespiteNoise) {
     Mesh mesh = made_by(GetParam());
     std::mt19937 random(1);
     std::normal_distribution<double> noise(0.0, 0.03);  // In degrees.
@@ -102,7 +102,7 @@ TEST_P(TangentBasisTest, IsToldThroughNoise) {
     EXPECT_NEAR(identified.best()->angles.rms, 0.03, 0.003);
 }
 
-TEST_P(TangentBasisTest, IsStillTheNearestWhereNoiseIsLarge) {
+TEST_P(TangentBasisTest, IsTheNearestDespiteLargeNoise) {
     Mesh mesh = made_by(GetParam());
     std::mt19937 random(3);
     std::normal_distribution<double> noise(0.0, 0.3);
@@ -114,7 +114,7 @@ TEST_P(TangentBasisTest, IsStillTheNearestWhereNoiseIsLarge) {
     EXPECT_TRUE(identified.is_clearly_best());
 }
 
-TEST_P(TangentBasisTest, IsToldThroughStorageInFewBits) {
+TEST_P(TangentBasisTest, IsIdentifiedInFewBits) {
     for (const int bits : {8, 16}) {
         Mesh mesh = made_by(GetParam());
         const float steps = bits == 8 ? 127.0F : 32767.0F;
@@ -128,7 +128,7 @@ TEST_P(TangentBasisTest, IsToldThroughStorageInFewBits) {
     }
 }
 
-TEST_P(TangentBasisTest, IsToldWhereTheSignIsNegated) {
+TEST_P(TangentBasisTest, IsIdentifiedWithNegatedSigns) {
     Mesh mesh = made_by(GetParam());
     for (glm::vec4& tangent : mesh.tangents)
         tangent.w = -tangent.w;
@@ -296,7 +296,7 @@ TEST(TangentBasis, TheSizeOfAMeshChangesNothing) {
     EXPECT_EQ(identified.undefined, expected.undefined);
 }
 
-TEST(TangentBasis, WithoutWhatItTakesNothingIsSaid) {
+TEST(TangentBasis, IsUnknownWithoutItsInputs) {
     const Mesh whole = made_by(TangentMethod::mikktspace);
     for (const int missing : {0, 1, 2}) {
         Mesh mesh = whole;
@@ -313,7 +313,7 @@ TEST(TangentBasis, WithoutWhatItTakesNothingIsSaid) {
     EXPECT_THROW(identify_tangents(broken), InvalidInput);
 }
 
-TEST(TangentBasis, OfRealModels) {
+TEST(TangentBasis, IdentifiesRealModels) {
     RELIEF_NEEDS_SHARED(models, "data/models");
     const struct {
         const char* file;

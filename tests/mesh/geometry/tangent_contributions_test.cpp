@@ -34,7 +34,7 @@ struct Sample {
     }
 };
 
-TEST(TextureGradient, SaysWhereUAndVGrowAndHowFarTheTextureIsStretched) {
+TEST(TextureGradient, HasDirectionAndStretchOfUAndV) {
     const TriangleGradient found = Sample().gradient();
     EXPECT_EQ(found.kind, Gradient::upright);
     EXPECT_EQ(found.along_u, glm::vec3(1, 0, 0));
@@ -86,7 +86,7 @@ TEST(TextureGradient, AnAxisWhoseSquareVanishesInFloatIsStillADirection) {
     EXPECT_LE(degrees_between(found.along_v, {-2, 3, 0}), 1e-4);
 }
 
-TEST(TextureGradient, WhatHasNoneSaysWhy) {
+TEST(TextureGradient, StatesWhyItIsMissing) {
     Sample sample;
     EXPECT_EQ(sample.gradient({0, 1, 1}).kind, Gradient::coinciding);
     sample.texcoords[2] = {2, 0};
@@ -156,7 +156,7 @@ TEST(CornerLinks, TwoTrianglesOfAQuadMeetAtTheDiagonal) {
                 ElementsAre(3, no_corner, no_corner, no_corner, 2, no_corner));
 }
 
-TEST(CornerLinks, TrianglesThatRunAlongAnEdgeTheSameWayAreNoNeighbours) {
+TEST(CornerLinks, TrianglesWithTheSameEdgeDirectionAreNotNeighbors) {
     const Links links = links_of({{0, 1, 2}, {0, 1, 3}}, {upright, upright});
     for (const Corner corner : links.across)
         EXPECT_EQ(corner, no_corner);
@@ -172,14 +172,14 @@ TEST(CornerLinks, AtACrowdedEdgeTrianglesOfOneHandednessPairFirst) {
     EXPECT_EQ(neighbor(links, 3, 0), 0);
 }
 
-TEST(CornerLinks, AmongEqualsTheSmallerThirdVerticesPairWhateverTheOrder) {
+TEST(CornerLinks, TiesPairTheSmallestThirdVerticesInAnyOrder) {
     const std::vector<glm::uvec3> triangles = {{0, 1, 3}, {0, 1, 2}, {1, 0, 5}, {1, 0, 4}};
     const Links links = links_of(triangles, {upright, upright, upright, upright});
     EXPECT_EQ(neighbor(links, 1, 0), 3);
     EXPECT_EQ(neighbor(links, 0, 0), 2);
 }
 
-TEST(CornerLinks, ATriangleWithoutGradientTakesWhatIsLeft) {
+TEST(CornerLinks, TriangleWithoutGradientPairsLast) {
     const std::vector<glm::uvec3> triangles = {{0, 1, 2}, {1, 0, 3}, {1, 0, 4}, {0, 1, 5}};
     const Links links = links_of(triangles, {upright, upright, no_gradient, mirrored});
     EXPECT_EQ(neighbor(links, 0, 0), 1);
@@ -203,7 +203,7 @@ TEST(CornerLinks, ARepeatedTriangleIsKnownByItsTwinInAnyRotation) {
     EXPECT_EQ(neighbor(links, 0, 2), -1);
 }
 
-TEST(CornerLinks, BothEndsOfEveryEdgeAgreeHoweverCrowdedItIs) {
+TEST(CornerLinks, BothEndsOfCrowdedEdgesAgree) {
     std::mt19937 random(7);
     for (int round = 0; round < 200; ++round) {
         std::vector<glm::uvec3> triangles;
@@ -270,7 +270,7 @@ bool is_one_fan(const std::vector<std::uint32_t>& next,
     return is_single_fan(all_next, all_previous, static_cast<std::uint32_t>(next.size()));
 }
 
-TEST(CornerLinks, ASingleFanIsToldFromAllElse) {
+TEST(CornerLinks, SingleFansAreRecognized) {
     EXPECT_TRUE(is_one_fan({1U}, {2U}));
     EXPECT_TRUE(is_one_fan({1U, 2U, 3U}, {3U, 1U, 2U})) << "a ring";
     EXPECT_TRUE(is_one_fan({2U, 1U}, {3U, 2U})) << "a chain";

@@ -232,7 +232,7 @@ TEST(GoldenTangents, EveryStableCornerAgreesInSignAndWithinAHundredthOfADegree) 
     }
 }
 
-TEST(GoldenTangents, KeepTheInvariantsWhereTheReferenceBreaksThem) {
+TEST(GoldenTangents, KeepInvariantsThatTheReferenceViolates) {
     RELIEF_NEEDS_SHARED(folder, "golden");
     for (const std::filesystem::path& file : golden_files(folder)) {
         SCOPED_TRACE(file.filename());

@@ -121,7 +121,7 @@ TEST(Tangents, AreAveragedInThePlaneOfTheNormal) {
         EXPECT_LE(degrees_between(tangent, {4, 0, -3}), float_degrees);
 }
 
-TEST(Tangents, DifferBetweenCornersOfAVertexWhereTheTextureIsMirrored) {
+TEST(Tangents, DifferAtMirroredSeams) {
     Mesh mesh = test::grid(2);
     for (glm::vec2& texcoord : mesh.texcoords)
         texcoord.x = std::abs(texcoord.x - 0.5F);
@@ -133,7 +133,7 @@ TEST(Tangents, DifferBetweenCornersOfAVertexWhereTheTextureIsMirrored) {
     }
 }
 
-TEST(Tangents, KeepTheirHandednessWhereUContinuesAcrossAMirroredTexture) {
+TEST(Tangents, KeepTheirHandednessAcrossMirroredSeams) {
     // All tangents are equal, so that only the sign separates the corners of a vertex in the
     // middle.
     Mesh mesh = test::grid(2);
@@ -224,7 +224,7 @@ TEST(Tangents, TheScaleOfPositionsNormalsAndTextureChangesNothing) {
     }
 }
 
-TEST(Tangents, AnOffsetOfTheTextureCostsOnlyWhatItTakesFromTheFloats) {
+TEST(Tangents, OffsetOfTheTextureCostsOnlyFloatPrecision) {
     Mesh mesh = test::grid(8);  // Multiples of 1/8 stay exact at an offset of 2^20.
     const auto expected = tangents_of(mesh);
     for (glm::vec2& texcoord : mesh.texcoords)
@@ -251,7 +251,7 @@ TEST(Tangents, RotateWithTheMesh) {
     }
 }
 
-TEST(Tangents, ATriangleWithoutGradientTakesItsNeighboursFrames) {
+TEST(Tangents, TriangleWithoutGradientHasTheFramesOfItsNeighbors) {
     Mesh mesh = test::grid(2);
     // The last triangle, at the lower right, gets its own vertex and loses its texture.
     glm::uvec3& triangle = mesh.triangles.back();
@@ -300,7 +300,7 @@ TEST(Tangents, WithoutAnyTextureTheyFollowAFixedRuleAndAreCounted) {
     }
 }
 
-TEST(Tangents, ATriangleWithCoincidingCornersTakesWhatItsVerticesHave) {
+TEST(Tangents, CollapsedTriangleHasTheFramesOfItsVertices) {
     Mesh mesh = test::grid(1);
     mesh.triangles.emplace_back(0, 0, 3);
     Report report;
@@ -393,7 +393,7 @@ TEST(Tangents, AreaWeightsLeaveALargeFaceUndisturbedByAThinBevel) {
     EXPECT_GT(undisturbed, 0.0) << "but they are averaged";
 }
 
-TEST(Tangents, LengyelsAddUpGradientsWhateverTheirTrianglesAreTo) {
+TEST(Tangents, LengyelSumsGradientsOfAllTrianglesAtAVertex) {
     // Two triangles that share only vertex 0. The texture of the second one has 3 times the
     // stretch, and its u runs along y.
     Mesh mesh;
@@ -465,7 +465,7 @@ TEST(Tangents, ZeroNormalsLeaveTheTextureDirection) {
     EXPECT_EQ(report.count("normal without direction"), 9U);
 }
 
-TEST(Tangents, WhereTheyCancelEachCornerKeepsItsTriangles) {
+TEST(Tangents, CanceledSumsUseTheTriangleOfEachCorner) {
     // A fan of a quarter turn whose u runs around the apex: the average there is zero.
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}};
@@ -495,7 +495,7 @@ TEST(Tangents, ARepeatedTriangleCountsOnceAndIsCounted) {
     EXPECT_EQ(tangents[27], once[11]);
 }
 
-TEST(Tangents, NothingComesOfNothing) {
+TEST(Tangents, OfAnEmptyMeshAreEmpty) {
     EXPECT_TRUE(tangents_of(Mesh{}).empty());
 }
 
@@ -546,7 +546,7 @@ Mesh crowded(int kind, std::uint32_t count) {
     return mesh;
 }
 
-TEST(Tangents, NoShapeTakesLong) {
+TEST(Tangents, AreLinearForAllShapes) {
     const char* const names[] = {"flat fan", "fan with a texture around it", "one edge", "line",
                                  "point"};
     for (int kind = 0; kind < 5; ++kind) {
@@ -599,7 +599,7 @@ TEST(OppositeTangents, OppositeInVAloneIsEnough) {
         EXPECT_EQ(sum.vector(), unit_in_sums * glm::dvec3(1.0, 0.0, 0.0));
 }
 
-TEST(OppositeTangents, AMemberWithoutDirectionOpposesNothing) {
+TEST(OppositeTangents, MemberWithoutDirectionIsIgnored) {
     const std::vector<SidedTerm> members = {member({1, 0, 0}), member({0, 0, 0})};
     for (const TangentSum& sum : sums_without_opposites(members, along_z))
         EXPECT_EQ(sum.vector(), unit_in_sums * glm::dvec3(1.0, 0.0, 0.0));

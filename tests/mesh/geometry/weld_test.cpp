@@ -20,7 +20,7 @@ using test::infinite;
 using test::not_a_number;
 using testing::ElementsAre;
 
-TEST(Weld, TheSmallestIndexOfAPositionStandsForAll) {
+TEST(Weld, UsesTheSmallestIndexOfAPosition) {
     const std::vector<glm::vec3> positions = {
         {1, 2, 3}, {3, 2, 1}, {1, 2, 3}, {3, 2, 1}, {0, 0, 0}};
     EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1, 0, 1, 4));
@@ -32,7 +32,7 @@ TEST(Weld, MinusZeroIsZeroAndInfinitiesEqualThemselves) {
     EXPECT_THAT(weld_positions(positions), ElementsAre(0, 0, 2, 2, 4));
 }
 
-TEST(Weld, ANaNEqualsNothingNotEvenItself) {
+TEST(Weld, NaNDiffersFromItself) {
     const std::vector<glm::vec3> positions(4, glm::vec3(0, not_a_number, 0));
     EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1, 2, 3));
 }
@@ -45,7 +45,7 @@ TEST(Weld, ByBitsANaNEqualsItselfAndMinusZeroIsNotZero) {
     EXPECT_EQ((weld_bits<std::array<float, 7>>(rows)), (std::vector<std::uint32_t>{0, 1, 1}));
 }
 
-TEST(Weld, OneUnitInTheLastPlaceKeepsPositionsApart) {
+TEST(Weld, PositionsOneUlpApartDiffer) {
     const std::vector<glm::vec3> positions = {{1, 0, 0}, {std::nextafter(1.0F, 2.0F), 0, 0}};
     EXPECT_THAT(weld_positions(positions), ElementsAre(0, 1));
 }
@@ -133,7 +133,7 @@ TEST(WeldNear, AChainIsAllOne) {
     EXPECT_EQ(weld_near_positions(positions, 0.99)[99], 99U);
 }
 
-TEST(WeldNear, WhatIsNotFiniteIsAlone) {
+TEST(WeldNear, NonFinitePositionsStaySeparate) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     const std::vector<glm::vec3> positions = {{nan, 0, 0},      {nan, 0, 0}, {infinity, 0, 0},

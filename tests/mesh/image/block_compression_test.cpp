@@ -72,7 +72,7 @@ TEST(Bc4Decoder, SixValuesLieBetweenTheCodesIfTheFirstIsLarger) {
                             257 * 100, 257 * 80));
 }
 
-TEST(Bc4Decoder, FourValuesAndTheEndsOtherwise) {
+TEST(Bc4Decoder, HasFourValuesAndTheEndsInTheOtherMode) {
     EXPECT_THAT(
         first_eight(bc4_block(60, 210), BlockFormat::bc4),
         ElementsAre(257 * 60, 257 * 210, 257 * 90, 257 * 120, 257 * 150, 257 * 180, 0, 65535));
@@ -157,7 +157,7 @@ TEST(Bc4Encoder, TwoCodesAndTheValuesBetweenThemAreExact) {
     }
 }
 
-TEST(Bc4Encoder, EndsOfTheRangeBesideOtherValuesAreExact) {
+TEST(Bc4Encoder, EndsOfTheRangeAreExact) {
     // Black, white, and values between 100 and 105: only the second order of codes has them all.
     std::vector<std::uint8_t> codes(16);
     for (std::size_t i = 0; i < 16; ++i)

@@ -64,7 +64,7 @@ TEST(HeightField, AnEmptyImageIsRefused) {
     EXPECT_THROW(height_field(Image{}), InvalidInput);
 }
 
-TEST(HeightField, TakesTheChannelThatIsAskedFor) {
+TEST(HeightField, UsesTheRequestedChannel) {
     const Image image = rgba16({65535, 0, 13107, 26214});
     EXPECT_THAT(samples_of<float>(height_field(image, HeightChannel::red)), ElementsAre(1.0F));
     EXPECT_THAT(samples_of<float>(height_field(image, HeightChannel::green)), ElementsAre(0.0F));
@@ -85,7 +85,7 @@ TEST(HeightField, LuminanceIsOfDecodedColors) {
         << "float samples are linear already";
 }
 
-TEST(HeightField, GrayHasOneHeightWhateverIsAskedButNoColors) {
+TEST(HeightField, GrayImagesHaveOneChannelOfHeights) {
     Image gray = make_image(1, 1, 2, 8, ColorSpace::data);
     gray.samples = std::vector<std::uint8_t>{51, 102};
     for (const HeightChannel channel :
@@ -108,7 +108,7 @@ TEST(HeightMap, KeepsTheSamplesOfAGrayImage) {
     EXPECT_TRUE(map.transparent.empty());
 }
 
-TEST(HeightMap, SaysWhichTexelsAreTransparent) {
+TEST(HeightMap, ReportsTransparentTexels) {
     const HeightMap map = height_map(rgba16({0, 0, 0, 0, 9, 9, 9, 1, 9, 9, 9, 65535}));
     EXPECT_THAT(samples_of<std::uint16_t>(map.alpha), ElementsAre(0, 1, 65535));
     EXPECT_THAT(map.transparent, ElementsAre(1, 0, 0));
@@ -132,7 +132,7 @@ TEST(FilledHoles, OneFiniteHeightInACornerFillsTheWholeMap) {
     }
 }
 
-TEST(FilledHoles, TransparentTexelsTakeTheHeightsBesideThemAsFarAsAKernelReaches) {
+TEST(FilledHoles, TransparentTexelsAreFilledWithinTheKernelRadius) {
     // A plateau of 5 amid transparent garbage.
     Image heights = make_image(9, 9, 1, 32, ColorSpace::data);
     std::vector<std::uint8_t> transparent(81, 1);
@@ -195,7 +195,7 @@ TEST(Tiling, APartOfATilingMapDoesNotTile) {
     EXPECT_LT(detect_tiling(part).seam_y, 1.1);
 }
 
-TEST(Tiling, NothingToCompareWithAndHoles) {
+TEST(Tiling, HandlesTinyMapsAndHoles) {
     EXPECT_TRUE(detect_tiling(heights_of(1, 1, [](int, int) { return 2.0; })).tiles_x());
     EXPECT_TRUE(detect_tiling(heights_of(4, 4, [](int, int) { return 2.0; })).tiles_y());
     Image step = heights_of(4, 4, [](int x, int) { return x == 3 ? 1.0 : 0.0; });
@@ -207,7 +207,7 @@ TEST(Tiling, NothingToCompareWithAndHoles) {
     EXPECT_THROW(detect_tiling(make_image(2, 2, 3, 8, ColorSpace::data)), InvalidInput);
 }
 
-TEST(Tiling, OfRealMaps) {
+TEST(Tiling, IsRecognizedInRealMaps) {
     RELIEF_NEEDS_SHARED(folder, "data/textures");
     const auto tiling = [&](const char* name) {
         return detect_tiling(height_field(read_image(folder / name, ImageUse::data)));
@@ -272,7 +272,7 @@ TEST(HeightNoise, IsTheDeviationOfNoiseOnASmoothMap) {
                 std::sqrt(1.0 / 12.0) / 255.0, 0.15 * std::sqrt(1.0 / 12.0) / 255.0);
 }
 
-TEST(HeightDepth, HugeFloatsAreNoCodes) {
+TEST(HeightDepth, HugeFloatsAreNotCodes) {
     Image huge = make_image(4, 1, 1, 32, ColorSpace::data);
     huge.samples = std::vector<float>{1e38F, -1e38F, 1e38F, -1e38F};
     EXPECT_EQ(height_depth(huge).bits, 0);
@@ -518,7 +518,7 @@ TEST(Destaircase, TheBestKernelGainsOnSmoothMapsAndLosesLittleOnDetailedOnes) {
     }
 }
 
-TEST(Destaircase, WhatIsNoHeightFieldIsRefused) {
+TEST(Destaircase, RefusesInvalidHeightFields) {
     EXPECT_THROW(destaircase(Image{}), InvalidInput);
     EXPECT_THROW(destaircase(make_image(4, 4, 3, 8, ColorSpace::data)), InvalidInput);
     EXPECT_THROW(destaircase(make_image(4, 4, 1, 8, ColorSpace::data), {Wrap::repeat, -1.0}),

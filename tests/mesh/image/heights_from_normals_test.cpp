@@ -165,7 +165,7 @@ TEST(HeightsFromNormals, AreThoseOfFieldsKnownInClosedForm) {
     EXPECT_GT(error(Kernel::central3), 50 * error(Kernel::central5));
 }
 
-TEST(HeightsFromNormals, KeepAPlaneWhereBordersAreClamped) {
+TEST(HeightsFromNormals, KeepAPlaneWithClampedBorders) {
     const Image plane = test::heights_of(33, 20, [](int x, int y) { return 0.25 * x - 0.5 * y; });
     Report report;
     IntegrationOptions options;
@@ -184,7 +184,7 @@ TEST(HeightsFromNormals, KeepAPlaneWhereBordersAreClamped) {
               1e-5);
 }
 
-TEST(HeightsFromNormals, LeaveOverWhatIsNoSurface) {
+TEST(HeightsFromNormals, HaveAResidualIfNoSurfaceFits) {
     // A vortex: slopes (-sin y, sin x) have no heights. They are added to hills.
     constexpr int side = 64;
     constexpr double turn = 2.0 * 3.14159265358979 / side;
@@ -207,7 +207,7 @@ TEST(HeightsFromNormals, LeaveOverWhatIsNoSurface) {
     EXPECT_NEAR(result.residual.rms, 5.0, 1.0);
 }
 
-TEST(HeightsFromNormals, CountWhatIsNoSlope) {
+TEST(HeightsFromNormals, CountInvalidSlopes) {
     Image normals = normals_of_heights(hills(16, 16).heights, Kernel::central7, Wrap::repeat);
     const std::span<float> n = normals.as<float>();
     n[5 * 3] = std::numeric_limits<float>::quiet_NaN();
@@ -264,7 +264,7 @@ TEST(HeightsFromNormals, TakeAnySizeAndAreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.residual_slope, many.residual_slope);
 }
 
-TEST(HeightsFromNormals, RefuseWhatIsNoMap) {
+TEST(HeightsFromNormals, RefuseInvalidMaps) {
     Report report;
     const auto message = [&](const Image& image, const IntegrationOptions& options = {}) {
         return test::message_of<InvalidInput>(

@@ -34,7 +34,7 @@ Image all_codes(ColorSpace color_space) {
     return image;
 }
 
-TEST(Image, ANewImageIsZeroAndAsLargeAsItSays) {
+TEST(Image, NewImageIsZeroAndHasItsSize) {
     const Image image = make_image(3, 2, 4, 16, ColorSpace::srgb);
     EXPECT_EQ(image.bits(), 16);
     EXPECT_EQ(image.sample_count(), 24U);
@@ -49,7 +49,7 @@ TEST(Image, SizesChannelsAndDepthsThatDoNotExistAreRefused) {
     EXPECT_THROW(make_image(1, 1, 1, 24, ColorSpace::data), InvalidInput);
 }
 
-TEST(Image, ToFloatDividesByTheLargestCodeAndConvertsNoColour) {
+TEST(Image, ToFloatDividesByTheLargestCodeOnly) {
     const Image bytes = image_of<std::uint8_t>(3, {0, 51, 255}, ColorSpace::srgb);
     EXPECT_THAT(samples_of<float>(to_float(bytes)), ElementsAre(0.0F, 51.0F / 255.0F, 1.0F));
     EXPECT_EQ(to_float(bytes).color_space, ColorSpace::srgb);
@@ -66,7 +66,7 @@ TEST(Image, SrgbHasTheValuesOfTheStandard) {
     EXPECT_NEAR(srgb_from_linear(1.0F), 1.0, 1e-7);
 }
 
-TEST(Image, SrgbIsOddBelowZeroAndGoesOnAboveOne) {
+TEST(Image, SrgbIsOddAndExtendsAboveOne) {
     EXPECT_EQ(linear_from_srgb(-0.5F), -linear_from_srgb(0.5F));
     EXPECT_EQ(srgb_from_linear(-0.001F), -srgb_from_linear(0.001F));
     EXPECT_NEAR(srgb_from_linear(4.0F), 1.055 * std::pow(4.0, 1.0 / 2.4) - 0.055, 1e-6);
@@ -210,7 +210,7 @@ TEST(MipLevels, EvenSizesAverageFourTexelsChannelByChannel) {
     EXPECT_THAT(levels[1].as<std::uint8_t>(), ElementsAre(53, 14));
 }
 
-TEST(MipLevels, OddSizesShareTheTexelsThatLieAcrossABorder) {
+TEST(MipLevels, OddSizesWeightTexelsByCoverage) {
     // Each of 2 texels covers two and a half of 5: (a + b + c/2) / 2.5.
     const auto row = mip_levels(image_of<float>(1, {1, 2, 4, 8, 16}));
     EXPECT_FLOAT_EQ(row[0].as<float>()[0], (1 + 2 + 2) / 2.5F);
@@ -237,7 +237,7 @@ TEST(MipLevels, KeepTheMeanOfAnySize) {
     }
 }
 
-TEST(MipLevels, CodedColoursAreAveragedAsLightAndAlphaIsNot) {
+TEST(MipLevels, AverageColorsInLinearLightAndAlphaAsStored) {
     for (const int channels : {3, 4}) {
         Image image = make_image(2, 1, channels, 8, ColorSpace::srgb);
         for (int c = 0; c < channels; ++c)
@@ -255,7 +255,7 @@ TEST(MipLevels, CodedColoursAreAveragedAsLightAndAlphaIsNot) {
     EXPECT_NEAR(level.as<std::uint16_t>()[2], 65535 * srgb_from_linear(0.5F), 1.0);
 }
 
-TEST(MipLevels, EveryPlainColourStaysItself) {
+TEST(MipLevels, KeepPlainColors) {
     for (const ColorSpace space : {ColorSpace::data, ColorSpace::srgb}) {
         for (int code = 0; code < 256; ++code) {
             const std::vector<std::uint8_t> samples(6 * 4 * 4, static_cast<std::uint8_t>(code));
@@ -315,7 +315,7 @@ TEST(HeatPicture, EndsAtItsEnds) {
     EXPECT_EQ(shown(NAN, 2), (Pixel{0, 255, 0}));
 }
 
-TEST(HeatPicture, TakesOneFloatChannelAndAPositiveEnd) {
+TEST(HeatPicture, NeedsOneFloatChannelAndAPositiveMaximum) {
     EXPECT_THROW(false_color_image(make_image(2, 2, 3, 32, ColorSpace::data), 1), InvalidInput);
     EXPECT_THROW(false_color_image(make_image(2, 2, 1, 8, ColorSpace::data), 1), InvalidInput);
     EXPECT_THROW(false_color_image(Image{}, 1), InvalidInput);

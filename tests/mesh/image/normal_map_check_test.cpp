@@ -64,7 +64,7 @@ Image changed(const Image& map, const Change& change) {
     return result;
 }
 
-TEST(NormalMapCheck, FindsNothingWrongWithASoundMap) {
+TEST(NormalMapCheck, SoundMapHasNoFindings) {
     const NormalMapCheck check = check_normal_map(map_from(hilly_normals(128, 96, 0.5)));
     EXPECT_EQ(check.content, MapContent::tangent_normals);
     EXPECT_EQ(check.green.green, Green::up);
@@ -108,7 +108,7 @@ TEST(NormalMapCheck, TellsGreenThroughNoiseBitsAndStrength) {
     EXPECT_GE(told, 40);  // Of 60 maps.
 }
 
-TEST(NormalMapCheck, DoesNotGuessWhatAMapCannotTell) {
+TEST(NormalMapCheck, ReportsUndecidableGreen) {
     const auto ripples_x = [](int x, int) { return 3.0 * std::sin(x * 0.3); };
     const auto ripples_y = [](int, int y) { return 3.0 * std::sin(y * 0.3); };
     const auto crate = [](int x, int y) { return 3.0 * (std::sin(x * 0.3) + std::sin(y * 0.2)); };
@@ -157,7 +157,7 @@ TEST(NormalMapCheck, SeesBothDirectionsOfTheSrgbCurve) {
                 testing::ElementsAre(stored_through_srgb, all_flat));
 }
 
-TEST(NormalMapCheck, TellsObjectSpaceXyGreyAndColours) {
+TEST(NormalMapCheck, ClassifiesObjectSpaceXyGrayAndColors) {
     // The normals of a sphere, as in an object-space map: every direction.
     Image sphere = make_image(64, 64, 3, 8, ColorSpace::data);
     for (int row = 0; row < 64; ++row) {
@@ -212,7 +212,7 @@ TEST(NormalMapCheck, AStatedOrAssumedContentWinsOverTheTexels) {
     EXPECT_EQ(judged_content(make_image(9, 9, 3, 8, ColorSpace::data)), MapContent::gray);
 }
 
-TEST(NormalMapCheck, CountsTexelsThatAreNoNormals) {
+TEST(NormalMapCheck, CountsInvalidNormals) {
     Image map = map_from(hilly_normals(64, 64, 0.3));
     const auto samples = map.as<std::uint8_t>();
     const auto set = [&](std::size_t texel, int r, int g, int b) {
@@ -241,7 +241,7 @@ TEST(NormalMapCheck, CountsTexelsThatAreNoNormals) {
     EXPECT_EQ(holes.green.green, Green::up);
 }
 
-TEST(NormalMapCheck, ComparesWithWhatTheFileSays) {
+TEST(NormalMapCheck, ComparesWithTheMetadata) {
     const Image map =
         map_from(hilly_normals(64, 64, 0.5), {.bits = 16, .green = Green::down, .flat = {}});
     EXPECT_THAT(conditions_of(check_normal_map(map, {{"relief:green", "down"}})),
@@ -255,7 +255,7 @@ TEST(NormalMapCheck, ComparesWithWhatTheFileSays) {
                 testing::ElementsAre(flat_contradicted, all_flat));
 }
 
-TEST(NormalMapCheck, LooksAtChannelsAndBorders) {
+TEST(NormalMapCheck, ChecksChannelsAndBorders) {
     const Image heights = hilly_normals(64, 64, 0.5);
     const Image map = map_from(heights);
     Image four = make_image(64, 64, 4, 8, ColorSpace::data);
@@ -303,7 +303,7 @@ TEST(NormalMapCheck, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.lengths.rms_deviation, many.lengths.rms_deviation);
 }
 
-TEST(NormalMapCheck, TakesTheSmallestImagesAndRefusesNone) {
+TEST(NormalMapCheck, AcceptsOneTexelAndRefusesAnEmptyImage) {
     EXPECT_EQ(test::message_of<InvalidInput>([] { check_normal_map(Image{}); }),
               "the image is empty");
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {3, 2}}) {
@@ -375,7 +375,7 @@ TEST(FlatEvidence, ASmoothSurfaceRaisesNoAlarm) {
     }
 }
 
-TEST(FlatEvidence, FlatTexelsOfAnotherCodeAreFoundBesideCurvedOnes) {
+TEST(FlatEvidence, DetectsFlatTexelsOfTheOtherCode) {
     // A quarter is flat, and the rest is a dome. The flat codes are changed afterwards.
     for (const int side : {32, 64, 256}) {
         Image map = smooth(side, [](double x, double y) {
@@ -416,7 +416,7 @@ Image green_flipped(Image map) {
     return map;
 }
 
-TEST_P(RealNormalMaps, AreKnownAndTheirGreenIsToldEitherWay) {
+TEST_P(RealNormalMaps, AreRecognizedWithBothDirectionsOfGreen) {
     RELIEF_NEEDS_SHARED(file, std::string("data/") + GetParam().file);
     const Image map = read_image(file, ImageUse::data);
     const NormalMapCheck check = check_normal_map(map);

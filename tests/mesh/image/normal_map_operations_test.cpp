@@ -85,7 +85,7 @@ TEST(MapAxes, EverySignedPermutationOfCodesComesBackBitForBit) {
     expect_codes_to_come_back<std::uint16_t>(3);
 }
 
-TEST(MapAxes, TurnsWhatTheCodesMean) {
+TEST(MapAxes, PermuteDecodedVectors) {
     // x from -z, y from x, z from y.
     const AxisMapping mapping = {{{2, true}, {0, false}, {1, false}}};
     for (const FlatCode flat : both_codes) {
@@ -137,7 +137,7 @@ TEST(MapAxes, FloatsComeBackWithinTheirRounding) {
     EXPECT_THAT(samples_of<float>(flat), ElementsAre(0.5F, 0.5F, 1.0F));
 }
 
-TEST(MapAxes, RefusesWhatIsNoPermutation) {
+TEST(MapAxes, RefusesInvalidPermutations) {
     Image map = all_codes<std::uint8_t>(3, 1);
     Report report;
     EXPECT_EQ(message_of<InvalidInput>([&] {
@@ -153,7 +153,7 @@ TEST(MapAxes, RefusesWhatIsNoPermutation) {
               "a normal map has 3 or 4 channels, not 2");
 }
 
-TEST(DecodeXyMap, FindsZAndKeepsWhatIsLongerThanOneInThePlane) {
+TEST(DecodeXyMap, ReconstructsZAndKeepsLongVectors) {
     // 8 bits, middle: (60, -80) of 127 and (127, 127) of 127.
     const Image map = image_of<std::uint8_t>(4, {188, 48, 7, 9, 255, 255, 7, 9});
     Report report;
@@ -171,7 +171,7 @@ TEST(DecodeXyMap, FindsZAndKeepsWhatIsLongerThanOneInThePlane) {
     EXPECT_THAT(report.findings()[0].first, ElementsAre(1));
 }
 
-TEST(DecodeXyMap, TakesAnyTwoChannelsInEitherGreen) {
+TEST(DecodeXyMap, ReadsAnyTwoChannelsInEitherGreen) {
     // x is in alpha and y in green, as in DXT5 normal maps.
     const Image map = image_of<std::uint8_t>(4, {0, 48, 0, 188});
     Report report;
@@ -201,7 +201,7 @@ Image sphere() {
     return image_of(3, std::move(samples));
 }
 
-TEST(CountLengths, RoundingAndDitheringAreWithinWhatCodesCanHold) {
+TEST(CountLengths, RoundingAndDitheringAreNotCounted) {
     for (const FlatCode flat : both_codes) {
         for (const int bits : {8, 16, 32}) {
             for (const Dither dither : {Dither::none, Dither::ordered, Dither::blue_noise}) {
@@ -215,7 +215,7 @@ TEST(CountLengths, RoundingAndDitheringAreWithinWhatCodesCanHold) {
     }
 }
 
-TEST(CountLengths, CountsWhatNoCodeExplains) {
+TEST(CountLengths, CountsDeviationsBeyondRounding) {
     // Lengths 100/127, (121, 39)/127 = 1.001, 0 and 1.41.
     const Image map =
         image_of<std::uint8_t>(3, {128, 128, 228, 128, 167, 249, 128, 128, 128, 255, 128, 255});
@@ -381,7 +381,7 @@ TEST(BlendNormals, TheOthersAreTheirFormulas) {
               resolved_degrees);
 }
 
-TEST(BlendNormals, FlatIsNeutralWhereThatIsPromised) {
+TEST(BlendNormals, FlatIsNeutralForDocumentedMethods) {
     const glm::dvec3 flat(0, 0, 1);
     for (const NormalBlend method : all_normal_blends) {
         EXPECT_EQ(blend_of(flat, flat, method), flat);
@@ -417,7 +417,7 @@ TEST(BlendNormals, ASmallerDetailIsRepeatedAndALargerOneCutOff) {
     EXPECT_LT(degrees_between(directions_of(small)[0], {0.6, 0, 0.8}), resolved_degrees);
 }
 
-TEST(BlendNormals, WhereThereIsNoDirectionTheBaseStaysAndIsCounted) {
+TEST(BlendNormals, ZeroResultKeepsTheBaseAndIsCounted) {
     for (const auto& [method, base, detail] :
          {std::tuple{NormalBlend::reoriented, glm::dvec3(0, 0, -1), glm::dvec3(0.6, 0, 0.8)},
           std::tuple{NormalBlend::linear, glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0)},
@@ -449,7 +449,7 @@ TEST(BlendNormals, TheSameBitsForAnyNumberOfThreads) {
     }
 }
 
-TEST(BlendNormals, RefusesWhatAreNoNormals) {
+TEST(BlendNormals, RefusesInvalidImages) {
     Image base = normal_image(1, {{0, 0, 1}});
     Report report;
     const Image codes = make_image(2, 2, 3, 8, ColorSpace::data);

@@ -127,7 +127,7 @@ TEST(NormalMap, OppositeSlopesHaveMirroredCodesSoThatMirroredSeamsCannotShow) {
     }
 }
 
-TEST(NormalMap, WhatIsStoredReadsBackWithinHalfACode) {
+TEST(NormalMap, RoundTripIsWithinHalfACode) {
     // Half a code in three components: at most atan(sqrt(3) / 2 * 2 / 254), and similar for other
     // formats.
     for (const FlatCode flat : both_codes) {
@@ -159,7 +159,7 @@ TEST(NormalMap, AFourthChannelIsIgnoredAndCodeZeroIsMinusOne) {
     EXPECT_TRUE(report.empty());
 }
 
-TEST(NormalMap, WhatIsNoDirectionIsFlatAndCounted) {
+TEST(NormalMap, ZeroVectorsBecomeFlatAndAreCounted) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     Report stored;
@@ -199,7 +199,7 @@ TEST(NormalMap, WrongImagesAndDepthsAreRefused) {
     EXPECT_THROW(detect_flat_code(Image{}), InvalidInput);
 }
 
-TEST(NormalMap, ZeroIsWhatTheMetadataSaysElseAsGltfDecodes) {
+TEST(NormalMap, ZeroFollowsTheMetadataElseGltf) {
     const Image lower = image_of<std::uint8_t>(3, {127, 127, 255, 127, 128, 255, 10, 128, 200});
     const Image upper = image_of<std::uint8_t>(3, {128, 128, 255, 127, 128, 255, 127, 10, 200});
     EXPECT_EQ(detect_flat_code(lower), FlatCode::half);
@@ -211,7 +211,7 @@ TEST(NormalMap, ZeroIsWhatTheMetadataSaysElseAsGltfDecodes) {
     EXPECT_EQ(detect_flat_code(upper, {{"relief:flat", "what?"}}), FlatCode::half);
 }
 
-TEST(NormalMap, TheDefaultIsWhatGltfAndEnginesDecode) {
+TEST(NormalMap, DefaultIsTheDecodingOfGltf) {
     const Image normals = hemisphere();
     Report report;
     for (const int bits : {8, 16}) {
@@ -262,7 +262,7 @@ TEST(NormalMap, FlatIsExactlyFlatUnderBothZeros) {
     EXPECT_TRUE(report.empty());
 }
 
-TEST(NormalMap, FlatTexelsHaveCodesOnlyWhereOnePairOfCodesPrevails) {
+TEST(NormalMap, FlatCodesNeedAPrevailingPair) {
     EXPECT_THAT(flat_texel_codes(image_of<std::uint8_t>(3, {128, 127, 255, 9, 128, 200})).value(),
                 ElementsAre(128, 127));
     EXPECT_THAT(flat_texel_codes(image_of<std::uint16_t>(3, {32767, 32767, 65535})).value(),
@@ -290,7 +290,7 @@ TEST(NormalMap, FlatTexelsHaveCodesOnlyWhereOnePairOfCodesPrevails) {
     }
 }
 
-TEST(NormalMap, MetadataSaysWhatTheMapHoldsAndIsUnderstoodAgain) {
+TEST(NormalMap, MetadataRoundTrips) {
     EXPECT_THAT(normal_map_metadata({16, Green::down, FlatCode::middle}),
                 UnorderedElementsAre(Pair("relief:content", "normal map, tangent space"),
                                      Pair("relief:green", "down"), Pair("relief:flat", "32768"),
@@ -439,7 +439,7 @@ TEST(Dither, TheChannelsOfBlueNoiseHaveNextToNoCorrelation) {
     }
 }
 
-TEST(Dither, WhatACodeSaysExactlyKeepsThatCode) {
+TEST(Dither, KeepsExactCodes) {
     // The flat direction and the axes.
     for (const Dither dither : both_dithers) {
         for (const int bits : {8, 16}) {
@@ -464,7 +464,7 @@ double rms_of_means(const NormalMapFormat& format) {
     return std::sqrt(squares / static_cast<double>(directions().size()));
 }
 
-TEST(Dither, TheMeanOfAPatchIsNearerToTheTruthThanItsNearestCode) {
+TEST(Dither, MeanOfAPatchIsMoreAccurateThanOneCode) {
     // Measured: 0.178 degrees at 8 bits and 0.00070 at 16; ordered dither is 237 times more
     // accurate, blue noise 1000 times.
     for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
@@ -499,7 +499,7 @@ double largest_code_error(const Image& normals, const NormalMapFormat& format) {
     return largest;
 }
 
-TEST(Dither, NothingIsAWholeCodeOff) {
+TEST(Dither, IsWithinOneCode) {
     for (const glm::dvec3& direction : directions()) {
         for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
             for (const Dither dither : both_dithers) {

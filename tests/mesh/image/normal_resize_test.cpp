@@ -152,7 +152,7 @@ double error_of_loss(int side, ResizeDomain domain) {
     return normal_error(result, wave_heights(side, side, resized_waves(held, 96.0 / side))).rms;
 }
 
-TEST(ResizeNormals, OfSlopesIsThatOfTheSurfaceAndVectorsLoseDepth) {
+TEST(ResizeNormals, SlopesKeepDepthAndVectorsLoseIt) {
     EXPECT_NEAR(error_of_loss(24, ResizeDomain::slopes), 0.853, 0.01);
     EXPECT_NEAR(error_of_loss(24, ResizeDomain::vectors), 2.112, 0.01);
 }
@@ -175,7 +175,7 @@ TEST(ResizeNormals, NormalsThatCancelAreFlatAndCounted) {
     EXPECT_EQ(steep.count("normals that cancel"), 1U);
 }
 
-TEST(ResizeNormals, ASteepTexelIsAveragedAsAVectorAndSpoilsNothing) {
+TEST(ResizeNormals, SteepTexelsAreAveragedAsVectors) {
     std::vector<double> slopes(32, 0.0);
     slopes[16] = 1000.0;
     const Image normals = normals_of_slopes(slopes);
@@ -216,7 +216,7 @@ TEST(ResizeNormals, RefusesSizesThatAreNone) {
               "a map cannot be repeated 0 times, but up to 1e4");
 }
 
-TEST(FittedDetail, IsOnePeriodWhereTheBaseHoldsAWholeNumberOfThem) {
+TEST(FittedDetail, IsOnePeriodIfTheBaseHasAnIntegerNumber) {
     const std::vector<HeightWave> waves = tiling_waves(64, 64, 5, 8, 0.7, 5);
     const Image detail = normals_image(64, 64, waves);
     Report report;
@@ -230,7 +230,7 @@ TEST(FittedDetail, IsOnePeriodWhereTheBaseHoldsAWholeNumberOfThem) {
     EXPECT_LT(normal_error(period, wave_heights(128, 128, resized_waves(waves, 0.5))).rms, 0.2);
 }
 
-TEST(FittedDetail, IsTheWholeAreaElse) {
+TEST(FittedDetail, OtherwiseCoversTheBase) {
     const std::vector<HeightWave> waves = tiling_waves(64, 64, 5, 8, 0.7, 5);
     const Image detail = normals_image(64, 64, waves);
     Report report;
@@ -258,7 +258,7 @@ Image checker(int side, float slope) {
     return normals_from_slopes(slopes, report);
 }
 
-TEST(NormalMips, ACheckerKeepsTheLengthOfItsMean) {
+TEST(NormalMips, CheckerHasTheLengthOfItsMean) {
     std::vector<Image> levels = normal_mip_levels(checker(8, 1.0F));
     ASSERT_EQ(levels.size(), 3U);
     for (Image& level : levels) {
@@ -326,7 +326,7 @@ double length_of_gaussian(double deviation) {
     return sum;
 }
 
-TEST(NormalMips, OfNormallyDistributedSlopesTheLengthTellsNearlyAllTheVariance) {
+TEST(NormalMips, LengthYieldsTheVarianceOfGaussianSlopes) {
     // Toksvig's measure, (1 - r) / r, gives smaller shares: 0.995, 0.932, 0.746, 0.525.
     for (const auto& [deviation, share] : {std::pair{0.05, 0.9963}, std::pair{0.2, 0.9499},
                                            std::pair{0.5, 0.8161}, std::pair{1.0, 0.6630}}) {
@@ -337,7 +337,7 @@ TEST(NormalMips, OfNormallyDistributedSlopesTheLengthTellsNearlyAllTheVariance) 
     }
 }
 
-TEST(NormalMips, RefusesWhatIsNotWhatItTakes) {
+TEST(NormalMips, RefusesInvalidImages) {
     const Image codes = make_image(2, 2, 3, 8, ColorSpace::data);
     EXPECT_EQ(test::message_of<InvalidInput>([&] { normal_mip_levels(codes); }),
               "normals have 3 float channels, not 3 of 8 bits");

@@ -73,7 +73,7 @@ TEST(SampleData, TheBricksTileBothWays) {
     }
 }
 
-TEST(SampleData, TheHeightsAre16BitGreyAndUseTheirRange) {
+TEST(SampleData, HeightsAre16BitGrayAndUseTheirRange) {
     const Image image = read_image(data / "bricks-height.png", ImageUse::data);
     EXPECT_EQ(image.width, 1024);
     EXPECT_EQ(image.height, 1024);
@@ -231,7 +231,7 @@ TEST(SampleData, TheVaseNeverStretchesNorMirrorsItsTexture) {
     }
 }
 
-TEST(SampleData, TheVaseNamesItsTextureBesideIt) {
+TEST(SampleData, VaseNamesItsTexture) {
     Report report;
     const MeshFile file = read_mesh(data / "vase.obj", report);
     ASSERT_EQ(file.materials.size(), 1U);

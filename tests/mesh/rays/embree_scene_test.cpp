@@ -30,7 +30,7 @@ double number(std::mt19937& random) {
     return static_cast<double>(random()) / 2147483648.0 - 1.0;
 }
 
-TEST(ExactHit, SaysWhereARayMeetsATriangle) {
+TEST(ExactHit, LocatesTheIntersection) {
     const Corners corners = {glm::dvec3(0, 0, 1), {4, 0, 1}, {0, 4, 5}};
     ExactHit hit;
     // (1, 2) has the weights 1/4, 1/4, 1/2, and lies at z = 3.
@@ -53,7 +53,7 @@ TEST(ExactHit, SaysWhereARayMeetsATriangle) {
     EXPECT_EQ(hit.weights, glm::dvec3(0, 0, 1));
 }
 
-TEST(ExactHit, WhatIsSeenEdgeOnOrHasNoAreaOrIsNotFiniteIsNotMet) {
+TEST(ExactHit, MissesEdgeOnDegenerateAndNonFiniteTriangles) {
     ExactHit hit;
     const Corners upright = {glm::dvec3(0, 0, 0), {1, 0, 0}, {0, 0, 1}};
     EXPECT_FALSE(intersect(frame_of({0.25, 0, 9}, {0, 0, -1}), upright, hit));
@@ -228,7 +228,7 @@ TEST(TriangleClusters, KeepTrianglesApartThatAreFarFromEachOther) {
     EXPECT_TRUE(nothing.clusters().clusters.empty());
 }
 
-TEST(TriangleClusters, MayHoldManyTrianglesAtOnePlace) {
+TEST(TriangleClusters, MayContainCoincidentTriangles) {
     Soup soup;
     for (int i = 0; i < 100; ++i)
         soup.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -336,7 +336,7 @@ Ray down(double x, double y, double far) {
 
 const EmbreeSpace space{glm::dvec3(0.0), 2.0};
 
-TEST(EmbreeScene, FindsTheNearestTriangleOfEachRayThatItIsAskedFor) {
+TEST(EmbreeScene, FindsTheNearestTriangleOfEachActiveRay) {
     EmbreeScene scene(space, SceneBuild::thorough);
     add_triangle(scene, 7, 0.0F);
     add_triangle(scene, 3, -0.5F);
@@ -389,7 +389,7 @@ TEST(EmbreeScene, EndsOfRaysAreExact) {
     }
 }
 
-TEST(EmbreeScene, LooksAtNoLaneThatItIsNotAskedFor) {
+TEST(EmbreeScene, IgnoresInactiveLanes) {
     // The unused rays hold arbitrary stack contents. Embree must not end the program.
     EmbreeScene scene(space, SceneBuild::thorough);
     add_triangle(scene, 7, 0.0F);
@@ -448,7 +448,7 @@ TEST(EmbreeScene, FindsEveryTriangleOfARayAndAppendsThem) {
     EXPECT_EQ(found.size(), 3U);
 }
 
-TEST(EmbreeScene, OfTrianglesThatCoincideTheFirstInTheGivenOrderIsHit) {
+TEST(EmbreeScene, HitsTheFirstOfCoincidentTriangles) {
     for (const bool reversed : {false, true}) {
         EmbreeScene scene(space, SceneBuild::thorough,
                           [&](const MetTriangle& a, const MetTriangle& b) {
@@ -480,7 +480,7 @@ TEST(EmbreeScene, KnowsHowFarTheNearestTriangleIs) {
     EXPECT_LE(scene.distance_from({0.25, 0.25, 0.75}, 3.0), 3.0);
 }
 
-TEST(EmbreeScene, LeavesOutWhatIsNotFiniteAndMayBeEmpty) {
+TEST(EmbreeScene, IgnoresNonFiniteTrianglesAndMayBeEmpty) {
     EmbreeScene scene(space, SceneBuild::thorough);
     add_triangle(scene, 0, std::numeric_limits<float>::quiet_NaN());
     scene.build();

@@ -87,7 +87,7 @@ TEST(Compare, AMeshWithItself) {
     EXPECT_THAT(result.worst_normals, IsEmpty());
 }
 
-TEST(Compare, NeitherOrderNorSplitsNorTurnsMatter) {
+TEST(Compare, IgnoresOrderSplitsAndRotationOfCorners) {
     const Mesh torus = test::with_tangents(make_torus());
     for (const unsigned seed : {1U, 2U}) {
         const Mesh other = shuffled_mesh(torus, seed);
@@ -162,7 +162,7 @@ TEST(Compare, OtherTrianglesHaveNoPartner) {
     EXPECT_EQ(match.corners[15], 12U) << "those behind the missing one move up";
 }
 
-TEST(Compare, TextureCoordinatesTellTrianglesAtOnePlaceApart) {
+TEST(Compare, TextureCoordinatesDistinguishCoincidentTriangles) {
     Mesh twice = make_quad();
     const Mesh once = twice;
     for (std::size_t v = 0; v < 4; ++v) {
@@ -291,7 +291,7 @@ TEST(Compare, TheNearestIsTaken) {
     EXPECT_EQ(match.corners[0], 6U);
 }
 
-TEST(Compare, WhatIsNotFiniteMatchesNothing) {
+TEST(Compare, NonFiniteTrianglesHaveNoMatch) {
     Mesh quad = make_quad();
     quad.positions[0].x = std::numeric_limits<float>::quiet_NaN();
     MatchOptions options;

@@ -141,7 +141,7 @@ TEST(Decimate, ASeamIsNeitherTornNorSmeared) {
     EXPECT_EQ(boundary_edges(small), 0U) << "not torn";
 }
 
-TEST(Decimate, NothingTurnsOverInSpaceOrInTheTexture) {
+TEST(Decimate, InvertsNoTriangleInSpaceOrTexture) {
     const Mesh sphere = test::sphere(64, 32);
     Report report;
     const Mesh small = decimated_to(sphere, 300, report);
@@ -334,7 +334,7 @@ TEST(Decimate, EmptyAndSmallestMeshes) {
     EXPECT_TRUE(report.empty());
 }
 
-TEST(Decimate, VerticesCarryWhatTheyHadAndSayWhereFrom) {
+TEST(Decimate, VerticesKeepAttributesAndSourceIndices) {
     Mesh sphere = test::sphere(32, 16);
     for (const glm::vec3& p : sphere.positions)
         sphere.colors.emplace_back(p * 0.5F + 0.5F, 1.0F);
@@ -350,7 +350,7 @@ TEST(Decimate, VerticesCarryWhatTheyHadAndSayWhereFrom) {
     }
 }
 
-TEST(Decimate, TangentsAreComputedAnewAndThatIsSaid) {
+TEST(Decimate, RecomputesTangentsWithAFinding) {
     Mesh sphere = test::sphere(32, 16);
     sphere.tangents.assign(sphere.positions.size(), glm::vec4(1, 0, 0, 1));
     Report report;
@@ -485,7 +485,7 @@ TEST(DecimateHardCases, ABookKeepsItsTriangles) {
     EXPECT_EQ(report.count("number of triangles out of reach"), 1U);
 }
 
-TEST(DecimateHardCases, ASoupOfSingleTrianglesKeepsThem) {
+TEST(DecimateHardCases, SingleTrianglesAreKept) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> coordinate(-1.0F, 1.0F);
     Mesh soup;
@@ -557,7 +557,7 @@ TEST(DecimateHardCases, TinyComponentsKeepATriangleOrATetrahedron) {
     EXPECT_EQ(collapsed(mesh, 1).triangles, 2000U);
 }
 
-TEST(DecimateHardCases, ManyWedgesAtOnePlace) {
+TEST(DecimateHardCases, ManyWedgesAtOnePosition) {
     // Each triangle of a fan has its own texture coordinate in the middle and at the rim.
     const Mesh welded = fan(20000);
     Mesh mesh;
@@ -590,7 +590,7 @@ std::vector<std::array<float, 9>> triangle_positions(const Mesh& mesh) {
     return result;
 }
 
-TEST(Decimate, NeitherTheOrderOfTrianglesNorTheThreadsMatter) {
+TEST(Decimate, IsIndependentOfOrderAndThreads) {
     Mesh sphere = test::sphere(128, 64);
     DecimateOptions options;
     options.triangles = 700;
@@ -813,7 +813,7 @@ TEST(Decimate, JointWeightsAndDisplacementsOnAPlaneCount) {
               "there are 1088 displacements, but 1089 positions");
 }
 
-TEST(Decimate, LinearJointWeightsCostNothing) {
+TEST(Decimate, LinearJointWeightsHaveNoError) {
     Mesh grid = test::grid(32);
     Deformation deformation;
     for (const glm::vec3& p : grid.positions)
@@ -937,7 +937,7 @@ TEST(DecimateFit, KeptBordersAndTrianglesSetAsideDoNotMove) {
     EXPECT_GT(moved, 10U);
 }
 
-TEST(DecimateFit, NeitherTheOrderOfTrianglesNorTheThreadsMatter) {
+TEST(DecimateFit, IsIndependentOfOrderAndThreads) {
     Mesh sphere = test::sphere(64, 32);
     DecimateOptions options;
     options.triangles = 300;

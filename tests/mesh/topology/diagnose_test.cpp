@@ -52,7 +52,7 @@ const glm::vec3 x_axis(1, 0, 0);
 const glm::vec3 y_axis(0, 1, 0);
 const glm::vec3 z_axis(0, 0, 1);
 
-TEST(Diagnose, ClosedShapesHaveNothing) {
+TEST(Diagnose, ClosedShapesHaveNoFindings) {
     EXPECT_THAT(counts_of(make_cube()), ElementsAre(Pair(MeshCondition::texture_overlapping, 12)))
         << "24 vertices at 8 places; the image on every face";
     EXPECT_THAT(counts_of(make_torus(0.4F, 24, 12)), IsEmpty());
@@ -117,7 +117,7 @@ TEST(Diagnose, EdgesByTheTrianglesOnThem) {
         << "a triangle with two such edges is named once";
 }
 
-TEST(Diagnose, EdgesAreJoinedByPlaceNotByIndex) {
+TEST(Diagnose, EdgesAreMatchedByPosition) {
     const Mesh seam = mesh_from({o, x_axis, y_axis, x_axis, o, -y_axis}, {{0, 1, 2}, {3, 4, 5}});
     EXPECT_THAT(counts_of(seam), ElementsAre(Pair(MeshCondition::edge_boundary, 4)));
 }
@@ -132,7 +132,7 @@ TEST(Diagnose, VerticesThatTrianglesMissOrMeetTwice) {
         << "vertex 6 is where 0 is";
 }
 
-TEST(Diagnose, NearDuplicatesAreAFewUnitsInTheLastPlaceApart) {
+TEST(Diagnose, NearDuplicatesAreAFewUlpsApart) {
     constexpr float ulp = 0x1p-23F;  // For numbers from 1 to 2.
     const auto near = [](const glm::vec3& a, const glm::vec3& b) {
         const auto counts =
@@ -252,7 +252,7 @@ TEST(Diagnose, OverlapIsOfTrianglesWithAnAreaInSpace) {
     EXPECT_EQ(diagnose(mesh).count(MeshCondition::texture_overlapping), 3U);
 }
 
-TEST(Diagnose, FarAwayIsWhereFloatsAreCoarseForTheSizeOfTheMesh) {
+TEST(Diagnose, FarAwayMeansCoarseFloatsForTheSizeOfTheMesh) {
     Mesh mesh = make_cube();
     EXPECT_EQ(diagnose(mesh).size, 2.0F);
     EXPECT_EQ(diagnose(mesh).spacing, 0x1p-24F) << "below 1";
@@ -265,7 +265,7 @@ TEST(Diagnose, FarAwayIsWhereFloatsAreCoarseForTheSizeOfTheMesh) {
     EXPECT_EQ(diagnose(mesh).count(MeshCondition::mesh_far_away), 1U);
 }
 
-TEST(Diagnose, TextureIsFarAwayWhereFloatsAreCoarseForItsExtent) {
+TEST(Diagnose, FarTextureMeansCoarseFloatsForItsExtent) {
     const auto found_at = [](float offset, float scale) {
         Mesh mesh = make_cube();  // Every side shows the whole image, from 0 to 1.
         for (glm::vec2& texcoord : mesh.texcoords)
@@ -345,7 +345,7 @@ TEST(Diagnose, CrowdedShapesAreCountedToo) {
     EXPECT_EQ(counts_of(same).at(MeshCondition::triangle_repeated), count - 1);
 }
 
-TEST(Diagnose, RefusesAnIndexThatIsNoVertex) {
+TEST(Diagnose, RefusesInvalidIndices) {
     EXPECT_THROW(diagnose(mesh_from({o, x_axis, y_axis}, {{0, 1, 3}})), InvalidInput);
 }
 
@@ -384,7 +384,7 @@ TEST(TextureOverlap, NeighborsDoNotAndFoldedOnesDo) {
     EXPECT_THAT(overlapping(square, {{0, 1, 2}, {0, 2, 1}}), ElementsAre(1, 1));
 }
 
-TEST(TextureOverlap, EveryOneThatSharesATexelIsFoundAndNoOther) {
+TEST(TextureOverlap, FindsExactlyTheTrianglesThatShareTexels) {
     // 0 overlaps 1; 2 is separate; 3 covers all of them; 4 has no area; 5 is not finite.
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<glm::vec2> texcoords = {{0, 0},  {1, 0},    {0, 1},    {0.2F, 0.2F},
@@ -397,7 +397,7 @@ TEST(TextureOverlap, EveryOneThatSharesATexelIsFoundAndNoOther) {
     EXPECT_THAT(overlapping(texcoords, covered), ElementsAre(1, 1, 1, 0, 0, 1));
 }
 
-TEST(TextureOverlap, TexcoordsOffByRoundingAreNoOverlap) {
+TEST(TextureOverlap, IgnoresRoundingOfTexcoords) {
     // Two adjacent squares that meet at texel centers of a 1/1024 grid. The second one begins half
     // a thousandth of a texel early, then twenty thousandths.
     constexpr float seam = 512.5F / 1024.0F;

@@ -59,7 +59,7 @@ TEST(Subdivide, ATetrahedronByHand) {
     EXPECT_TRUE(report.empty());
 }
 
-TEST(Subdivide, TheInsideOfAPlaneKeepsItsTextureAndItsPlace) {
+TEST(Subdivide, KeepsPlanesAndTheirTexture) {
     const Mesh grid = test::grid(8);
     Report report;
     const Mesh fine = subdivided(grid, 2, {}, report);
@@ -117,7 +117,7 @@ TEST(Subdivide, AFinerSphereIsNearerToTheSphereByTheSecondOrder) {
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.2);
 }
 
-TEST(Subdivide, ASeamIsSmoothInPlaceAndExactInTheTexture) {
+TEST(Subdivide, SeamsAreSmoothInSpaceAndExactInTexture) {
     const Mesh sphere = test::sphere(24, 12);
     Report report;
     const Mesh fine = subdivided(sphere, 1, {.normals = NormalWeight::angle}, report);
@@ -193,7 +193,7 @@ TEST(Subdivide, NonFiniteTrianglesStayAndCollapsedOnesGo) {
     EXPECT_EQ(report.count("collapsed triangle"), 1U);
 }
 
-TEST(Subdivide, ColoursAreMixedAndFarFromTheOriginNothingIsLost) {
+TEST(Subdivide, InterpolatesColorsAndIsAccurateFarFromTheOrigin) {
     Mesh grid = test::grid(1);
     grid.tangents.clear();
     for (const glm::vec3& p : grid.positions)

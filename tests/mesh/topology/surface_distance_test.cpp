@@ -55,7 +55,7 @@ TEST(SurfaceDistance, TheTwoDirectionsDiffer) {
     EXPECT_NEAR(distance.from_b.max, 0.0, 1e-6);
 }
 
-TEST(SurfaceDistance, TheMaximumBetweenVerticesIsFound) {
+TEST(SurfaceDistance, FindsTheMaximumBetweenVertices) {
     // A ridge over a flat triangle: its ends are on the triangle, and its middle is not.
     const Mesh flat = triangle({-4, -4, 0}, {4, -4, 0}, {0, 6, 0});
     Mesh ridge = triangle({-1, 0, 0}, {1, 0, 0}, {0, 0, 0.5});
@@ -114,7 +114,7 @@ TEST(SurfaceDistance, TheTimeIsNearlyLinearInTheTrianglesOfAFan) {
     EXPECT_LT(seconds, 20.0);
 }
 
-TEST(SurfaceDistance, TheNearestOfManyThinTrianglesIsFound) {
+TEST(SurfaceDistance, FindsTheNearestOfManyThinTriangles) {
     std::mt19937 random(1);
     const auto coordinate = [&] { return static_cast<float>(random() % 2001) / 1000.0F - 1.0F; };
     const auto point = [&] {

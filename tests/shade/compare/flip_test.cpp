@@ -226,7 +226,7 @@ TEST(Flip, GivesTheNumbersOfItsAuthorsProgram) {
     expect(ramps, moved_ramps, 120, 0.1397213, 0.547950, 0.180056, 0.128828);
 }
 
-TEST(Flip, FiltersInPassesGiveWhatFiltersAsSquaresGive) {
+TEST(Flip, SeparableFiltersEqualSquareFilters) {
     // The image is taller than a band of rows, so that a wrong halo shows.
     const Image a = picture(23, 57, noise_of(3));
     const Image b = picture(23, 57, noise_of(4));
@@ -266,7 +266,7 @@ TEST(Flip, IsTheSameBothWaysRoundBitForBit) {
     EXPECT_EQ(there.mean, back.mean);
 }
 
-TEST(Flip, BlackAgainstWhiteIsWhatTheFormulaSaysAndGreenAgainstBlueIsOne) {
+TEST(Flip, MatchesTheFormulaForPlainColors) {
     // Both images have one color, so filters change nothing, there are no features, and the
     // lightness differs by 100. The largest distance is 203.3 (between green and blue), and the
     // exponent is 0.7:
@@ -348,7 +348,7 @@ TEST(Flip, BitsChannelsAndCodingOfOnePictureDoNotMatter) {
     EXPECT_EQ(flip_difference(bytes, to_linear(bytes)).max, 0.0);
 }
 
-TEST(Flip, WhatAScreenCannotShowIsCut) {
+TEST(Flip, ClampsToDisplayableColors) {
     const float inf = std::numeric_limits<float>::infinity();
     EXPECT_EQ(flip_difference(plain({1, 1, 1}), plain({2, inf, 1e30F})).max, 0.0);
     EXPECT_EQ(flip_difference(plain({0, 0, 0}), plain({-1, -inf, -0.0F})).max, 0.0);
@@ -384,7 +384,7 @@ TEST(Flip, APictureOfOnePixelHasAnError) {
     EXPECT_NEAR(flip_difference(plain({0, 1, 0}, 1, 1), plain({0, 0, 1}, 1, 1)).mean, 1.0, 1e-5);
 }
 
-TEST(Flip, WhatCannotBeComparedIsRefused) {
+TEST(Flip, RefusesIncomparableImages) {
     const auto message = [](const Image& a, const Image& b, double ppd) -> std::string {
         try {
             (void)flip_difference(a, b, ppd);

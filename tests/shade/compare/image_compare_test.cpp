@@ -44,7 +44,7 @@ TEST(ImageCompare, TheSignalToNoiseRatioIsAgainstThePeakOfTheSamples) {
     EXPECT_EQ(compare(of_floats({0.0F}), of_floats({std::nanf("")})).psnr, -infinity);
 }
 
-TEST(ImageCompare, IsTheSameBothWaysAndNothingForTheSame) {
+TEST(ImageCompare, IsSymmetricAndZeroForEqualImages) {
     Image a = make_image(1, 2, 1, 16, ColorSpace::data);
     Image b = a;
     b.as<std::uint16_t>()[1] = 65535;
@@ -113,7 +113,7 @@ glm::vec3 tilted(double degrees) {
     return {std::sin(angle), 0, std::cos(angle)};
 }
 
-TEST(AngleDifference, IsInDegreesWhateverTheLengths) {
+TEST(AngleDifference, IsInDegreesForAnyLengths) {
     const AngleDifference difference =
         angle_difference(of_directions({{0, 0, 1}, {0, 0, 1e-30F}, {0, 3, 0}, {1, 0, 0}}),
                          of_directions({tilted(30), {1e30F, 0, 0}, {0, 5, 0}, {-2, 0, 0}}));

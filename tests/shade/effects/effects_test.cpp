@@ -46,7 +46,7 @@ TEST(CanonicalFeatures, AreAFixedPointForEverySet) {
     EXPECT_LT(fixed, many / 4);  // Most sets contain effects that cannot show.
 }
 
-TEST(CanonicalFeatures, HoldNothingThatCannotShow) {
+TEST(CanonicalFeatures, ContainOnlyVisibleFeatures) {
     test::for_random_features(many, [](const Features& f) {
         const Features c = canonical(f);
         const bool uses_lights = c.diffuse || c.specular != SpecularTerm::none;
@@ -113,7 +113,7 @@ TEST(CanonicalFeatures, AddNothing) {
     });
 }
 
-TEST(CanonicalFeatures, OfGltfsModelHaveNothingOfPhongs) {
+TEST(CanonicalFeatures, MetallicRoughnessHasNoPhongFeatures) {
     Features f = lit();
     f.metallic_roughness = true;
     f.specular = SpecularTerm::phong;
@@ -126,7 +126,7 @@ TEST(CanonicalFeatures, OfGltfsModelHaveNothingOfPhongs) {
     EXPECT_EQ(canonical(f), expected);
 }
 
-TEST(CanonicalFeatures, OfGouraudShadingHaveNoNormalMap) {
+TEST(CanonicalFeatures, GouraudHasNoNormalMap) {
     Features f = lit();
     f.interpolation = Interpolation::gouraud;
     f.detail = NormalDetail::bump_map;
@@ -146,7 +146,7 @@ TEST(CanonicalFeatures, WithoutLightHaveNoNormalMap) {
     EXPECT_EQ(canonical(f).detail, NormalDetail::normal_map);
 }
 
-TEST(CanonicalFeatures, OfABlackSurfaceHaveNoLights) {
+TEST(CanonicalFeatures, BlackSurfaceHasNoLights) {
     Features f = lit();
     f.diffuse = false;
     f.diffuse_texture = true;
@@ -197,7 +197,7 @@ TEST(Effects, AreInTheOrderOfThePlansReasons) {
     EXPECT_EQ(planned, expected);
 }
 
-TEST(Effects, AndTheLampsTellSetsApart) {
+TEST(Effects, AndLightsDistinguishSets) {
     // Two different sets have different effects, counts or codings.
     for (const test::FeatureField& field : test::feature_fields()) {
         for (unsigned value = 1; value < field.count; ++value) {
@@ -245,14 +245,14 @@ const EffectReason& reason(const DrawPlan& draw, const char* effect) {
     return *found;
 }
 
-TEST(EffectForcing, OfNothingLeavesThePlanAsItIs) {
+TEST(EffectForcing, NoneLeavesThePlanUnchanged) {
     const Scene scene = scene_with({test::gray("body")});
     const FramePlan plan = plan_effects(scene, one_sample);
     EXPECT_EQ(forced(scene, EffectRequest{}).draws[0].features, plan.draws[0].features);
     EXPECT_THAT(effects_in(plan), ElementsAre("directional lights", "diffuse"));
 }
 
-TEST(EffectForcing, PutsAnEffectInAndTakesItOutWhateverItsNamesCaseAndSeparators) {
+TEST(EffectForcing, IgnoresCaseAndSeparatorsOfNames) {
     const Scene scene = scene_with({test::gray("body")});
     const FramePlan with = forced(scene, {{"Normal-Map", true}});
     EXPECT_EQ(with.draws[0].features.detail, NormalDetail::normal_map);
@@ -269,7 +269,7 @@ TEST(EffectForcing, PutsAnEffectInAndTakesItOutWhateverItsNamesCaseAndSeparators
     EXPECT_EQ(reason(without.draws[0], "diffuse").reason, "no light source reaches the surface");
 }
 
-TEST(EffectForcing, FromNothingKeepsWhatTheSceneHasOfThoseForcedOn) {
+TEST(EffectForcing, FromNoneKeepsTheValuesOfTheScene) {
     Scene scene = scene_with({test::gray("body")});
     scene.directional_lights.resize(3, scene.directional_lights[0]);
     scene.ambient = glm::vec3(0.1F);
@@ -281,7 +281,7 @@ TEST(EffectForcing, FromNothingKeepsWhatTheSceneHasOfThoseForcedOn) {
     EXPECT_EQ(forced(scene, EffectRequest{EffectBase::nothing, {}}).draws[0].features, Features{});
 }
 
-TEST(EffectForcing, ShowsWhereverItCanAndSaysWhereNot) {
+TEST(EffectForcing, ReportsDrawsThatCannotShowTheEffect) {
     Scene scene = scene_with({test::gray("body"), test::gray("sign")});
     scene.materials[1].unlit = true;
     const FramePlan plan = forced(scene, {{"emission", true}});
@@ -307,7 +307,7 @@ TEST(EffectForcing, ThatNoDrawCanHaveIsRefusedByEffectMaterialAndReason) {
               "has its own");
 }
 
-TEST(EffectForcing, OfAChoiceOfTheSceneIsRefused) {
+TEST(EffectForcing, RefusesChoicesOfTheScene) {
     const Scene scene = scene_with({test::gray("body")});
     for (const char* effect : {"unlit", "metallic-roughness", "Gouraud", "flat", "alpha blending",
                                "object-space normal map", "ACES tone mapping"}) {
@@ -317,7 +317,7 @@ TEST(EffectForcing, OfAChoiceOfTheSceneIsRefused) {
     }
 }
 
-TEST(EffectForcing, InThePlaceOfAnotherIsRefused) {
+TEST(EffectForcing, RefusesReplacements) {
     Scene scene = scene_with({test::gray("body")});
     scene.materials[0].specular = glm::vec3(0.5F);
     EXPECT_EQ(refusal(scene, {{"Phong highlights", true}}),
@@ -328,7 +328,7 @@ TEST(EffectForcing, InThePlaceOfAnotherIsRefused) {
               "at most");
 }
 
-TEST(EffectForcing, OfAnUnknownNameSuggestsNearOnes) {
+TEST(EffectForcing, SuggestsNamesForUnknownOnes) {
     const Scene scene = scene_with({test::gray("body")});
     EXPECT_EQ(refusal(scene, {{"norml map", true}}),
               "'norml map' is not an effect; did you mean 'normal map'?");
@@ -337,7 +337,7 @@ TEST(EffectForcing, OfAnUnknownNameSuggestsNearOnes) {
               "effect 'emission' is forced both on and off");
 }
 
-TEST(EffectForcing, OfTheFrameTakesOutTheSkyboxAndItsMap) {
+TEST(EffectForcing, RemovesTheSkyboxAndItsMap) {
     Scene scene = scene_with({test::gray("body")});
     EXPECT_EQ(refusal(scene, {{"skybox", true}}),
               "effect 'skybox' cannot be forced on: the scene does not show its environment");
@@ -356,7 +356,7 @@ TEST(EffectForcing, OfTheFrameTakesOutTheSkyboxAndItsMap) {
               "and the settings");
 }
 
-TEST(EffectForcing, OfAFinishingPassIsRefused) {
+TEST(EffectForcing, RefusesFinishingPasses) {
     Scene scene = scene_with({test::gray("body")});
     scene.exposure = 2.0F;
     const EffectRequest without{EffectBase::planned, {{"exposure", false}}};
@@ -375,7 +375,7 @@ TEST(ScenesCallingFor, EveryCoveringSetArePlannedWithIt) {
     }
 }
 
-TEST(EffectForcing, OfAllThatIsNeutralIsAFixedPointAndKeepsWhatIsPlanned) {
+TEST(EffectForcing, AllIsAFixedPointThatKeepsThePlan) {
     for (const Features& features : test::covering_features()) {
         const test::CallingScene calling = test::scene_calling_for(features);
         const FramePlan plan = plan_effects(calling.scene, calling.settings);
@@ -404,7 +404,7 @@ TEST(DebugViews, HaveNamesOfTheirOwnAndAKind) {
     EXPECT_EQ(names.size(), 17U);
 }
 
-TEST(DebugViews, OfAnySetOfEffectsAreCanonicalAndComeTogether) {
+TEST(DebugViews, OfAnyEffectsAreCanonical) {
     std::size_t at = 0;
     test::for_random_features(4000, [&](const Features& random) {
         Features f = random;
@@ -416,7 +416,7 @@ TEST(DebugViews, OfAnySetOfEffectsAreCanonicalAndComeTogether) {
     });
 }
 
-TEST(DebugViews, AreNoPartOfThePicturesPrograms) {
+TEST(DebugViews, AreNotPartOfThePicturesPrograms) {
     const std::set<std::string> foreign = {"data.frag.glsl", "refraction.glsl#dimming"};
     for (const Features& f : test::covering_features()) {
         ASSERT_EQ(f.view, DebugView::picture);
@@ -430,7 +430,7 @@ TEST(DebugViews, AreNoPartOfThePicturesPrograms) {
     }
 }
 
-TEST(DebugViews, OfDataHoldNoLightAndNoCoding) {
+TEST(DebugViews, OfDataHaveNoLightAndNoCoding) {
     Features f;
     f.directional_lights = 2;
     f.diffuse = f.diffuse_texture = f.ambient = f.exposure = true;
@@ -442,7 +442,7 @@ TEST(DebugViews, OfDataHoldNoLightAndNoCoding) {
     EXPECT_TRUE(planned.samplers.empty());
 }
 
-TEST(DebugViews, KeepTheHolesOfAMaskAndNotTheColourOfBlending) {
+TEST(DebugViews, KeepMasksAndIgnoreBlending) {
     Features f;
     f.alpha = AlphaMode::mask;
     f.diffuse_texture = true;
@@ -473,7 +473,7 @@ FramePlan view_of(const Scene& scene, DebugView view, Report& report) {
     return plan_view(scene, settings, plan_effects(scene, settings), report);
 }
 
-TEST(PlanView, LeavesThePlanOfAPictureAsItIs) {
+TEST(PlanView, LeavesThePlanOfAPictureUnchanged) {
     Report report;
     const Scene scene = two_squares();
     const FrameSettings settings;
@@ -485,7 +485,7 @@ TEST(PlanView, LeavesThePlanOfAPictureAsItIs) {
     EXPECT_EQ(viewed.finishing_pass, plan.finishing_pass);
 }
 
-TEST(PlanView, HatchesAndCountsWhatHasNothingToShow) {
+TEST(PlanView, HatchesAndCountsSurfacesWithoutTheData) {
     Report report;
     const FramePlan plan = view_of(two_squares(), DebugView::tangent, report);
     EXPECT_EQ(plan.draws[0].features.view, DebugView::nothing_to_show);
@@ -498,7 +498,7 @@ TEST(PlanView, HatchesAndCountsWhatHasNothingToShow) {
     EXPECT_EQ(report.findings()[0].first, (std::vector<std::size_t>{0}));
 }
 
-TEST(PlanView, OfAPlanThatIsTurnedAlreadyIsTheSame) {
+TEST(PlanView, IsIdempotent) {
     Report report;
     const Scene scene = two_squares();
     FrameSettings settings;
@@ -510,7 +510,7 @@ TEST(PlanView, OfAPlanThatIsTurnedAlreadyIsTheSame) {
     EXPECT_EQ(report.count("surface without what the view shows"), 1U);
 }
 
-TEST(PlanView, SaysWhyThereIsNothingToShow) {
+TEST(PlanView, ExplainsWhyAViewIsEmpty) {
     Report report;
     Scene scene = two_squares();
     const auto message = [&](DebugView view) {
@@ -530,7 +530,7 @@ TEST(PlanView, SaysWhyThereIsNothingToShow) {
     EXPECT_THAT(message(DebugView::tangent), HasSubstr("no tangent frame"));
 }
 
-TEST(PlanView, OfATermDecodesNoEnvironmentThatOnlyDimsIt) {
+TEST(PlanView, TermNeedsNoEnvironmentThatOnlyDimsIt) {
     Features f;
     f.reflection = ReflectionTerm::mirror;
     f.refraction = f.ambient = true;

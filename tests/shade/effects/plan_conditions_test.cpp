@@ -885,7 +885,7 @@ TEST(EffectPlan, FollowsPosesUnlessTheirEffectsAreForced) {
     EXPECT_TRUE(with.draws[0].features.skinning);
 }
 
-TEST(EffectPlan, NamesWhatDecided) {
+TEST(EffectPlan, NamesTheReason) {
     using namespace boundaries;
     struct Decision {
         const char* effect;

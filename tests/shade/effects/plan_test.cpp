@@ -19,14 +19,14 @@ Features features(const Scene& scene) {
     return plan_effects(scene, {.samples = 1}).draws.at(0).features;
 }
 
-TEST(EffectPlan, OfAGreySurfaceIsDiffuseLightAlone) {
+TEST(EffectPlan, GraySurfaceHasOnlyDiffuseLight) {
     Features expected;
     expected.directional_lights = 1;
     expected.diffuse = true;
     EXPECT_EQ(features(lit_scene(gray())), expected);
 }
 
-TEST(EffectPlan, WithoutLightIsNothing) {
+TEST(EffectPlan, IsEmptyWithoutLight) {
     Scene scene = lit_scene(gray());
     scene.directional_lights.clear();
     scene.materials[0].normal_map = NormalMap{};
@@ -70,7 +70,7 @@ TEST(EffectPlan, NeedsTextureCoordinatesForTextures) {
               "material 'body' has one, but mesh 'plane' has no texture coordinates");
 }
 
-TEST(EffectPlan, ComputesTangentsOnlyWhereThereAreNone) {
+TEST(EffectPlan, ComputesOnlyMissingTangents) {
     Scene scene = lit_scene(gray());
     scene.materials[0].normal_map = NormalMap{};
     scene.meshes[0].edit().tangents.assign(4, glm::vec4(1, 0, 0, 1));
@@ -81,7 +81,7 @@ TEST(EffectPlan, ComputesTangentsOnlyWhereThereAreNone) {
               "mesh 'plane' has its own");
 }
 
-TEST(EffectPlan, TakesOnlyVertexColoursThatTint) {
+TEST(EffectPlan, UsesOnlyVertexColorsThatTint) {
     Scene scene = lit_scene(gray());
     scene.meshes[0].edit().colors.assign(4, glm::vec4(1, 1, 1, 0.5F));
     EXPECT_FALSE(features(scene).vertex_colors);
@@ -89,7 +89,7 @@ TEST(EffectPlan, TakesOnlyVertexColoursThatTint) {
     EXPECT_TRUE(features(scene).vertex_colors);
 }
 
-TEST(EffectPlan, HasAmbientLightOnlyWhereChannelsMeet) {
+TEST(EffectPlan, HasAmbientLightOnlyIfChannelsOverlap) {
     Scene scene = lit_scene(gray());
     scene.ambient = {0.2F, 0, 0};
     EXPECT_TRUE(features(scene).ambient);
@@ -97,7 +97,7 @@ TEST(EffectPlan, HasAmbientLightOnlyWhereChannelsMeet) {
     EXPECT_FALSE(features(scene).ambient);
 }
 
-TEST(EffectPlan, OfAnUnlitMaterialDropsEverythingButItsColours) {
+TEST(EffectPlan, UnlitMaterialHasOnlyColors) {
     Material material = gray();
     material.unlit = true;
     material.specular = {1, 1, 1};
@@ -170,7 +170,7 @@ TEST(EffectPlan, HasOneDrawForEachRangeOfEachInstance) {
     EXPECT_EQ(plan.draws[0].features.output, OutputCoding::linear);
 }
 
-TEST(EffectPlan, SaysForEveryEffectWhetherItIsOnAndWhy) {
+TEST(EffectPlan, ExplainsEveryEffect) {
     const FramePlan plan = plan_effects(lit_scene(gray()), {.samples = 1});
     // There is a reason for every effect, and one for computed tangents.
     EXPECT_EQ(plan.draws[0].reasons.size(), effects().size() + 1);
@@ -189,7 +189,7 @@ Material metallic() {
     return material;
 }
 
-TEST(EffectPlan, OfAMetallicRoughnessMaterialNeedsTheBlurredEnvironmentAndItsTable) {
+TEST(EffectPlan, MetallicRoughnessNeedsTheBlurredEnvironmentAndItsTable) {
     Scene scene = lit_scene(metallic());
     scene.environment = Environment{Equirectangular{}, 1.0F, false, true};
     const FramePlan plan = plan_effects(scene, {.samples = 1});
@@ -205,7 +205,7 @@ TEST(EffectPlan, OfAMetallicRoughnessMaterialNeedsTheBlurredEnvironmentAndItsTab
               "material 'metal' has its own model's");
 }
 
-TEST(EffectPlan, OfAMirrorBlursNothing) {
+TEST(EffectPlan, MirrorNeedsNoBlur) {
     Material mirror = gray();
     mirror.reflectivity = glm::vec3(0.5F);
     Scene scene = lit_scene(mirror);
@@ -220,7 +220,7 @@ TEST(EffectPlan, OfAMirrorBlursNothing) {
     EXPECT_FALSE(plan.environment_brdf);  // Phong surfaces use Fresnel's factor instead.
 }
 
-TEST(EffectPlan, HasNoFresnelWhereReflectivityIsTheSameAtEveryAngle) {
+TEST(EffectPlan, HasNoFresnelForConstantReflectivity) {
     Material mirror = gray();
     mirror.reflectivity = mirror.grazing_reflectivity = glm::vec3(1.0F);
     Scene scene = lit_scene(mirror);
@@ -240,7 +240,7 @@ TEST(EffectPlan, HasNoFresnelWhereReflectivityIsTheSameAtEveryAngle) {
     EXPECT_FALSE(features(scene).refraction);
 }
 
-TEST(EffectPlan, HasNoNormalMapWhereLightIsComputedAtVerticesOrByPlanes) {
+TEST(EffectPlan, GouraudAndFlatShadingHaveNoNormalMap) {
     Material mapped = gray();
     mapped.normal_map = NormalMap{};
     mapped.interpolation = Interpolation::gouraud;
@@ -271,7 +271,7 @@ TEST(EffectPlan, ComputesNoTangentsForFramesFromDerivativesOrObjectSpaceMaps) {
     EXPECT_FALSE(plan_effects(scene, {.samples = 1}).draws[0].needs_tangents);
 }
 
-TEST(EffectPlan, LooksAtAlphaOnlyWhereSomethingIsNotOpaque) {
+TEST(EffectPlan, UsesAlphaOnlyIfSomethingIsNotOpaque) {
     Scene scene = lit_scene(gray());
     scene.materials[0].alpha_mode = AlphaMode::blend;
     EXPECT_EQ(features(scene).alpha, AlphaMode::opaque);
@@ -291,7 +291,7 @@ TEST(EffectPlan, LooksAtAlphaOnlyWhereSomethingIsNotOpaque) {
     EXPECT_TRUE(features(scene).vertex_colors);  // They are white, but their alpha matters now.
 }
 
-TEST(EffectPlan, KnowsHowLampsFallOffAndWhatTheirHighlightsLookLike) {
+TEST(EffectPlan, CoversFalloffAndHighlightsOfLights) {
     Material shiny = gray();
     shiny.specular = glm::vec3(0.5F);
     Scene scene = lit_scene(shiny);
@@ -309,7 +309,7 @@ TEST(EffectPlan, KnowsHowLampsFallOffAndWhatTheirHighlightsLookLike) {
     EXPECT_TRUE(features(scene).highlight_colors);
 }
 
-TEST(EffectPlan, FinishesWhereSamplesAreAveraged) {
+TEST(EffectPlan, AveragedSamplesNeedAFinishingPass) {
     Scene scene = lit_scene(gray());
     scene.tone_mapping = ToneMapping::aces;
     scene.exposure = 2.0F;

@@ -60,7 +60,7 @@ TEST_F(ShaderFolder, PutsFilesTogetherOnceEach) {
     EXPECT_EQ(source.parts, (std::vector<std::string>{"main.glsl", "a.glsl", "b.glsl"}));
 }
 
-TEST_F(ShaderFolder, KnowsWhereEachLineCameFrom) {
+TEST_F(ShaderFolder, TracksTheSourceOfEachLine) {
     write("main.glsl", "first\n//@include \"a.glsl\"\nlast\n");
     write("a.glsl", "one\ntwo\n");
     const ShaderSource source = assemble("main.glsl", {}, {});
@@ -86,7 +86,7 @@ TEST_F(ShaderFolder, RefusesCycles) {
               "shader b.glsl:2: a.glsl includes itself: a.glsl -> b.glsl -> a.glsl");
 }
 
-TEST_F(ShaderFolder, NamesWhatIsMissingAndWhere) {
+TEST_F(ShaderFolder, ReportsMissingFilesAndParts) {
     write("main.glsl", "\n//@include \"nowhere.glsl\"\n");
     EXPECT_EQ(refusal("main.glsl", {}),
               "shader main.glsl:2: there is no shader file 'nowhere.glsl'");
@@ -99,7 +99,7 @@ TEST_F(ShaderFolder, NamesWhatIsMissingAndWhere) {
     EXPECT_EQ(refusal("nowhere.glsl", {}), "there is no shader file 'nowhere.glsl'");
 }
 
-TEST_F(ShaderFolder, TakesPartsOutOfFiles) {
+TEST_F(ShaderFolder, ExtractsPartsOfFiles) {
     write("main.glsl",
           "// Comments.\n\n//@part one\n1\n\n//@part two\n//@include \"main.glsl#three\"\n2\n"
           "//@part three\n3\n");
@@ -205,7 +205,7 @@ std::set<std::string> callers_of(const std::string& text, const std::string& fun
 /// OpenGL 3.3 defines them only where all four come along: not in a branch, after a return that
 /// depends on the pixel, or after a discard. Lookups are therefore the initial values of global
 /// variables, and discarding is the last step.
-TEST(EmbeddedShaders, TakeNoDerivativesWhereNeighborsMayBeElsewhere) {
+TEST(EmbeddedShaders, ComputeDerivativesInUniformControlFlow) {
     const std::set<std::string> allowed = {
         "",                      // The initial value of a global variable.
         "derived_frame",         // Called for such a value.
@@ -255,7 +255,7 @@ TEST(ShaderListings, HoldEachProgramOnceWithItsDraws) {
     EXPECT_TRUE(std::is_sorted(listings[1].files.begin(), listings[1].files.end()));
 }
 
-TEST(ShaderListings, OfNoDrawsAreNone) {
+TEST(ShaderListings, AreEmptyWithoutDraws) {
     EXPECT_TRUE(shader_listings({}).empty());
 }
 
@@ -291,7 +291,7 @@ TEST(SurfaceProgram, ChoosesNoPartThatItDoesNotUse) {
     }
 }
 
-TEST(SurfaceProgram, OfADiffuseSurfaceHasNoCodeForAnythingElse) {
+TEST(SurfaceProgram, DiffuseSurfaceHasNoOtherCode) {
     Features f;
     f.directional_lights = 1;
     f.diffuse = true;
@@ -330,7 +330,7 @@ TEST(PlannedInterface, IsKnownByHandForANormalMappedSurface) {
     EXPECT_EQ(planned.uniform_blocks, (Names{"Lights"}));
 }
 
-TEST(PlannedInterface, OfNothingIsThePositionAlone) {
+TEST(PlannedInterface, EmptyPlanHasOnlyThePosition) {
     const PlannedInterface planned = planned_interface(Features{});
     EXPECT_EQ(planned.attributes, (std::vector<std::string>{"position_object"}));
     EXPECT_EQ(planned.uniforms, (std::vector<std::string>{"clip_from_object"}));
@@ -384,7 +384,7 @@ TEST(LightRows, HoldEveryKindInOrder) {
     EXPECT_EQ(layout.count, 6U);
 }
 
-TEST(LightRows, OfASpotFadeFromTheInnerToTheOuterCone) {
+TEST(LightRows, SpotFadesFromTheInnerToTheOuterCone) {
     Scene scene;
     SpotLight spot;
     spot.direction_world = {0, 0, -3};
@@ -408,20 +408,20 @@ TEST(LightRows, LeaveBlackLightsOut) {
     EXPECT_EQ(rows[0], glm::vec4(-1, 0, 0, 0));
 }
 
-TEST(LightRows, OfForcedLightsAreBlack) {
+TEST(LightRows, ForcedLightsAreBlack) {
     const std::vector<glm::vec4> rows = light_rows(Scene{}, counts(1, 1, 1));
     ASSERT_EQ(rows.size(), 7U);
     for (const glm::vec4& row : rows)
         EXPECT_EQ(row, glm::vec4(0));
 }
 
-TEST(LightRows, SayWhichLampsDoNotFallOff) {
+TEST(LightRows, MarkLightsWithoutFalloff) {
     Scene scene;
     scene.point_lights = {{{4, 5, 6}, {7, 8, 9}, std::nullopt, Falloff::none}};
     EXPECT_EQ(light_rows(scene, counts(0, 1, 0))[1], glm::vec4(7, 8, 9, 0));
 }
 
-TEST(LightRows, HoldTheColoursOfHighlightsWhereTheyDiffer) {
+TEST(LightRows, HaveColorsOfHighlightsIfTheyDiffer) {
     Scene scene;
     scene.directional_lights = {{{0, -1, 0}, {1, 1, 1}, glm::vec3(0.5F)}};
     scene.point_lights = {{{4, 5, 6}, {7, 8, 9}}};

@@ -149,7 +149,7 @@ TEST(EnvironmentBrdf, IsTheIntegralOverDirectionsOfLight) {
     }
 }
 
-TEST(EnvironmentBrdf, OfAMirrorIsFresnelsFactor) {
+TEST(EnvironmentBrdf, MirrorHasFresnelsFactor) {
     for (const double n_v : {0.02, 0.3, 0.9, 1.0}) {
         const double fresnel = std::pow(1.0 - n_v, 5.0);
         const glm::dvec2 split = environment_brdf(n_v, 0.0);
@@ -158,7 +158,7 @@ TEST(EnvironmentBrdf, OfAMirrorIsFresnelsFactor) {
     }
 }
 
-TEST(EnvironmentBrdf, NeverGivesMoreLightThanThereIsAndLosesMoreWhereItIsRougher) {
+TEST(EnvironmentBrdf, ConservesEnergyAndDecreasesWithRoughness) {
     for (int i = 1; i <= 32; ++i) {
         const double n_v = i / 32.0;
         double before = 1.0 + 1e-12;
@@ -252,7 +252,7 @@ std::vector<Image> lobe(int size, const glm::dvec3& axis, double (*radiance)(dou
     return faces_of(size, [&](glm::dvec3 d) { return glm::dvec3(radiance(glm::dot(d, axis))); });
 }
 
-TEST(IrradianceSh, OfEvenLightIsThatLightAndNothingElse) {
+TEST(IrradianceSh, ConstantLightIsExact) {
     for (const int size : {1, 2, 3, 32, 100}) {
         const IrradianceSh sh =
             irradiance_sh(faces_of(size, [](glm::dvec3) { return glm::dvec3(0.5, 2, 8); }));
@@ -279,7 +279,7 @@ TEST(IrradianceSh, IsExactForLightUpToOrderTwo) {
     }
 }
 
-TEST(IrradianceSh, OfAHemisphereIsExactToo) {
+TEST(IrradianceSh, HemisphereIsExact) {
     // The lobe (1 + cos) / 2 has no part of order 2.
     const IrradianceSh sh =
         irradiance_sh(lobe(64, {0, 1, 0}, [](double cosine) { return cosine > 0 ? 1.0 : 0.0; }));
@@ -287,7 +287,7 @@ TEST(IrradianceSh, OfAHemisphereIsExactToo) {
         EXPECT_NEAR(gray_at(sh, n), 0.5 * (1.0 + n.y), 1e-4);
 }
 
-TEST(IrradianceSh, OfACosineLobeIsOffByWhatOrderTwoLeavesOut) {
+TEST(IrradianceSh, CosineLobeHasTheErrorOfOrderTwo) {
     for (const glm::dvec3& axis : spread_directions(7)) {
         const IrradianceSh sh =
             irradiance_sh(lobe(64, axis, [](double cosine) { return std::max(cosine, 0.0); }));
@@ -298,7 +298,7 @@ TEST(IrradianceSh, OfACosineLobeIsOffByWhatOrderTwoLeavesOut) {
     }
 }
 
-TEST(IrradianceSh, OfOneSmallLightIsNoWorseThanKnown) {
+TEST(IrradianceSh, SmallLightHasTheKnownError) {
     // One bright texel of 64 x 64 gives an irradiance of 1 at normal incidence. With order 2 it is
     // 1/4 + 1/2 + 5/16.
     std::vector<Image> faces = faces_of(64, [](glm::dvec3) { return glm::dvec3(0); });
@@ -320,7 +320,7 @@ TEST(IrradianceSh, OfOneSmallLightIsNoWorseThanKnown) {
     EXPECT_NEAR(worst, 3.0 / 32, 1e-3);
 }
 
-TEST(IrradianceSh, OfARealPlaceIsWithinTwoPercentOfTheIntegral) {
+TEST(IrradianceSh, RealPanoramaIsWithinTwoPercent) {
     RELIEF_NEEDS_SHARED(folder, "data/env/cube/venice_sunset_256");
     std::vector<Image> faces;
     for (const char* name : {"posx", "negx", "posy", "negy", "posz", "negz"})
@@ -347,7 +347,7 @@ TEST(IrradianceSh, OfARealPlaceIsWithinTwoPercentOfTheIntegral) {
     EXPECT_LT(sum / 60.0 / brightest, 0.01);
 }
 
-TEST(IrradianceSh, OfARotatedEnvironmentAreThoseOfTheTurnedNormal) {
+TEST(IrradianceSh, RotatedEnvironmentEqualsARotatedNormal) {
     const IrradianceSh sh = irradiance_sh(faces_of(32, [](glm::dvec3 d) {
         return glm::dvec3(std::max(d.x, 0.0), d.z * d.z + 0.5 * d.y,
                           std::max(d.x * d.z + d.y, 0.0));
@@ -366,7 +366,7 @@ TEST(IrradianceSh, OfARotatedEnvironmentAreThoseOfTheTurnedNormal) {
     }
 }
 
-TEST(IrradianceSh, ATexelThatIsNotFiniteIsRefusedByPlace) {
+TEST(IrradianceSh, RefusesNonFiniteTexelsByPosition) {
     std::vector<Image> faces = faces_of(4, [](glm::dvec3) { return glm::dvec3(1); });
     faces[3].as<float>()[3 * 7 + 1] = std::numeric_limits<float>::infinity();
     try {
@@ -452,7 +452,7 @@ TEST(Blur, EvenLightStaysEven) {
     }
 }
 
-TEST(Blur, OfTheRoughestSurfaceIsTheMeanByTheCosine) {
+TEST(Blur, RoughestLevelIsTheCosineMean) {
     // GGX of roughness 1 has a uniform distribution of half vectors: 1 + a.d becomes 1 + 2/3 a.n.
     const glm::dvec3 a(0.4, -0.3, 0.6);
     const std::vector<Image> faces =
@@ -476,7 +476,7 @@ TEST(Blur, TheWalkIsCloseToTheSumOverAllTexels) {
     EXPECT_LT(relative_error(faces, 8, 1.0, 3), 0.005);
 }
 
-TEST(Blur, OfARealPlaceIsWithinAPercentOfTheSum) {
+TEST(Blur, RealPanoramaIsWithinAPercent) {
     RELIEF_NEEDS_SHARED(folder, "data/env/cube/venice_sunset_256");
     std::vector<Image> faces;
     for (const char* name : {"posx", "negx", "posy", "negy", "posz", "negz"})
@@ -538,7 +538,7 @@ TEST(Blur, TheNumberOfThreadsChangesNoBit) {
         EXPECT_EQ(all[face].samples, one[face].samples);
 }
 
-TEST(Blur, BlackSurroundingsStayBlack) {
+TEST(Blur, BlackEnvironmentStaysBlack) {
     const std::vector<Image> faces = faces_of(16, [](glm::dvec3) { return glm::dvec3(0); });
     for (const Image& face : blurred_faces(RadianceTree(faces), 8, 0.5)) {
         for (const float sample : face.as<float>())

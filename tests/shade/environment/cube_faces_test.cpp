@@ -84,7 +84,7 @@ Image vertical_cross(const std::vector<Image>& faces) {
     return cross;
 }
 
-TEST(CubeFaces, EveryFacePointIsFoundAgainByItsDirection) {
+TEST(CubeFaces, DirectionsRoundTrip) {
     for (std::size_t face = 0; face < 6; ++face) {
         for (const double s : {-0.99, -0.3, 0.0, 0.7}) {
             for (const double t : {-0.9, 0.0, 0.5, 0.99}) {

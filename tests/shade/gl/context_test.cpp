@@ -70,7 +70,7 @@ TEST_P(ContextOnEach, IsACoreProfileOf33OrMore) {
     EXPECT_EQ(profile, GL_CONTEXT_CORE_PROFILE_BIT);
 }
 
-TEST_P(ContextOnEach, SaysWhatItIs) {
+TEST_P(ContextOnEach, DescribesItself) {
     if (GetParam() == Backend::osmesa) {
         EXPECT_EQ(context().backend_name(), "OSMesa");
         EXPECT_TRUE(api().is_software());
@@ -97,7 +97,7 @@ TEST_P(ContextOnEach, HasTheLimitsOfOpenGl33) {
     EXPECT_GE(limits.anisotropy, 1.0F);
 }
 
-TEST_P(ContextOnEach, AnErrorIsToldOnceInTheDriversWords) {
+TEST_P(ContextOnEach, ReportsAnErrorOnceWithTheDriversMessage) {
     api()->Enable(0xDEAD);
     try {
         api().check("enabling nonsense");
@@ -183,12 +183,12 @@ TEST(Context, WithoutEglOsmesaServes) {
     EXPECT_TRUE(clears_to(context.api(), 123));
 }
 
-TEST(Context, AutomaticTakesOsmesaUnlessThereIsHardware) {
+TEST(Context, AutomaticUsesOsmesaWithoutHardware) {
     if (!test::is_installed(Backend::osmesa)) GTEST_SKIP() << "needs OSMesa";
     EXPECT_THAT(Context().backend_name(), AnyOf("OSMesa", "EGL (hardware)"));
 }
 
-TEST(Context, WithoutAnyTheErrorSaysWhyForEachInTheOrderTried) {
+TEST(Context, ErrorListsTheReasonOfEachLibrary) {
     const ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", absent_osmesa);
     const ScopedVariable egl("RELIEF_EGL_LIBRARY", absent_egl);
     EXPECT_EQ(error_of(Backend::automatic),
@@ -212,7 +212,7 @@ TEST(Context, ABackendAskedForByNameIsNotReplacedByAnother) {
                 AllOf(HasSubstr("EGL (software): libabsent-egl.so"), Not(HasSubstr("OSMesa"))));
 }
 
-TEST(Context, ALibraryThatIsSomethingElseIsNamedWithWhatItLacks) {
+TEST(Context, ErrorNamesMissingFunctionsOfALibrary) {
     const ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", "libm.so.6");
     const ScopedVariable egl("RELIEF_EGL_LIBRARY", "libm.so.6");
     EXPECT_THAT(error_of(Backend::osmesa),
@@ -271,7 +271,7 @@ TEST_F(EglDevices, AnAdapterWithoutADriverIsNotTakenForHardware) {
     EXPECT_THAT(outcome("adapter software"), HasSubstr("EGL (software): llvmpipe"));
 }
 
-TEST_F(EglDevices, WithoutHardwareAutomaticTakesOsmesa) {
+TEST_F(EglDevices, AutomaticUsesOsmesaWithoutHardware) {
     if (!test::is_installed(Backend::osmesa)) GTEST_SKIP() << "needs OSMesa";
     EXPECT_THAT(outcome("broken adapter software", Backend::automatic), HasSubstr("OSMesa: "));
 }
@@ -348,7 +348,7 @@ TEST(Determinism, OsmesaAndSoftwareEglDrawTheSameBits) {
     EXPECT_EQ(hashes(fingerprint("", "egl")), hashes(osmesa));
 }
 
-TEST(Determinism, NeitherLibraryIsLoadedForTheOther) {
+TEST(Determinism, LibrariesAreLoadedSeparately) {
     for (const auto& [backend, expected] :
          {std::pair{"osmesa", "loaded: OSMesa\n"}, std::pair{"egl", "loaded: EGL\n"}}) {
         const std::string output = fingerprint("", backend);

@@ -356,7 +356,7 @@ std::vector<glm::vec3> directions_at_the_wrap() {
     return directions;
 }
 
-TEST_P(CubeMapProjection, APanoramaIsFoundInEveryDirection) {
+TEST_P(CubeMapProjection, PanoramaCoversEveryDirection) {
     Report report;
     const CubeMap cube =
         make_cube_map_from_panorama(api(), panorama_of(512, direction_itself), "axes", report);
@@ -373,7 +373,7 @@ TEST_P(CubeMapProjection, APanoramaIsFoundInEveryDirection) {
                                                                       // corners.
 }
 
-TEST_P(CubeMapProjection, APanoramaHasNoSeamWhereItWraps) {
+TEST_P(CubeMapProjection, PanoramaWrapsWithoutASeam) {
     Report report;
     const CubeMap cube =
         make_cube_map_from_panorama(api(), panorama_of(512, direction_itself), "axes", report);
@@ -501,7 +501,7 @@ Image probe_of(int width, const std::function<glm::vec3(glm::vec3)>& radiance) {
     return image;
 }
 
-TEST_P(CubeMapProjection, ALightProbeIsFoundInEveryDirection) {
+TEST_P(CubeMapProjection, LightProbeCoversEveryDirection) {
     Report report;
     const CubeMap cube =
         make_cube_map_from_angular_map(api(), probe_of(512, direction_itself), "ball", report);
@@ -520,7 +520,7 @@ TEST_P(CubeMapProjection, ALightProbeIsFoundInEveryDirection) {
     EXPECT_LT(worst_degrees(look_up(api(), cube, behind), behind), 1.5);
 }
 
-TEST_P(CubeMapProjection, ALightProbesRimIsNoDarkSpot) {
+TEST_P(CubeMapProjection, RimOfALightProbeIsNotDark) {
     Report report;
     const auto even = [](glm::vec3) { return glm::vec3(0.5F, 2, 8); };
     for (const int width : {1, 6, 33, 128}) {

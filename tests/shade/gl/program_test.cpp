@@ -110,7 +110,7 @@ TEST_P(Programs, AnEmptySourceIsAnErrorNotACrash) {
     EXPECT_THAT(link_error(api(), bad), HasSubstr("program 'test': "));
 }
 
-TEST_P(Programs, TheInterfaceListsWhatIsUsedAndNothingElse) {
+TEST_P(Programs, InterfaceListsOnlyUsedInputs) {
     const LinkedProgram program(api(), sources());
     const ProgramInterface& interface = program.interface();
     EXPECT_THAT(names(interface.attributes), ElementsAre("position_object", "texcoord"));
@@ -124,7 +124,7 @@ TEST_P(Programs, TheInterfaceListsWhatIsUsedAndNothingElse) {
     EXPECT_EQ(interface.samplers[1].type, GLenum{GL_SAMPLER_CUBE});
 }
 
-TEST_P(Programs, AttributesStandWhereTheyWerePut) {
+TEST_P(Programs, AttributesHaveTheirLocations) {
     const LinkedProgram program(api(), sources());
     EXPECT_EQ(program.interface().attributes[0].location, 3);
     EXPECT_EQ(program.interface().attributes[1].location, 5);

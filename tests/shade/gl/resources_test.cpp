@@ -71,7 +71,7 @@ TEST_P(Handles, MovingLeavesTheSourceEmptyAndTheNameAlive) {
     EXPECT_EQ(api().live_names(), 1U);
 }
 
-TEST_P(Handles, MoveAssignmentDeletesWhatWasHeldBefore) {
+TEST_P(Handles, MoveAssignmentDeletesTheOldObject) {
     Buffer first(api());
     Buffer second(api());
     const GLuint first_name = bound(api(), first);
@@ -134,7 +134,7 @@ TEST_P(Buffers, KeepEveryByte) {
     EXPECT_EQ(read_buffer(api(), make_buffer(api(), values, "values")), bytes_of(values));
 }
 
-TEST_P(Buffers, OfNothingAreEmpty) {
+TEST_P(Buffers, MayBeEmpty) {
     EXPECT_TRUE(read_buffer(api(), make_buffer(api(), std::vector<float>{}, "nothing")).empty());
 }
 
@@ -239,7 +239,7 @@ TEST_P(Textures, CodedColorsComeBackAsTheyAreCoded) {
     }
 }
 
-TEST_P(Textures, FloatsComeBackBitForBitEvenWhereTheyAreNoNumbers) {
+TEST_P(Textures, FloatsRoundTripIncludingNaN) {
     const float inf = std::numeric_limits<float>::infinity();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const Size size : texture_sizes) {
@@ -278,7 +278,7 @@ TEST_P(Textures, LookUpWithRowZeroAtTZero) {
     }
 }
 
-TEST_P(Textures, GrayIsSeenAsGrayWithAlphaInItsPlace) {
+TEST_P(Textures, GrayIsSwizzled) {
     Image gray = make_image(1, 1, 1, 8, ColorSpace::data);
     gray.samples = std::vector<std::uint8_t>{51};
     const Image seen = look_up(api(), make_texture(api(), gray, "gray"), {1, 1});
@@ -356,7 +356,7 @@ TEST_P(Textures, LargerThanTheLimitAreRefusedWithTheLimit) {
     EXPECT_NO_THROW(make_texture(api(), fits, "fits"));
 }
 
-TEST_P(Textures, OfNothingAreRefused) {
+TEST_P(Textures, RefuseEmptyImages) {
     EXPECT_THROW(make_texture(api(), Image{}, "nothing"), InvalidInput);
 }
 
@@ -529,7 +529,7 @@ TEST_P(RenderTargets, FourSamplesSmoothAnEdgeAndOneDoesNot) {
     }
 }
 
-TEST_P(RenderTargets, DepthHidesWhatIsBehind) {
+TEST_P(RenderTargets, TestDepth) {
     const RenderTarget target(api(), 4, 4, ColorFormat::rgba8, 4);
     api()->ClearColor(0, 0, 0, 0);
     api()->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

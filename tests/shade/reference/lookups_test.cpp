@@ -22,7 +22,7 @@ Texels ramp() {
     return Texels(image);
 }
 
-TEST(Texels, GoOnBeyondTheBorderAsAsked) {
+TEST(Texels, FollowTheWrapMode) {
     const int indices[] = {-9, -5, -4, -1, 0, 3, 4, 7, 8, 11};
     const int repeated[] = {3, 3, 0, 3, 0, 3, 0, 3, 0, 3};
     const int clamped[] = {0, 0, 0, 0, 0, 3, 3, 3, 3, 3};
@@ -44,7 +44,7 @@ TEST(Texels, StayWithinTheTextureHoweverFarAway) {
     }
 }
 
-TEST(Texels, AreExactAtTheirCentresAndLinearBetween) {
+TEST(Texels, AreExactAtTheirCentersAndLinearBetween) {
     const Texels texels = ramp();
     const auto at = [&](double u, Wrap wrap) { return texels.bilinear({u, 0.5}, wrap, wrap).r; };
     for (const Wrap wrap : all_wraps) {
@@ -59,7 +59,7 @@ TEST(Texels, AreExactAtTheirCentresAndLinearBetween) {
     EXPECT_NEAR(at(1.25, Wrap::mirror), 2.5, 1e-15);
 }
 
-TEST(Texels, TheNearestIsThatWhichHoldsThePlace) {
+TEST(Texels, NearestContainsThePoint) {
     const Texels texels = ramp();
     Trace trace;
     const auto at = [&](double u) {
@@ -87,7 +87,7 @@ TEST(Texels, AreDecodedBeforeTheyAreFilteredAndAlphaIsNot) {
     EXPECT_NEAR(between.a, 0.6, 1e-7);
 }
 
-TEST(Texels, AreRgbaWhateverTheImageHolds) {
+TEST(Texels, AreRgbaForAnyImage) {
     const auto of = [](std::vector<float> samples) {
         Image image = make_image(1, 1, static_cast<int>(samples.size()), 32, ColorSpace::linear);
         image.samples = std::move(samples);
@@ -99,7 +99,7 @@ TEST(Texels, AreRgbaWhateverTheImageHolds) {
     EXPECT_EQ(of({5, 6, 7, 8}), glm::dvec4(5, 6, 7, 8));
 }
 
-TEST(Texels, AtNoPlaceAreNotANumber) {
+TEST(Texels, AtNaNAreNaN) {
     Trace trace;
     const glm::dvec2 nowhere(std::numeric_limits<double>::quiet_NaN(), 0.5);
     for (const Wrap wrap : all_wraps) {
@@ -156,7 +156,7 @@ TEST(EnvironmentLookups, FindDirectionsOnTheirFaces) {
         expect_near(lookup.radiance(way), slope(glm::normalize(way)), 1.0 / 128);
 }
 
-TEST(EnvironmentLookups, GoOnAcrossTheEdgesOfFaces) {
+TEST(EnvironmentLookups, ContinueAcrossFaces) {
     // Each face has one texel. In the middle between the centers of two faces, a lookup is the mean
     // of both.
     const glm::dvec3 ends[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -171,7 +171,7 @@ TEST(EnvironmentLookups, GoOnAcrossTheEdgesOfFaces) {
     }
 }
 
-TEST(EnvironmentLookups, OfLeftHandedFacesTurnXRound) {
+TEST(EnvironmentLookups, LeftHandedFacesNegateX) {
     Environment environment = faces_of(64, slope);
     std::get<CubeFaces>(environment.source).left_handed = true;
     Report report;
@@ -182,7 +182,7 @@ TEST(EnvironmentLookups, OfLeftHandedFacesTurnXRound) {
     }
 }
 
-TEST(EnvironmentLookups, OfARotatedEnvironmentTurnFromZToX) {
+TEST(EnvironmentLookups, RotationTurnsZToX) {
     Environment environment = faces_of(64, slope);
     environment.rotation = 0.5F * std::numbers::pi_v<float>;
     environment.lights = true;
@@ -245,7 +245,7 @@ TEST(EnvironmentLookups, FindDirectionsInPanoramas) {
         expect_near(lookup.radiance(way), slope(glm::normalize(way)), 0.01);
 }
 
-TEST(EnvironmentLookups, OfRotatedPanoramasAreThoseOfOtherViewers) {
+TEST(EnvironmentLookups, RotatedPanoramasMatchOtherViewers) {
     // A horizontal wave, brightest at u = 0.3.
     const auto wave = [](double u) { return 1.0 - 2.0 * std::abs(std::remainder(u - 0.3, 1.0)); };
     const Image image = picture(256, 128, [&](double u, double) {
@@ -332,7 +332,7 @@ TEST(EnvironmentLookups, BlurMoreTheRougherTheSurface) {
     EXPECT_NEAR(last, 2.0 / 3.0, 0.01);
 }
 
-TEST(DirectionalAlbedo, OfASmoothSurfaceIsSchlicks) {
+TEST(DirectionalAlbedo, SmoothSurfaceHasSchlicksFactor) {
     for (const double cosine : {1.0, 0.7, 0.3}) {
         const glm::dvec2 albedo = directional_albedo(cosine, 0.045);
         const double grazing = std::pow(1.0 - cosine, 5.0);
@@ -341,7 +341,7 @@ TEST(DirectionalAlbedo, OfASmoothSurfaceIsSchlicks) {
     }
 }
 
-TEST(DirectionalAlbedo, LosesWhatScattersTwice) {
+TEST(DirectionalAlbedo, OmitsMultipleScattering) {
     // White microfacets lose no light, but other facets receive a part of it.
     double last = 1.001;
     for (const double roughness : {0.1, 0.5, 1.0}) {

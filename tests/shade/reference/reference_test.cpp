@@ -67,7 +67,7 @@ TEST(Reference, ComposesBlendedSurfacesFarthestFirst) {
     EXPECT_EQ(pixel_in_the_middle(scene), glm::dvec4(0.5, 0.125, 0.375, 1));
 }
 
-TEST(Reference, LeavesBlendedSurfacesTheirShareOfTheBackground) {
+TEST(Reference, BlendsWithTheBackground) {
     const Scene scene = stacked(
         {unlit({1, 0, 0}, AlphaMode::blend, 0.5F), unlit({0, 1, 0}, AlphaMode::blend, 0.5F)});
     const glm::dvec4 found = pixel_in_the_middle(scene);
@@ -162,7 +162,7 @@ TEST(Reference, HoldsNoNumbersThatAreNone) {
     EXPECT_EQ(pixel(reference.radiance, 2, 2), glm::dvec4(0, 0, 0, 1));
 }
 
-TEST(Reference, IsBlackWhereAColourIsNotANumberAndTheLargestWhereItIsInfinite) {
+TEST(Reference, MapsNaNToBlackAndInfinityToTheMaximum) {
     Image image = make_image(1, 1, 3, 32, ColorSpace::linear);
     image.samples = std::vector<float>{not_a_number, std::numeric_limits<float>::infinity(), -1.0F};
     Material material = unlit({1, 1, 1});
@@ -177,7 +177,7 @@ TEST(Reference, IsBlackWhereAColourIsNotANumberAndTheLargestWhereItIsInfinite) {
     EXPECT_EQ(found.b, 0.0);
 }
 
-TEST(Reference, DrawsWhatASingularMatrixLeaves) {
+TEST(Reference, DrawsGeometryOfSingularMatrices) {
     Scene scene = test::scene_of(test::sphere(32, 16), unlit({1, 1, 1}));
     scene.instances[0].world_from_object[2].z = 0.0F;
     EXPECT_EQ(pixel_in_the_middle(scene).a, 1.0);
@@ -187,7 +187,7 @@ TEST(Reference, DrawsWhatASingularMatrixLeaves) {
     EXPECT_EQ(pixel_in_the_middle(scene).a, 0.0);
 }
 
-TEST(Reference, IsTheSamePictureAtEveryScaleAndPlace) {
+TEST(Reference, IsInvariantToScaleAndTranslation) {
     Material material;
     material.specular = glm::vec3(0.5F);
     Scene scene = test::scene_of(test::sphere(32, 16), material);
@@ -230,7 +230,7 @@ TEST(Reference, LeavesOutTexturesThatCannotBeReadAndNamesThem) {
     }
 }
 
-TEST(Reference, RefusesWhatItCannotDraw) {
+TEST(Reference, RefusesInvalidScenes) {
     Scene scene = test::scene_of(test::facing_square(), Material{});
     Report report;
     EXPECT_THROW((void)render_reference(scene, {0, 8}, report), InvalidInput);
@@ -332,7 +332,7 @@ TEST(ReferencePicture, ByHillsFitMixesChannelsAsAcesDoes) {
     EXPECT_NEAR(shown_color({0.6F, 0.0F, 0.0F}, ToneMapping::aces_hill_boost).r, red.r, 1e-6);
 }
 
-TEST(ReferencePicture, OfLinearLightIsNeitherExposedNorToneMapped) {
+TEST(ReferencePicture, LinearLightIsNeitherExposedNorToneMapped) {
     Scene scene;
     scene.exposure = 0.5F;
     scene.tone_mapping = ToneMapping::aces;
@@ -349,7 +349,7 @@ TEST(ReferencePicture, IsCodedByTheStandardsCurve) {
     EXPECT_EQ(shown(1.0F, scene, OutputCoding::srgb), glm::dvec4(1.0));
 }
 
-TEST(ReferencePicture, LiesOverABackgroundThatIsNeitherExposedNorToneMapped) {
+TEST(ReferencePicture, BackgroundIsNeitherExposedNorToneMapped) {
     Scene scene;
     scene.exposure = 2.0F;
     scene.tone_mapping = ToneMapping::reinhard;
@@ -363,7 +363,7 @@ TEST(ReferencePicture, LiesOverABackgroundThatIsNeitherExposedNorToneMapped) {
     EXPECT_NEAR(shown(1.5F, scene, OutputCoding::srgb, 0.5F).a, 0.75, 1e-7);
 }
 
-TEST(ReferencePicture, HoldsNothingThatIsNotANumber) {
+TEST(ReferencePicture, HasNoNaN) {
     Scene scene;
     for (const auto& [name, mapping, label] : enum_names<ToneMapping>) {
         SCOPED_TRACE(name);

@@ -41,12 +41,12 @@ TEST(Fresnel, AtBrewstersAngleMirrorsOnePolarisationOnly) {
     EXPECT_NEAR(fresnel(1.5, cosine), 0.5 * across * across, 1e-15);
 }
 
-TEST(Fresnel, WithoutABoundaryMirrorsNothing) {
+TEST(Fresnel, IsZeroWithoutABoundary) {
     for (const double cosine : {0.0, 0.3, 1.0})
         EXPECT_EQ(fresnel(1.0, cosine), 0.0);
 }
 
-TEST(Fresnel, OfNoIndexMirrorsEverything) {
+TEST(Fresnel, IsOneForAnIndexOfZero) {
     EXPECT_EQ(fresnel(0.0, 0.7), 1.0);
 }
 
@@ -145,7 +145,7 @@ TEST(Fresnel, FactorOutsideItsAnglesIsTheNearerEnds) {
     EXPECT_EQ(fresnel_factor(material, 1.5), glm::dvec3(0.25));
 }
 
-TEST(Fresnel, FactorOfASurfaceThatMirrorsNothingIsZeroAtEveryAngle) {
+TEST(Fresnel, IsZeroForZeroReflectivity) {
     Material material;
     for (const FresnelModel model :
          {FresnelModel::schlick, FresnelModel::dielectric, FresnelModel::conductor}) {
@@ -180,7 +180,7 @@ Image texel(const glm::vec4& color, int channels = 3) {
     return test::constant_image(color, channels, 32, ColorSpace::linear);
 }
 
-TEST(ReferenceShading, OfAmbientLightIsItsShareTimesTintAndOcclusion) {
+TEST(ReferenceShading, AmbientIsLightTimesTintTimesOcclusion) {
     Material material = test::black_material();
     material.ambient = {0.5F, 0.25F, 1.0F};
     material.occlusion_texture = Texture{0};
@@ -212,7 +212,7 @@ TEST(ReferenceShading, AmbientLightIncludesThatOfLightsThatAreOn) {
     expect_near(in_the_middle(scene), {0.125, 0.25, 0.0625});
 }
 
-TEST(ReferenceShading, ALightThatIsOffSendsNothing) {
+TEST(ReferenceShading, LightThatIsOffHasNoEffect) {
     Material material = test::black_material();
     material.diffuse = material.specular = glm::vec3(1.0F);
     material.shininess = 0.0F;
@@ -261,7 +261,7 @@ TEST(ReferenceShading, AnEnvironmentTintMultipliesScatteredLightAndHighlights) {
     expect_near(in_the_middle(scene), 0.875 * glm::dvec3(0.5, 1, 2) + 0.0625);
 }
 
-TEST(ReferenceShading, OfDiffuseLightIsTheCosine) {
+TEST(ReferenceShading, DiffuseIsTheCosine) {
     Material material = test::black_material();
     material.diffuse = {1.0F, 0.5F, 0.25F};
     material.occlusion_texture = Texture{0};  // Occlusion affects only the environment, not the
@@ -272,7 +272,7 @@ TEST(ReferenceShading, OfDiffuseLightIsTheCosine) {
     expect_near(in_the_middle(scene), {0.8, 0.4, 0.4});
 }
 
-TEST(ReferenceShading, OfPointLightsFallsOffAsAsked) {
+TEST(ReferenceShading, PointLightsHaveTheirFalloff) {
     Material material = test::black_material();
     material.diffuse = glm::vec3(1.0F);
     Scene scene = test::square_scene(material);
@@ -292,7 +292,7 @@ TEST(ReferenceShading, OfPointLightsFallsOffAsAsked) {
     EXPECT_NEAR(lit(), 50.0 * 0.8, 50 * storage_rounding);
 }
 
-TEST(ReferenceShading, OfASpotLightFadesBetweenItsCones) {
+TEST(ReferenceShading, SpotLightFadesBetweenItsCones) {
     Material material = test::black_material();
     material.diffuse = glm::vec3(1.0F);
     Scene scene = test::square_scene(material);
@@ -311,7 +311,7 @@ TEST(ReferenceShading, OfASpotLightFadesBetweenItsCones) {
     EXPECT_NEAR(in_the_middle(scene).r, 0.8, storage_rounding);
 }
 
-TEST(ReferenceShading, OfALampThatTouchesOrNearlyIsFinite) {
+TEST(ReferenceShading, TouchingLightIsFinite) {
     Material material = test::black_material();
     material.diffuse = glm::vec3(1.0F);
     Scene scene = test::square_scene(material);
@@ -321,7 +321,7 @@ TEST(ReferenceShading, OfALampThatTouchesOrNearlyIsFinite) {
     EXPECT_LE(in_the_middle(scene).r, static_cast<double>(max_light));
 }
 
-TEST(ReferenceShading, OfHighlightsFollowsEachModel) {
+TEST(ReferenceShading, HighlightsFollowEachModel) {
     Material material = test::black_material();
     material.specular = {1.0F, 0.5F, 0.25F};
     material.shininess = 6.0F;
@@ -351,7 +351,7 @@ TEST(ReferenceShading, OfHighlightsFollowsEachModel) {
     expect_near(in_the_middle(scene), 2.0 * color * 2.0 * std::pow(0.75, 7.0));
 }
 
-TEST(ReferenceShading, OfHighlightsHasItsOwnTextureAndLampColour) {
+TEST(ReferenceShading, HighlightsHaveTheirTextureAndLightColor) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);
     material.diffuse = glm::vec3(1.0F);
@@ -369,7 +369,7 @@ TEST(ReferenceShading, OfHighlightsHasItsOwnTextureAndLampColour) {
     expect_near(in_the_middle(scene), glm::dvec3(0.125) + glm::dvec3(2, 0, 2));
 }
 
-TEST(ReferenceShading, OfAnExponentOfZeroShinesWhereverALampIsInFront) {
+TEST(ReferenceShading, ExponentOfZeroIsConstantInFrontOfALight) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);
     material.shininess = 0.0F;
@@ -381,7 +381,7 @@ TEST(ReferenceShading, OfAnExponentOfZeroShinesWhereverALampIsInFront) {
     }
 }
 
-TEST(ReferenceShading, OfAReflectionTakesFromWhatIsScattered) {
+TEST(ReferenceShading, ReflectionReducesScatteredLight) {
     Material material = test::black_material();
     material.ambient = glm::vec3(1.0F);
     material.reflectivity = {0.04F, 0.5F, 1.0F};
@@ -413,7 +413,7 @@ Environment numbered_faces() {
     return environment;
 }
 
-TEST(ReferenceShading, OfAReflectionLooksWhereALightWouldHaveToBe) {
+TEST(ReferenceShading, ReflectionUsesTheMirroredDirection) {
     Material material = test::black_material();
     material.reflectivity = material.grazing_reflectivity = glm::vec3(1.0F);
     Scene scene = test::square_scene(material);
@@ -425,7 +425,7 @@ TEST(ReferenceShading, OfAReflectionLooksWhereALightWouldHaveToBe) {
     expect_near(in_the_middle(scene), glm::dvec3(1));
 }
 
-TEST(ReferenceShading, OfATransparentSurfaceBendsTheViewByItsIndex) {
+TEST(ReferenceShading, TransparentSurfaceRefractsByItsIndex) {
     Material material = test::black_material();
     material.ambient = glm::vec3(1.0F);
     material.transmission = 0.75F;
@@ -448,7 +448,7 @@ TEST(ReferenceShading, OfATransparentSurfaceBendsTheViewByItsIndex) {
     expect_near(in_the_middle(scene), glm::dvec3(0.25 + 0.75 * 6));
 }
 
-TEST(ReferenceShading, OfTheEnvironmentsLightIsScatteredWhereItLights) {
+TEST(ReferenceShading, EnvironmentLightIsScattered) {
     Material material = test::black_material();
     material.diffuse = {1.0F, 0.5F, 0.25F};
     Scene scene = test::square_scene(material);
@@ -458,7 +458,7 @@ TEST(ReferenceShading, OfTheEnvironmentsLightIsScatteredWhereItLights) {
     expect_near(in_the_middle(scene), {2.0, 1.0, 0.5});
 }
 
-TEST(ReferenceShading, OfEmissionAndUnlitIsTheColourTimesItsTexture) {
+TEST(ReferenceShading, EmissionAndUnlitAreColorTimesTexture) {
     Material material = test::black_material();
     material.emission = {1.0F, 2.0F, 4.0F};
     material.emission_texture = Texture{0};
@@ -508,7 +508,7 @@ glm::dvec3 mean_fresnel(const glm::dvec3& f0, double f90) {
 }
 
 /// All angles are 45 degrees or less: the light is in (1, 0, 1) / sqrt(2), the eye in z.
-TEST(ReferenceShading, OfMetallicRoughnessIsAppendixB) {
+TEST(ReferenceShading, MetallicRoughnessIsAppendixB) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     Scene scene = test::square_scene(material);
@@ -528,7 +528,7 @@ TEST(ReferenceShading, OfMetallicRoughnessIsAppendixB) {
 
 /// The normal is turned away from the eye and from the half vector: n.v = -0.6 and n.h = -0.88
 /// count as 0.
-TEST(ReferenceShading, OfMetallicRoughnessTakesNegativeCosinesAsZero) {
+TEST(ReferenceShading, MetallicRoughnessClampsNegativeCosines) {
     Material material;
     material.metallic_roughness = MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, {}};
     Scene scene = test::square_scene(material);
@@ -538,7 +538,7 @@ TEST(ReferenceShading, OfMetallicRoughnessTakesNegativeCosinesAsZero) {
     expect_near(in_the_middle(scene), 0.5 * 0.25 * gain(glm::dvec3(1.0), 0.5, 0.0));
 }
 
-TEST(ReferenceShading, OfMetallicRoughnessReadsGreenAndBlue) {
+TEST(ReferenceShading, MetallicRoughnessReadsGreenAndBlue) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.5F, 1.0F, Texture{0}};
     Scene scene = test::square_scene(material);
@@ -553,7 +553,7 @@ TEST(ReferenceShading, OfMetallicRoughnessReadsGreenAndBlue) {
     expect_near(smooth, in_the_middle(scene));
 }
 
-TEST(ReferenceShading, OfMetallicRoughnessInSurroundings) {
+TEST(ReferenceShading, MetallicRoughnessReflectsTheEnvironment) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     material.occlusion_texture = Texture{0};
@@ -573,7 +573,7 @@ TEST(ReferenceShading, OfMetallicRoughnessInSurroundings) {
 
 /// The index 3 reflects 1/4, which the color makes (1/4, 1/8, 1) with 1 as its limit, and the
 /// weight 1/2 halves all of it.
-TEST(ReferenceShading, OfADielectricHasItsIndexWeightAndColor) {
+TEST(ReferenceShading, DielectricHasItsIndexWeightAndColor) {
     MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     model.refractive_index = 3.0F;
     model.specular = 0.5F;
@@ -622,7 +622,7 @@ TEST(ReferenceShading, OfADielectricHasItsIndexWeightAndColor) {
 
 /// The coat has the weight 1/2 times 0.04 from the front, and takes it from the base, emission
 /// included. The light is that of OfMetallicRoughnessIsAppendixB.
-TEST(ReferenceShading, OfAClearcoatIsAMirrorOverTheBase) {
+TEST(ReferenceShading, ClearcoatIsAMirrorOverTheBase) {
     MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     Material material;
     material.emission = {1.0F, 2.0F, 3.0F};
@@ -657,7 +657,7 @@ TEST(ReferenceShading, OfAClearcoatIsAMirrorOverTheBase) {
     expect_near(in_the_corner(scene), glm::dvec3(1.0, 2.0, 3.0) * (1.0 - grazing));
 }
 
-TEST(ReferenceShading, OfAClearcoatIsNotBentByTheNormalMap) {
+TEST(ReferenceShading, ClearcoatIgnoresTheNormalMap) {
     Material material;
     material.metallic_roughness = MetallicRoughness{glm::vec3(0.0F), 0.0F, 1.0F, {}};
     material.metallic_roughness->clearcoat = 1.0F;
@@ -676,7 +676,7 @@ TEST(ReferenceShading, OfAClearcoatIsNotBentByTheNormalMap) {
 /// The light is at 45 degrees and the eye in front, as in OfMetallicRoughnessIsAppendixB: the half
 /// vector is at 22.5 degrees. With roughness 1, alpha is 1 and Lambda has the second set of
 /// parameters.
-TEST(ReferenceShading, OfASheenIsCharliesOverTheDimmedBase) {
+TEST(ReferenceShading, SheenIsCharliesOverTheDimmedBase) {
     MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     Material material;
     material.emission = {1.0F, 2.0F, 3.0F};
@@ -717,7 +717,7 @@ TEST(ReferenceShading, OfASheenIsCharliesOverTheDimmedBase) {
 
 /// The square's tangents point along x, and the rotation of 90 degrees turns the rough axis to y.
 /// alpha is 1/4, and with the strength sqrt(1/3) alpha_t is 1/4 + 3/4 / 3 = 1/2.
-TEST(ReferenceShading, OfAnisotropyIsWiderAlongItsAxis) {
+TEST(ReferenceShading, AnisotropyIsWiderAlongItsAxis) {
     Material material;
     material.metallic_roughness = MetallicRoughness{{0.5F, 0.25F, 1.0F}, 1.0F, 0.5F, {}};
     material.metallic_roughness->anisotropy = std::sqrt(1.0F / 3.0F);
@@ -758,7 +758,7 @@ TEST(ReferenceShading, OfAnisotropyIsWiderAlongItsAxis) {
 }
 
 /// Every texture multiplies its factor: with another factor and no texture, the light is the same.
-TEST(ReferenceShading, OfTexturesOfExtensionsIsThatOfTheirFactors) {
+TEST(ReferenceShading, TexturesOfExtensionsEqualTheirFactors) {
     MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     model.specular = 0.8F;
     model.specular_color = {1.0F, 0.5F, 0.8F};
@@ -812,7 +812,7 @@ TEST(ReferenceShading, OfTexturesOfExtensionsIsThatOfTheirFactors) {
     });
 }
 
-TEST(ReferenceShading, OfAClearcoatIsBentByItsOwnNormalMap) {
+TEST(ReferenceShading, ClearcoatUsesItsNormalMap) {
     Material material;
     material.metallic_roughness = MetallicRoughness{glm::vec3(0.0F), 0.0F, 1.0F, {}};
     material.metallic_roughness->clearcoat = 1.0F;
@@ -832,7 +832,7 @@ TEST(ReferenceShading, OfAClearcoatIsBentByItsOwnNormalMap) {
 }
 
 /// The light is that of OfMetallicRoughnessIsAppendixB, the film's weight 1/2.
-TEST(ReferenceShading, OfIridescenceReplacesFresnelsFactor) {
+TEST(ReferenceShading, IridescenceReplacesFresnelsFactor) {
     MetallicRoughness model{{0.5F, 0.25F, 1.0F}, 0.25F, 0.5F, {}};
     model.iridescence = 0.5F;
     model.iridescence_index = 1.5F;
@@ -894,7 +894,7 @@ glm::dvec3 once_mirrored(Scene scene) {
 /// In the corner, the eye is in the direction (-1, -1, 3) / sqrt(11). With strength 1 and the
 /// roughness 1/2, the mirroring normal is n / 16 + 15 / 16 of the eye's direction in the plane of
 /// rough axis and normal.
-TEST(ReferenceShading, OfAnisotropyMirrorsByALeaningNormal) {
+TEST(ReferenceShading, AnisotropyReflectsByABentNormal) {
     Material material;
     material.metallic_roughness = MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, {}};
     Scene scene = test::square_scene(material);
@@ -926,7 +926,7 @@ TEST(ReferenceShading, OfAnisotropyMirrorsByALeaningNormal) {
     EXPECT_GT(std::abs(brushed.r - plain.r), 0.01);
 }
 
-TEST(ReferenceShading, OfTheEyesOppositeLampHasNoHalfVector) {
+TEST(ReferenceShading, LightOppositeTheEyeHasNoHalfVector) {
     Material material = test::black_material();
     material.specular = glm::vec3(1.0F);
     Scene scene = test::square_scene(material);

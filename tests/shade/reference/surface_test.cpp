@@ -62,7 +62,7 @@ TEST(Visibility, MeetsSharedEdgesAndVerticesOnceInside) {
     EXPECT_TRUE(visibility.hits(0.51, 0.0).empty());
 }
 
-TEST(Visibility, KnowsWhereATriangleIsMet) {
+TEST(Visibility, LocatesTheIntersection) {
     Placed mesh;
     mesh.positions = {{-1, -1, -2}, {3, -1, -4}, {-1, 3, -2}};
     mesh.triangles = {{0, 1, 2}};
@@ -144,7 +144,7 @@ TEST(Visibility, HasNoHolesInAFineMesh) {
     EXPECT_EQ(odd, 0U) << "every ray goes in once and comes out once";
 }
 
-TEST(Visibility, MeetsNothingWithoutAreaOrPlace) {
+TEST(Visibility, IgnoresDegenerateTriangles) {
     Placed mesh;
     mesh.positions = {{-1, -1, -2}, {1, 1, -2}, {0, 0, -2}, {1, 0, -2}};
     mesh.positions.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0, -2);
@@ -245,7 +245,7 @@ TEST(ReferenceEdges, AreAtSilhouettesOnly) {
     EXPECT_EQ(edges_of_a_square(1.125F + pixel_width / 16), 0U) << "beyond the margin";
 }
 
-TEST(ReferenceEdges, AreWhereFlatTrianglesMeet) {
+TEST(ReferenceEdges, IncludeBordersOfFlatTriangles) {
     Material material;
     material.interpolation = Interpolation::flat;
     // The diagonal of the square passes through the centers of 16 pixels.
@@ -260,7 +260,7 @@ Scene large_square(const Material& material) {
     return scene;
 }
 
-TEST(ReferenceEdges, AreWhereNearestTexelsMeet) {
+TEST(ReferenceEdges, IncludeBordersOfNearestTexels) {
     Material material;
     Texture texture;
     texture.filter = TextureFilter::nearest;
@@ -276,7 +276,7 @@ TEST(ReferenceEdges, AreWhereNearestTexelsMeet) {
     EXPECT_EQ(edge_count(scene, 17), 0U);
 }
 
-TEST(ReferenceEdges, AreWhereATextureIsMinified) {
+TEST(ReferenceEdges, IncludeMinifiedTextures) {
     Material material;
     material.diffuse_texture = Texture{0};
     Scene scene = large_square(material);
@@ -297,7 +297,7 @@ TEST(ReferenceEdges, AreNotLookedForWithoutAMargin) {
         EXPECT_EQ(edge, 0);
 }
 
-TEST(ReferenceEdges, AreWhereTwoSurfacesAreTooCloseToTellApart) {
+TEST(ReferenceEdges, IncludeCoincidentSurfaces) {
     Scene scene = test::scene_of(test::facing_square(), Material{});
     scene.instances.push_back(scene.instances[0]);
     EXPECT_EQ(edge_count(scene, 16), 256U);
@@ -448,7 +448,7 @@ TEST(ReferenceSurface, LeansByItsNormalMapsCodes) {
     expect_normal(sixteen, {6, -3, 20});
 }
 
-TEST(ReferenceSurface, WithNothingInItsMapIsTheInterpolatedNormal) {
+TEST(ReferenceSurface, ZeroTexelKeepsTheInterpolatedNormal) {
     Mesh mesh = test::facing_square();
     mesh.normals.assign(4, glm::normalize(glm::vec3(0.5F, 0.25F, 1.0F)));
     expect_normal(mapped(mesh, 0, 0, 0), {0.5, 0.25, 1});
@@ -537,14 +537,14 @@ Scene bumped(float right, float down, float strength) {
     return scene;
 }
 
-TEST(ReferenceSurface, LeansAwayFromWhereItsBumpsRise) {
+TEST(ReferenceSurface, TiltsAwayFromRisingBumps) {
     expect_normal(bumped(0.25F, 0, 2.0F), {-0.5, 0, 1});
     // Heights that increase downwards in the image decrease upwards, so the normal is tilted up.
     expect_normal(bumped(0, 0.25F, 2.0F), {0, 0.5, 1});
     expect_normal(bumped(0.125F, -0.25F, -2.0F), {0.25, 0.5, 1});
 }
 
-TEST(ReferenceSurface, IsAsInterpolatedWhereAMeshHasNoTexcoords) {
+TEST(ReferenceSurface, IsInterpolatedWithoutTexcoords) {
     Scene scene = bumped(0.25F, 0, 2.0F);
     scene.meshes[0].edit().texcoords.clear();
     expect_normal(scene, {0, 0, 1});

@@ -69,7 +69,7 @@ Scene square() {
     return test::scene_of(test::facing_square(), test::black_material());
 }
 
-TEST_F(DebugViewPictures, OfASquareAreItsAxes) {
+TEST_F(DebugViewPictures, OfASquareShowItsAxes) {
     const Scene scene = square();
     expect_color(view(scene, DebugView::geometric_normal), 3, 5, coded({0, 0, 1}));
     expect_color(view(scene, DebugView::shading_normal), 3, 5, coded({0, 0, 1}));
@@ -106,7 +106,7 @@ TEST_F(DebugViewPictures, TurnWithTheInstanceAndMirror) {
     expect_color(view(scene, DebugView::bitangent), 3, 5, coded({-1, 0, 0}));
 }
 
-TEST_F(DebugViewPictures, OfMirroredTextureAreLeftHandedByBothFrames) {
+TEST_F(DebugViewPictures, MirroredTextureIsLeftHandedInBothFrames) {
     Scene scene = square();
     for (glm::vec2& uv : scene.meshes[0].edit().texcoords)
         uv.x = 1.0F - uv.x;
@@ -180,7 +180,7 @@ TEST_F(DebugViewPictures, OfMapsAreTheirTexels) {
     expect_color(view(scene, DebugView::normal_map), 8, 8, coded({0, 0, 1}), 1e-4);
 }
 
-TEST_F(DebugViewPictures, HatchWhatHasNothingToShow) {
+TEST_F(DebugViewPictures, HatchSurfacesWithoutTheData) {
     Scene scene = square();
     Mesh plain = scene.meshes[0];
     plain.texcoords.clear();
@@ -359,7 +359,7 @@ TEST_F(DebugViewPictures, OfDiffuseLightAgreeWithTheReferenceOfAMatteScene) {
 }
 
 /// The programs of views have only the inputs that the plan lists.
-TEST_F(DebugViewPictures, LinkForACoveringSetAndTakeWhatIsPlanned) {
+TEST_F(DebugViewPictures, LinkForACoveringSetAndUseThePlannedInputs) {
     ProgramCache cache(context().api());
     std::set<Features> tried;
     std::size_t at = 0;

@@ -132,7 +132,7 @@ TEST_P(DrawUniforms, HaveAValueForEveryPlannedName) {
     }
 }
 
-TEST_P(DrawUniforms, NameTheEyeOnlyWhereReflectionsDependOnIt) {
+TEST_P(DrawUniforms, IncludeTheEyeOnlyForReflections) {
     struct Case {
         const char* what;
         DebugView view;
@@ -246,7 +246,7 @@ std::vector<std::uint32_t> order(SortedTriangles& triangles, const glm::vec3& fa
 
 using Order = std::vector<std::uint32_t>;
 
-TEST(SortedTriangles, StandFarthestFirst) {
+TEST(SortedTriangles, AreFarthestFirst) {
     const Mesh mesh = stack({0, 3, -2, 1});
     SortedTriangles triangles(mesh, {0, 4, std::nullopt});
     EXPECT_EQ(order(triangles, {0, 0, 1}), (Order{1, 3, 0, 2}));
@@ -254,20 +254,20 @@ TEST(SortedTriangles, StandFarthestFirst) {
     EXPECT_EQ(triangles.center().z, 0.5F);
 }
 
-TEST(SortedTriangles, KeepTheMeshsOrderWhereTheyAreEquallyFar) {
+TEST(SortedTriangles, KeepTheOrderOfTies) {
     const Mesh mesh = stack({1, 0, 1, 0});
     SortedTriangles triangles(mesh, {0, 4, std::nullopt});
     EXPECT_EQ(order(triangles, {0, 0, 1}), (Order{0, 2, 1, 3}));
     EXPECT_EQ(order(triangles, {1, 0, 0}), (Order{0, 1, 2, 3}));
 }
 
-TEST(SortedTriangles, OfARangeAreItsOwn) {
+TEST(SortedTriangles, OfARangeStayWithinIt) {
     const Mesh mesh = stack({0, 3, -2, 1});
     SortedTriangles triangles(mesh, {1, 2, std::nullopt});
     EXPECT_EQ(order(triangles, {0, 0, 1}), (Order{1, 2}));
 }
 
-TEST(SortedTriangles, WithoutAPlaceComeLast) {
+TEST(SortedTriangles, WithoutFinitePositionComeLast) {
     const Mesh mesh = stack(
         {0, std::numeric_limits<float>::quiet_NaN(), 2, std::numeric_limits<float>::infinity()});
     SortedTriangles triangles(mesh, {0, 4, std::nullopt});
@@ -317,7 +317,7 @@ TEST(VertexFrames, StayPreciseFarFromTheOrigin) {
     EXPECT_EQ(lines.tangents, (Line{{0.125F, 0, 0}, {0.625F, 0, 0}}));
 }
 
-TEST(VertexFrames, LeaveOutWhatIsNowhereOrHasNoDirection) {
+TEST(VertexFrames, OmitNonFiniteVerticesAndZeroVectors) {
     Mesh mesh = one_vertex();
     mesh.positions.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
     mesh.normals.push_back({0, 0, 1});

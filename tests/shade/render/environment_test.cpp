@@ -124,7 +124,7 @@ Environment computed(int size, const std::function<double(glm::dvec3)>& radiance
     return {.source = faces, .skybox = false, .lights = true};
 }
 
-TEST_F(Environments, ShedWhatTheHemisphereInFrontHolds) {
+TEST_F(Environments, IlluminateByTheVisibleHemisphere) {
     Material white = test::black_material();
     white.diffuse = glm::vec3(1.0F);
     Scene scene = test::scene_of(test::facing_square(), white);
@@ -143,7 +143,7 @@ TEST_F(Environments, ShedWhatTheHemisphereInFrontHolds) {
 }
 
 /// A white furnace: in even light, a white ball is as bright as the light, at every angle.
-TEST_F(Environments, OfEvenLightAreReflectedWhollyByWhiteSurfaces) {
+TEST_F(Environments, ConstantLightIsReflectedCompletelyByWhiteSurfaces) {
     Material white = test::black_material();
     white.metallic_roughness.emplace();
     Scene scene = test::scene_of(test::sphere(48, 24), white);
@@ -199,7 +199,7 @@ TEST_F(Environments, OfEvenLightAreReflectedWhollyUnderCoatsAndByAnisotropicFace
 }
 
 /// The first bounce alone is the albedo of the table.
-TEST_F(Environments, OfEvenLightLoseWhatBouncesWithoutEnergyCompensation) {
+TEST_F(Environments, ConstantLightLosesMultipleScatteringWithoutCompensation) {
     Material metal = test::black_material();
     metal.metallic_roughness.emplace();
     Scene scene = test::scene_of(test::facing_square(), metal);
@@ -349,7 +349,7 @@ TEST_F(Environments, WithTexelsThatAreNotFiniteAreCountedAndTheirPictureIsFinite
     }
 }
 
-TEST_F(Environments, OfOneTexelAFaceAreAsAnyOther) {
+TEST_F(Environments, WorkWithOneTexelPerFace) {
     CubeFaces faces;
     for (std::size_t face = 0; face < 6; ++face) {
         Image texel = make_image(1, 1, 3, 32, ColorSpace::linear);
@@ -367,7 +367,7 @@ TEST_F(Environments, OfOneTexelAFaceAreAsAnyOther) {
     EXPECT_NEAR(shed, 0.25 + 0.75 * 0.554, 0.02) << "order 2 leaves a little out";
 }
 
-TEST_F(Environments, ThatAreNoCrossAreRefusedByName) {
+TEST_F(Environments, RefuseInvalidCrossesByName) {
     const Environment environment{
         CubeCross{{"room.png", make_image(10, 10, 3, 32, ColorSpace::linear)}}};
     try {

@@ -239,7 +239,7 @@ TEST_F(ForcedEffects, ThatNeedOthersChangeNoBitWithThem) {
     }
 }
 
-TEST_F(ForcedEffects, ChangeNoBitAllTogetherInScenesWhereEveryPairOfEffectsMeets) {
+TEST_F(ForcedEffects, ChangeNoBitInScenesThatCoverAllPairs) {
     std::size_t scenes = 0;
     std::size_t added = 0;
     for (const Features& features : test::covering_features()) {
@@ -338,7 +338,7 @@ EffectCost cost(const char* effect, double milliseconds, double flip) {
     return {effect, milliseconds, {0, 0, flip, 0}};
 }
 
-TEST(DropOrder, IsByWhatAnEyeSeesForTheTimeSaved) {
+TEST(DropOrder, IsByVisibleChangePerSavedTime) {
     const std::vector<EffectCost> costs = {
         cost("dear and plain", 4.0, 0.4),  // 0.1 per millisecond.
         cost("cheap and faint", 1.0, 0.02), cost("invisible", 0.5, 0.0),
@@ -351,7 +351,7 @@ TEST(DropOrder, IsByWhatAnEyeSeesForTheTimeSaved) {
     EXPECT_THAT(drop_order({}, 0.0), IsEmpty());
 }
 
-TEST(DropOrder, KeepsTheGivenOrderWhereNothingTellsEffectsApart) {
+TEST(DropOrder, KeepsTheOrderOfTies) {
     const std::vector<EffectCost> costs = {cost("b", 1.0, 0.0), cost("a", 2.0, 0.0)};
     EXPECT_THAT(drop_order(costs, 0.0), ElementsAre("b", "a"));
 }
@@ -365,7 +365,7 @@ double table_time(const std::vector<std::string>& dropped) {
     return time;
 }
 
-TEST(FitToBudget, DropsNoMoreThanItTakes) {
+TEST(FitToBudget, DropsTheMinimum) {
     const BudgetChoice choice = fit_to_budget(12.0, {"a", "b", "c"}, table_time);
     EXPECT_THAT(choice.dropped, ElementsAre("a", "b"));
     EXPECT_EQ(choice.milliseconds, 12.0);
@@ -373,7 +373,7 @@ TEST(FitToBudget, DropsNoMoreThanItTakes) {
     EXPECT_THAT(fit_to_budget(20.0, {"a", "b"}, table_time).dropped, IsEmpty());
 }
 
-TEST(FitToBudget, SaysWhereNothingMoreCanBeDropped) {
+TEST(FitToBudget, ReportsAnUnreachableBudget) {
     const BudgetChoice choice = fit_to_budget(9.0, {"a", "b", "c"}, table_time);
     EXPECT_THAT(choice.dropped, ElementsAre("a", "b", "c"));
     EXPECT_EQ(choice.milliseconds, 10.0);
@@ -398,7 +398,7 @@ class EffectCostsOf : public test::DrawTest {
     FrameSettings settings_{48, 48, 1, OutputCoding::srgb};
 };
 
-TEST_F(EffectCostsOf, EachEffectThatIsOnAreMeasuredWithWhatThePictureLoses) {
+TEST_F(EffectCostsOf, EnabledEffectsIncludeTheChangeOfThePicture) {
     const FramePlan plan = plan_effects(scene_, settings_);
     const EffectCosts costs = measure_effects(frame(), plan);
     ASSERT_EQ(costs.effects.size(), 3U);
@@ -441,7 +441,7 @@ TEST_F(EffectCostsOf, StepsLeaveRoomForOtherDrawings) {
     EXPECT_FALSE(pricing.step());
 }
 
-TEST_F(EffectCostsOf, AForcedEffectThatIsNeutralIsNoChangeOfThePicture) {
+TEST_F(EffectCostsOf, NeutralEffectDoesNotChangeThePicture) {
     FramePlan plan = force_effects(scene_, settings_, plan_effects(scene_, settings_),
                                    {EffectBase::planned, {{"emission", true}}});
     const EffectCosts costs = measure_effects(frame(), plan);
@@ -450,7 +450,7 @@ TEST_F(EffectCostsOf, AForcedEffectThatIsNeutralIsNoChangeOfThePicture) {
     EXPECT_EQ(costs.effects.back().change.flip_max, 0.0);
 }
 
-TEST_F(EffectCostsOf, APlanWithinItsBudgetStaysWhole) {
+TEST_F(EffectCostsOf, PlanWithinItsBudgetIsUnchanged) {
     const FramePlan plan = plan_effects(scene_, settings_);
     const BudgetedPlan kept = plan_within_budget(frame(), plan, 1e6);
     EXPECT_TRUE(kept.choice.fits);

@@ -153,7 +153,7 @@ TEST_F(HardCases, TheEyeOnTheSurfaceIsFinite) {
     (void)finite_radiance(scene);
 }
 
-TEST_F(HardCases, SingularMatricesDrawWhatIsLeftOfTheGeometry) {
+TEST_F(HardCases, SingularMatricesDrawTheCollapsedGeometry) {
     // Flattened onto z = 0, the sphere becomes a disc that faces both ways. Its normals are those
     // of the plane, with the sign of their z.
     Material material;
@@ -192,7 +192,7 @@ TEST_F(HardCases, FarFromTheOriginTheModelKeepsItsShape) {
     EXPECT_LE(compare(finite_radiance(scene), expected).max, 1e-6);
 }
 
-TEST_F(HardCases, NotANumberInVertexDataStaysWhereItIs) {
+TEST_F(HardCases, NaNInVertexDataStaysLocal) {
     Scene scene = lit_square();
     Mesh& mesh = scene.meshes[0].edit();
     const auto add_triangle = [&](const glm::vec3& first) {
@@ -211,7 +211,7 @@ TEST_F(HardCases, NotANumberInVertexDataStaysWhereItIs) {
     EXPECT_EQ(image.width, 16);  // Pixels with NaN are black, and the picture is complete.
 }
 
-TEST_F(HardCases, NotANumberInATextureShowsBlackAndSpoilsNothingElse) {
+TEST_F(HardCases, NaNInATextureIsBlackAndStaysLocal) {
     Image texture = make_image(2, 1, 3, 32, ColorSpace::linear);
     texture.samples = std::vector<float>{not_a_number, infinite, -1, 0.5F, 0.5F, 0.5F};
     Scene scene = lit_square();
@@ -243,7 +243,7 @@ Scene bumped_square() {
     return scene;
 }
 
-TEST_F(HardCases, TextureCoordinatesThatDoNotChangeLeaveTheNormalAsItIs) {
+TEST_F(HardCases, ConstantTextureCoordinatesKeepTheNormal) {
     Scene scene = bumped_square();
     const double tilted = pixel(finite_radiance(scene), 8, 8).r;
     EXPECT_NEAR(tilted, 0.5 * std::sqrt(0.5), 1e-4);

@@ -61,7 +61,7 @@ Image leaning(int x, int y, int z) {
     return map;
 }
 
-TEST_F(NormalMapping, LeansTheWayTheMapSays) {
+TEST_F(NormalMapping, TiltsAsTheMapStates) {
     const double lean = std::atan2(60.0, 112.0);
     const auto lit = [&](const Image& map, Green green, const glm::vec3& to_light) {
         Scene scene = mapped(test::facing_square(), map, green, FlatCode::middle);
@@ -137,7 +137,7 @@ TEST_F(NormalMapping, TurnsTheBentNormalRoundOnBackFaces) {
     EXPECT_NEAR(pixel(radiance(scene, 8, 8), 4, 4).r, std::sin(std::atan2(60.0, 112.0)), 1e-5);
 }
 
-TEST_F(NormalMapping, WithNothingInATexelUsesTheSurface) {
+TEST_F(NormalMapping, ZeroTexelUsesTheSurface) {
     Scene scene = mapped(test::facing_square(), leaning(0, 0, 0), Green::up, FlatCode::middle);
     scene.materials[0].diffuse = glm::vec3(1.0F);
     scene.directional_lights = {{{0, 0, -1}, {1, 1, 1}}};
@@ -185,7 +185,7 @@ TEST_F(NormalMapping, WidensTheHighlightsOfRipplesFinerThanAPixel) {
     EXPECT_NEAR(middle(), 0.25 / alpha_squared / (albedo.x + albedo.y), 0.01);
 }
 
-TEST_F(NormalMapping, LeavesHighlightsAsTheyAreWhereTheMapIsNotMinified) {
+TEST_F(NormalMapping, AntialiasingKeepsHighlightsWithoutMinification) {
     Scene scene = mapped(test::facing_square(), leaning(0, 0, 127), Green::up, FlatCode::middle);
     scene.materials[0].specular = glm::vec3(0.5F);
     scene.materials[0].shininess = 1000.0F;

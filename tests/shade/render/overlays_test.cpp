@@ -45,7 +45,7 @@ glm::dvec4 code(const glm::vec3& srgb) {
 
 class Overlay : public test::DrawTest {};
 
-TEST_F(Overlay, WireframeDrawsEdgesAndNothingElse) {
+TEST_F(Overlay, WireframeDrawsOnlyEdges) {
     Scene scene = small_square();
     scene.exposure = 3.0F;
     scene.tone_mapping = ToneMapping::reinhard;
@@ -169,7 +169,7 @@ TEST_F(Overlay, FramesPointAlongTheirDirections) {
     EXPECT_NE(pixel(image, 30, 48), code(tangent_color));
 }
 
-TEST_F(Overlay, MarkersAreDiscsOnTopInTheirColour) {
+TEST_F(Overlay, MarkersAreDiscsOnTopInTheirColor) {
     Scene scene = small_square();
     FrameSettings settings = picture();
     const glm::vec3 color(1.0F, 0.0F, 0.4F);
@@ -220,7 +220,7 @@ TEST_F(Overlay, FollowsDeformedMeshes) {
     EXPECT_FALSE(test::same_bits(drawn, render(scene, settings).image));
 }
 
-TEST_F(Overlay, ColoursAreLinearInALinearPicture) {
+TEST_F(Overlay, ColorsAreLinearInALinearPicture) {
     const Scene scene = small_square();
     FrameSettings settings = picture();
     settings.output = OutputCoding::linear;
@@ -232,7 +232,7 @@ TEST_F(Overlay, ColoursAreLinearInALinearPicture) {
     EXPECT_EQ(found.z, 1.0);
 }
 
-TEST_F(Overlay, WhatCannotBeDrawnIsRefused) {
+TEST_F(Overlay, RefusesInvalidMarkers) {
     const Scene scene = small_square();
     FrameSettings settings = picture();
     const auto message = [&] {

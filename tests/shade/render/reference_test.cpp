@@ -605,27 +605,27 @@ class EffectOnItsOwn : public AgainstReference {
     }
 };
 
-TEST_F(EffectOnItsOwn, OfLightLooksAsTheReferenceSays) {
+TEST_F(EffectOnItsOwn, OfLightMatchesTheReference) {
     expect_agreement_of_each(light_effects());
 }
 
-TEST_F(EffectOnItsOwn, OfTheMaterialLooksAsTheReferenceSays) {
+TEST_F(EffectOnItsOwn, OfTheMaterialMatchesTheReference) {
     expect_agreement_of_each(material_effects());
 }
 
-TEST_F(EffectOnItsOwn, OfTexturesLooksAsTheReferenceSays) {
+TEST_F(EffectOnItsOwn, OfTexturesMatchesTheReference) {
     expect_agreement_of_each(texture_effects());
 }
 
-TEST_F(EffectOnItsOwn, OfSurfaceDetailLooksAsTheReferenceSays) {
+TEST_F(EffectOnItsOwn, OfSurfaceDetailMatchesTheReference) {
     expect_agreement_of_each(detail_effects());
 }
 
-TEST_F(EffectOnItsOwn, OfTransmissionLooksAsTheReferenceSays) {
+TEST_F(EffectOnItsOwn, OfTransmissionMatchesTheReference) {
     expect_agreement_of_each(transmission_effects());
 }
 
-TEST_F(EffectOnItsOwn, OfTheEnvironmentLooksAsTheReferenceSays) {
+TEST_F(EffectOnItsOwn, OfTheEnvironmentMatchesTheReference) {
     expect_agreement_of_each(environment_effects());
 }
 
@@ -709,7 +709,7 @@ class Shadows : public AgainstReference {
     }
 };
 
-TEST_F(Shadows, OfAllLightsAreThoseOfTheReference) {
+TEST_F(Shadows, OfAllLightsMatchTheReference) {
     for (const ShadowTerm light :
          {ShadowTerm::directional_light, ShadowTerm::point_light, ShadowTerm::spot_light}) {
         for (const float degrees : {0.0F, 2.0F, 12.0F, 30.0F}) {
@@ -799,7 +799,7 @@ Scene glossy_sphere(float roughness, std::optional<float> metallic) {
     return scene;
 }
 
-TEST_F(AgainstReference, AgreesInBlurredSurroundings) {
+TEST_F(AgainstReference, AgreesInABlurredEnvironment) {
     for (const float roughness : {0.1F, 0.15F, 0.3F, 0.5F, 0.7F, 1.0F}) {
         for (const std::optional<float> metallic :
              {std::optional<float>(), std::optional(0.0F), std::optional(1.0F)}) {
@@ -822,7 +822,7 @@ TEST_F(AgainstReference, AgreesInBlurredSurroundings) {
     expect_agreement(painted, blurred_tolerance);
 }
 
-TEST_F(AgainstReference, AgreesInSurroundingsForExtensionsOfMetallicRoughness) {
+TEST_F(AgainstReference, AgreesForExtensionsOfMetallicRoughnessInAnEnvironment) {
     Scene scene = glossy_sphere(0.35F, 0.3F);
     scene.materials[0].metallic_roughness = colored_dielectric();
     expect_agreement(scene, blurred_tolerance);
@@ -1053,7 +1053,7 @@ Coverage coverage(const Image& image) {
     return result;
 }
 
-TEST_P(RealModels, AreFramedWholeAndShadedAsTheirFilesSay) {
+TEST_P(RealModels, AreFramedAndShadedAsTheirFilesState) {
     RELIEF_NEEDS_SHARED(file, std::string("data/models/") + GetParam().file);
     Report report;
     Scene scene = load_scene(file, report);

@@ -36,7 +36,7 @@ std::vector<std::string> names(const std::vector<gl::ActiveVariable>& variables)
     return result;
 }
 
-TEST_P(RendererPrograms, OfACoveringSetTakeExactlyWhatIsPlanned) {
+TEST_P(RendererPrograms, OfACoveringSetHaveExactlyThePlannedInputs) {
     for (const Features& f : test::covering_features()) {
         SCOPED_TRACE(describe(f));
         ProgramCache cache(api());
@@ -267,7 +267,7 @@ TEST_F(Cached, FindingsAreReportedEveryTime) {
     EXPECT_EQ(cache().contents().meshes, 1U);
 }
 
-TEST_F(Cached, TheSameSurroundingsAreUploadedOnceWhateverTheirIntensity) {
+TEST_F(Cached, EnvironmentIsUploadedOnceForAnyIntensity) {
     Scene scene = test::scene_of(test::facing_square(), test::black_material());
     scene.materials[0].diffuse = glm::vec3(1.0F);
     scene.environment = test::constant_environment({0.5F, 0.5F, 0.5F}, true);
@@ -306,7 +306,7 @@ class Handing : public test::DrawTest {
     }
 };
 
-TEST_F(Handing, NothingIsShownBeforeAnythingIsDrawn) {
+TEST_F(Handing, NoPictureIsShownBeforeTheFirstFrame) {
     PictureExchange handover(context());
     EXPECT_EQ(handover.get().texture, 0U);
 }
@@ -321,7 +321,7 @@ TEST_F(Handing, TheNewestIsShownInItsSize) {
     EXPECT_EQ(color_of(shown.texture, 30, 10), glm::ivec3(0, 255, 0));
 }
 
-TEST_F(Handing, WhatIsShownStaysAsItIsHoweverManyComeAfter) {
+TEST_F(Handing, ShownPictureStaysUnchanged) {
     PictureExchange handover(context());
     put(handover, {1, 0, 0}, 8, 8);
     const PictureExchange::Shown shown = handover.get();
@@ -333,7 +333,7 @@ TEST_F(Handing, WhatIsShownStaysAsItIsHoweverManyComeAfter) {
     EXPECT_EQ(color_of(handover.get().texture, 8, 8), glm::ivec3(0, 0, 255));
 }
 
-TEST_F(Handing, TwoPicturesComeTogetherAndTheSecondGoesWithoutOne) {
+TEST_F(Handing, SecondPictureIsOptional) {
     PictureExchange handover(context());
     Report report;
     const FrameSettings settings{8, 4, 1};
@@ -357,7 +357,7 @@ TEST_F(Handing, TwoPicturesComeTogetherAndTheSecondGoesWithoutOne) {
     EXPECT_EQ(handover.get().beside, 0U);
 }
 
-TEST_F(Handing, APictureFromElsewhereStandsUpright) {
+TEST_F(Handing, ExternalPictureIsUpright) {
     PictureExchange handover(context());
     Image picture = make_image(3, 2, 3, 8, ColorSpace::srgb);
     auto& codes = std::get<std::vector<std::uint8_t>>(picture.samples);

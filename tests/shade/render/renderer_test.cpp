@@ -202,7 +202,7 @@ TEST_F(Rendering, ShowsTheSkyboxBehindTheModel) {
     EXPECT_EQ(pixel(wide, 20, 39), glm::dvec4(0.25, 0, 0.25, 1));
 }
 
-TEST_F(Rendering, DecodesOnlyWhatIsPlanned) {
+TEST_F(Rendering, DecodesOnlyPlannedTextures) {
     Material material;
     material.diffuse_texture = Texture{0};
     material.normal_map = NormalMap{Texture{1}};
@@ -329,7 +329,7 @@ TEST_F(Rendering, ReportsTexturesThatCannotShow) {
     EXPECT_EQ(report.count("textured material on a mesh without texture coordinates"), 1U);
 }
 
-TEST_F(Rendering, ReportsAShadowThatNothingCasts) {
+TEST_F(Rendering, ReportsAShadowWithoutACaster) {
     Scene scene = test::scene_of(test::sphere(8, 4), Material{});
     scene.shadow = Shadow{};
     scene.point_lights = {{{0.5F, 0, 0}, {1, 1, 1}}};
@@ -407,7 +407,7 @@ TEST_F(Rendering, IsTheSameTwice) {
     EXPECT_GT(second.times.draw, 0.0);
 }
 
-TEST_F(Rendering, RefusesWhatItCannotDraw) {
+TEST_F(Rendering, RefusesInvalidScenes) {
     Scene scene = test::scene_of(test::facing_square(), Material{});
     Report report;
     EXPECT_THROW(Renderer(context(), scene, {0, 8, 1, OutputCoding::srgb}, report), InvalidInput);

@@ -73,7 +73,7 @@ Scene shiny_square(SpecularModel model, float shininess) {
     return scene;
 }
 
-TEST_F(Shading, OfAmbientLightFollowsTheFormula) {
+TEST_F(Shading, AmbientLightFollowsTheFormula) {
     Material material = test::black_material();
     material.ambient = {0.9F, 0.4F, 0.1F};
     Scene scene = test::square_scene(material);
@@ -81,7 +81,7 @@ TEST_F(Shading, OfAmbientLightFollowsTheFormula) {
     expect_formula(scene);
 }
 
-TEST_F(Shading, OfDiffuseLightFollowsTheFormula) {
+TEST_F(Shading, DiffuseLightFollowsTheFormula) {
     Material material = test::black_material();
     material.diffuse = {0.9F, 0.4F, 0.1F};
     Scene scene = test::square_scene(material);
@@ -89,7 +89,7 @@ TEST_F(Shading, OfDiffuseLightFollowsTheFormula) {
     expect_formula(scene);
 }
 
-TEST_F(Shading, OfAPointLightFallsOffWithTheSquaredDistance) {
+TEST_F(Shading, PointLightFallsOffWithTheSquaredDistance) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
     Scene scene = test::square_scene(material);
@@ -99,7 +99,7 @@ TEST_F(Shading, OfAPointLightFallsOffWithTheSquaredDistance) {
     expect_formula(scene);
 }
 
-TEST_F(Shading, OfALightWithARangeEndsThere) {
+TEST_F(Shading, LightEndsAtItsRange) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
     Scene scene = test::square_scene(material);
@@ -111,7 +111,7 @@ TEST_F(Shading, OfALightWithARangeEndsThere) {
     EXPECT_EQ(pixel(radiance(scene, shaded_size, shaded_size), 0, 0), glm::dvec4(0, 0, 0, 1));
 }
 
-TEST_F(Shading, OfASpotLightKeepsToItsCone) {
+TEST_F(Shading, SpotLightStaysWithinItsCone) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
     Scene scene = test::square_scene(material);
@@ -125,27 +125,27 @@ TEST_F(Shading, OfASpotLightKeepsToItsCone) {
     EXPECT_EQ(pixel(radiance(scene, shaded_size, shaded_size), 0, 0), glm::dvec4(0, 0, 0, 1));
 }
 
-TEST_F(Shading, OfPhongsHighlightFollowsTheFormula) {
+TEST_F(Shading, PhongsHighlightFollowsTheFormula) {
     for (const float shininess : {0.0F, 1.0F, 12.5F, 100.0F}) {
         SCOPED_TRACE(shininess);
         expect_formula(shiny_square(SpecularModel::phong, shininess));
     }
 }
 
-TEST_F(Shading, OfBlinnAndPhongsHighlightFollowsTheFormula) {
+TEST_F(Shading, BlinnPhongHighlightFollowsTheFormula) {
     for (const float shininess : {0.0F, 1.0F, 12.5F, 100.0F, 1000.0F}) {
         SCOPED_TRACE(shininess);
         expect_formula(shiny_square(SpecularModel::blinn_phong, shininess));
     }
 }
 
-TEST_F(Shading, OfEmissionFollowsTheFormula) {
+TEST_F(Shading, EmissionFollowsTheFormula) {
     Material material = test::black_material();
     material.emission = {0.7F, 0.2F, 0.05F};
     expect_formula(test::square_scene(material));
 }
 
-TEST_F(Shading, OfAnUnlitSurfaceIsItsColour) {
+TEST_F(Shading, UnlitSurfaceHasItsColor) {
     Material material = test::black_material();
     material.diffuse = {0.7F, 0.2F, 0.05F};
     material.unlit = true;
@@ -155,7 +155,7 @@ TEST_F(Shading, OfAnUnlitSurfaceIsItsColour) {
     expect_formula(scene);
 }
 
-TEST_F(Shading, OfAReflectionFollowsSchlick) {
+TEST_F(Shading, ReflectionFollowsSchlick) {
     Material material = test::black_material();
     material.ambient = {0.5F, 0.5F, 0.5F};
     material.reflectivity = {0.04F, 0.3F, 0.9F};
@@ -171,7 +171,7 @@ TEST_F(Shading, OfAReflectionFollowsSchlick) {
     expect_formula(scene);
 }
 
-TEST_F(Shading, OfTexturesTintsWhatIsScattered) {
+TEST_F(Shading, TexturesTintScatteredLight) {
     Material material = test::black_material();
     material.ambient = {0.2F, 0.2F, 0.2F};
     material.diffuse = {0.9F, 0.8F, 0.7F};
@@ -190,7 +190,7 @@ TEST_F(Shading, OfTexturesTintsWhatIsScattered) {
     expect_formula(scene, 6e-3);
 }
 
-TEST_F(Shading, OfEverythingTogetherFollowsTheFormula) {
+TEST_F(Shading, AllTermsTogetherFollowTheFormula) {
     Material material;
     material.ambient = {0.1F, 0.2F, 0.3F};
     material.specular = {0.2F, 0.2F, 0.2F};
@@ -207,7 +207,7 @@ TEST_F(Shading, OfEverythingTogetherFollowsTheFormula) {
     expect_formula(scene);
 }
 
-TEST_F(Shading, OfASphereFollowsItsNormals) {
+TEST_F(Shading, SphereFollowsItsNormals) {
     Material material;
     material.specular = {0.3F, 0.3F, 0.3F};
     Scene scene = test::scene_of(test::sphere(48, 24), material);
@@ -215,7 +215,7 @@ TEST_F(Shading, OfASphereFollowsItsNormals) {
     expect_formula(scene);
 }
 
-TEST_F(Shading, OfManyLightsIsTheSumOfAll) {
+TEST_F(Shading, ManyLightsAddUp) {
     Material material = test::black_material();
     material.diffuse = {0.8F, 0.8F, 0.8F};
     Scene scene = test::square_scene(material);
@@ -296,7 +296,7 @@ TEST_F(FinishedPicture, IsExposedAndToneMapped) {
     }
 }
 
-TEST_F(FinishedPicture, OfInfiniteLightIsWhiteByEveryCurve) {
+TEST_F(FinishedPicture, InfiniteLightIsWhiteByEveryCurve) {
     for (const auto& [name, curve, label] : enum_names<ToneMapping>) {
         SCOPED_TRACE(name);
         for (const int samples : {1, 4}) {
@@ -309,7 +309,7 @@ TEST_F(FinishedPicture, OfInfiniteLightIsWhiteByEveryCurve) {
     }
 }
 
-TEST_F(FinishedPicture, HoldsRadianceWhereItIsLinear) {
+TEST_F(FinishedPicture, ContainsRadianceIfLinear) {
     Scene scene = glowing(3.0F);
     scene.exposure = 0.1F;
     scene.tone_mapping = ToneMapping::aces;
@@ -320,7 +320,7 @@ TEST_F(FinishedPicture, HoldsRadianceWhereItIsLinear) {
     }
 }
 
-TEST_F(FinishedPicture, LeavesItsBackgroundAsItIs) {
+TEST_F(FinishedPicture, KeepsItsBackground) {
     for (const int samples : {1, 4}) {
         Scene scene = glowing(1.0F);
         scene.background = {0.5F, 0.5F, 0.5F, 1};
@@ -402,7 +402,7 @@ TEST_F(FinishedPicture, SortsTheTrianglesOfAShearedInstanceByTheirDepthInTheWorl
     }
 }
 
-TEST_F(FinishedPicture, BlendedOverNothingKeepsItsColourAndItsShare) {
+TEST_F(FinishedPicture, BlendedOverTransparencyKeepsColorAndAlpha) {
     const Scene scene = layered({1, 0.5F, 0, 0.5F}, {0, 0, 0, 0});
     for (const int samples : {1, 4}) {
         const glm::dvec4 color =
@@ -413,7 +413,7 @@ TEST_F(FinishedPicture, BlendedOverNothingKeepsItsColourAndItsShare) {
     }
 }
 
-TEST_F(FinishedPicture, OfWhatIsOpaqueAllOverHasNoBlending) {
+TEST_F(FinishedPicture, OpaqueAlphaNeedsNoBlending) {
     const Scene scene = layered({1, 0, 0, 1}, {0, 1, 0, 1});
     const FramePlan plan = plan_effects(scene, {.samples = 1});
     EXPECT_FALSE(plan.sorted_blending);
@@ -422,7 +422,7 @@ TEST_F(FinishedPicture, OfWhatIsOpaqueAllOverHasNoBlending) {
               glm::dvec4(255, 0, 0, 255));
 }
 
-TEST_F(FinishedPicture, HasHolesWhereAMaskIsBelowItsCutoff) {
+TEST_F(FinishedPicture, HasHolesBelowTheCutoffOfAMask) {
     Scene scene = glowing(1.0F);
     Image opacity = make_image(2, 1, 1, 8, ColorSpace::data);
     opacity.samples = std::vector<std::uint8_t>{127, 128};
@@ -443,7 +443,7 @@ TEST_F(FinishedPicture, HasHolesWhereAMaskIsBelowItsCutoff) {
               glm::dvec4(0, 0, 0, 0));
 }
 
-TEST_F(FinishedPicture, FollowsWhatMoves) {
+TEST_F(FinishedPicture, FollowsMovedObjects) {
     Scene scene = glowing(0.0F);
     scene.materials[0].diffuse = glm::vec3(1.0F);
     scene.directional_lights = {{{0, 0, -1}, glm::vec3(1.0F)}};

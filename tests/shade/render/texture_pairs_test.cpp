@@ -460,7 +460,7 @@ std::vector<ScenePart> effect_groups(Backend backend) {
     return groups;
 }
 
-TEST_P(TexturesTogether, OfGltfsModelAgreeWithTheReference) {
+TEST_P(TexturesTogether, OfMetallicRoughnessMatchTheReference) {
     std::vector<ScenePart> slots = model_slots();
     for (const ScenePart& slot : common_slots()) {
         if (slot.name != std::string("object-space normal map") &&
@@ -470,7 +470,7 @@ TEST_P(TexturesTogether, OfGltfsModelAgreeWithTheReference) {
     expect_agreement_with(slots, effect_groups(GetParam()));
 }
 
-TEST_P(TexturesTogether, OfPhongsModelAgreeWithTheReference) {
+TEST_P(TexturesTogether, OfPhongMatchTheReference) {
     std::vector<ScenePart> phong;
     const auto keep = [&](Scene& scene) { material_of(scene).metallic_roughness.reset(); };
     for (const ScenePart& group : effect_groups(GetParam())) {
@@ -483,7 +483,7 @@ TEST_P(TexturesTogether, OfPhongsModelAgreeWithTheReference) {
 }
 
 /// Roughness differs between neighbors, and so does the level of the picture behind the surface.
-TEST_P(TexturesTogether, OfRoughnessAndTransmissionAgreeWithTheReference) {
+TEST_P(TexturesTogether, OfRoughnessAndTransmissionMatchTheReference) {
     for (const bool is_thick : {false, true}) {
         for (std::uint64_t seed = 0; seed < 2; ++seed) {
             const ScenePart clear = united("clear", {is_thick ? "volume" : "transmission"});

@@ -90,7 +90,7 @@ TEST(Framing, EveryVertexIsSeenAndTheModelFillsThePicture) {
     }
 }
 
-TEST(Framing, OfNothingStandsAtDistanceOne) {
+TEST(Framing, EmptySceneIsSeenFromDistanceOne) {
     EXPECT_EQ(framed(Scene{}, 0, 0, 0.7F, 1).world_from_view[3], glm::vec4(0, 0, 1, 1));
     Scene point;
     point.meshes.resize(1);
@@ -122,7 +122,7 @@ TEST(DefaultView, TheKeyLightComesFromTheViewersUpperLeft) {
     EXPECT_FLOAT_EQ(scene.ambient.g, 0.08F);
 }
 
-TEST(DefaultView, TurningTheCameraTurnsTheLamps) {
+TEST(DefaultView, RotatingTheCameraRotatesTheLights) {
     Scene still;
     add_default_lights(still, Camera{});
     Camera turned;
@@ -142,7 +142,7 @@ glm::vec3 diffuse_of(const Scene& scene, const Instance& instance) {
     return scene.materials[mesh.material_ranges.at(0).material.value()].diffuse;
 }
 
-TEST(LightMarkers, AreSpheresOfTheLightsColour) {
+TEST(LightMarkers, AreSpheresOfTheLightsColor) {
     SceneGraph graph;
     Scene& scene = graph.scene;
     scene.point_lights = {{{1, 2, 3}, {8, 4, 0}}, {{5, 0, 0}, {2, 1, 0}}, {{9, 0, 0}, {0, 0, 0}}};
@@ -216,7 +216,7 @@ const MarkedCondition* marked(const HealthMarkers& markers, MeshCondition condit
     return nullptr;
 }
 
-TEST(HealthMarkers, StandWhereTheTroubleIs) {
+TEST(HealthMarkers, AreAtTheProblems) {
     const Scene scene = scene_of(troubled(), 2);
     const HealthMarkers markers = health_markers(scene);
     const MarkedCondition* collapsed = marked(markers, MeshCondition::triangle_collapsed);
@@ -233,7 +233,7 @@ TEST(HealthMarkers, StandWhereTheTroubleIs) {
     EXPECT_EQ(std::count(markers.markers->begin(), markers.markers->end(), at_vertex), 1);
 }
 
-TEST(HealthMarkers, AreOfTroubleUnlessRemarksAreAskedForToo) {
+TEST(HealthMarkers, ShowNotesOnlyOnRequest) {
     const Scene scene = scene_of(troubled(), 1);
     EXPECT_EQ(marked(health_markers(scene), MeshCondition::edge_boundary), nullptr);
     const HealthMarkers all = health_markers(scene, std::nullopt);
@@ -246,13 +246,13 @@ TEST(HealthMarkers, AreOfTroubleUnlessRemarksAreAskedForToo) {
     EXPECT_EQ(marked(all, MeshCondition::edge_boundary)->count, 4U);
 }
 
-TEST(HealthMarkers, OfASoundMeshAreNone) {
+TEST(HealthMarkers, SoundMeshHasNone) {
     const HealthMarkers markers = health_markers(scene_of(test::cube(), 1));
     EXPECT_TRUE(markers.conditions.empty());
     EXPECT_TRUE(markers.markers->empty());
 }
 
-TEST(HealthMarkers, CountWhatIsNowhere) {
+TEST(HealthMarkers, CountProblemsWithoutPosition) {
     Mesh mesh = test::grid(1);
     mesh.positions[0].x = std::numeric_limits<float>::infinity();
     const HealthMarkers markers = health_markers(scene_of(mesh, 1));
@@ -273,7 +273,7 @@ TEST(HealthMarkers, NameMoreThanAReportDoes) {
     EXPECT_EQ(marked(markers, MeshCondition::vertex_isolated)->marked, 100U);
 }
 
-TEST(HealthMarkers, HaveColoursThatDiffer) {
+TEST(HealthMarkers, HaveDistinctColors) {
     for (const MeshConditionInfo& a : mesh_conditions()) {
         for (const MeshConditionInfo& b : mesh_conditions()) {
             if (a.condition >= b.condition) continue;

@@ -54,12 +54,12 @@ TEST(MaterialByName, HasTheNumbersOfTheTable) {
                       seen(glm::vec3(0.5F, 0.5F, 0.0F)));
 }
 
-TEST(MaterialByName, CaresForNeitherCaseNorSeparators) {
+TEST(MaterialByName, IgnoresCaseAndSeparators) {
     EXPECT_EQ(material_by_name("Red_Plastic")->name, "red plastic");
     EXPECT_EQ(material_by_name("POLISHED-GOLD")->name, "polished gold");
 }
 
-TEST(MaterialByName, GivesNothingForOtherNames) {
+TEST(MaterialByName, IsAbsentForOtherNames) {
     EXPECT_FALSE(material_by_name("gild"));
     EXPECT_FALSE(material_by_name(""));
     EXPECT_FALSE(material_by_name("gold "));
@@ -93,7 +93,7 @@ void expect_color(const glm::vec3& a, const glm::vec3& b, float tolerance = colo
         EXPECT_NEAR(a[i], b[i], tolerance) << i;
 }
 
-TEST(PhongFromMetallicRoughness, OfARoughDielectricIsDiffuse) {
+TEST(PhongFromMetallicRoughness, RoughDielectricIsDiffuse) {
     const Material phong = phong_from_metallic_roughness(surface(0, 1), {});
     expect_color(phong.diffuse, {0.8F, 0.5F, 0.2F});
     EXPECT_EQ(phong.shininess, 0.0F);                // 2 / 1 - 2.
@@ -115,7 +115,7 @@ TEST(PhongFromMetallicRoughness, HasTheReflectanceOfTheDielectric) {
     expect_color(phong.grazing_reflectivity, 0.5F * plain.grazing_reflectivity);
 }
 
-TEST(PhongFromMetallicRoughness, OfASmoothMetalIsAColoredMirror) {
+TEST(PhongFromMetallicRoughness, SmoothMetalIsAColoredMirror) {
     const Material phong = phong_from_metallic_roughness(surface(1, 0), {});
     expect_color(phong.diffuse, glm::vec3(0.0F));
     expect_color(phong.reflectivity, {0.8F, 0.5F, 0.2F}, 0.002F);
@@ -124,7 +124,7 @@ TEST(PhongFromMetallicRoughness, OfASmoothMetalIsAColoredMirror) {
     EXPECT_LT(phong.shininess, 1e6F);
 }
 
-TEST(PhongFromMetallicRoughness, OfARoughMetalIsNoMirror) {
+TEST(PhongFromMetallicRoughness, RoughMetalIsNotAMirror) {
     const Material phong = phong_from_metallic_roughness(surface(1, 0.5F), {});
     // With alpha^2 = 1/16, the shininess is 30, the specular color F0 * 4, and the mirror
     // reflection tan^2 / (tan^2 + 1/16).
@@ -145,7 +145,7 @@ TEST(PhongFromMetallicRoughness, HasGgxsPeak) {
     }
 }
 
-TEST(PhongFromMetallicRoughness, MirrorsTheShareOfFacetsWithinThreeDegrees) {
+TEST(PhongFromMetallicRoughness, ReflectsTheFractionOfFacetsWithinThreeDegrees) {
     // The integral of D (n.h) of GGX over the cone, with 20000 steps of the midpoint rule.
     for (const double roughness : {0.1, 0.3, 0.7}) {
         const double alpha_squared = std::pow(roughness, 4.0);
@@ -165,7 +165,7 @@ TEST(PhongFromMetallicRoughness, MirrorsTheShareOfFacetsWithinThreeDegrees) {
     }
 }
 
-TEST(PhongFromMetallicRoughness, TakesTexturesByTheirMeans) {
+TEST(PhongFromMetallicRoughness, UsesMeansOfTextures) {
     const TextureMeans means{{0.5F, 0.5F, 1.0F}, 0.5F, 0.5F};
     const Material phong = phong_from_metallic_roughness(surface(1, 1), means);
     EXPECT_NEAR(phong.shininess, 30.0F, 1e-4F);
@@ -173,7 +173,7 @@ TEST(PhongFromMetallicRoughness, TakesTexturesByTheirMeans) {
     expect_color(phong.specular / 4.0F, {0.22F, 0.145F, 0.12F}, 1e-5F);
 }
 
-TEST(PhongFromMetallicRoughness, KeepsWhatPhongHas) {
+TEST(PhongFromMetallicRoughness, KeepsSharedFields) {
     GltfMaterial material = surface(0, 0.5F);
     material.emission = {1, 2, 3};
     material.double_sided = true;
@@ -225,7 +225,7 @@ TEST(PhongFromMtl, FollowsTheIlluminationModel) {
     EXPECT_EQ(with(3).reflectivity, mtl.specular);
 }
 
-TEST(PhongFromMtl, BlendsOrRefractsWhatIsNotSolid) {
+TEST(PhongFromMtl, BlendsOrRefractsTransparentMaterials) {
     MtlMaterial mtl;
     mtl.opacity = 0.25F;
     mtl.refractive_index = 1.33F;
@@ -284,7 +284,7 @@ TEST(Labels, AreNamesOrElseNumbers) {
     EXPECT_EQ(instance_label(scene, 2), "instance 2");
 }
 
-TEST(Labels, OfWhatIsNotThereAreNumbers) {
+TEST(Labels, OfMissingElementsAreIndices) {
     EXPECT_EQ(material_label(Scene{}, 7), "material 7");
     EXPECT_EQ(instance_label(Scene{}, 7), "instance 7");
     EXPECT_EQ(mesh_label(Scene{}, 7), "mesh 7");

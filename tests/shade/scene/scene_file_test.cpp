@@ -296,7 +296,7 @@ TEST(LoadScene, HasTheTexturesOfMaterialExtensions) {
     EXPECT_EQ(model.iridescence_thickness, 400.0F);
 }
 
-TEST(LoadScene, TakesTheDiffuseMapAsOpacityMapByItsAlpha) {
+TEST(LoadScene, UsesAlphaOfTheDiffuseMapAsOpacity) {
     const test::TemporaryDirectory folder;
     write_text(folder / "model.obj", two_triangles);
     write_text(folder / "paint.mtl",
@@ -369,7 +369,7 @@ std::string lit_triangle() {
 })";
 }
 
-TEST(LoadScene, PlacesWhatAGltfFileHolds) {
+TEST(LoadScene, TransformsContentOfGltfFiles) {
     const test::TemporaryDirectory folder;
     write_text(folder / "lit.gltf", lit_triangle());
     Report report;
@@ -483,7 +483,7 @@ TEST(LoadScene, TranslatesGltfsMaterialsToPhongByChoice) {
     EXPECT_EQ(unreadable_textures_in(report), 1U);
 }
 
-TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
+TEST(LoadScene, CountsUnsupportedContent) {
     const test::TemporaryDirectory folder;
     write_text(folder / "lit.gltf", lit_triangle());
     Report report;
@@ -504,7 +504,7 @@ TEST(LoadScene, CountsWhatIsNotDrawnAsMeant) {
     EXPECT_EQ(report.findings().size(), 2U);
 }
 
-TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
+TEST(LoadScene, ReadsMeansOfTexturesAndToleratesMissingOnes) {
     RELIEF_NEEDS_SHARED(bottle, "data/models/gltf/WaterBottle/glTF/WaterBottle.gltf");
     RELIEF_NEEDS_SHARED(corset, "data/models/gltf/Corset");
     Report report;
@@ -528,7 +528,7 @@ TEST(LoadScene, ReadsMeansOfRealTexturesAndGoesOnWithoutMissingOnes) {
     EXPECT_GT(unreadable_textures_in(report), 0U);
 }
 
-TEST(LoadScene, NamesTheFileOfWhatItCannotRead) {
+TEST(LoadScene, ErrorsNameTheFile) {
     Report report;
     for (const char* file : {"/nowhere/model.obj", "/nowhere/model.glb", "/nowhere/model.xyz"}) {
         try {
@@ -601,7 +601,7 @@ TEST(ImageSource, ThatIsMissingOrBrokenThrows) {
     EXPECT_THROW((void)decode({"b", std::vector<std::byte>(7)}, ImageUse::color), FileError);
 }
 
-TEST(MeanColor, OfDataIsTheMeanOfTheNumbers) {
+TEST(MeanColor, OfDataIsTheMeanOfSamples) {
     Image image = make_image(2, 1, 3, 8, ColorSpace::data);
     image.samples = std::vector<std::uint8_t>{0, 255, 51, 255, 255, 102};
     const glm::vec3 mean = mean_color(image);
@@ -610,7 +610,7 @@ TEST(MeanColor, OfDataIsTheMeanOfTheNumbers) {
     EXPECT_FLOAT_EQ(mean.z, 0.3F);
 }
 
-TEST(MeanColor, OfColoursIsTakenInLinearLight) {
+TEST(MeanColor, OfColorsIsTheMeanInLinearLight) {
     Image image = make_image(2, 1, 3, 16, ColorSpace::srgb);
     image.samples = std::vector<std::uint16_t>{0, 0, 0, 65535, 65535, 65535};
     EXPECT_FLOAT_EQ(mean_color(image).x, 0.5F);  // Black and white give half of the light.
@@ -618,14 +618,14 @@ TEST(MeanColor, OfColoursIsTakenInLinearLight) {
     EXPECT_NEAR(mean_color(image).x, linear_from_srgb(32768.0F / 65535), 1e-6F);
 }
 
-TEST(MeanColor, OfGreyIsGrey) {
+TEST(MeanColor, OfGrayIsGray) {
     Image image = make_image(1, 2, 2, 8, ColorSpace::data);
     image.samples = std::vector<std::uint8_t>{51, 0, 153, 255};
     EXPECT_FLOAT_EQ(mean_color(image).x, 0.4F);
     EXPECT_FLOAT_EQ(mean_color(image).z, 0.4F);
 }
 
-TEST(MeanColor, LeavesOutWhatIsNotFinite) {
+TEST(MeanColor, IgnoresNonFiniteTexels) {
     Image image = make_image(2, 1, 3, 32, ColorSpace::linear);
     image.samples = std::vector<float>{std::nanf(""), 2, INFINITY, 0.25F, 4, -INFINITY};
     EXPECT_EQ(mean_color(image), glm::vec3(0.25F, 3, 1));
@@ -645,7 +645,7 @@ TEST(Shared, CopiesAreOneValueUntilOneIsEdited) {
     EXPECT_FALSE(identity.is(second));
 }
 
-TEST(Shared, AloneIsEditedInPlace) {
+TEST(Shared, UniqueValueIsEditedInPlace) {
     Shared<std::vector<int>> alone = std::vector<int>{1, 2, 3};
     const auto identity = alone.identity();
     const int* before = alone->data();

@@ -54,7 +54,7 @@ SceneGraph one_of_each() {
     return graph;
 }
 
-TEST(Pose, PutsEverythingWhereItsNodeIs) {
+TEST(Pose, MovesObjectsWithTheirNodes) {
     SceneGraph graph = one_of_each();
     // A rotation by 90 degrees about y maps x to -z and z to x.
     graph.nodes[0].rotation = glm::angleAxis(pi / 2, glm::vec3(0, 1, 0));
@@ -71,7 +71,7 @@ TEST(Pose, PutsEverythingWhereItsNodeIs) {
     EXPECT_NO_THROW(validate(graph));
 }
 
-TEST(Pose, LeavesAloneWhatHangsOnNoNode) {
+TEST(Pose, KeepsObjectsWithoutNode) {
     SceneGraph graph = one_of_each();
     graph.point_lights = {Carried{}};
     graph.spot_lights.clear();
@@ -111,7 +111,7 @@ TEST(Pose, GivesADirectionEvenAtScaleZero) {
     }
 }
 
-TEST(Pose, KeepsTheFarPlaneBehindWhatMoves) {
+TEST(Pose, KeepsTheFarPlaneBehindMovingObjects) {
     SceneGraph graph = one_of_each();
     graph.camera_sees_all = true;
     for (const float away : {10.0F, 1000.0F}) {
@@ -434,7 +434,7 @@ TEST(ValidateGraph, NamesTheFirstOffence) {
               "animation 0: rotation 0 of a channel has no length");
 }
 
-TEST(Pose, RefusesWhatWouldHaveNoEnd) {
+TEST(Pose, RefusesCycles) {
     SceneGraph graph = one_of_each();
     EXPECT_THROW(pose(graph, std::numeric_limits<double>::infinity()), InvalidInput);
     graph.nodes[0].parent = 3;

@@ -216,7 +216,7 @@ TEST_F(SceneFile, ImagesAreNumberedInTheOrderOfTheKeys) {
     EXPECT_EQ(m.specular_texture->image, 2U);
 }
 
-TEST_F(SceneFile, LampsHaveTheThreeColoursOfCourses) {
+TEST_F(SceneFile, LightsHaveThreeColors) {
     const SceneGraph graph = load(R"("ambient": 0.1, "lights": [
         {"type": "point", "position": [1, 2, 3], "ambient": 0.2, "diffuse": [1, 0, 0], "specular": 1,
          "intensity": 2, "falloff": "none"},
@@ -346,7 +346,7 @@ TEST_F(SceneFile, EnvironmentsComeInFiveLayoutsOrAreTheStudio) {
     EXPECT_THROW(load(R"("environment": {"studio": false})"), FileError);
 }
 
-TEST_F(SceneFile, CamerasLookAtAPlaceOrFrameTheScene) {
+TEST_F(SceneFile, CamerasLookAtAPointOrFrameTheScene) {
     const Scene looking =
         load(R"("camera": {"eye": [0, 0, 5], "target": [0, 0, 1], "far": 50})").scene;
     EXPECT_EQ(looking.camera->world_from_view[3], glm::vec4(0, 0, 5, 1));
@@ -387,7 +387,7 @@ TEST_F(SceneFile, NestsNodesTwoHundredDeepAndNoMore) {
     EXPECT_THAT(error_of(nested(20000)), HasSubstr("its JSON is nested deeper than 1024"));
 }
 
-TEST_F(SceneFile, RefusesWhatItDoesNotKnowAndSaysWhere) {
+TEST_F(SceneFile, RefusesUnknownKeysWithAPointer) {
     const auto expect = [&](const std::string& members, const std::string& error) {
         EXPECT_THAT(error_of(members), HasSubstr(error)) << members;
     };

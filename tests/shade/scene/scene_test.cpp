@@ -28,7 +28,7 @@ Scene cube_scene() {
     return scene;
 }
 
-TEST(WorldBounds, HoldEveryInstanceAtItsPlace) {
+TEST(WorldBounds, ContainEveryTransformedInstance) {
     Scene scene = cube_scene();
     scene.instances.push_back({0, glm::mat4(2.0F), "twice"});
     scene.instances[1].world_from_object[3] = glm::vec4(10, 0, 0, 1);
@@ -37,7 +37,7 @@ TEST(WorldBounds, HoldEveryInstanceAtItsPlace) {
     EXPECT_EQ(bounds.max, glm::vec3(12, 2, 2));
 }
 
-TEST(WorldBounds, LeaveOutWhatIsNotFinite) {
+TEST(WorldBounds, IgnoreNonFinitePositions) {
     Scene scene = cube_scene();
     scene.meshes[0].edit().positions[0].x = not_a_number;
     scene.meshes[0].edit().positions[1].y = std::numeric_limits<float>::infinity();
@@ -77,7 +77,7 @@ TEST(Framed, SeesAllOfABoxFromEverySideAndNoMuchMore) {
     }
 }
 
-TEST(Framed, LooksFromTheAskedDirection) {
+TEST(Framed, LooksFromTheRequestedDirection) {
     const Bounds box{{-1, -1, -1}, {1, 1, 1}};
     const glm::vec3 front(framed(box, 0, 0, 0.7F, 1).world_from_view[3]);
     EXPECT_GT(front.z, 2.0F);
@@ -93,7 +93,7 @@ TEST(Framed, LooksFromTheAskedDirection) {
     EXPECT_EQ(tilted.world_from_view[0], glm::vec4(1, 0, 0, 0));
 }
 
-TEST(Framed, OfNothingStandsAtDistanceOne) {
+TEST(Framed, EmptySceneIsSeenFromDistanceOne) {
     const Camera of_nothing = framed(Bounds{}, 0, 0, 0.7F, 1);
     EXPECT_EQ(of_nothing.world_from_view[3], glm::vec4(0, 0, 1, 1));
     const Camera of_a_point = framed(Bounds{{2, 3, 4}, {2, 3, 4}}, 0, 0, 0.7F, 1);
@@ -111,7 +111,7 @@ TEST(Framed, ScalesWithTheBox) {
     EXPECT_NO_THROW(validate(framed(Bounds{{-1, -1, 0}, {1, 1, 0}}, 1.5707964F, 0, 0.7F, 1)));
 }
 
-TEST(Framed, RefusesViewsThatShowNothing) {
+TEST(Framed, RefusesInvalidViews) {
     const Bounds box{{-1, -1, -1}, {1, 1, 1}};
     EXPECT_THROW((void)framed(box, not_a_number, 0, 0.7F, 1), InvalidInput);
     EXPECT_THROW((void)framed(box, 0, 0, 0.0F, 1), InvalidInput);
@@ -139,7 +139,7 @@ TEST(ValidateScene, AcceptsSoundScenes) {
               "valid");
 }
 
-TEST(ValidateScene, NamesIndicesThatNameNothing) {
+TEST(ValidateScene, ReportsInvalidIndices) {
     EXPECT_EQ(verdict([](Scene& s) { s.instances[0].mesh = 3; }),
               "instance 'node' names mesh 3, but there are only 1");
     EXPECT_EQ(verdict([](Scene& s) { s.meshes[0].edit().material_ranges[0].material = 7; }),

@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(PlotTicks, OfLogarithmicAxesArePowersAndTheirDoublesAndFivefolds) {
+TEST(PlotTicks, LogarithmicAxesHaveOneTwoFive) {
     EXPECT_THAT(ticks_of(0.15, 12.0, true, 10.0), ElementsAre(0.2, 0.5, 1.0, 2.0, 5.0, 10.0));
     EXPECT_THAT(ticks_of(0.15, 1200.0, true, 6.0), ElementsAre(1.0, 10.0, 100.0, 1000.0))
         << "there is no space for more";
@@ -29,7 +29,7 @@ TEST(PlotTicks, OfLogarithmicAxesArePowersAndTheirDoublesAndFivefolds) {
         << "one power or less has round numbers";
 }
 
-TEST(PlotTicks, OfLinearAxesAreRoundNumbers) {
+TEST(PlotTicks, LinearAxesHaveRoundNumbers) {
     EXPECT_THAT(ticks_of(-0.06, 1.06, false, 5.0), ElementsAre(0.0, 0.5, 1.0));
     EXPECT_THAT(ticks_of(0.0, 0.72, false, 8.0),
                 ElementsAre(0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7));
@@ -49,7 +49,7 @@ TEST(PlotTicks, HaveUnitsOrPowersOfTen) {
     EXPECT_EQ(tick_text(2.5e6, "bytes"), "2.5 MB");
 }
 
-TEST(PlotAxis, ValuesWithoutAPlaceHaveStrips) {
+TEST(PlotAxis, UnplottableValuesHaveStrips) {
     const Area area;
     const Axis plain = plots::y_axis(area, {0.01, 1.0});
     EXPECT_NEAR(plain.place(0.1), (area.top + area.bottom) / 2.0, 1e-9);
@@ -84,7 +84,7 @@ class PlotFiles : public testing::Test {
     }
 };
 
-TEST_F(PlotFiles, OfMethodsHaveStyleLegendAndTheFrontier) {
+TEST_F(PlotFiles, MethodsHaveStyleLegendAndFrontier) {
     const std::string svg = scatter_picture(report_["experiments"][0]);
     EXPECT_THAT(svg, HasSubstr("<title>RMS error against time on one thread: 6 methods. "
                                "Efficient: area, float32; max, float32.</title>"));
@@ -98,7 +98,7 @@ TEST_F(PlotFiles, OfMethodsHaveStyleLegendAndTheFrontier) {
     EXPECT_THAT(svg, Not(HasSubstr("class=\"reach\"")));
 }
 
-TEST_F(PlotFiles, OfCurvesNameThemAtTheirEnds) {
+TEST_F(PlotFiles, CurvesAreLabeledAtTheirEnds) {
     const std::string svg = chart_picture(report_["experiments"][0]["charts"][1]);
     EXPECT_THAT(svg, HasSubstr("<title>RMS error, degrees against scale: float32, breaks at 10⁻¹⁵; "
                                "exact.</title>"));

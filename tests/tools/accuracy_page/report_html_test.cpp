@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(HtmlText, EscapesWhatWouldBeMarkup) {
+TEST(HtmlText, EscapesMarkup) {
     EXPECT_EQ(html_escaped("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
     EXPECT_EQ(script_escaped(R"({"a":"</script><!--"})"), R"({"a":"\u003c/script>\u003c!--"})");
 }
@@ -79,7 +79,7 @@ class ReportHtml : public testing::Test {
     }
 };
 
-TEST_F(ReportHtml, NeedsNothingButItself) {
+TEST_F(ReportHtml, IsSelfContained) {
     const std::regex loads(R"re((src|href)="([^"]*)")re");
     std::size_t pictures = 0;
     for (std::sregex_iterator match(page_.begin(), page_.end(), loads), end; match != end;
@@ -97,7 +97,7 @@ TEST_F(ReportHtml, NeedsNothingButItself) {
     EXPECT_THAT(page_, Not(HasSubstr("{{"))) << "a place of the template was not filled";
 }
 
-TEST_F(ReportHtml, CarriesTheReportWhole) {
+TEST_F(ReportHtml, ContainsTheReport) {
     const std::string begin = R"(<script type="application/json" id="report">)";
     const std::size_t at = page_.find(begin) + begin.size();
     const std::string data = page_.substr(at, page_.find("</script>", at) - at);
@@ -123,7 +123,7 @@ TEST_F(ReportHtml, TablesCanBeReadWithoutAScript) {
     EXPECT_THAT(page_, HasSubstr(R"(<small class="note">the fastest of those below a degree)"));
 }
 
-TEST_F(ReportHtml, ANoteThatAllMethodsShareIsSaidOnce) {
+TEST_F(ReportHtml, CommonNotesAppearOnce) {
     for (nlohmann::ordered_json& one : report_["experiments"][2]["measurements"])
         one["note"] = "drawn by <llvmpipe>";
     page_ = report_html(report_, folder_.path());
@@ -131,13 +131,13 @@ TEST_F(ReportHtml, ANoteThatAllMethodsShareIsSaidOnce) {
     EXPECT_THAT(page_, HasSubstr(". drawn by &lt;llvmpipe&gt;</caption>"));
 }
 
-TEST_F(ReportHtml, UndefinedResultsStandInTheirRowWithTheirShare) {
+TEST_F(ReportHtml, UndefinedResultsHaveTheirFraction) {
     EXPECT_THAT(page_, HasSubstr(">undefined</th>"));
     EXPECT_THAT(page_, HasSubstr("<td>0.0500</td><td>2 (2 %)</td>"));
     EXPECT_THAT(page_, HasSubstr("Undefined results are counted, and excluded from the other"));
 }
 
-TEST_F(ReportHtml, BothPartsOfAnErrorAndFindingsStandInTheSummary) {
+TEST_F(ReportHtml, SummaryHasBothPartsOfAnErrorAndFindings) {
     auto& own = report_["experiments"][1];
     own["finding"] = "xyz: 0.5 degrees RMS expected (the map itself 0.3, this method adds 0.4).";
     own["input_findings"] = {"2 x non-finite height (texel 5, 17): read as <0>"};
@@ -153,7 +153,7 @@ TEST_F(ReportHtml, BothPartsOfAnErrorAndFindingsStandInTheSummary) {
     EXPECT_THAT(page_, HasSubstr("Expected is the root of the sum of squares of the"));
 }
 
-TEST_F(ReportHtml, ColumnsThatSayNothingAreLeftOut) {
+TEST_F(ReportHtml, OmitsEmptyColumns) {
     const std::size_t storage = page_.find("id=\"storage/sample\"");
     const std::string article = page_.substr(storage, page_.find("</article>", storage) - storage);
     EXPECT_THAT(article, HasSubstr(">stored</th>"));

@@ -154,7 +154,7 @@ TEST(SavedScene, DrawsTheSamePixelsForAllOptions) {
     EXPECT_EQ(differing(workplace, gold, "saved.json --samples 1"), 0U);
 }
 
-TEST(SavedScene, OfASceneFileIsInItsFolderAndCanBeSavedAgain) {
+TEST(SavedScene, StaysInTheFolderOfItsSceneFile) {
     const Workplace workplace;
     // data/ belongs to the sources and must not change.
     std::filesystem::copy(workplace / "data", workplace / "mine",

@@ -225,7 +225,7 @@ TEST_F(PlayingState, MovesWithoutPreparingTheSceneAgain) {
     EXPECT_NE(state_.request()->pose, after.pose);
 }
 
-TEST_F(PlayingState, FitsTheWholeMotionUnlessItGoesFar) {
+TEST_F(PlayingState, FitsTheMotionUnlessItIsFar) {
     const auto cameras = [&](const std::string& radius, std::optional<double> time) {
         state_ = ViewerState{ViewOptions{}};
         state_.set_view({64, 48});
@@ -311,7 +311,7 @@ TEST_F(PlayingState, ListsTheTrueSpeedsAndChangesThem) {
     EXPECT_NEAR(light().x, -2.0F, rounding) << "half a turn from the right";
 }
 
-TEST_F(PlayingState, AColorFollowsTheNodeAndAPlaceLeavesIt) {
+TEST_F(PlayingState, ColorEditsKeepTheNodeAndPositionEditsDetach) {
     show(orbiting_light);
     std::vector<LightRow> rows = state_.light_rows();
     std::get<PointLight>(rows[0].light).intensity = glm::vec3(5.0F);
@@ -328,7 +328,7 @@ TEST_F(PlayingState, AColorFollowsTheNodeAndAPlaceLeavesIt) {
     EXPECT_EQ(light(), glm::vec3(0.0F, 9.0F, 0.0F)) << "an edit stays";
 }
 
-TEST_F(PlayingState, MotionIsNoEditOfTheFile) {
+TEST_F(PlayingState, MotionIsNotAnEdit) {
     show(orbiting_light);
     state_.advance(1.0);
     EXPECT_NEAR(state_.scene_at_rest()->point_lights[0].position_world.z, 2.0F, rounding);

@@ -163,7 +163,7 @@ TEST_F(State, LightMarkersAreInThePictureOnly) {
     EXPECT_EQ(state().request()->scene->instances.size(), 1U);
 }
 
-TEST_F(State, MovingTheCameraIsNoRevision) {
+TEST_F(State, MovingTheCameraKeepsTheRevision) {
     show("square.obj");
     const DrawRequest before = *state().request();
     state().act(Action::orbit_left);

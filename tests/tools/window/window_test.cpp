@@ -167,7 +167,7 @@ class MovedWindow : public Window {
     }
 };
 
-TEST_F(MovedWindow, MouseKeysAndTextMoveTheViewAndIdleCostsNothing) {
+TEST_F(MovedWindow, InputMovesTheViewAndIdleDrawsNoFrame) {
     RELIEF_NEEDS_WINDOW("data/vase.obj --camera 30,20");
     const json turned = drag_turns_camera();
     window().key("ctrl+c");

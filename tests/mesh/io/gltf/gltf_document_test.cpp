@@ -286,7 +286,7 @@ struct DocumentFault {
     const char* message;
 };
 
-TEST_F(GltfDocumentTest, EveryFaultIsNamedWithPlaceValueAndLimit) {
+TEST_F(GltfDocumentTest, ErrorsHavePointerValueAndLimit) {
     const std::vector<DocumentFault> faults = {
         {"/asset/version", "1.0", "asset.version is 1.0, but only 2 is read"},
         {"/asset/minVersion", "2.1", "asset.minVersion is 2.1"},
@@ -381,7 +381,7 @@ struct SkinnedTriangle {
     }
 };
 
-TEST_F(GltfDocumentTest, ReturnsWhatDeformsAPrimitive) {
+TEST_F(GltfDocumentTest, ReturnsSkinsAndMorphTargets) {
     SkinnedTriangle triangle;
     triangle.joints[5] = 0;
     triangle.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, json::object()};
@@ -494,7 +494,7 @@ TEST_F(GltfDocumentTest, AccessorsWithoutDataAreZeros) {
     EXPECT_EQ(read(folder_ / "a.glb").mesh({0, 0}).positions[1], glm::vec3(0.0F));
 }
 
-TEST_F(GltfDocumentTest, MeshesAreRefusedWhereTheirDataContradictsItself) {
+TEST_F(GltfDocumentTest, RefusesContradictoryMeshes) {
     const auto error = [&](const char* pointer, const json& value, std::string bytes) {
         json root = triangle_json();
         root[json::json_pointer(pointer)] = value;
@@ -557,7 +557,7 @@ TEST_F(GltfDocumentTest, SparseElementsReplaceTheirBase) {
     EXPECT_EQ(mesh.positions[12], glm::vec3(5, 4, 0));
 }
 
-TEST_F(GltfDocumentTest, QuantisedModelsLieWhereTheFloatOnesDo) {
+TEST_F(GltfDocumentTest, QuantizedModelsMatchFloatModels) {
     RELIEF_NEEDS_SHARED(folder, "data/models/gltf/Duck");
     const MeshFile exact = flattened(read(folder / "glTF-Binary/Duck.glb"));
     const MeshFile quantized = flattened(read(folder / "glTF-Quantized/Duck.gltf"));
@@ -621,7 +621,7 @@ TEST_F(GltfDocumentTest, ImagesInFilesAreCopiedAlongOrPutInside) {
     EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[0].source).size(), png.size());
 }
 
-TEST_F(GltfDocumentTest, WhatOtherFormatsCannotHoldIsListed) {
+TEST_F(GltfDocumentTest, ListsContentThatOtherFormatsCannotStore) {
     RELIEF_NEEDS_SHARED(gltf, "data/models/gltf");
     EXPECT_THAT(read(gltf / "Fox/glTF-Binary/Fox.glb").unsupported_contents(),
                 ElementsAre("3 animations", "1 skin", "2 further vertex attributes"));
@@ -631,7 +631,7 @@ TEST_F(GltfDocumentTest, WhatOtherFormatsCannotHoldIsListed) {
                 ElementsAre("2 cameras"));
 }
 
-TEST_F(GltfDocumentTest, CompressionIsSaidByExtension) {
+TEST_F(GltfDocumentTest, ListsCompressionByExtension) {
     RELIEF_NEEDS_SHARED(models, "data/models");
     const auto said = [&](const std::filesystem::path& file) {
         std::vector<std::string> lines;
@@ -751,7 +751,7 @@ TEST_F(GltfTangentTexcoordsTest, WithoutANormalTextureItIsTheFirstSet) {
     EXPECT_EQ(of(two_, base), (GltfTangentTexcoords{0, "", {}, false}));
 }
 
-TEST_F(GltfTangentTexcoordsTest, TheNormalTextureSaysWhich) {
+TEST_F(GltfTangentTexcoordsTest, NormalTextureSelectsTheSet) {
     EXPECT_EQ(of(two_, {{"normalTexture", {{"index", 0}}}}),
               (GltfTangentTexcoords{0, "normalTexture", {}, false}));
     EXPECT_EQ(of(two_, {{"normalTexture", {{"index", 0}, {"texCoord", 1}}}}),
@@ -765,7 +765,7 @@ TEST_F(GltfTangentTexcoordsTest, TheTransformHasTheLastWord) {
     EXPECT_EQ(of(two_, material).set, 1);
 }
 
-TEST_F(GltfTangentTexcoordsTest, TurningAndMirroringAreSaid) {
+TEST_F(GltfTangentTexcoordsTest, RotationAndMirroringAreReported) {
     EXPECT_FALSE(of(two_, transformed({{"rotation", 0.0}})).is_rotated);
     EXPECT_FALSE(of(two_, transformed({{"rotation", 6.2831853}})).is_rotated) << "a full turn";
     EXPECT_FALSE(of(two_, transformed({{"scale", {0.25, 8}}})).is_rotated);
@@ -776,7 +776,7 @@ TEST_F(GltfTangentTexcoordsTest, TurningAndMirroringAreSaid) {
     EXPECT_TRUE(of(two_, transformed({{"scale", {1, -2}}})).is_rotated);
 }
 
-TEST_F(GltfTangentTexcoordsTest, OtherTexturesInTangentSpaceStandIn) {
+TEST_F(GltfTangentTexcoordsTest, OtherTangentSpaceTexturesAreTheFallback) {
     const json clearcoat = {
         {"extensions",
          {{"KHR_materials_clearcoat",
@@ -799,7 +799,7 @@ TEST_F(GltfTangentTexcoordsTest, AMissingSetFallsBackToTheFirst) {
               (GltfTangentTexcoords{0, "normalTexture", 0, false}));
 }
 
-TEST_F(GltfTangentTexcoordsTest, WhatIsNoTextureIsRefused) {
+TEST_F(GltfTangentTexcoordsTest, RefusesInvalidTextures) {
     EXPECT_THROW(of(two_, json::parse(R"({"extensions": {"KHR_materials_clearcoat":
                      {"clearcoatNormalTexture": {"index": 0, "texCoord": "one"}}}})")),
                  FileError);

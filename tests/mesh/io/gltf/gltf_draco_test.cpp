@@ -208,7 +208,7 @@ TEST_F(GltfDraco, SharedAccessorsStaySharedUnlessTheirDataDiffer) {
                      contents.root["meshes"][0]["primitives"][1]["attributes"]["TEXCOORD_0"]));
 }
 
-TEST_F(GltfDraco, PrimitivesBesideCompressedOnesKeepTheirBytes) {
+TEST_F(GltfDraco, UncompressedPrimitivesKeepTheirBytes) {
     json plain = json::parse(R"({"attributes": {"POSITION": 4}})");
     root_["accessors"].push_back(
         {{"bufferView", 1}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
@@ -289,7 +289,7 @@ float largest_distance(const Mesh& a, const Mesh& b) {
     return largest;
 }
 
-TEST_F(GltfDraco, RealModelsLieWhereThePlainOnesDo) {
+TEST_F(GltfDraco, RealModelsMatchUncompressedOnes) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const auto compare = [&](const char* packed, const char* plain, float tolerance) {
         const GltfDocument a = read(models / packed);

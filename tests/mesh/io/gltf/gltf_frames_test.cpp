@@ -277,7 +277,7 @@ TEST_F(GltfFrames, InterleavedNeighboursMoveOutTogether) {
     EXPECT_EQ(test::unreferenced_bytes(out_), 0U);
 }
 
-TEST_F(GltfFrames, ThoseWhoShareAccessorsKeepTheirs) {
+TEST_F(GltfFrames, OtherUsersOfAnAccessorKeepTheirData) {
     make_quad();
     root_["meshes"].push_back(root_["meshes"][0]);
     root_["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
@@ -292,7 +292,7 @@ TEST_F(GltfFrames, ThoseWhoShareAccessorsKeepTheirs) {
     EXPECT_EQ(after.triangles, other.triangles);
 }
 
-TEST_F(GltfFrames, ThoseWhoShareAccessorsShareTheNewOnesWhereTheyComeToTheSame) {
+TEST_F(GltfFrames, EqualResultsShareNewAccessors) {
     make_quad();
     root_["meshes"].push_back(root_["meshes"][0]);
     root_["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
@@ -306,7 +306,7 @@ TEST_F(GltfFrames, ThoseWhoShareAccessorsShareTheNewOnesWhereTheyComeToTheSame) 
     EXPECT_EQ(contents(out_).root["accessors"].size(), 7U);
 }
 
-TEST_F(GltfFrames, APrimitiveThatUsesAPartOfSharedVerticesTakesOnlyThose) {
+TEST_F(GltfFrames, PrimitiveTakesOnlyItsSharedVertices) {
     root_["bufferViews"] = {
         buffer_.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 6, 5, 5, 5, 7, 5}),
         buffer_.view<std::uint16_t>({0, 1, 2}), buffer_.view<std::uint16_t>({5, 3, 4})};
@@ -338,7 +338,7 @@ TEST_F(GltfFrames, APrimitiveThatUsesAPartOfSharedVerticesTakesOnlyThose) {
     EXPECT_EQ(written.buffers[0].size, 2U * (3 * 24 + 8) - 2);
 }
 
-TEST_F(GltfFrames, NothingIsLeftOutWhereAnUnknownExtensionMayReferToIt) {
+TEST_F(GltfFrames, UnknownExtensionsKeepAllAccessors) {
     make_quad();
     root_["extensionsUsed"] = {"FOO_bar"};
     root_["nodes"][0]["extensions"]["FOO_bar"] = {{"accessor", 1}};
@@ -353,7 +353,7 @@ TEST_F(GltfFrames, NothingIsLeftOutWhereAnUnknownExtensionMayReferToIt) {
     }
 }
 
-TEST_F(GltfFrames, ACompressedCopyGoesWithWhatItWasACopyOf) {
+TEST_F(GltfFrames, CompressedCopiesAreRemovedWithTheirOriginals) {
     make_quad();
     root_["bufferViews"].push_back(buffer_.view<std::uint8_t>(std::vector<std::uint8_t>(400, 7)));
     root_["extensionsUsed"] = {"KHR_draco_mesh_compression"};
@@ -403,7 +403,7 @@ TEST_F(GltfFrames, FramesOfAnotherMeshAreRefused) {
     EXPECT_THROW(document.set_frames({0, 7}, framed), InvalidInput);
 }
 
-TEST_F(GltfFrames, NodesThatMirrorChangeNothingInObjectSpace) {
+TEST_F(GltfFrames, MirroringNodesDoNotAffectObjectSpace) {
     // glTF reverses the winding of the triangles of a node with negative scale. The mesh keeps its
     // winding and its frames.
     RELIEF_NEEDS_SHARED(folder, "data/models/gltf-ext/misc");
@@ -461,7 +461,7 @@ void process_and_compare(const std::filesystem::path& file, const std::filesyste
     EXPECT_LE(test::unreferenced_bytes(out), test::unreferenced_bytes(file) + padding);
 }
 
-TEST_F(GltfFrames, ProcessingRealModelsKeepsAllElseAndLeavesNothingDead) {
+TEST_F(GltfFrames, ProcessingRealModelsLeavesNoUnusedData) {
     RELIEF_NEEDS_SHARED(models, "data/models");
     int processed = 0;
     for (const auto& file : test::gltf_files_below(models)) {

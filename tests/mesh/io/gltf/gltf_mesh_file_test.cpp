@@ -246,7 +246,7 @@ GltfDocument grid_with(const TemporaryDirectory& folder, const std::function<voi
     return read(file);
 }
 
-TEST(GltfGeometry, IsReplacedAndNothingDeadStaysBehind) {
+TEST(GltfGeometry, ReplacementLeavesNoUnusedData) {
     const TemporaryDirectory folder;
     GltfDocument document = grid_with(folder, [](json&) {});
     Mesh sphere = test::sphere(16, 8);
@@ -272,7 +272,7 @@ TEST(GltfGeometry, IsReplacedAndNothingDeadStaysBehind) {
                     1.0F);
 }
 
-TEST(GltfGeometry, WhatAMeshCannotTakeOverIsRefusedAndStays) {
+TEST(GltfGeometry, RefusesUnsupportedPrimitives) {
     const auto refusal = [](const std::function<void(json&)>& edit) {
         const TemporaryDirectory folder;
         GltfDocument document = grid_with(folder, edit);

@@ -339,7 +339,7 @@ TEST_F(GltfMeshopt, TheKhronosCubesAgreeInAllVersionsModesAndFilters) {
     EXPECT_EQ(contents.unpacked.at("KHR_meshopt_compression"), 60U);
 }
 
-TEST_F(GltfMeshopt, ADecodedDocumentSaysNothingOfCompressionAndLeavesNoPackedBytes) {
+TEST_F(GltfMeshopt, DecodedDocumentHasNoTraceOfCompression) {
     RELIEF_NEEDS_SHARED(file, "data/models/gltf-ext/meshopt/pirate.glb");
     const GltfDocument document = GltfDocument::read(file, report_);
     document.write(out_);

@@ -98,7 +98,7 @@ std::vector<glm::vec3> vectors(const GltfContents& contents, const json& accesso
     return float_elements<glm::vec3>(contents, accessor.get<std::size_t>());
 }
 
-TEST_F(GltfMorph, FlatNormalsOfADisplacedShapeSplitWhatIsFlatAtRest) {
+TEST_F(GltfMorph, FlatNormalsOfTargetsSplitFlatRegions) {
     const GltfContents written = processed(NormalMode::flat, TangentMethod::none);
     // At rest, both triangles share all normals. In the displaced shape, the second one is tilted.
     EXPECT_EQ(vertices_, 6U);
@@ -134,7 +134,7 @@ TEST_F(GltfMorph, AveragedNormalsOfADisplacedShapeNeedNoSplit) {
               rounding);
 }
 
-TEST_F(GltfMorph, ATargetWithoutNormalsGetsNoneWhereItsPrimitiveHadThem) {
+TEST_F(GltfMorph, TargetWithoutNormalsGetsNone) {
     // The author keeps the normals.
     primitive()["attributes"]["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0, 1, 0)));
     GltfContents written = processed(NormalWeight::area, TangentMethod::mikktspace);
@@ -149,7 +149,7 @@ TEST_F(GltfMorph, ATargetWithoutNormalsGetsNoneWhereItsPrimitiveHadThem) {
     EXPECT_FALSE(after.contains("TANGENT"));
 }
 
-TEST_F(GltfMorph, WhatIsKeptIsKeptInTheTargetsToo) {
+TEST_F(GltfMorph, KeptFramesAreKeptInTargets) {
     primitive()["attributes"]["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0, 0, 1)));
     target()["NORMAL"] = accessor(std::vector<glm::vec3>(4, glm::vec3(0.5F, 0, 0)));
     GltfContents written = processed(NormalMode::keep, TangentMethod::keep);
@@ -171,7 +171,7 @@ TEST_F(GltfMorph, WhatIsKeptIsKeptInTheTargetsToo) {
     }
 }
 
-TEST_F(GltfMorph, WhatOnlyTheDisplacedShapeShowsIsReported) {
+TEST_F(GltfMorph, ReportsProblemsOfTargets) {
     // The last corner moves onto the diagonal, so the second triangle has no area.
     target()["POSITION"] = accessor<glm::vec3>({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0.5F, -0.5F, 0}});
     processed(NormalMode::flat, TangentMethod::none);

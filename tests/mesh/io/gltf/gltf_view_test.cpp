@@ -184,7 +184,7 @@ TEST_F(GltfViewTest, TextureTransformsTurnTangentsAsTheyTurnTheImage) {
         << "a line of the image";
 }
 
-TEST_F(GltfViewTest, LightsAndCamerasStandWhereTheirNodesAre) {
+TEST_F(GltfViewTest, LightsAndCamerasHaveTheTransformOfTheirNodes) {
     const GltfView view = document(json::parse(R"({"asset": {"version": "2.0"},
         "extensionsUsed": ["KHR_lights_punctual"],
         "extensions": {"KHR_lights_punctual": {"lights": [
@@ -293,7 +293,7 @@ TEST_F(GltfViewTest, FlattenedNormalsStayPerpendicularUnderUnevenScale) {
     }
 }
 
-TEST_F(GltfViewTest, FlatteningFillsInWhatSomePrimitivesLack) {
+TEST_F(GltfViewTest, FlatteningFillsMissingAttributes) {
     MeshFile plain{test::cube(), {}};
     plain.mesh.texcoords.clear();
     plain.mesh.normals.clear();
@@ -387,7 +387,7 @@ TEST_F(Animated, ChannelsAreKeysOfNodes) {
     EXPECT_TRUE(report_.empty());
 }
 
-TEST_F(Animated, PointersAreKeysOfNodesOrOfWhatTheyName) {
+TEST_F(Animated, PointersAddressNodesAndProperties) {
     const std::size_t two = times({0, 2});
     const auto point_at = [](const char* pointer) {
         return json{{"path", "pointer"},
@@ -415,7 +415,7 @@ TEST_F(Animated, PointersAreKeysOfNodesOrOfWhatTheyName) {
     EXPECT_EQ(report_.count("animated node with a matrix"), 1U);
 }
 
-TEST_F(Animated, WhatCannotBeUsedIsLeftOutAndCounted) {
+TEST_F(Animated, UnusableChannelsAreOmittedAndCounted) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::size_t two = times({0, 1});
     const std::size_t good = add({1, 2, 3, 4, 5, 6}, "VEC3", 3);
@@ -442,7 +442,7 @@ TEST_F(Animated, WhatCannotBeUsedIsLeftOutAndCounted) {
     EXPECT_EQ(report_.findings()[0].first, (std::vector<std::size_t>{0, 4, 5, 6, 7, 8, 9, 10}));
 }
 
-TEST_F(Animated, NodesKnowTheirParentsAndPlaces) {
+TEST_F(Animated, NodesHaveParentsAndTransforms) {
     root_["nodes"] = json::parse(R"([{"name": "root", "children": [2], "scale": [2, 2, 2]},
         {"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 4,5,6,1]}, {"rotation": [0, 1, 0, 0], "skin": 0}])");
     root_["skins"] = json::parse(R"([{"joints": [0]}])");
@@ -458,7 +458,7 @@ TEST_F(Animated, NodesKnowTheirParentsAndPlaces) {
     EXPECT_TRUE(view.nodes[2].has_skin);
 }
 
-TEST(GltfAnimations, OfRealModelsAreReadWhole) {
+TEST(GltfAnimations, RealModelsAreReadCompletely) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     Report report;
     const auto channels = [&](const char* file) {

@@ -67,7 +67,7 @@ class BumpFile : public testing::Test {
     TemporaryDirectory folder_;
 };
 
-TEST_F(BumpFile, IsWhatTheCallsForImagesMakeByteForByte) {
+TEST_F(BumpFile, EqualsTheImageFunctionsByteForByte) {
     const Image heights = noise(37, 23, 1, 16);
     const BumpOptions options{Kernel::scharr3, Wrap::repeat, 9.0};
     const NormalMapFormat format{16, Green::down, FlatCode::half, Dither::blue_noise};
@@ -91,7 +91,7 @@ struct Streamed {
 
 class StreamedBumpFile : public BumpFile, public testing::WithParamInterface<Streamed> {};
 
-TEST_P(StreamedBumpFile, HasTheBytesOfAMapInMemoryWhateverTheBandsAndThreads) {
+TEST_P(StreamedBumpFile, EqualsAMapInMemoryForAnyBandsAndThreads) {
     const Streamed& map = GetParam();
     const std::filesystem::path file =
         written(noise(map.width, map.height, map.channels, map.bits), map.input);
@@ -153,7 +153,7 @@ TEST_F(BumpFile, ASurveyFindsTheSameByRows) {
     }
 }
 
-TEST_F(BumpFile, KeepsHeightsOrAlphaBesideTheNormal) {
+TEST_F(BumpFile, KeepsHeightsOrAlpha) {
     Image image = make_image(3, 1, 2, 8, ColorSpace::data);
     image.samples = std::vector<std::uint8_t>{0, 255, 51, 102, 255, 1};
     const std::filesystem::path file = written(image, "h.png");
@@ -192,7 +192,7 @@ TEST_F(BumpFile, CountsHeightsThatItsAlphaCannotHold) {
     EXPECT_TRUE(none.empty());
 }
 
-TEST_F(BumpFile, WithoutZBlueIsNothing) {
+TEST_F(BumpFile, BlueIsZeroWithoutZ) {
     const std::filesystem::path file = written(noise(5, 4, 1, 16), "h.png");
     Report report;
     write_bump_file(HeightMapFile(file), {}, folder_ / "xy.png", {.xy_only = true}, report);
@@ -241,7 +241,7 @@ TEST_F(BumpFile, TransparentTexelsAreFlatAndHideNoCliff) {
     EXPECT_NEAR(slope(ignored, 7), -3.0, 1e-6);
 }
 
-TEST_F(BumpFile, WhatATransparentTexelHidesDecidesNothing) {
+TEST_F(BumpFile, HiddenTexelsHaveNoInfluence) {
     // Flat ground on the left, and hidden noise on the right, which would be a seam and detail.
     Image image = noise(48, 32, 2, 8);
     for (std::size_t i = 0; i < image.sample_count() / 2; ++i) {
@@ -326,7 +326,7 @@ TEST_F(BumpFile, HolesAreFilledAsInImages) {
     EXPECT_TRUE(std::ranges::equal(report.findings(), expected_report.findings()));
 }
 
-TEST_F(BumpFile, MapsReadByRowsRefuseWhatNeedsTheWholeMap) {
+TEST_F(BumpFile, RowsRefuseOptionsThatNeedTheWholeMap) {
     Image heights = noise(20, 11, 1, 32);
     heights.as<float>()[105] = std::numeric_limits<float>::infinity();
     const std::filesystem::path holes = written(heights, "h.exr");
@@ -354,7 +354,7 @@ TEST_F(BumpFile, MapsReadByRowsRefuseWhatNeedsTheWholeMap) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "n.png"));
 }
 
-TEST_F(BumpFile, TellsHowFarItIs) {
+TEST_F(BumpFile, ReportsProgress) {
     const std::filesystem::path file = written(noise(10, 10, 1, 8), "h.png");
     std::vector<double> parts;
     Report report;

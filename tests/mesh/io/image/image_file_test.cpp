@@ -96,7 +96,7 @@ TEST(ImageFile, TiffKeepsEverySampleOf8And16BitsAndFloat) {
     }
 }
 
-TEST(ImageFile, ExrKeepsEveryFloatOfEveryChannelCountInItsPlace) {
+TEST(ImageFile, ExrKeepsAllFloatsAndChannels) {
     const TemporaryDirectory folder;
     for (int channels = 1; channels <= 4; ++channels) {
         Image floats = pattern<float>(40, 37, channels, ColorSpace::data);
@@ -158,7 +158,7 @@ TEST(ImageFile, TransparentTexelsKeepTheirColor) {
     }
 }
 
-TEST(ImageFile, LargeImagesArriveWholeThoughReadInSteps) {
+TEST(ImageFile, LargeImagesAreReadInSteps) {
     // 24 MB of samples need more than one step of 16 MB.
     const TemporaryDirectory folder;
     const Image words = pattern<std::uint16_t>(1500, 2000, 4, ColorSpace::data);
@@ -218,7 +218,7 @@ TEST(ImageFile, MetadataComesBackFromPngTiffAndExr) {
     EXPECT_THAT(read_image_info(folder / "a.png").metadata, testing::ContainerEq(metadata));
 }
 
-TEST(ImageFile, InfoSaysWhatReadingGives) {
+TEST(ImageFile, InfoMatchesTheImage) {
     const TemporaryDirectory folder;
     write_image(folder / "a.png", pattern<std::uint16_t>(7, 5, 2, ColorSpace::data));
     const ImageInfo info = read_image_info(folder / "a.png");
@@ -229,7 +229,7 @@ TEST(ImageFile, InfoSaysWhatReadingGives) {
     EXPECT_THAT(info.metadata, IsEmpty());
 }
 
-TEST(ImageFile, WhatAFormatCannotHoldIsRefusedAndTheOldFileStays) {
+TEST(ImageFile, UnsupportedContentIsRefusedAndKeepsTheOldFile) {
     const TemporaryDirectory folder;
     const Image bytes = pattern<std::uint8_t>(4, 4, 3, ColorSpace::srgb);
     const Image alpha = pattern<std::uint8_t>(4, 4, 4, ColorSpace::srgb);
@@ -280,7 +280,7 @@ TEST(ImageFile, AFailingDiskLeavesTheOldFileAndNoHalfOne) {
     EXPECT_EQ(std::distance(begin(files), end(files)), 4);
 }
 
-TEST(ImageFile, MissingFilesAndFoldersAreSaidToBeSo) {
+TEST(ImageFile, ReportsMissingFilesAndFolders) {
     const TemporaryDirectory folder;
     EXPECT_THAT(complaint_about_reading(folder / "none.png"), HasSubstr("no such file"));
     EXPECT_THAT(complaint_about_reading(folder.path()), HasSubstr("is not a file"));
@@ -321,7 +321,7 @@ std::string png_with(std::string_view type, std::string_view data) {
     return file;
 }
 
-TEST(ColorTag, NamesWhatAFileSays) {
+TEST(ColorTag, ReadsTheFile) {
     EXPECT_EQ(tag_of(png_with("sRGB", std::string(1, '\0'))), "sRGB");
     EXPECT_EQ(tag_of(png_with("iCCP", "x")), "ICC profile");
     EXPECT_EQ(tag_of(png_with("gAMA", std::string("\0\0\xB1\x8F", 4))), "gamma 0.45455");
@@ -329,7 +329,7 @@ TEST(ColorTag, NamesWhatAFileSays) {
     EXPECT_EQ(tag_of(png_with("tEXt", "a")), "");
 }
 
-TEST(ColorTag, IsEmptyForWhatIsCutShortOrNoPng) {
+TEST(ColorTag, IsEmptyForTruncatedAndOtherFiles) {
     const std::string whole = png_with("sRGB", std::string(1, '\0'));
     for (std::size_t size = 0; size < whole.find("sRGB") + 4; ++size)
         EXPECT_EQ(tag_of(whole.substr(0, size)), "") << size;
@@ -439,7 +439,7 @@ TEST(ImageContainer, TheFirstBytesDecideTheFormat) {
     EXPECT_THAT(complaint_about(""), HasSubstr("is empty"));
 }
 
-TEST(ImageContainer, PngKeepsOnlyWhatDefinesItsSamples) {
+TEST(ImageContainer, PngKeepsOnlyChunksOfSamples) {
     const std::string kept = png_header(1, 1) + unchecked_chunk("PLTE", "abc");
     const std::string data =
         unchecked_chunk("tRNS", "a") + unchecked_chunk("IDAT", "12345") + png_end;
@@ -449,7 +449,7 @@ TEST(ImageContainer, PngKeepsOnlyWhatDefinesItsSamples) {
     EXPECT_EQ(stripped(file), png_start + kept + data);
 }
 
-TEST(ImageContainer, PngTextIsKeptWhereItIsPlain) {
+TEST(ImageContainer, PngKeepsPlainText) {
     const ImageContainer container =
         examine(png_start + png_header(1, 1) + unchecked_chunk("tEXt", "relief:green\0up"s) +
                 unchecked_chunk("iTXt", "Titel\0\0\0de\0Titel\0Vase"s) +
@@ -459,7 +459,7 @@ TEST(ImageContainer, PngTextIsKeptWhereItIsPlain) {
     EXPECT_THAT(container.text, ElementsAre(Pair("Titel", "Vase"), Pair("relief:green", "up")));
 }
 
-TEST(ImageContainer, ACutPngIsRefusedWithThePlaceOfTheCut) {
+TEST(ImageContainer, TruncatedPngIsRefusedWithTheOffset) {
     const std::string file =
         png_start + png_header(1, 1) + unchecked_chunk("IDAT", "12345") + png_end;
     EXPECT_EQ(complaint_about(file), "no error");
@@ -517,7 +517,7 @@ TEST(ImageContainer, AJpegThatAnnouncesMoreThanItHoldsIsRefused) {
     EXPECT_THAT(complaint_about("\xFF\xD8\xFF\xD9"), HasSubstr("has no frame"));
 }
 
-TEST(ImageContainer, TgaGoesByItsNameOrFooterAndIsChecked) {
+TEST(ImageContainer, TgaIsDetectedByNameOrFooter) {
     std::string header(18, '\0');
     header[2] = 2;   // True color without compression.
     header[12] = 2;  // Width.
@@ -592,7 +592,7 @@ TEST_F(InputLimitsTest, AreThreeQuartersOfTheMemoryAtMost) {
     EXPECT_EQ(input_limits().pixels, 0U);
 }
 
-TEST_F(InputLimitsTest, RefuseWholeImagesBeforeTheyAreDecoded) {
+TEST_F(InputLimitsTest, RefuseLargeImagesBeforeDecoding) {
     const std::filesystem::path png = folder_ / "a.png";
     const std::filesystem::path jpeg = folder_ / "a.jpg";
     const std::filesystem::path exr = folder_ / "a.exr";

@@ -40,7 +40,7 @@ bool module_is_mapped() {
 const Image one_texel = make_image(1, 1, 1, 8, ColorSpace::data);
 
 // Only the tests below run it, in a separate process.
-TEST(ImageModuleChild, WritesAndReadsAndSaysHowItWent) {
+TEST(ImageModuleChild, WritesReadsAndReportsResults) {
     const char* file = std::getenv("RELIEF_TEST_IMAGE");
     if (file == nullptr) GTEST_SKIP() << "is started by other tests";
     std::printf("mapped at start: %d\n", module_is_mapped());
@@ -98,7 +98,7 @@ TEST(ImageModule, IsNotLoadedBeforeTheFirstImageNeedsIt) {
     EXPECT_THAT(output, HasSubstr("width 1"));
 }
 
-TEST(ImageModule, WithoutItTheErrorNamesEveryPlaceLookedAt) {
+TEST(ImageModule, MissingModuleErrorListsTheSearchedFolders) {
     const TemporaryDirectory folder;
     const std::string output =
         child_output(program_elsewhere(folder), "/nowhere/modules", folder / "a.tif");

@@ -49,7 +49,7 @@ TEST(ImageFileReal, PngOfEverySampleTypeHasTheShapeThatTheHeaderPromises) {
     EXPECT_EQ(shape_of(read_data(png / "tbrn2c08.png")), "32 x 32 x 4, 8");
 }
 
-TEST(ImageFileReal, FourBitsWidenOverTheWholeRange) {
+TEST(ImageFileReal, FourBitsUseTheFullRange) {
     RELIEF_NEEDS_SHARED(png, "data/textures/decoder/png");
     EXPECT_THAT(samples_of<std::uint8_t>(read_data(png / "magnum_gray4.png")),
                 ElementsAre(0x88, 0x00, 0xFF, 0xFF, 0x88, 0x00));
@@ -61,7 +61,7 @@ TEST(ImageFileReal, SixteenBitSamplesArriveExactly) {
                 ElementsAre(5000, 6000, 3000, 4000, 1000, 2000));
 }
 
-TEST(ImageFileReal, ColourTagsOfAFileChangeNoSample) {
+TEST(ImageFileReal, ColorTagsChangeNoSample) {
     RELIEF_NEEDS_SHARED(png, "data/textures/decoder/png");
     // The same picture with an sRGB chunk, and as linear with a gAMA chunk of 1.
     EXPECT_EQ(read_data(png / "magnum_rgba-srgb.png").samples,
@@ -71,7 +71,7 @@ TEST(ImageFileReal, ColourTagsOfAFileChangeNoSample) {
     EXPECT_EQ(shape_of(read_data(cube)), "348 x 348 x 1, 8");
 }
 
-TEST(ImageFileReal, CmykJpegBecomesTheColoursOfItsRgbTwin) {
+TEST(ImageFileReal, CmykJpegMatchesItsRgbVersion) {
     RELIEF_NEEDS_SHARED(jpg, "data/textures/decoder/jpg");
     const Image cmyk = read_data(jpg / "magnum_cmyk.jpg");
     const Image rgb = read_data(jpg / "magnum_rgb.jpg");
@@ -80,7 +80,7 @@ TEST(ImageFileReal, CmykJpegBecomesTheColoursOfItsRgbTwin) {
         EXPECT_NEAR(cmyk.as<std::uint8_t>()[at], rgb.as<std::uint8_t>()[at], 2);
 }
 
-TEST(ImageFileReal, ExrGivesItsDataWindowWhereverThatLies) {
+TEST(ImageFileReal, ExrReturnsItsDataWindow) {
     RELIEF_NEEDS_SHARED(exr, "data/textures/decoder/exr");
     const Image plain = read_data(exr / "rgb16f.exr");
     EXPECT_THAT(plain.as<float>(), ElementsAre(6, 7, 8, 3, 4, 5, 0, 1, 2));
@@ -332,7 +332,7 @@ TEST(ImageRowsDamaged, AStreamThatIsTooShortTooLongOrHasAWrongSumIsJudgedAlike) 
     EXPECT_EQ(read_by_rows(file).rows_read, 50);
 }
 
-TEST(ImageRowsDamaged, CutTiffAndExrFilesFailByRowsAsTheyDoWhole) {
+TEST(ImageRowsDamaged, TruncatedTiffAndExrFailAsWholeImages) {
     const test::TemporaryDirectory folder;
     Image words = make_image(300, 900, 3, 16, ColorSpace::data);
     Image floats = make_image(300, 900, 3, 32, ColorSpace::data);
@@ -413,7 +413,7 @@ std::string tiled_tiff(const std::vector<std::uint8_t>& samples) {
     return file;
 }
 
-TEST(ImageRows, OfATiledTiffComeInOrder) {
+TEST(ImageRows, TiledTiffYieldsRowsInOrder) {
     const test::TemporaryDirectory folder;
     std::vector<std::uint8_t> samples(40 * 50);
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -428,7 +428,7 @@ TEST(ImageRows, OfATiledTiffComeInOrder) {
     EXPECT_TRUE(read_by_rows(folder / "a.tif") == read_whole(folder / "a.tif"));
 }
 
-TEST(ImageRows, WhatCannotBeReadByRowsSaysSo) {
+TEST(ImageRows, ReportsFormatsWithoutRows) {
     RELIEF_NEEDS_SHARED(decoder, "data/textures/decoder");
     EXPECT_FALSE(ImageRowReader(decoder / "png/basi0g16.png").is_streamed()) << "interlaced";
     EXPECT_FALSE(ImageRowReader(decoder / "jpg/magnum_rgb.jpg").is_streamed());

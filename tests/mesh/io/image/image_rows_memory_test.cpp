@@ -53,7 +53,7 @@ void copy_as_rgb(const std::filesystem::path& from, const std::filesystem::path&
     writer.finish();
 }
 
-TEST(ImageRowsMemory, FromFileToFileIsBoundedWhateverTheHeight) {
+TEST(ImageRowsMemory, IsBoundedForAnyHeight) {
     const test::TemporaryDirectory folder;
     set_thread_limit(2);  // Each thread has 4 pieces in work.
     for (const char* extension : {".png", ".tif"}) {
@@ -87,7 +87,7 @@ void write_normal_map(const std::filesystem::path& file, int width, int height) 
     writer.finish();
 }
 
-TEST(NormalMapMemory, OfResizingIsBoundedWhateverTheHeight) {
+TEST(NormalMapMemory, ResizingIsBoundedForAnyHeight) {
     const test::TemporaryDirectory folder;
     set_thread_limit(2);
     const auto convert = [&](int height) {

@@ -199,7 +199,7 @@ TEST(ImageRows, SkippedRowsAreNotMissed) {
     }
 }
 
-TEST(ImageRows, WithoutFinishThereIsNoFileAndTheOldOneStays) {
+TEST(ImageRows, WithoutFinishTheOldFileStays) {
     const TemporaryDirectory folder;
     const ImageShape shape{40, 200, 3, 8, ColorSpace::data};
     const Bytes samples = pattern(shape);

@@ -167,7 +167,7 @@ TEST_F(NormalMapFile, IsResizedToAnySize) {
     }
 }
 
-TEST_F(NormalMapFile, OfAnyBitsHasTheSameBytes) {
+TEST_F(NormalMapFile, HasTheSameBytesForAnyBits) {
     for (const int bits : {8, 16, 32}) {
         for (const int target_bits : {8, 16, 32}) {
             for (const FlatCode flat : {FlatCode::half, FlatCode::middle}) {
@@ -233,7 +233,7 @@ TEST_F(NormalMapFile, KeepsCodesWhenOnlyAxesAndAlphaChange) {
     }
 }
 
-TEST_F(NormalMapFile, OfSignedFloatsIsReadAsUnsigned) {
+TEST_F(NormalMapFile, SignedFloatsAreReadAsUnsigned) {
     const auto input = folder / "signed.exr";
     Image map = map_of(11, 6, 4, 32);
     Image with_signs = map;

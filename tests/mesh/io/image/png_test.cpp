@@ -120,7 +120,7 @@ TEST(DeflatePiece, ComesBackByteForByte) {
     }
 }
 
-TEST(DeflatePiece, EveryLengthAndDistanceIsSaid) {
+TEST(DeflatePiece, EncodesEveryLengthAndDistance) {
     // A word, noise up to the distance, and the first bytes of the word again.
     const ByteValues word = noise(300, 256);
     ByteValues bytes = word;
@@ -138,7 +138,7 @@ TEST(DeflatePiece, EveryLengthAndDistanceIsSaid) {
         EXPECT_EQ(unpacked(packed(bytes, {}, effort, Repetitions::sought), bytes.size()), bytes);
 }
 
-TEST(DeflatePiece, NoiseTakesHardlyMoreThanItselfAndRunsNextToNothing) {
+TEST(DeflatePiece, NoiseIsStoredAndRunsAreTiny) {
     for (const WriteEffort effort : efforts) {
         const ByteValues random = noise(1 << 20, 256);
         // 17 stored blocks have 5 bytes before them; 2 + 4 bytes belong to zlib.
@@ -162,7 +162,7 @@ TEST(DeflatePiece, WithoutRepetitionsBytesTakeTheirEntropy) {
                 0.001 * static_cast<double>(bytes.size()));
 }
 
-TEST(DeflatePiece, WhatWentBeforeIsPointedBackTo) {
+TEST(DeflatePiece, ReferencesThePreviousPiece) {
     ByteValues bytes = noise(20000, 256);
     bytes.insert(bytes.end(), bytes.begin(), bytes.end());
     const std::string one = packed(bytes, {20000}, WriteEffort::normal, Repetitions::sought);
@@ -170,7 +170,7 @@ TEST(DeflatePiece, WhatWentBeforeIsPointedBackTo) {
     EXPECT_EQ(unpacked(one, bytes.size()), bytes);
 }
 
-TEST(DeflatePiece, MoreEffortIsNoLarger) {
+TEST(DeflatePiece, MoreEffortIsNotLarger) {
     const ByteValues bytes = mixture(1 << 20);
     const auto size = [&](WriteEffort effort) {
         return packed(bytes, {}, effort, Repetitions::sought).size();
@@ -219,7 +219,7 @@ TEST(HuffmanCode, AlwaysHasTwoSymbols) {
     EXPECT_EQ(lengths, (std::vector<std::uint8_t>{1, 0, 1, 0}));
 }
 
-TEST(Adler32, OfTwoPartsIsThatOfTheWhole) {
+TEST(Adler32, CombinesTwoParts) {
     const ByteValues bytes = noise(300000, 256);
     const auto all = std::as_bytes(std::span(bytes));
     for (const std::size_t cut :
@@ -255,7 +255,7 @@ std::string text() {
     return all;
 }
 
-TEST(InflateStream, GivesTheSameBytesHoweverItIsFed) {
+TEST(InflateStream, HasTheSameBytesForAnyChunks) {
     const std::string bytes = text();
     const std::string stream = test::zlib_stream(bytes);
     for (const std::size_t given :
@@ -330,7 +330,7 @@ std::string palette(int bits) {
     return chunk("PLTE", colors);
 }
 
-TEST(PlainPngs, OfEveryKindAndFilterReadAsLibpngReadsThem) {
+TEST(PlainPngs, AreReadAsByLibpng) {
     for (const auto& [width, height] : {std::pair(1U, 1U), {7U, 6U}, {33U, 11U}}) {
         for (const int type : {0, 2, 3, 4, 6}) {
             for (const int bits : {1, 2, 4, 8, 16}) {
@@ -357,7 +357,7 @@ TEST(PlainPngs, AmongRealFilesReadAsLibpngReadsThem) {
     EXPECT_GT(comparison.direct, 4 * comparison.left);
 }
 
-TEST(PlainPngs, WhatIsOddOrDamagedIsLeftToTheImageModule) {
+TEST(PlainPngs, UnusualAndDamagedFilesGoToTheImageModule) {
     Parts good = parts(7, 6, 8, 2);
     ASSERT_TRUE(directly(good.file()));
     Parts bad = good;
@@ -416,7 +416,7 @@ TEST(PlainPngs, ADamagedOneIsRefusedInLibpngsWords) {
     }
 }
 
-TEST(PngWriter, WhatItWritesReadsAsWritten) {
+TEST(PngWriter, RoundTrips) {
     std::mt19937 random(5);
     for (int channels = 1; channels <= 4; ++channels) {
         for (const int bits : {8, 16}) {
@@ -435,7 +435,7 @@ TEST(PngWriter, WhatItWritesReadsAsWritten) {
     }
 }
 
-TEST(PngWriter, ChunksSayWhatTheImageIs) {
+TEST(PngWriter, ChunksDescribeTheImage) {
     const Image srgb = make_image(2, 1, 3, 8, ColorSpace::srgb);
     const std::string file = encode_png(srgb, {{"relief:a", "up"}, {"b", "cut\0off"s}});
     EXPECT_THAT(file, HasSubstr(chunk("IHDR", big32(2) + big32(1) + "\x08\x02\0\0\0"s) +
@@ -446,7 +446,7 @@ TEST(PngWriter, ChunksSayWhatTheImageIs) {
     EXPECT_THAT(encode_png(data, {}), testing::Not(HasSubstr("sRGB")));
 }
 
-TEST(PngFilter, PaethTakesTheNeighborNearestToTheirPlane) {
+TEST(PngFilter, PaethPredictsFromTheNearestNeighbor) {
     // Left 10, above 20, upper left 12: the plane gives 18, which is nearest to 20.
     const std::vector<std::uint8_t> above{12, 20}, row{10, 25};
     std::vector<std::uint8_t> filtered(2);
@@ -456,7 +456,7 @@ TEST(PngFilter, PaethTakesTheNeighborNearestToTheirPlane) {
     EXPECT_EQ(filtered, row);
 }
 
-TEST(PngFilter, EveryFilterIsUndoneWhateverTheVectors) {
+TEST(PngFilter, EveryFilterIsInvertedForAnyVectorWidth) {
     std::mt19937 random(11);
     for (const std::size_t step : {1U, 2U, 3U, 4U, 6U, 8U}) {
         for (const std::size_t texels : {1U, 2U, 5U, 67U, 200U}) {
@@ -505,7 +505,7 @@ TEST(FilterChoice, NoiseIsLeftAloneAndNotSearched) {
         EXPECT_EQ(choose_filter(rows, size, filter_step, effort).repetitions, Repetitions::ignored);
 }
 
-TEST(FilterChoice, WhatChangesBySmallNoiseFromAboveIsPredictedFromAbove) {
+TEST(FilterChoice, PredictsFromAboveIfRowsAreSimilar) {
     std::mt19937 random(2);
     std::vector<std::size_t> above(size);
     for (std::size_t& value : above)
@@ -515,7 +515,7 @@ TEST(FilterChoice, WhatChangesBySmallNoiseFromAboveIsPredictedFromAbove) {
     EXPECT_EQ(choice.filter, 2);
 }
 
-TEST(FilterChoice, WhatChangesBySmallNoiseFromTheLeftIsPredictedFromTheLeft) {
+TEST(FilterChoice, PredictsFromTheLeftIfColumnsAreSimilar) {
     std::mt19937 random(3);
     std::vector<std::size_t> last(filter_step);
     const auto rows = rows_of([&](std::size_t, std::size_t i) {
@@ -619,7 +619,7 @@ TEST(AnimatedPng, HoldsEveryFrameInOrder) {
     EXPECT_EQ(read_image(folder / "a.png", ImageUse::color).samples, frame(10).samples);
 }
 
-TEST(AnimatedPng, LeavesTheOldFileWhereItIsNotFinished) {
+TEST(AnimatedPng, KeepsTheOldFileIfUnfinished) {
     const test::TemporaryDirectory folder;
     std::ofstream(folder / "a.png") << "old";
     {
@@ -631,7 +631,7 @@ TEST(AnimatedPng, LeavesTheOldFileWhereItIsNotFinished) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(AnimatedPng, RefusesWhatDoesNotFit) {
+TEST(AnimatedPng, RefusesFramesOfAnotherShape) {
     const test::TemporaryDirectory folder;
     AnimatedPng animation(folder / "a.png", 1, 0.1);
     EXPECT_THROW(animation.add(make_image(5, 3, 3, 32, ColorSpace::linear)), InvalidInput);

@@ -189,7 +189,7 @@ TEST(Ktx2File, ADescriptorThatContradictsTheFormatIsRefused) {
     EXPECT_EQ(error(descriptor + 40, 0), "no error");
 }
 
-TEST(Ktx2File, ASmallFileOfZstdMustNotStandForGigabytes) {
+TEST(Ktx2File, SmallZstdFileMustNotExpandToGigabytes) {
     write_texture(temporary("bc5.ktx2"), texture_of(TextureFormat::bc5), {.zstd_level = 1});
     auto bytes = bytes_of(temporary("bc5.ktx2"));
     set_number(bytes, 20, 9000);
@@ -274,7 +274,7 @@ TEST(TextureLevels, HalfFloats) {
     EXPECT_TRUE(std::isnan(samples_of<float>(decode_texture_level(texture, 0))[0]));
 }
 
-TEST(TextureFile, RefusesWhatItCannotWrite) {
+TEST(TextureFile, RefusesUnsupportedTextures) {
     GpuTexture texture = texture_of(TextureFormat::rg16);
     const auto message = [&](const std::string& name, const TextureWriteOptions& options = {}) {
         return message_of<Error>([&] { write_texture(temporary(name), texture, options); });

@@ -147,7 +147,7 @@ TEST(MeshFile, FilesWithWrongBytesAreReadOrRefused) {
     }
 }
 
-TEST(MeshFile, WhatIsNoMeshFileIsRefusedByName) {
+TEST(MeshFile, RefusesOtherExtensions) {
     const test::TemporaryDirectory folder;
     Report report;
     const auto error_of = [&](const std::filesystem::path& file) {
@@ -252,7 +252,7 @@ TEST_F(FarPositions, AreReadInDoubleFromEveryTextFormat) {
     }
 }
 
-TEST_F(FarPositions, OfAMeshThatFloatsPutIntoOnePlaceAreToldApart) {
+TEST_F(FarPositions, StayDistinctDespiteFloatPrecision) {
     const MeshFile file = read_as("a.obj", obj_text(1e7, 1e-3));
     const std::vector<glm::vec3> expected = normals_of(read_as("near.obj", obj_text(0.0)).mesh);
     const std::vector<glm::vec3> normals = normals_of(file.mesh);
@@ -262,7 +262,7 @@ TEST_F(FarPositions, OfAMeshThatFloatsPutIntoOnePlaceAreToldApart) {
     }
 }
 
-TEST_F(FarPositions, StayAsTheyAreWhereFloatsHoldThem) {
+TEST_F(FarPositions, StayUnchangedIfFloatsSuffice) {
     std::string text;
     for (const glm::dvec3& p : roof)
         text += fmt::format("v {} {} {}\n", 524288.0 + 2.0 * p.x, 524288.0 + p.y, 0.25);
@@ -359,7 +359,7 @@ class Cancelling : public testing::TestWithParam<std::string> {
     std::filesystem::path file_ = folder_ / ("grid" + GetParam());
 };
 
-TEST_P(Cancelling, EveryStageIsToldAndEndsWhereThatIsWished) {
+TEST_P(Cancelling, EveryStageIsReportedAndCancelable) {
     std::vector<std::string> stages;
     std::size_t words = 0;
     Progress whole([&](const Progress::State& state) {

@@ -38,7 +38,7 @@ class Obj : public test::MeshTextTest {
 
 const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-TEST_F(Obj, CornersThatShareAllValuesBecomeOneVertexInOrderOfFirstUse) {
+TEST_F(Obj, EqualCornersBecomeOneVertexInOrderOfFirstUse) {
     const Mesh mesh = read(
                           "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 1 0\n"
                           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -72,7 +72,7 @@ TEST_F(Obj, TheTextureOriginMovesToTheUpperLeftCorner) {
                 ElementsAre(glm::vec2(0.25F, 0.875F), glm::vec2(1, 0), glm::vec2(0, 1)));
 }
 
-TEST_F(Obj, NegativeIndicesCountBackFromWhereTheyStand) {
+TEST_F(Obj, NegativeIndicesAreRelativeToTheirLine) {
     const Mesh mesh = read(three + "f -3 -2 -1\nv 5 5 5\nf -4 -3 -1\n").mesh;
     EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(0, 1, 3)));
     EXPECT_EQ(mesh.positions[3], glm::vec3(5.0F));
@@ -114,13 +114,13 @@ TEST_F(Obj, APolygonOfAThousandCornersIsCutAndLeavesLaterFacesAlone) {
     EXPECT_EQ(mesh.triangles.back(), glm::uvec3(6, 7, 8));
 }
 
-TEST_F(Obj, ColorsStandBehindPositions) {
+TEST_F(Obj, ColorsFollowPositions) {
     const Mesh mesh = read("v 0 0 0\nv 1 0 0 0.25 0.5 0.75\nv 0 1 0 1 0 0 0.5\nf 1 2 3\n").mesh;
     EXPECT_THAT(mesh.colors, ElementsAre(glm::vec4(1.0F), glm::vec4(0.25F, 0.5F, 0.75F, 1.0F),
                                          glm::vec4(1, 0, 0, 0.5F)));
 }
 
-TEST_F(Obj, WhatSomeCornersLackIsFilledInAndCounted) {
+TEST_F(Obj, MissingCornerAttributesAreFilledAndCounted) {
     const Mesh mesh =
         read("v 0 0 0\nv 0 1 0\nv 0 0 1\nvt 0.5 0.5\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf 1 2 3\n")
             .mesh;
@@ -131,7 +131,7 @@ TEST_F(Obj, WhatSomeCornersLackIsFilledInAndCounted) {
     EXPECT_EQ(report_.count("corner without texture coordinates"), 3U);
 }
 
-TEST_F(Obj, WhatIsLeftOutIsCounted) {
+TEST_F(Obj, CountsOmittedStatements) {
     read(three +
          "p 1\nl 1 2\nl 2 3\nf 1 2\nf 1 2 3\ncurv 0 1 1 2\nfoo\nf 1/9 2/9 3/9\ns 1\ng a b\n");
     EXPECT_EQ(report_.count("point"), 1U);
@@ -143,7 +143,7 @@ TEST_F(Obj, WhatIsLeftOutIsCounted) {
     EXPECT_EQ(report_.findings().size(), 6U);
 }
 
-TEST_F(Obj, WhatCannotBeReadIsRefusedByLineAndValue) {
+TEST_F(Obj, ErrorsHaveLineAndValue) {
     EXPECT_THAT(error_of(three + "f 1 2 4\n"),
                 HasSubstr("a.obj: face 1 names vertex 4, but there are only 3"));
     EXPECT_THAT(error_of(three + "f 1 2 0\n"), HasSubstr("line 4: vertex 0 is named"));
@@ -206,7 +206,7 @@ TEST_F(Obj, SmoothingGroupsGoWithTheirTrianglesAndComeBack) {
     EXPECT_THAT(read(three + "f 1 2 3\n").mesh.smoothing_groups, IsEmpty());
 }
 
-TEST_F(Obj, ASmoothingGroupThatIsNoNumberIsOffAndCounted) {
+TEST_F(Obj, InvalidSmoothingGroupIsOffAndCounted) {
     for (const char* group : {"seven", "-1", "1.5", "", "4294967296"}) {
         const Mesh mesh = read(three + "s " + group + "\nf 1 2 3\n").mesh;
         EXPECT_THAT(mesh.smoothing_groups, ElementsAre(0U)) << group;
@@ -415,7 +415,7 @@ MeshFile read(const std::string& statements) {
     return read_mesh(file, report);
 }
 
-TEST(ObjObjects, AreThoseOfOWhereThereIsOne) {
+TEST(ObjObjects, FollowOStatements) {
     const MeshFile file = read(
         "f 1 2 3\no bolt high\ng left\nf 1 2 3\nf 2 3 1\no none\no nut\nf 1 2 3\n"
         "o bolt high\nf 3 2 1\n");
@@ -519,14 +519,14 @@ TEST(ObjPieces, SayTheSameInAnySize) {
     }
 }
 
-TEST(ObjPieces, HaveNoNameWhereThereAreSeveralObjects) {
+TEST(ObjPieces, HaveNoNameWithSeveralObjects) {
     const std::string there = every_statement("f 4 1 2\n") + "o second\nf 1 2 3\n";
     EXPECT_EQ(parsed(there, whole).error, "");
     EXPECT_EQ(parsed(there, whole).statements.name, "");
     EXPECT_EQ(parsed(there, 100).statements.name, "");
 }
 
-TEST(ObjPieces, SayTheSameOfWhatIsWrong) {
+TEST(ObjPieces, HaveTheSameErrors) {
     const std::string text = every_statement("f 4000000/3 1 2\n");
     EXPECT_EQ(parsed(text, whole).error, parsed(text, 100).error);
     EXPECT_NE(parsed(text, 100).error.find("names vertex 4000000, but there are only 60"),
@@ -543,7 +543,7 @@ TEST(ObjPieces, SayTheSameOfWhatIsWrong) {
     }
 }
 
-TEST(ObjPieces, EndWhereAStatementDoes) {
+TEST(ObjPieces, EndAtStatements) {
     const std::string text = "v 1 2 \\\n 3\nv 1 2 \\\r\n 3\nv 4 5 6\nv 7 8 9";
     EXPECT_EQ(obj_piece_ends(text, 1), (std::vector<std::size_t>{11, 23, 31, text.size()}));
     EXPECT_EQ(obj_piece_ends(text, 12), (std::vector<std::size_t>{23, text.size()}));

@@ -126,7 +126,7 @@ TEST_F(Ply, MalformedHeadersAreRefusedByLine) {
                 HasSubstr("counted in a floating-point type"));
 }
 
-TEST_F(Ply, WhatIsWrittenReadsBack) {
+TEST_F(Ply, RoundTrips) {
     MeshFile contents{test::sphere(16, 8), {}};
     for (std::size_t i = 0; i < contents.mesh.positions.size(); ++i) {
         contents.mesh.colors.emplace_back(static_cast<float>(i % 256) / 255.0F, 0.0F, 1.0F, 0.2F);
@@ -287,7 +287,7 @@ TEST_F(Off, PolygonsCommentsAndCountsBehindTheKeywordAreRead) {
     EXPECT_TRUE(std::isnan(mesh.positions[1].z));
 }
 
-TEST_F(Off, NormalsColorsAndTextureCoordinatesStandInThatOrder) {
+TEST_F(Off, OrderIsNormalsColorsTextureCoordinates) {
     const Mesh mesh =
         read(
             "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 0 51 255 0.25 0.25\n1 0 0 0 0 1 1.0 0.5 0 0 1\n"
@@ -360,7 +360,7 @@ TEST(PolygonTriangulation, TheTextureDecidesBeforeTheSpace) {
                 ElementsAre(glm::uvec3(0, 1, 3), glm::uvec3(1, 2, 3)));
 }
 
-TEST(PolygonTriangulation, AConcaveQuadIsCutAtItsReflexCornerWhateverItsDiagonals) {
+TEST(PolygonTriangulation, ConcaveQuadIsCutAtItsReflexCorner) {
     // Each corner in turn is reflex, and the texture prefers the other diagonal.
     const Points arrow = {{0, 0, 0}, {4, -1, 0}, {1, 0, 0}, {4, 1, 0}};
     for (std::size_t turn = 0; turn < 4; ++turn) {
@@ -434,7 +434,7 @@ TEST(PolygonTriangulation, AHoleReachedThroughABridgeIsLeftOpen) {
     EXPECT_EQ(sum, 2.0 * (16.0 - 4.0));
 }
 
-TEST(PolygonTriangulation, WithoutAPlaneItIsAFanAndSaysSo) {
+TEST(PolygonTriangulation, DegeneratePolygonBecomesAFanWithAFinding) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<Points> polygons = {
         Points(6, glm::vec3(1.0F)),
