@@ -196,7 +196,7 @@ PlannedExperiment planned(const std::string& id) {
     return planned(id, 1, [] { return 1.0; });
 }
 
-TEST(RunPlanned, TellsOfEachBeforeItAndNamesIt) {
+TEST(RunPlanned, ReportsEachMethodBeforeItRuns) {
     std::vector<std::string> told;
     RunOptions options = rounds(2);
     options.passes = 2;

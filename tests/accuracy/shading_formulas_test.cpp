@@ -171,7 +171,7 @@ double error_of_normals(const NormalSamples& samples, NormalOf normal_of) {
     return formula_error(method, samples.exact_radiances()).rms;
 }
 
-TEST(UnitNormalReference, TellsNormalsThatAreTurnedByADegree) {
+TEST(UnitNormalReference, DetectsNormalsRotatedByADegree) {
     const NormalSamples samples(30.0, 32);
     const auto turned = [](double degrees) {
         return [degrees](const glm::vec3& n) {
@@ -189,7 +189,7 @@ TEST(UnitNormalReference, TellsNormalsThatAreTurnedByADegree) {
     EXPECT_NEAR(error_of_normals(samples, turned(2.0)), 2.0 * of_one, 0.01 * of_one);
 }
 
-TEST(UnitNormalReference, TellsALengthThatIsWrong) {
+TEST(UnitNormalReference, DetectsWrongLengths) {
     // The light of normals n |n|^p: p = 0 for the interpolated normal, -1 for the unit normal, -2
     // for one that is too long by the same factor. At one degree only the first order shows.
     const NormalSamples samples(1.0, 32);

@@ -94,7 +94,7 @@ TEST(ConformanceJudge, LetsTrianglesWithoutAreaBeLeftOut) {
     EXPECT_TRUE(judgment.passes(kit.group));
 }
 
-TEST(ConformanceJudge, TellsTrianglesAlikeByTheirNormals) {
+TEST(ConformanceJudge, DistinguishesEqualTrianglesByNormals) {
     KitMesh kit = square();
     for (std::uint32_t v = 0; v < 3; ++v) {
         kit.mesh.positions.push_back(kit.mesh.positions[v]);

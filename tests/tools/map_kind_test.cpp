@@ -284,7 +284,7 @@ TEST_F(MapKinds, FewTexelsAreNotJudged) {
     run("convert one.png out/a.png --bits 16");
 }
 
-TEST(MapKindOfRealImages, TexelsTellNormalMapsFromOtherImages) {
+TEST(MapKindOfRealImages, TexelsDistinguishNormalMapsFromOtherImages) {
     RELIEF_NEEDS_SHARED(textures, "data/textures");
     std::size_t normals = 0, others = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(textures)) {

@@ -70,7 +70,7 @@ Mesh tilted_square(const glm::vec3& normal, float height = 0.0F) {
     return mesh;
 }
 
-TEST(BakeCheck, NormalsTurnedByOneDegreeAreOneDegreeOff) {
+TEST(BakeCheck, NormalsRotatedByADegreeHaveAnErrorOfADegree) {
     const BakeOptions options = sized(64, 96);
     Image map = make_image(64, 96, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < 64 * 96; ++i) {

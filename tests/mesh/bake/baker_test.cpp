@@ -316,7 +316,7 @@ TEST(Baker, RefusesHighMeshesWithoutASurface) {
     }
 }
 
-TEST(Baker, ReportsBoxesThatFitOnlyWhenTurned) {
+TEST(Baker, ReportsBoxesThatFitOnlyIfRotated) {
     Mesh upright = make_sphere();
     for (glm::vec3& position : upright.positions)
         position *= glm::vec3(0.3F, 1.0F, 0.3F);

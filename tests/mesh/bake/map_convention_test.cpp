@@ -149,7 +149,7 @@ TEST(MapConvention, RecognizesItsOwnBakes) {
     EXPECT_FALSE(fit(encoded(object), VectorSpace::object).was_searched);
 }
 
-TEST(MapConvention, TurnedAxesAreRecognised) {
+TEST(MapConvention, RecognizesRotatedAxes) {
     const SignedAxis x{0, false}, y{1, false}, z{2, false}, minus_x{0, true}, minus_y{1, true};
     const auto axes_of = [](const std::function<glm::vec3(glm::vec3)>& change) {
         const ConventionFit found = fit(encoded(changed(tangent_normals(), change)));

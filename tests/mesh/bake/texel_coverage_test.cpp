@@ -103,7 +103,7 @@ void random_tiling(std::uint32_t seed, int cells, std::vector<glm::vec2>& texcoo
     }
 }
 
-TEST(TexelCoverage, LeavesNoGapAndNoOverlapBetweenNeighbours) {
+TEST(TexelCoverage, LeavesNoGapAndNoOverlapBetweenNeighbors) {
     for (std::uint32_t seed = 0; seed < 30; ++seed) {
         std::vector<glm::vec2> texcoords;
         std::vector<glm::uvec3> triangles;
@@ -205,7 +205,7 @@ TEST(TexelCoverage, ChoosesTheSquareOrMovesEverythingThere) {
     EXPECT_TRUE(map.at(0, 0).is_covered() && map.at(7, 7).is_covered());
 }
 
-TEST(TexelCoverage, TellsMirroredTrianglesFromOtherOverlaps) {
+TEST(TexelCoverage, DistinguishesMirroredTrianglesFromOtherOverlaps) {
     // The left half of the map, its mirrored copy, and a square inside the first.
     const std::vector<glm::vec2> texcoords = {{0, 0},    {0.5F, 0},  {0.5F, 1},  {0, 1},
                                               {0.5F, 0}, {0, 0},     {0, 1},     {0.5F, 1},

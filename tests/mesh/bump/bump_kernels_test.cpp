@@ -262,7 +262,7 @@ TEST(BumpKernels, SlopesAreThePlainSumsAtEveryBorderAndSize) {
     }
 }
 
-TEST(BumpKernels, TheResponseToOnePeakIsTheKernelTurnedRound) {
+TEST(BumpKernels, ResponseToAPeakIsTheMirroredKernel) {
     const Image peak = heights_of(9, 9, [](int x, int y) { return x == 4 && y == 4 ? 1.0 : 0.0; });
     const auto expect = [&](Kernel kernel, int x, int y, double right, double up) {
         const glm::dvec2 found = slope_at(slopes_of(peak, options_of(kernel, Wrap::repeat)), x, y);

@@ -110,7 +110,7 @@ TEST(CornerNormals, AnEdgeOfThreeTrianglesJoinsThoseWithinTheAngle) {
     EXPECT_EQ(all[0], all[6]);
 }
 
-TEST(CornerNormals, NeighboursWoundInOppositeWaysAreAHardEdge) {
+TEST(CornerNormals, OppositelyWoundNeighborsHaveAHardEdge) {
     Mesh sheet = folded_sheet(0.0);
     sheet.triangles[2] = {1, 5, 2};
     sheet.triangles[3] = {1, 4, 5};

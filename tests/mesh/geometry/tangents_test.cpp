@@ -265,7 +265,7 @@ TEST(Tangents, TriangleWithoutGradientHasTheFramesOfItsNeighbors) {
     EXPECT_EQ(test::broken_tangents(mesh, tangents), "");
 }
 
-TEST(Tangents, ATriangleWithoutGradientHasTheHandednessOfMostOfItsNeighbours) {
+TEST(Tangents, TriangleWithoutGradientHasTheHandednessOfMostNeighbors) {
     for (int sides = 0; sides < 8; ++sides) {
         SCOPED_TRACE(sides);
         // The texture of the middle triangle is a line. The third corner of each neighbor lies

@@ -76,7 +76,7 @@ TEST(NormalMapCheck, SoundMapHasNoFindings) {
     EXPECT_FALSE(check.has_problem());
 }
 
-TEST(NormalMapCheck, TellsGreenThroughNoiseBitsAndStrength) {
+TEST(NormalMapCheck, DetectsGreenDespiteNoiseBitsAndStrength) {
     int told = 0;
     for (const double slope : {0.003, 0.01, 0.1, 0.5, 2.0}) {
         for (const double noise : {0.0, 0.02, 0.1}) {

@@ -319,7 +319,7 @@ TEST(Topology, CutsThreeSheetsAtTheirEdgeApart) {
     expect_manifold(surface);
 }
 
-TEST(Topology, CutsNeighboursThatFaceOppositeWaysApart) {
+TEST(Topology, SeparatesNeighborsThatFaceOppositeWays) {
     Report report;
     const Topology surface = topology(
         mesh_from({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 2, 3}}), report);

@@ -127,7 +127,7 @@ TEST(AngleDifference, IsInDegreesForAnyLengths) {
     EXPECT_EQ(difference.angles.undefined, 0U);
 }
 
-TEST(AngleDifference, TellsTinyAnglesFromNone) {
+TEST(AngleDifference, DistinguishesTinyAnglesFromZero) {
     // The cosine of this angle is 1 in float. In double, only the last bit differs from 1.
     const AngleDifference difference =
         angle_difference(of_directions({{0, 0, 1}}), of_directions({{1e-8F, 0, 1}}));

@@ -509,7 +509,7 @@ TEST(Blur, ASunGetsDimmerAndWiderWithRoughness) {
     }
 }
 
-TEST(Blur, ATurnedRoomIsBlurredAlike) {
+TEST(Blur, IsInvariantToRotation) {
     // A quarter turn about y maps texels to texels: +x to -z, -z to -x.
     const auto turned = [](glm::dvec3 d) { return glm::dvec3(d.z, d.y, -d.x); };
     const std::vector<Image> before = faces_of(32, sunny_room);

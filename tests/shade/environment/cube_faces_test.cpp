@@ -150,7 +150,7 @@ float largest_step(const Image& cross) {
     return largest;
 }
 
-TEST(CubeFaces, NeighboursInACrossAreNeighboursOnTheCube) {
+TEST(CubeFaces, NeighborsInACrossAreNeighborsOnTheCube) {
     const std::vector<Image> faces = faces_of_directions(8);
     // The directions of adjacent texels differ by 2/8 on a face and by sqrt(2)/8 across an edge. A
     // wrong face would give a difference of 1 somewhere.

@@ -316,7 +316,7 @@ TEST_F(HardCases, ANormalBentBehindTheSurfaceIsFiniteByEveryModel) {
 
 /// The normal is turned away from the eye, and further from the half vector: n.v = -0.6 and n.h =
 /// -0.88 count as 0. The square of n.h would give 1.6.
-TEST_F(HardCases, AMetalTurnedAwayFromTheHalfVectorShowsNoHighlightOfTheOtherSide) {
+TEST_F(HardCases, MetalHasNoHighlightOfItsBackSide) {
     Scene scene = lit_square();
     scene.materials[0].metallic_roughness =
         MetallicRoughness{glm::vec3(1.0F), 1.0F, 0.5F, std::nullopt};

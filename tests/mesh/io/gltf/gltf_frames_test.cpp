@@ -251,7 +251,7 @@ TEST_F(GltfFrames, RemovingTangentsRemovesTheirDisplacementsToo) {
     EXPECT_TRUE(after["targets"][0].contains("POSITION"));
 }
 
-TEST_F(GltfFrames, InterleavedNeighboursMoveOutTogether) {
+TEST_F(GltfFrames, InterleavedAttributesMoveTogether) {
     std::vector<float> rows;
     for (int i = 0; i < 3; ++i) {
         const float x = static_cast<float>(i);

@@ -235,7 +235,7 @@ TEST_F(GltfMeshopt, VersionOneGivesTheDeltasOfTheSpecificationsExample) {
     }
 }
 
-TEST_F(GltfMeshopt, VersionOneHasWiderDeltasAndTurnedDifferences) {
+TEST_F(GltfMeshopt, VersionOneHasWiderDeltasAndRotatedDifferences) {
     // Two elements with literal bytes: both codes for each byte position. Channel 0 adds pairs of
     // bytes: code 3 is -2, 0x0200 is 256, 0x0100 is 128. Channel 1 uses exclusive ors of words that
     // are rotated left by 8 bits.
