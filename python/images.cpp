@@ -338,7 +338,7 @@ py::object green_of(const NormalMapCheck& check) {
 
 py::list conditions_of(const NormalMapCheck& check, Severity severity) {
     py::list list;
-    for (const MapConditionCount& found : check.found) {
+    for (const MapConditionCount& found : check.conditions) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (info.severity != severity) continue;
         py::dict entry;

@@ -430,7 +430,7 @@ py::dict py_check_mesh(const MeshObject& mesh, bool for_baking, bool for_tangent
     std::optional<IdentifiedTangents> tangents;
     const Diagnosis diagnosis = without_gil([&] {
         Diagnosis result = diagnose(mesh);
-        for (const MeshConditionCount& found : result.found) {
+        for (const MeshConditionCount& found : result.conditions) {
             bool is_problem = condition_info(found.condition).severity == Severity::problem;
             if (found.condition == MeshCondition::texture_overlapping && for_baking)
                 is_problem = true;

@@ -33,18 +33,18 @@ void code(std::span<const float> heights, double least, double range, std::span<
 
 }  // namespace
 
-HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& place) {
+HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& position) {
     HeightSample sum;
     for (const HeightWave& wave : waves) {
-        const double angle = glm::dot(wave.frequency, place) + wave.phase;
+        const double angle = glm::dot(wave.frequency, position) + wave.phase;
         sum.height += wave.amplitude * portable::sin(angle);
         sum.slope += wave.amplitude * portable::cos(angle) * wave.frequency;
     }
     return sum;
 }
 
-AnalyticHeights sampled_heights(int width, int height,
-                                const std::function<HeightSample(const glm::dvec2& place)>& field) {
+AnalyticHeights sampled_heights(
+    int width, int height, const std::function<HeightSample(const glm::dvec2& position)>& field) {
     AnalyticHeights result{make_image(width, height, 1, 32, ColorSpace::data), {}};
     const std::span<float> heights = result.heights.as<float>();
     result.normals.resize(heights.size());
@@ -64,8 +64,8 @@ AnalyticHeights sampled_heights(int width, int height,
 }
 
 AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves) {
-    return sampled_heights(width, height,
-                           [&](const glm::dvec2& place) { return evaluate_waves(waves, place); });
+    return sampled_heights(
+        width, height, [&](const glm::dvec2& position) { return evaluate_waves(waves, position); });
 }
 
 std::vector<HeightWave> tiling_waves(int width, int height, int count, double shortest,
@@ -160,12 +160,12 @@ FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 cells = glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
     const glm::dvec2 cell = size / cells;
     const double radius = 0.48 * std::min(cell.x, cell.y);
-    return [=](const glm::dvec2& place) -> HeightSample {
-        const glm::dvec2 index = glm::floor(place / cell);
+    return [=](const glm::dvec2& position) -> HeightSample {
+        const glm::dvec2 index = glm::floor(position / cell);
         Random random(recipe.seed + static_cast<std::uint32_t>(index.x + index.y * cells.x));
         // The RMS slope of the shape is about its height divided by its radius.
         const double peak = recipe.rms_slope * radius * random.between(0.5, 1.5);
-        const glm::dvec2 from_center = place - (index + 0.5) * cell;
+        const glm::dvec2 from_center = position - (index + 0.5) * cell;
         const double inside = 1.0 - glm::dot(from_center, from_center) / (radius * radius);
         if (inside <= 0.0) return {};
         return {peak * inside * inside * inside,
@@ -177,8 +177,8 @@ FieldFunction domes(int width, int height, const FieldRecipe& recipe) {
 FieldFunction creases(int width, int height, const FieldRecipe& recipe) {
     const glm::dvec2 size(width, height);
     const glm::dvec2 period = size / glm::max(glm::round(size / recipe.shortest), glm::dvec2(1.0));
-    return [=](const glm::dvec2& place) -> HeightSample {
-        const glm::dvec2 phase = glm::fract((place + 0.37) / period) - 0.5;
+    return [=](const glm::dvec2& position) -> HeightSample {
+        const glm::dvec2 phase = glm::fract((position + 0.37) / period) - 0.5;
         const glm::dvec2 side(phase.x < 0.0 ? 1.0 : -1.0, phase.y < 0.0 ? 1.0 : -1.0);
         const double slope = recipe.rms_slope / std::sqrt(2.0);
         const glm::dvec2 roof = slope * period * (0.5 - glm::abs(phase));
@@ -194,17 +194,17 @@ FieldFunction terraces(int width, int height, const FieldRecipe& recipe) {
         tiling_waves(width, height, 8, recipe.shortest, 0.25, recipe.seed + 1);
     const double between = recipe.shortest;
     const double wall = 4.0 * recipe.rms_slope;
-    const auto level = [=](const glm::dvec2& place) {
-        return std::floor(evaluate_waves(shape, place).height / between + 0.3);
+    const auto level = [=](const glm::dvec2& position) {
+        return std::floor(evaluate_waves(shape, position).height / between + 0.3);
     };
-    return [=](const glm::dvec2& place) -> HeightSample {
-        HeightSample result = evaluate_waves(ground, place);
-        const double own = level(place);
+    return [=](const glm::dvec2& position) -> HeightSample {
+        HeightSample result = evaluate_waves(ground, position);
+        const double own = level(position);
         result.height += wall * own;
         // A texel whose neighbor is on another level is beside a wall and has no normal.
         for (const glm::dvec2& step :
              {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1)}) {
-            if (level(place + step) != own)
+            if (level(position + step) != own)
                 result.slope = glm::dvec2(std::numeric_limits<double>::quiet_NaN());
         }
         return result;
@@ -218,14 +218,14 @@ FieldFunction mixed(int width, int height, const FieldRecipe& recipe) {
         tiling_waves(width, height, 8, longest / 4.0, recipe.rms_slope, recipe.seed);
     const std::vector<HeightWave> fine = tiling_waves(width, height, waves_in_all, recipe.shortest,
                                                       recipe.rms_slope, recipe.seed + 1);
-    return [=](const glm::dvec2& place) -> HeightSample {
-        const double angle = 2.0 * std::numbers::pi * place.x / width;
+    return [=](const glm::dvec2& position) -> HeightSample {
+        const double angle = 2.0 * std::numbers::pi * position.x / width;
         const double s = 0.5 - 0.5 * portable::cos(angle);
         const double mask = s * s;
         const double steepness =
             2.0 * s * 0.5 * portable::sin(angle) * 2.0 * std::numbers::pi / width;
-        HeightSample result = evaluate_waves(wide, place);
-        const HeightSample detail = evaluate_waves(fine, place);
+        HeightSample result = evaluate_waves(wide, position);
+        const HeightSample detail = evaluate_waves(fine, position);
         result.height += mask * detail.height;
         result.slope += mask * detail.slope + glm::dvec2(steepness * detail.height, 0.0);
         return result;
@@ -237,11 +237,11 @@ FieldFunction shape_of(int width, int height, const FieldRecipe& recipe) {
         case FieldShape::waves: {
             auto waves = tiling_waves(width, height, waves_in_all, recipe.shortest,
                                       recipe.rms_slope, recipe.seed);
-            return [waves](const glm::dvec2& place) { return evaluate_waves(waves, place); };
+            return [waves](const glm::dvec2& position) { return evaluate_waves(waves, position); };
         }
         case FieldShape::open: {
             auto waves = open_waves(std::max(width, height), recipe);
-            return [waves](const glm::dvec2& place) { return evaluate_waves(waves, place); };
+            return [waves](const glm::dvec2& position) { return evaluate_waves(waves, position); };
         }
         case FieldShape::domes:
             return domes(width, height, recipe);

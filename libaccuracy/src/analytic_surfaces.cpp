@@ -130,14 +130,14 @@ Implicit off_cubic(const Cubic& cubic, const glm::dvec3& p) {
 /// Finds the nearest point by moving tangentially below the given one and back to the surface. The
 /// error falls by the factor distance * curvature in each step.
 ExactPoint nearest_zero(const std::function<Implicit(const glm::dvec3&)>& off,
-                        const glm::dvec3& place) {
+                        const glm::dvec3& position) {
     constexpr int max_steps = 60;
     constexpr double negligible = 1e-13;
-    glm::dvec3 p = place;
+    glm::dvec3 p = position;
     for (int step = 0; step < max_steps; ++step) {
         const Implicit here = off(p);
         const glm::dvec3 normal = glm::normalize(here.gradient);
-        const glm::dvec3 below = place - normal * glm::dot(place - p, normal);
+        const glm::dvec3 below = position - normal * glm::dot(position - p, normal);
         const Implicit there = off(below);
         const glm::dvec3 next =
             below - there.gradient * (there.value / glm::dot(there.gradient, there.gradient));
@@ -346,8 +346,8 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
     return result;
 }
 
-std::function<ExactPoint(const glm::dvec3& place)> nearest_on_surface(AnalyticSurface surface,
-                                                                      std::uint32_t seed) {
+std::function<ExactPoint(const glm::dvec3& position)> nearest_on_surface(AnalyticSurface surface,
+                                                                         std::uint32_t seed) {
     std::function<Implicit(const glm::dvec3&)> off;
     switch (surface) {
         case AnalyticSurface::sphere:
@@ -370,7 +370,8 @@ std::function<ExactPoint(const glm::dvec3& place)> nearest_on_surface(AnalyticSu
             break;
         }
     }
-    return [off = std::move(off)](const glm::dvec3& place) { return nearest_zero(off, place); };
+    return
+        [off = std::move(off)](const glm::dvec3& position) { return nearest_zero(off, position); };
 }
 
 TexturedMesh beveled_plate(double width) {

@@ -96,13 +96,13 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
         "is known at {} of {} examined vertices; the others have too few neighbors or no smooth "
         "surface. Its expected error is {:.2g} degrees. It assumes that the vertices lie on the "
         "surface, and is not valid for models whose vertices do not.",
-        creases.description, fitted.corners.size(), fitted.places, fitted.reference_degrees);
+        creases.description, fitted.corners.size(), fitted.examined_fans, fitted.reference_degrees);
     constexpr std::size_t fewest = 16;
-    ground_truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.places / 10);
+    ground_truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.examined_fans / 10);
     ground_truth.expected_error = fitted.reference_degrees;
-    if (fitted.places > 0) {
-        ground_truth.unjudged =
-            1.0 - static_cast<double>(fitted.corners.size()) / static_cast<double>(fitted.places);
+    if (fitted.examined_fans > 0) {
+        ground_truth.unjudged = 1.0 - static_cast<double>(fitted.corners.size()) /
+                                          static_cast<double>(fitted.examined_fans);
     }
     ground_truth.corners = std::move(fitted.corners);
     ground_truth.normals = std::move(fitted.normals);

@@ -327,7 +327,7 @@ TEST_P(FittedNormalsOnSurfaces, AreFarTruerThanAveragedOnesAndKnowHowMuch) {
         std::count_if(fitted.corners.begin(), fitted.corners.end(), [&](std::uint32_t corner) {
             return reference.inner[test::vertex_at(reference.mesh, corner)] == 1;
         });
-    EXPECT_GE(static_cast<double>(fits), 0.97 * share * static_cast<double>(fitted.places));
+    EXPECT_GE(static_cast<double>(fits), 0.97 * share * static_cast<double>(fitted.examined_fans));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -474,7 +474,7 @@ TEST(FittedNormals, AreEmptyWithoutASurface) {
     tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     const FittedNormals few = fitted_normals(tetrahedron, {});
-    EXPECT_EQ(few.places, 4U);
+    EXPECT_EQ(few.examined_fans, 4U);
     EXPECT_TRUE(few.corners.empty());
     Mesh broken = graph_of([](double, double) { return 0.0; }, 8);
     broken.positions[40].x = std::numeric_limits<float>::quiet_NaN();
@@ -487,12 +487,12 @@ TEST(FittedNormals, SampleLargeMeshesIndependentlyOfThreads) {
     const AnalyticMesh reference =
         analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, 32, 1);
     FitOptions options;
-    options.max_places = 100;
+    options.max_fans = 100;
     set_thread_limit(1);
     const FittedNormals one = fitted_normals(reference.mesh, options);
     set_thread_limit(0);
     const FittedNormals all = fitted_normals(reference.mesh, options);
-    EXPECT_EQ(one.places, 100U);
+    EXPECT_EQ(one.examined_fans, 100U);
     EXPECT_EQ(one.fans, 1024U);
     EXPECT_EQ(one.corners, all.corners);
     EXPECT_EQ(one.normals, all.normals);

@@ -86,7 +86,7 @@ TEST(HostileMeshesThemselves, HaveEveryKindOfProblem) {
     std::vector<std::size_t> meshes_with(mesh_conditions().size());
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
         Mesh mesh = hostile_mesh(seed);
-        for (const MeshConditionCount& found : diagnose(mesh).found)
+        for (const MeshConditionCount& found : diagnose(mesh).conditions)
             ++meshes_with[static_cast<std::size_t>(found.condition)];
     }
     for (const MeshConditionInfo& condition : mesh_conditions()) {

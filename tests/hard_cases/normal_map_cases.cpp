@@ -209,7 +209,7 @@ std::string not_found(const Image& map, const std::vector<MapCondition>& expecte
                       const std::map<std::string, std::string>& metadata = {}) {
     std::vector<MapCondition> conditions;
     std::string words;
-    for (const MapConditionCount& found : check_normal_map(map, metadata).found) {
+    for (const MapConditionCount& found : check_normal_map(map, metadata).conditions) {
         conditions.push_back(found.condition);
         words += std::string(condition_info(found.condition).word) + "; ";
     }

@@ -79,7 +79,7 @@ Summary summary_of(const std::string& tool, const Verdicts& verdicts, const std:
                  {"unreadable", verdicts.unreadable}});
     const bool has_findings = verdicts.all() > verdicts.unreadable;
     summary.add("details", has_findings ? document + " describes each condition" : "",
-                {{"words", document}});
+                {{"documentation", document}});
     summary.add_json({{"files", std::move(files)}});
     return summary;
 }

@@ -130,7 +130,7 @@ void check_height_map(const Job& job, const BumpRequest& request, const HeightMa
     if (request.channel)
         input.accepted.insert(input.accepted.end(), {MapKind::color, MapKind::packed});
     const bool is_gray =
-        map.info().channels < 3 || (!map.is_streamed() && map.map().colored_share <= min_share);
+        map.info().channels < 3 || (!map.is_streamed() && map.map().colored_fraction <= min_share);
     if (!check_stated_kind(input, request.assumed) && !is_gray)
         check_judged_kind(input, read_sample(job.input));
 }
@@ -140,8 +140,9 @@ void report_channels(const BumpRequest& request, const HeightMapFile& map,
                      const HeightMapFile::Survey& survey, Report& report) {
     if (request.channel) return;
     const bool is_streamed = map.is_streamed();
-    const double colored = is_streamed ? survey.colored_share : map.map().colored_share;
-    const double alpha = is_streamed ? survey.partial_alpha_share : map.map().partial_alpha_share;
+    const double colored = is_streamed ? survey.colored_fraction : map.map().colored_fraction;
+    const double alpha =
+        is_streamed ? survey.partial_alpha_fraction : map.map().partial_alpha_fraction;
     if (colored > min_share) {
         report.add("color image read as heights", "map", 0,
                    fmt::format("the height is the mean of red, green and blue, which differ in "

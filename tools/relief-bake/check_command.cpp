@@ -45,7 +45,7 @@ struct CheckedMap {
         return !is_baked || condition != MapCondition::texel_facing_back;
     }
     [[nodiscard]] bool is_sound() const {
-        return error.empty() && std::ranges::none_of(check.found, [&](const auto& found) {
+        return error.empty() && std::ranges::none_of(check.conditions, [&](const auto& found) {
                    return condition_info(found.condition).severity == Severity::problem &&
                           is_judged(found.condition);
                });
@@ -204,7 +204,7 @@ std::string describe_bits(const std::vector<int>& bits) {
 /// The findings of one severity, each followed by its remedy.
 std::vector<std::string> finding_lines(const CheckedMap& map, Severity severity) {
     std::vector<std::string> lines;
-    for (const MapConditionCount& found : map.check.found) {
+    for (const MapConditionCount& found : map.check.conditions) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (info.severity != severity || !map.is_judged(found.condition)) continue;
         lines.push_back(
@@ -223,7 +223,7 @@ std::vector<std::string> finding_lines(const CheckedMap& map, Severity severity)
 /// The conditions that only the models of the map show to be right or wrong.
 std::vector<std::string> unjudged_lines(const CheckedMap& map) {
     std::vector<std::string> lines;
-    for (const MapConditionCount& found : map.check.found) {
+    for (const MapConditionCount& found : map.check.conditions) {
         if (map.is_judged(found.condition)) continue;
         const MapConditionInfo& info = condition_info(found.condition);
         lines.push_back(to_string(
@@ -242,7 +242,7 @@ std::vector<std::string> unjudged_lines(const CheckedMap& map) {
 
 Json unjudged_json(const CheckedMap& map) {
     Json list = Json::array();
-    for (const MapConditionCount& found : map.check.found) {
+    for (const MapConditionCount& found : map.check.conditions) {
         if (map.is_judged(found.condition)) continue;
         const MapConditionInfo& info = condition_info(found.condition);
         list.push_back({{"kind", info.word},
@@ -256,7 +256,7 @@ Json unjudged_json(const CheckedMap& map) {
 /// The findings of one severity.
 Json findings_json(const CheckedMap& map, Severity severity) {
     Json list = Json::array();
-    for (const MapConditionCount& found : map.check.found) {
+    for (const MapConditionCount& found : map.check.conditions) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (info.severity != severity || !map.is_judged(found.condition)) continue;
         list.push_back({{"kind", info.word},
@@ -634,15 +634,15 @@ Command add_map_check_command(CLI::App& tool) {
     add_switch(
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_problems and unreadable (numbers of "
-        "files), words (the documentation), files [file, sound, error or: width, height, "
-        "channels, bits, content, stated {content, green, flat, channels, color-space, alpha}, "
-        "curve, color_tag, lengths and lengths_uncurved {mean, rms_deviation, within}, green "
-        "{is, correlation, deviation, confidence, scale} or null, zero_code, seams [x, y], "
-        "bits_used, alpha_correlation, problems and notes [kind, element, count, first, meaning, "
-        "remedy], unjudged (without the models) [kind, element, count, first], milliseconds, "
-        "megapixels_per_second, exact {file, levels [width, height, mean, rms, p99, max], "
-        "inverted_green}, surface {baked, error and center {rms, mean, p99, max, texels}, stages "
-        "{fraction, rms}, worst, convention, problems, remedies, ...}].");
+        "files), documentation (the page that describes the conditions), files [file, sound, "
+        "error or: width, height, channels, bits, content, stated {content, green, flat, "
+        "channels, color-space, alpha}, curve, color_tag, lengths and lengths_uncurved {mean, "
+        "rms_deviation, within}, green {is, correlation, deviation, confidence, scale} or null, "
+        "zero_code, seams [x, y], bits_used, alpha_correlation, problems and notes [kind, "
+        "element, count, first, meaning, remedy], unjudged (without the models) [kind, element, "
+        "count, first], milliseconds, megapixels_per_second, exact {file, levels [width, height, "
+        "mean, rms, p99, max], inverted_green}, surface {baked, error and center {rms, mean, p99, "
+        "max, texels}, stages {fraction, rms}, worst, convention, problems, remedies, ...}].");
     add_switch(app, "--strict", options->strict,
                "Exit with 3 if a file has problems, by itself or on its models. Notes are not "
                "problems.");

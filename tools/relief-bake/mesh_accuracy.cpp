@@ -261,7 +261,7 @@ std::string describe(const ConventionFit& fit) {
     return fmt::format(
         "{}: with this convention, the error is {:.3g} degrees instead of {:.3g} "
         "(RMS)",
-        fmt::join(parts, "; "), fit.found_degrees, fit.given_degrees);
+        fmt::join(parts, "; "), fit.best_degrees, fit.given_degrees);
 }
 
 /// Commands that convert the map, or make a model that fits it; the output files are "out.png" and
@@ -373,7 +373,7 @@ std::vector<std::string> stage_lines(const BakeCheck& check) {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < bake_stage_count; ++i) {
         lines.push_back(fmt::format("{:<12} {:>6.1f} %  {:>8.3g} degrees RMS  {}", stage_names[i],
-                                    100.0 * check.stages[i].share, check.stages[i].error.rms,
+                                    100.0 * check.stages[i].fraction, check.stages[i].error.rms,
                                     descriptions[i]));
     }
     return lines;
@@ -424,7 +424,7 @@ Json convention_json(const ConventionFit& fit) {
              json_list(fit.changes,
                        [&](ConventionPart part) { return describe(fit.convention, part).name; })},
             {"assumed_degrees", fit.given_degrees},
-            {"best_degrees", fit.found_degrees},
+            {"best_degrees", fit.best_degrees},
             {"tried", fit.tried}};
 }
 
@@ -481,7 +481,7 @@ Summary summary_of(const VerifiedMap& map) {
     const BakeCheck& check = map.check;
     Json stages = Json::object();
     for (std::size_t i = 0; i < bake_stage_count; ++i)
-        stages[stage_names[i]] = {{"fraction", check.stages[i].share},
+        stages[stage_names[i]] = {{"fraction", check.stages[i].fraction},
                                   {"rms", check.stages[i].error.rms}};
     Summary summary;
     summary.add(

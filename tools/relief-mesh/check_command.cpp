@@ -350,12 +350,12 @@ Command add_check_command(CLI::App& tool) {
     add_switch(
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_problems and unreadable (numbers of "
-        "files), words (the documentation), files [file, sound, error or: format, problems and "
-        "notes of reading, primitives [name, sound, triangles, vertices, size, spacing, "
-        "overlap_raster, tangents {basis, variant, nearest, nearest_by_far, same_here, "
-        "texcoord_set, texcoord_set_of_material, corners, left_out, without_direction, "
-        "stored_bits, tolerance, agreements} or null, problems and notes [kind, element, count, "
-        "first, outcome]]].");
+        "files), documentation (the page that describes the conditions), files [file, sound, "
+        "error or: format, problems and notes of reading, primitives [name, sound, triangles, "
+        "vertices, size, spacing, overlap_raster, tangents {basis, variant, nearest, "
+        "nearest_by_far, same_here, texcoord_set, texcoord_set_of_material, corners, left_out, "
+        "without_direction, stored_bits, tolerance, agreements} or null, problems and notes "
+        "[kind, element, count, first, outcome]]].");
     add_switch(app, "--strict", options->strict,
                "Exit with 3 if a file has problems. Notes do not count.");
     add_switch(app, "--for-baking", options->for_baking,

@@ -421,7 +421,7 @@ void summarize(const CheckSums& sums, BakeCheck& check) {
     const auto index = [](BakeStage stage) { return static_cast<std::size_t>(stage); };
     for (std::size_t i = 0; i < bake_stage_count; ++i) {
         check.stages[i].error = sums.stages[i].stats();
-        check.stages[i].share = all > 0.0 ? sums.squares[i] / all : 0.0;
+        check.stages[i].fraction = all > 0.0 ? sums.squares[i] / all : 0.0;
     }
     // The error of the codes in object space minus that in tangent space is the error of the basis.
     StageError& codes = check.stages[index(BakeStage::quantization)];
@@ -431,8 +431,8 @@ void summarize(const CheckSums& sums, BakeCheck& check) {
     if (!(more > 0.0)) return;
     // This is the difference of two mean squares, not a mean of angles.
     basis.error.rms = std::sqrt(more / texels);
-    basis.share = codes.share * more / sums.object_squares;
-    codes.share -= basis.share;
+    basis.fraction = codes.fraction * more / sums.object_squares;
+    codes.fraction -= basis.fraction;
 }
 
 /// Returns the distance of the texels that the search of a convention uses.

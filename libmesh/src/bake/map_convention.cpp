@@ -292,26 +292,26 @@ ConventionFit find_convention(const Image& map, std::span<const KnownTexel> texe
     Readings readings(map, texels, search);
     fit.expected_degrees = readings.expected();
     fit.given_degrees = readings.error(search.stated);
-    fit.found_degrees = fit.given_degrees;
+    fit.best_degrees = fit.given_degrees;
     const double fine = std::max(2.0 * fit.expected_degrees, fit.expected_degrees + sure_degrees);
     fit.was_searched = fit.given_degrees > fine;
-    for (int round = 0; round < max_rounds && fit.found_degrees > fine; ++round) {
+    for (int round = 0; round < max_rounds && fit.best_degrees > fine; ++round) {
         MapConvention best = fit.convention;
-        double min_degrees = fit.found_degrees;
+        double min_degrees = fit.best_degrees;
         for (const MapConvention& one : neighbors_of(fit.convention)) {
             const double degrees = readings.error(one);
             if (degrees >= tie_ratio * min_degrees) continue;
             best = one;
             min_degrees = degrees;
         }
-        if (min_degrees > max_remaining * fit.found_degrees) break;
+        if (min_degrees > max_remaining * fit.best_degrees) break;
         fit.convention = best;
-        fit.found_degrees = min_degrees;
+        fit.best_degrees = min_degrees;
     }
     fit.tried = readings.tried;
     fit.changes = changes_between(search.stated, fit.convention);
-    fit.is_explained = fit.was_searched && fit.found_degrees < fit.given_degrees / 2.0 &&
-                       fit.given_degrees - fit.found_degrees > sure_degrees;
+    fit.is_explained = fit.was_searched && fit.best_degrees < fit.given_degrees / 2.0 &&
+                       fit.given_degrees - fit.best_degrees > sure_degrees;
     return fit;
 }
 

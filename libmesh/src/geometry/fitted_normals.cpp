@@ -246,16 +246,18 @@ FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options) {
     const FanMesh fans(mesh, options.hard_edges);
     FittedNormals result;
     result.fans = fans.fan_count();
-    result.places = std::min(result.fans, options.max_places);
-    std::vector<std::optional<Fit>> fits(result.places);
-    const auto fan_of = [&](std::size_t place) { return place * result.fans / result.places; };
-    parallel_for(result.places, 64, [&](std::size_t begin, std::size_t end) {
+    result.examined_fans = std::min(result.fans, options.max_fans);
+    std::vector<std::optional<Fit>> fits(result.examined_fans);
+    const auto fan_of = [&](std::size_t place) {
+        return place * result.fans / result.examined_fans;
+    };
+    parallel_for(result.examined_fans, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t place = begin; place < end; ++place)
             fits[place] = fit_at(fans, fan_of(place));
     });
     std::vector<std::pair<Corner, glm::dvec3>> found;
     double squares = 0.0;
-    for (std::size_t place = 0; place < result.places; ++place) {
+    for (std::size_t place = 0; place < result.examined_fans; ++place) {
         if (!fits[place] || !(fits[place]->doubt <= options.max_fit_difference) ||
             fits[place]->bend > options.max_fit_angle)
             continue;

@@ -217,7 +217,7 @@ glm::vec3 turned(const glm::dmat3& transform, const glm::vec3& direction) {
 
 }  // namespace
 
-Mesh placed(Mesh mesh, const glm::mat4& world_from_object) {
+Mesh transformed(Mesh mesh, const glm::mat4& world_from_object) {
     const glm::dmat4 matrix(world_from_object);
     const glm::dmat3 tangents = directions_from(world_from_object);
     const glm::dmat3 normals = normals_from(tangents);

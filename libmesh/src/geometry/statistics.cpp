@@ -98,11 +98,11 @@ ErrorStats direction_error(std::span<const glm::vec3> directions,
     return error;
 }
 
-double quantile(std::span<const double> sorted, double share) {
-    const double place = share * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(std::floor(place));
+double quantile(std::span<const double> sorted, double fraction) {
+    const double index = fraction * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(std::floor(index));
     const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
+    return std::lerp(sorted[below], sorted[above], index - static_cast<double>(below));
 }
 
 TimeStatistics time_statistics(std::vector<double> values) {

@@ -211,7 +211,7 @@ TangentAgreement agreement_with(const Method& method, const Mesh& mesh,
 void choose(IdentifiedTangents& result) {
     const TangentAgreement* best = nullptr;
     for (const TangentAgreement& agreement : result.agreements) {
-        if (agreement.share() < share_needed) continue;
+        if (agreement.fraction() < share_needed) continue;
         if (best == nullptr ||
             agreement.mean_clamped * factor_alike + means_alike < best->mean_clamped)
             best = &agreement;
@@ -219,7 +219,7 @@ void choose(IdentifiedTangents& result) {
     if (best == nullptr) return;
     result.method = best->method;
     for (const TangentAgreement& agreement : result.agreements) {
-        if (&agreement == best || agreement.share() < share_needed) continue;
+        if (&agreement == best || agreement.fraction() < share_needed) continue;
         if (agreement.mean_clamped <= best->mean_clamped * factor_alike + means_alike)
             result.equivalent_methods.push_back(agreement.method);
     }
@@ -227,7 +227,7 @@ void choose(IdentifiedTangents& result) {
 
 }  // namespace
 
-double TangentAgreement::share() const {
+double TangentAgreement::fraction() const {
     const std::size_t all = angles.count + angles.undefined;
     return all == 0 ? 0.0 : static_cast<double>(agreeing()) / static_cast<double>(all);
 }

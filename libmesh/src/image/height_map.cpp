@@ -170,8 +170,8 @@ void take_shares(const Image& image, HeightMap& map) {
             if (alpha > 0.0 && alpha < 1.0) ++partial;
         }
     }
-    map.colored_share = colored / count;
-    map.partial_alpha_share = partial / count;
+    map.colored_fraction = colored / count;
+    map.partial_alpha_fraction = partial / count;
 }
 
 }  // namespace

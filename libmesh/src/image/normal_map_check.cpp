@@ -97,20 +97,20 @@ const MapConditionInfo& condition_info(MapCondition condition) {
 }
 
 bool NormalMapCheck::has(MapCondition condition) const {
-    return std::any_of(found.begin(), found.end(), [condition](const MapConditionCount& one) {
-        return one.condition == condition;
-    });
+    return std::any_of(
+        conditions.begin(), conditions.end(),
+        [condition](const MapConditionCount& one) { return one.condition == condition; });
 }
 
 bool NormalMapCheck::has_problem() const {
-    return std::any_of(found.begin(), found.end(), [](const MapConditionCount& one) {
+    return std::any_of(conditions.begin(), conditions.end(), [](const MapConditionCount& one) {
         return condition_info(one.condition).severity == problem;
     });
 }
 
 Report to_report(const NormalMapCheck& check, std::optional<Severity> severity) {
     Report report;
-    for (const MapConditionCount& found : check.found) {
+    for (const MapConditionCount& found : check.conditions) {
         const MapConditionInfo& info = condition_info(found.condition);
         if (severity && info.severity != *severity) continue;
         report.add(Finding{std::string(info.word), std::string(info.element),
@@ -251,10 +251,10 @@ class FoundConditions {
     explicit FoundConditions(NormalMapCheck& check) : check_(check) {}
 
     void if_so(bool is_so, MapCondition condition) {
-        if (is_so) check_.found.push_back({condition, 1, {}});
+        if (is_so) check_.conditions.push_back({condition, 1, {}});
     }
     void texels(const MapConditionCount& found) {
-        if (found.count > 0) check_.found.push_back(found);
+        if (found.count > 0) check_.conditions.push_back(found);
     }
 
   private:

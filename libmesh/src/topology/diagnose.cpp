@@ -419,14 +419,14 @@ std::vector<MeshConditionCount> Tally::found() const {
 }
 
 std::size_t Diagnosis::count(MeshCondition condition) const {
-    for (const MeshConditionCount& one : found) {
+    for (const MeshConditionCount& one : conditions) {
         if (one.condition == condition) return one.count;
     }
     return 0;
 }
 
 bool Diagnosis::has_problem() const {
-    return std::any_of(found.begin(), found.end(), [](const MeshConditionCount& one) {
+    return std::any_of(conditions.begin(), conditions.end(), [](const MeshConditionCount& one) {
         return condition_info(one.condition).severity == Severity::problem;
     });
 }
@@ -461,19 +461,19 @@ Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options) {
     Tally all(options.listed);
     for (const Tally& tally : tallies)
         all.merge(tally);
-    diagnosis.found = all.found();
+    diagnosis.conditions = all.found();
     return diagnosis;
 }
 
-Finding to_finding(const MeshConditionCount& found) {
-    const MeshConditionInfo& words = condition_info(found.condition);
+Finding to_finding(const MeshConditionCount& count) {
+    const MeshConditionInfo& words = condition_info(count.condition);
     return {std::string(words.word), std::string(words.element), std::string(words.meaning),
-            found.count, found.first};
+            count.count, count.first};
 }
 
 Report to_report(const Diagnosis& diagnosis, std::optional<Severity> severity) {
     Report report;
-    for (const MeshConditionCount& one : diagnosis.found) {
+    for (const MeshConditionCount& one : diagnosis.conditions) {
         if (!severity || condition_info(one.condition).severity == *severity)
             report.add(to_finding(one));
     }

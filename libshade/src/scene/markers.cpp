@@ -147,7 +147,8 @@ HealthMarkers health_markers(const Scene& scene, std::optional<Severity> severit
         MarkedCondition marked{info.condition, 0, 0, marker_color(info.condition)};
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
             const Shared<Mesh> mesh = deformed_mesh(scene, i);
-            for (const MeshConditionCount& found : diagnoses.at(scene.instances[i].mesh).found) {
+            for (const MeshConditionCount& found :
+                 diagnoses.at(scene.instances[i].mesh).conditions) {
                 if (found.condition != info.condition) continue;
                 marked.count += found.count;
                 for (const std::size_t index : found.first) {

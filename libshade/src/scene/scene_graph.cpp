@@ -487,7 +487,7 @@ class NodeMatrices {
                                            *carried.node, world_from_node_.size()));
         }
         const glm::mat4& node = world_from_node_[*carried.node];
-        if (!carried.place_only) return node * carried.node_from_object;
+        if (!carried.position_only) return node * carried.node_from_object;
         glm::mat4 matrix = carried.node_from_object;
         matrix[3] = node * carried.node_from_object[3];
         return matrix;

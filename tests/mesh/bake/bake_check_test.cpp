@@ -58,7 +58,7 @@ StageError stage(const BakeCheck& check, BakeStage stage) {
 
 double all_shares(const BakeCheck& check) {
     return std::accumulate(check.stages.begin(), check.stages.end(), 0.0,
-                           [](double sum, const StageError& one) { return sum + one.share; });
+                           [](double sum, const StageError& one) { return sum + one.fraction; });
 }
 
 /// A square above that of make_quad(), with these normals.
@@ -91,7 +91,7 @@ TEST(BakeCheck, NormalsRotatedByADegreeHaveAnErrorOfADegree) {
     EXPECT_NEAR(check.center.rms, 1.0, 2e-6);
     EXPECT_EQ(check.rebaked.max, 0.0);
     EXPECT_NEAR(stage(check, BakeStage::other).error.rms, 1.0, 2e-6);
-    EXPECT_NEAR(stage(check, BakeStage::other).share, 1.0, 1e-9);
+    EXPECT_NEAR(stage(check, BakeStage::other).fraction, 1.0, 1e-9);
     EXPECT_EQ(check.discontinuous, 0U);
     ASSERT_EQ(errors.size(), 64U * 96U);
     EXPECT_NEAR(errors[1234], 1.0F, 1e-5F);
@@ -131,7 +131,7 @@ TEST(BakeCheck, QuantizationIsTheErrorOfRounding) {
     EXPECT_NEAR(check.error.rms, rounded, 1e-5);
     EXPECT_NEAR(check.center.rms, rounded, 1e-5);
     EXPECT_NEAR(stage(check, BakeStage::quantization).error.rms, rounded, 1e-5);
-    EXPECT_NEAR(stage(check, BakeStage::quantization).share, 1.0, 1e-3);
+    EXPECT_NEAR(stage(check, BakeStage::quantization).fraction, 1.0, 1e-3);
     EXPECT_NEAR(stage(check, BakeStage::other).error.rms, 0.0, 1e-9);
     EXPECT_NEAR(all_shares(check), 1.0, 1e-9);
 }
@@ -150,7 +150,7 @@ TEST(BakeCheck, SamplingIsTheErrorOfOneSample) {
     EXPECT_GT(one.error.rms, 5.0);
     EXPECT_LT(one.center.max, 1e-4);
     EXPECT_NEAR(stage(one, BakeStage::sampling).error.rms, one.error.rms, 1e-4);
-    EXPECT_NEAR(stage(one, BakeStage::sampling).share, 1.0, 1e-4);
+    EXPECT_NEAR(stage(one, BakeStage::sampling).fraction, 1.0, 1e-4);
     const BakeCheck sixteen = errors_of(16);
     EXPECT_EQ(sixteen.reference_samples, 256);
     EXPECT_LT(sixteen.error.rms, 1.5);
@@ -196,7 +196,7 @@ TEST(BakeCheck, ProjectionCountsTexelsWithDiscontinuities) {
         checked(high, make_quad(), options, baked_map(high, make_quad(), options, 32));
     EXPECT_EQ(check.discontinuous, 8U);  // The column from 0 to 0.125.
     EXPECT_GT(stage(check, BakeStage::projection).error.rms, 5.0);
-    EXPECT_NEAR(stage(check, BakeStage::projection).share, 1.0, 1e-6);
+    EXPECT_NEAR(stage(check, BakeStage::projection).fraction, 1.0, 1e-6);
     ASSERT_EQ(check.worst.size(), 8U);
     EXPECT_EQ(check.worst[0].x, 8);
     EXPECT_TRUE(check.worst[0].is_discontinuous);
@@ -260,7 +260,7 @@ TEST(BakeCheck, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(usual.error.rms, alone.error.rms);
     EXPECT_EQ(usual.error.p99, alone.error.p99);
     for (std::size_t i = 0; i < bake_stage_count; ++i)
-        EXPECT_EQ(usual.stages[i].share, alone.stages[i].share);
+        EXPECT_EQ(usual.stages[i].fraction, alone.stages[i].fraction);
 }
 
 TEST(BakeCheck, ObjectSpaceNeedsNoFrames) {

@@ -132,9 +132,9 @@ const Image& tangent_normals() {
 void expect_explained(const ConventionFit& found, const std::vector<ConventionPart>& changes) {
     EXPECT_TRUE(found.was_searched);
     EXPECT_TRUE(found.is_explained)
-        << found.given_degrees << " to " << found.found_degrees << " degrees";
+        << found.given_degrees << " to " << found.best_degrees << " degrees";
     EXPECT_EQ(found.changes, changes);
-    EXPECT_LT(found.found_degrees, 1.5 * found.expected_degrees + 0.02);
+    EXPECT_LT(found.best_degrees, 1.5 * found.expected_degrees + 0.02);
 }
 
 TEST(MapConvention, RecognizesItsOwnBakes) {
@@ -285,7 +285,7 @@ TEST(MapConvention, AMapOfAnotherModelIsExplainedByNone) {
     const ConventionFit found = fit(encoded(baked(other, pair().low, options_of())));
     EXPECT_TRUE(found.was_searched);
     EXPECT_FALSE(found.is_explained);
-    EXPECT_GT(found.found_degrees, 5.0);
+    EXPECT_GT(found.best_degrees, 5.0);
     EXPECT_GT(found.tried, 100U);
 }
 

@@ -167,7 +167,7 @@ Mesh framed(Mesh mesh, NormalMode normals) {
 
 TEST(Placed, AMirrorTurnsTrianglesAndSigns) {
     const Mesh quad = framed(make_quad(), NormalMode::keep);
-    const Mesh mirrored = placed(quad, glm::scale(glm::mat4(1.0F), {-1.0F, 1.0F, 1.0F}));
+    const Mesh mirrored = transformed(quad, glm::scale(glm::mat4(1.0F), {-1.0F, 1.0F, 1.0F}));
     EXPECT_EQ(mirrored.positions[0], quad.positions[0] * glm::vec3(-1, 1, 1));
     EXPECT_EQ(mirrored.normals[0], glm::vec3(0, 0, 1));
     EXPECT_EQ(mirrored.tangents[0], glm::vec4(-1, 0, 0, -1)) << "bitangent y, as before";
@@ -177,7 +177,7 @@ TEST(Placed, AMirrorTurnsTrianglesAndSigns) {
 
 TEST(Placed, NormalsStayPerpendicularUnderUnevenScale) {
     const Mesh sphere = framed(make_sphere(24, 12), NormalMode::keep);
-    const Mesh ellipsoid = placed(sphere, glm::scale(glm::mat4(1.0F), {3.0F, 1.0F, 0.5F}));
+    const Mesh ellipsoid = transformed(sphere, glm::scale(glm::mat4(1.0F), {3.0F, 1.0F, 0.5F}));
     for (std::size_t v = 0; v < sphere.positions.size(); ++v) {
         const glm::vec3 gradient = ellipsoid.positions[v] / glm::vec3(9.0F, 1.0F, 0.25F);
         EXPECT_LT(degrees_between(ellipsoid.normals[v], gradient), placed_rounding);
@@ -190,7 +190,8 @@ TEST(Placed, FramesAreThoseOfTheMovedMesh) {
     const Mesh torus = framed(make_torus(0.4F, 24, 12), NormalWeight::angle);
     for (const float mirror : {1.0F, -1.0F}) {
         const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), 0.7F, glm::vec3(1.0F, 2.0F, 3.0F));
-        const Mesh moved = placed(torus, glm::scale(turn, glm::vec3(1e-6F, 1e-6F, mirror * 1e-6F)));
+        const Mesh moved =
+            transformed(torus, glm::scale(turn, glm::vec3(1e-6F, 1e-6F, mirror * 1e-6F)));
         Mesh again = moved;
         again.tangents.clear();
         again = framed(std::move(again), NormalWeight::angle);
@@ -206,9 +207,9 @@ TEST(Placed, FramesAreThoseOfTheMovedMesh) {
 
 TEST(Placed, NoDirectionIsLost) {
     const Mesh quad = framed(make_quad(), NormalMode::keep);
-    const Mesh flat = placed(quad, glm::scale(glm::mat4(1.0F), {0.0F, 1.0F, 1.0F}));
+    const Mesh flat = transformed(quad, glm::scale(glm::mat4(1.0F), {0.0F, 1.0F, 1.0F}));
     EXPECT_EQ(flat.tangents[0], quad.tangents[0]);
-    const Mesh nothing = placed(quad, glm::mat4(0.0F));
+    const Mesh nothing = transformed(quad, glm::mat4(0.0F));
     EXPECT_EQ(nothing.normals, quad.normals);
 }
 

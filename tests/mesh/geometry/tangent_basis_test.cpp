@@ -86,7 +86,7 @@ TEST_P(TangentBasisTest, IsIdentified) {
     EXPECT_EQ(identified.best()->negated, 0U);
     for (const TangentAgreement& other : identified.agreements) {
         if (other.method == GetParam()) continue;
-        EXPECT_LT(other.share(), 0.6) << enum_name(other.method);
+        EXPECT_LT(other.fraction(), 0.6) << enum_name(other.method);
         EXPECT_GT(other.angles.mean, 0.2) << enum_name(other.method);
     }
 }
@@ -212,7 +212,7 @@ TEST(TangentBasis, RandomTangentsAreOfNone) {
     const IdentifiedTangents identified = identify_tangents(mesh);
     EXPECT_FALSE(identified.method);
     ASSERT_NE(identified.best(), nullptr);
-    EXPECT_LT(identified.best()->share(), 0.01);
+    EXPECT_LT(identified.best()->fraction(), 0.01);
     EXPECT_FALSE(identified.is_clearly_best());
 }
 

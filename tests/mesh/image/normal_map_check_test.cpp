@@ -49,7 +49,7 @@ Image map_from(const Image& heights, const NormalMapFormat& format = {.bits = 8}
 
 std::vector<MapCondition> conditions_of(const NormalMapCheck& check) {
     std::vector<MapCondition> conditions;
-    for (const MapConditionCount& found : check.found)
+    for (const MapConditionCount& found : check.conditions)
         conditions.push_back(found.condition);
     return conditions;
 }
@@ -227,17 +227,17 @@ TEST(NormalMapCheck, CountsInvalidNormals) {
     const NormalMapCheck check = check_normal_map(map);
     ASSERT_THAT(conditions_of(check),
                 testing::ElementsAre(texel_without_direction, texel_facing_back, texel_gray));
-    EXPECT_EQ(check.found[0].first, (std::vector<std::size_t>{7}));
-    EXPECT_EQ(check.found[1].count, 2U);
-    EXPECT_EQ(check.found[1].first, (std::vector<std::size_t>{9, 4000}));
-    EXPECT_EQ(check.found[2].count, 1U);
+    EXPECT_EQ(check.conditions[0].first, (std::vector<std::size_t>{7}));
+    EXPECT_EQ(check.conditions[1].count, 2U);
+    EXPECT_EQ(check.conditions[1].first, (std::vector<std::size_t>{9, 4000}));
+    EXPECT_EQ(check.conditions[2].count, 1U);
 
     Image floats = map_from(hilly_normals(64, 64, 0.3), {.bits = 32});
     floats.as<float>()[30] = std::numeric_limits<float>::quiet_NaN();
     floats.as<float>()[61] = std::numeric_limits<float>::infinity();
     const NormalMapCheck holes = check_normal_map(floats);
     EXPECT_THAT(conditions_of(holes), testing::ElementsAre(texel_not_finite));
-    EXPECT_EQ(holes.found[0].first, (std::vector<std::size_t>{10, 20}));
+    EXPECT_EQ(holes.conditions[0].first, (std::vector<std::size_t>{10, 20}));
     EXPECT_EQ(holes.green.green, Green::up);
 }
 

@@ -35,13 +35,13 @@ using testing::Pair;
 std::map<MeshCondition, std::size_t> counts_of(const Mesh& mesh,
                                                const DiagnoseOptions& options = {}) {
     std::map<MeshCondition, std::size_t> counts;
-    for (const MeshConditionCount& found : diagnose(mesh, options).found)
+    for (const MeshConditionCount& found : diagnose(mesh, options).conditions)
         counts[found.condition] = found.count;
     return counts;
 }
 
 std::vector<std::size_t> first_of(const Mesh& mesh, MeshCondition condition) {
-    for (const MeshConditionCount& found : diagnose(mesh).found) {
+    for (const MeshConditionCount& found : diagnose(mesh).conditions) {
         if (found.condition == condition) return found.first;
     }
     return {};

@@ -238,8 +238,8 @@ TEST(HealthMarkers, ShowNotesOnlyOnRequest) {
     EXPECT_EQ(marked(health_markers(scene), MeshCondition::edge_boundary), nullptr);
     const HealthMarkers all = health_markers(scene, std::nullopt);
     const Diagnosis diagnosis = diagnose(scene.meshes[0]);
-    EXPECT_EQ(all.conditions.size(), diagnosis.found.size());
-    for (const MeshConditionCount& found : diagnosis.found) {
+    EXPECT_EQ(all.conditions.size(), diagnosis.conditions.size());
+    for (const MeshConditionCount& found : diagnosis.conditions) {
         ASSERT_NE(marked(all, found.condition), nullptr);
         EXPECT_EQ(marked(all, found.condition)->count, found.count);
     }

@@ -191,7 +191,7 @@ class PlayingState : public testing::Test {
         loaded.composed.emplace();
         loaded.composed->graph = moving_scene();
         Scene& scene = loaded.composed->graph.scene;
-        scene.meshes[0] = placed(make_quad(1), glm::scale(glm::mat4(1.0F), glm::vec3(size)));
+        scene.meshes[0] = transformed(make_quad(1), glm::scale(glm::mat4(1.0F), glm::vec3(size)));
         loaded.composed->camera = framed(scene, 0.0F, 0.0F, 0.6F, 4.0F / 3.0F);
         state_.take(std::move(loaded));
     }

@@ -46,11 +46,11 @@ struct HeightSample {
 ///
 /// \param field  is called from several threads
 /// \throws InvalidInput if a size is not positive
-AnalyticHeights sampled_heights(int width, int height,
-                                const std::function<HeightSample(const glm::dvec2& place)>& field);
+AnalyticHeights sampled_heights(
+    int width, int height, const std::function<HeightSample(const glm::dvec2& position)>& field);
 
 /// Evaluates a sum of waves at a position in texels.
-HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& place);
+HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& position);
 
 /// Creates waves whose sum tiles: a whole number of periods of each wave fits into width and
 /// height.
@@ -180,8 +180,8 @@ struct ExactPoint {
 /// \param seed  that of the mesh
 /// \return for a point whose distance from the surface is well below the radii of curvature there;
 ///         far points may get another point of the surface. Positions have an error of about 1e-12
-std::function<ExactPoint(const glm::dvec3& place)> nearest_on_surface(AnalyticSurface surface,
-                                                                      std::uint32_t seed);
+std::function<ExactPoint(const glm::dvec3& position)> nearest_on_surface(AnalyticSurface surface,
+                                                                         std::uint32_t seed);
 
 /// Creates the experiment of [Max 1999]: a closed fan around a vertex at the origin of a cubic
 /// surface z(x, y), with `valence` neighbors on the surface at random directions and distances. The

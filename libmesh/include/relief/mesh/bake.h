@@ -35,7 +35,7 @@ namespace RELIEF_API relief {
 // curvature, positions and colors. A layer that is not requested costs no time and no memory, and
 // layers do not affect each other.
 
-/// Options of ambient occlusion: the share of rays from a point that hit nothing. Rays are
+/// Options of ambient occlusion: the fraction of rays from a point that hit nothing. Rays are
 /// cosine-distributed about the normal, like light from a uniform sky.
 struct OcclusionOptions {
     /// Rays per texel, 1 to 65536, divided evenly among its samples. The error decreases by a

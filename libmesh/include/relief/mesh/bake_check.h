@@ -136,10 +136,10 @@ inline constexpr std::size_t bake_stage_count = 5;
 /// The error of one stage.
 struct StageError {
     ErrorStats error;  ///< The angle of this stage alone, in degrees; for `basis` only its RMS.
-    /// Its share of the mean squared error; the shares add up to 1. It is the projection of the
-    /// stage's error vector onto the total error vector, and negative if the stage compensates
+    /// Its fraction of the mean squared error; the fractions add up to 1. It is the projection of
+    /// the stage's error vector onto the total error vector, and negative if the stage compensates
     /// another one.
-    double share = 0.0;
+    double fraction = 0.0;
 };
 
 struct WorstTexel {

@@ -56,8 +56,8 @@ class HeightMapFile {
     struct Survey {
         Tiling tiling;
         std::vector<Image> parts;
-        double colored_share = 0.0;        ///< As in HeightMap.
-        double partial_alpha_share = 0.0;  ///< As in HeightMap.
+        double colored_fraction = 0.0;        ///< As in HeightMap.
+        double partial_alpha_fraction = 0.0;  ///< As in HeightMap.
     };
     /// Examines the seams and copies parts of the map; a streamed map is read once for both. Values
     /// of transparent texels are ignored: in parts they are replaced by a continuation of the

@@ -104,7 +104,7 @@ struct MeshConditionCount {
 };
 
 struct Diagnosis {
-    std::vector<MeshConditionCount> found;  ///< In the order of the enumeration.
+    std::vector<MeshConditionCount> conditions;  ///< In the order of the enumeration.
     float size = 0.0F;     ///< The longest side of the bounding box of all finite positions.
     float spacing = 0.0F;  ///< The spacing of floats at the largest coordinate.
     /// Texels along each side of the raster for the overlap test; 0 if it was not done.
@@ -144,7 +144,7 @@ struct DiagnoseOptions {
 Diagnosis diagnose(const Mesh& mesh, const DiagnoseOptions& options = {});
 
 /// Converts a condition to a finding of a report.
-Finding to_finding(const MeshConditionCount& found);
+Finding to_finding(const MeshConditionCount& count);
 
 /// Converts all conditions, or those of one severity, to findings.
 Report to_report(const Diagnosis& diagnosis, std::optional<Severity> severity = std::nullopt);

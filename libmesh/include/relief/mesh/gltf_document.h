@@ -296,7 +296,7 @@ struct GltfLevel {
 /// The textures of a material.
 enum class GltfTextureSlot { base_color, metallic_roughness, normal, occlusion, emissive };
 
-/// The place of an image: in the document, or in a file beside it.
+/// The location of an image: in the document, or in a file next to it.
 enum class GltfImageStorage { embedded, external };
 
 class GltfDocument {

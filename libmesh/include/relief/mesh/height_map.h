@@ -61,10 +61,10 @@ struct HeightMap {
     std::vector<std::uint8_t> transparent;
     /// Share of texels whose red, green and blue clearly differ; near 0 for height maps. It is
     /// estimated from about 10000 regularly spaced texels.
-    double colored_share = 0.0;
+    double colored_fraction = 0.0;
     /// Share of texels whose alpha is neither 0 nor the maximum, estimated in the same way: alpha
     /// may be the heights.
-    double partial_alpha_share = 0.0;
+    double partial_alpha_fraction = 0.0;
 
     [[nodiscard]] std::size_t transparent_count() const;
 };

@@ -117,7 +117,7 @@ struct ConventionFit {
     /// RMS error with the given convention; this and the next two without the largest 2% of the
     /// errors.
     double given_degrees = 0.0;
-    double found_degrees = 0.0;     ///< RMS error with `convention`.
+    double best_degrees = 0.0;      ///< RMS error with `convention`.
     double expected_degrees = 0.0;  ///< Expected RMS error of a correct map.
     std::size_t tried = 0;          ///< Number of conventions that were tried.
     /// The parts in which `convention` differs from the given one.

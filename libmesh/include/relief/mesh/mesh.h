@@ -88,7 +88,7 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles);
 ///         they lean). If the transform mirrors, the winding of triangles is reversed, so that they
 ///         stay counter-clockwise, and the w of tangents is negated, so that bitangents still point
 ///         up in the image. A direction that would become zero does not change
-Mesh placed(Mesh mesh, const glm::mat4& world_from_object);
+Mesh transformed(Mesh mesh, const glm::mat4& world_from_object);
 
 /// KHR_texture_transform: texture coordinates are scaled, then rotated, then shifted.
 struct GltfTextureTransform {

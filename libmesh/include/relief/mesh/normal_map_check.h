@@ -136,7 +136,7 @@ struct NormalMapCheck {
     std::vector<int> bits;  ///< Significant bits of each channel; 0: more than 16.
     /// The correlation between the slopes of alpha and those of the normals.
     std::optional<double> alpha_correlation;
-    std::vector<MapConditionCount> found;  ///< In the order of the enumeration.
+    std::vector<MapConditionCount> conditions;  ///< In the order of the enumeration.
 
     [[nodiscard]] bool has(MapCondition condition) const;
     [[nodiscard]] bool has_problem() const;

@@ -160,7 +160,7 @@ std::vector<glm::vec3> triangle_normals(StridedSpan<const glm::vec3> positions,
 struct FittedNormals {
     std::vector<std::uint32_t> corners;  ///< 3 * triangle + (0, 1 or 2), ascending.
     std::vector<glm::dvec3> normals;     ///< The normals at these corners; unit, object space.
-    std::size_t places = 0;              ///< Number of examined fans.
+    std::size_t examined_fans = 0;       ///< Number of examined fans.
     std::size_t fans = 0;                ///< Number of fans of the mesh.
     /// The uncertainty of the reference in degrees: the RMS angle between it and a fit of lower
     /// degree, over all corners. Smaller errors are not significant.
@@ -168,8 +168,8 @@ struct FittedNormals {
 };
 
 struct FitOptions {
-    HardEdges hard_edges;           ///< The fitted surfaces end at hard edges.
-    std::size_t max_places = 8192;  ///< Maximum number of examined fans, which are evenly spread.
+    HardEdges hard_edges;         ///< The fitted surfaces end at hard edges.
+    std::size_t max_fans = 8192;  ///< Maximum number of examined fans, which are evenly spread.
     /// Fans whose two fits differ by more than this many degrees are omitted, because no smooth
     /// surface fits (noise, an unmarked hard edge, triangles as large as the shape).
     double max_fit_difference = 2.0;

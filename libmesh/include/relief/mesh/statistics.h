@@ -108,8 +108,8 @@ struct TimeStatistics {
 /// Interpolates linearly in an ordered list.
 ///
 /// \param sorted  in increasing order; not empty
-/// \param share  0: the first value, 0.5: the median, 1: the last value
-double quantile(std::span<const double> sorted, double share);
+/// \param fraction  0: the first value, 0.5: the median, 1: the last value
+double quantile(std::span<const double> sorted, double fraction);
 
 /// Computes the distribution of values.
 ///

@@ -168,8 +168,8 @@ struct TangentAgreement {
     [[nodiscard]] std::size_t agreeing() const {
         return within[static_cast<std::size_t>(quarter_turns)];
     }
-    /// The agreeing corners as a share of all, 0 to 1.
-    [[nodiscard]] double share() const;
+    /// The agreeing corners as a fraction of all, 0 to 1.
+    [[nodiscard]] double fraction() const;
 };
 
 struct IdentifiedTangents {

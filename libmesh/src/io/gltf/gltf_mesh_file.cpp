@@ -363,7 +363,7 @@ MeshFile flattened(const GltfDocument& document) {
             Report ignored;  // The document's own processing reports these findings.
             parts[i] = with_frames(std::move(parts[i]), options, ignored).mesh;
         }
-        append(result.mesh, placed(std::move(parts[i]), view.primitives[i].world_from_object));
+        append(result.mesh, transformed(std::move(parts[i]), view.primitives[i].world_from_object));
     }
     if (!any_texcoords) result.mesh.texcoords.clear();
     if (!any_colors) result.mesh.colors.clear();

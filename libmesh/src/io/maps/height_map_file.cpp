@@ -221,8 +221,8 @@ void fill_hidden(const Image& transparent, int file_bits, Image& part) {
 HeightMapFile::Survey survey_of(const HeightMap& map, int file_bits,
                                 std::span<const ImagePart> places) {
     HeightMapFile::Survey survey;
-    survey.colored_share = map.colored_share;
-    survey.partial_alpha_share = map.partial_alpha_share;
+    survey.colored_fraction = map.colored_fraction;
+    survey.partial_alpha_fraction = map.partial_alpha_fraction;
     for (const ImagePart& place : places)
         survey.parts.push_back(part_of(map.heights, place));
     if (map.transparent.empty()) {
@@ -266,8 +266,8 @@ HeightMapFile::Survey HeightMapFile::survey(std::span<const ImagePart> parts) co
         add_rows(seams, band.heights);
         collector.add(band.heights, first);
         const double share = static_cast<double>(band.heights.height) / info_.height;
-        survey.colored_share += share * band.colored_share;
-        survey.partial_alpha_share += share * band.partial_alpha_share;
+        survey.colored_fraction += share * band.colored_fraction;
+        survey.partial_alpha_fraction += share * band.partial_alpha_fraction;
     }
     survey.tiling = seams.tiling();
     survey.parts = std::move(collector).parts();

@@ -53,7 +53,7 @@ void append_primitives(JoinedModel& model, const GltfDocument& document, bool in
         return;
     }
     for (const auto& primitive : document.view().primitives) {
-        append_part(model, placed(document.mesh(primitive.what), primitive.world_from_object),
+        append_part(model, transformed(document.mesh(primitive.what), primitive.world_from_object),
                     document.describe(primitive.what));
     }
 }

@@ -87,7 +87,7 @@ MapModel model_of(const GltfDocument& document, ModelSpace space, Report& report
     for (const auto& primitive : view.primitives) {
         MapModelPart part = part_of(document, primitive.what, report);
         part.objects = {primitive.name};
-        part.mesh = placed(std::move(part.mesh), primitive.world_from_object);
+        part.mesh = transformed(std::move(part.mesh), primitive.world_from_object);
         model.parts.push_back(std::move(part));
     }
     model.appearance = {std::move(view.materials), std::move(view.images)};

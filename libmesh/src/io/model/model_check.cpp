@@ -86,7 +86,7 @@ Severity severity_of(MeshCondition condition, const Use& use) {
 void add_part(CheckedModel& model, std::string name, const Mesh& mesh, const Use& use) {
     CheckedPart part{
         std::move(name), mesh.triangles.size(), mesh.positions.size(), diagnose(mesh), {}, {}, {}};
-    for (const MeshConditionCount& found : part.diagnosis.found) {
+    for (const MeshConditionCount& found : part.diagnosis.conditions) {
         const bool is_problem = severity_of(found.condition, use) == Severity::problem;
         (is_problem ? part.problems : part.notes).add(to_finding(found));
     }

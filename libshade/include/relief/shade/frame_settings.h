@@ -128,7 +128,7 @@ struct Overlays {
     /// The edges of all drawn triangles.
     bool wireframe = false;
     /// The tangent (red), bitangent (green) and normal (blue) of every vertex. Their length is this
-    /// share of the scene's size (the diagonal of its box). Tangents need texture coordinates or
+    /// fraction of the scene's size (the diagonal of its box). Tangents need texture coordinates or
     /// stored tangents; missing ones are computed.
     std::optional<float> vertex_frames;
     std::optional<Grid> grid;
@@ -139,7 +139,7 @@ struct Overlays {
     friend bool operator==(const Overlays&, const Overlays&) = default;
 };
 
-/// The default length of vertex frames, as a share of the scene's size.
+/// The default length of vertex frames, as a fraction of the scene's size.
 inline constexpr float default_frame_length = 0.01F;
 /// Pixels across a marker's disc.
 inline constexpr int marker_pixels = 9;

@@ -32,7 +32,8 @@ ImageDifference compare(const Image& a, const Image& b);
 /// The pixels per degree of a screen of 3840 pixels, seen from a distance of its width.
 inline constexpr double default_pixels_per_degree = 3840.0 * std::numbers::pi / 180.0;
 
-/// The perceived difference when two pictures alternate in one place, from 0 (none) to 1 (maximal).
+/// The perceived difference when two pictures alternate at one position, from 0 (none) to 1
+/// (maximal).
 struct FlipDifference {
     double mean = 0;
     double max = 0;

@@ -202,8 +202,8 @@ enum class ToneMapping {
 /// The shadow of the main light: of the first directional light that shines, or if there is none,
 /// of the first spot light, or else of the first point light.
 ///
-/// The light is a disc that faces the middle of the scene. The shadow at a point is the share of
-/// `shadow_point_count` places on the disc that a surface hides, for all light of the main light.
+/// The light is a disc that faces the middle of the scene. The shadow at a point is the fraction of
+/// `shadow_point_count` points of the disc that a surface hides, for all light of the main light.
 /// Rays begin above the point, by 2.5 texels of the shadow maps along its normal, so that a surface
 /// does not shade itself. Unlit materials and those with alpha blending or glTF's transmission cast
 /// none. Middle and radius are those of the sphere around the bounding box of all that casts one.
@@ -213,14 +213,14 @@ struct Shadow {
     float size = 0.0349065850F;  // 2 degrees
 };
 
-/// The places on a light that casts a soft shadow.
+/// The points of a light that casts a soft shadow.
 inline constexpr std::size_t shadow_point_count = 16;
 
 /// A request for ambient occlusion: light from all around, of ambient light and the environment, is
-/// multiplied by the share that arrives at the vertices (Instance::open_shares). Nothing computes
-/// them on its own: see add_ambient_occlusion() in reference.h.
+/// multiplied by the fraction that arrives at the vertices (Instance::open_shares). Nothing
+/// computes them on its own: see add_ambient_occlusion() in reference.h.
 struct AmbientOcclusion {
-    /// Surfaces within this distance occlude, as a share of the longest side of the box of the
+    /// Surfaces within this distance occlude, as a fraction of the longest side of the box of the
     /// scene.
     float distance = 0.5F;
 };
@@ -367,9 +367,9 @@ std::optional<std::string> add_default_environment(Scene& scene);
 Camera framed(const Scene& scene, float azimuth, float elevation, float vertical_fov, float aspect,
               float distance_factor = 1.0F);
 
-/// Returns an orthographic camera with the place and the depth range of another camera. Its height
-/// is the smallest that shows every finite vertex, with a small margin; 1 for a scene without
-/// extent.
+/// Returns an orthographic camera with the position and the depth range of another camera. Its
+/// height is the smallest that shows every finite vertex, with a small margin; 1 for a scene
+/// without extent.
 ///
 /// \param aspect  width / height of the picture, positive
 Camera orthographic(const Scene& scene, Camera camera, float aspect);
@@ -400,7 +400,7 @@ struct Carried {
     std::optional<std::size_t> node;  ///< If absent, pose() does not move the object.
     glm::mat4 node_from_object{1.0F};
     /// Takes only the position from the node, neither rotation nor scale.
-    bool place_only = false;
+    bool position_only = false;
 };
 
 /// A node that orbits on spherical coordinates within its parent's space.
