@@ -469,7 +469,7 @@ std::vector<PlannedExperiment> shading_plan(const PlanOptions& options) {
                 glossy_experiment),
         planned("shading/specular-antialiasing", "Highlights smaller than a pixel",
                 specular_aliasing_experiment),
-        planned("shading/edges", "Edges by several samples a pixel", edge_experiment)};
+        planned("shading/edges", "Edges by several samples per pixel", edge_experiment)};
 }
 
 }  // namespace relief

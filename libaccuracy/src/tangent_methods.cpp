@@ -233,7 +233,7 @@ std::vector<TexturedCase> textured_cases() {
     for (const TextureLayout layout : {TextureLayout::sheared, TextureLayout::mirrored})
         cases.push_back(case_of(AnalyticSurface::torus, Triangulation::jittered, layout));
     cases.push_back({.id = "plate",
-                     .name = "plate with thin bevels, image sheared on those",
+                     .name = "plate with thin bevels and a sheared image on them",
                      .is_quick = true,
                      .mesh = [](int) { return beveled_plate(0.02); }});
     return cases;

@@ -36,7 +36,7 @@ TEST(TangentsExperiments, HaveTheErrorsOfThePage) {
     EXPECT_THAT(torus.finding,
                 HasSubstr("Of the stored frames, mikktspace has the smallest error, 0.1 "
                           "degrees"));
-    const Experiment plate = quick("Tangents: plate with thin bevels, image sheared on those");
+    const Experiment plate = quick("Tangents: plate with thin bevels and a sheared image on them");
     EXPECT_NEAR(measurement_of(plate, "mikktspace").error.rms, 5.353, 5e-4);
     EXPECT_NEAR(measurement_of(plate, "area-weighted").error.rms, 0.114, 5e-4);
     EXPECT_THAT(plate.finding, HasSubstr("area-weighted has the smallest error"));
@@ -67,7 +67,7 @@ TEST(TangentsExperiments, ErrorsFallAtTheOrderOfTheory) {
 
 TEST(TangentsExperiments, WiderBevelsLeaveAreaWeightsMoreToErr) {
     const Chart chart =
-        quick("Tangents: plate with thin bevels, image sheared on those").charts.front();
+        quick("Tangents: plate with thin bevels and a sheared image on them").charts.front();
     const Curve& by_area = curve_of(chart, "area-weighted");
     EXPECT_LT(by_area.points.front().error, 0.1);
     EXPECT_GT(by_area.points.back().error, 1.0);

@@ -98,7 +98,7 @@ std::string sample_tables() {
         "\nError from the mean over the square of each texel, in degrees: RMS / 99 % / "
         "maximum\n\n" +
         table_header(
-            {"rays a texel", "8 bit, mesh", "16 bit, mesh", "8 bit, surface", "16 bit, surface"});
+            {"rays per texel", "8 bit, mesh", "16 bit, mesh", "8 bit, surface", "16 bit, surface"});
     struct Choice {
         const char* name;
         int samples;

@@ -59,7 +59,7 @@ Best best_on(const BumpField& field) {
 
 std::string properties_table() {
     std::string text =
-        "| | order | noise gain | direction off at 8 texels | at 16 |\n|---|---|---|---|---|\n";
+        "| | order | noise gain | direction error at 8 texels | at 16 |\n|---|---|---|---|---|\n";
     for (const NamedKernel& named : named_kernels()) {
         const GradientKernel kernel = gradient_kernel(named.kernel, named.radius);
         const double degrees = 180.0 / std::numbers::pi;
@@ -113,7 +113,7 @@ PageSection kernel_tables() {
     text += "\nRMS error of the normals in degrees, on 256 x 256 texels of waves\n\n";
     text += error_table({"very smooth, float", "smooth, float", "detailed, float", "smooth, 16 bit",
                          "smooth, 8 bit", "detailed, 8 bit", "very smooth, 25 codes of 8 bit"});
-    text += "\nand with noise, or walls\n\n";
+    text += "\nThe same with noise, or with walls\n\n";
     text +=
         error_table({"noise 0.003, float", "noise 0.03, float", "noise 0.3, float",
                      "noise 0.1, 8 bit", "creases, float", "terraces, float", "terraces, 8 bit"});
@@ -122,7 +122,7 @@ PageSection kernel_tables() {
 
 PageSection choice_tables() {
     std::string text =
-        "\n| field | best kernel | RMS | `auto` | RMS | over the best |\n"
+        "\n| field | best kernel | RMS | `auto` | RMS | above the best |\n"
         "|---|---|---|---|---|---|\n";
     for (const FieldRecipe& recipe : evaluation_fields()) {
         const BumpField field = make_bump_field(recipe, field_side, field_side);

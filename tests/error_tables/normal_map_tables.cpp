@@ -200,10 +200,10 @@ std::string table(bool is_carved) {
 }
 
 std::string blend_tables() {
-    return "\nAgainst the sum of the two height fields: RMS / largest error in degrees, by the RMS "
+    return "\nAgainst the sum of the two height fields: RMS / maximum error in degrees, by the RMS "
            "slope of base and detail\n\n" +
-           table(false) +
-           "\nAgainst the base with the detail standing on it along its normals\n\n" + table(true);
+           table(false) + "\nError from the base displaced by the detail along its normals\n\n" +
+           table(true);
 }
 
 constexpr int mip_side = 64;
@@ -249,8 +249,8 @@ std::string mip_tables() {
     std::string text =
         "\nA whole map in one texel: the variance of its slopes along each axis, and the roughness "
         "that\ncompensates for it on a surface of roughness 0.3\n\n" +
-        table_header({"mean length", "true variance", "from the length", "by Toksvig",
-                      "true roughness", "from the length"});
+        table_header({"mean length", "exact variance", "from the length", "by Toksvig",
+                      "exact roughness", "from the length"});
     for (const double slope : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6})
         text += mip_row(slope);
     return text;

@@ -62,12 +62,12 @@ std::string fan_table() {
 
 std::vector<PageSection> normal_tables() {
     const std::string text =
-        surface_table("Regular grids, 64 x 64 cells: RMS / largest error in degrees",
+        surface_table("Regular grids, 64 x 64 cells: RMS / maximum error in degrees",
                       Triangulation::regular) +
         surface_table("Jittered: points moved by up to 0.24 cells", Triangulation::jittered) +
         surface_table("Anisotropic: jittered cells, 16 times as long as wide",
                       Triangulation::anisotropic) +
-        surface_table("Folded: points moved by up to 0.6 cells, some triangles turned over",
+        surface_table("Folded: points moved by up to 0.6 cells, some triangles inverted",
                       Triangulation::folded) +
         fan_table();
     return {{"<!-- tables: written by relief-documents -->\n", text + "\n"}};

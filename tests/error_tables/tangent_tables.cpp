@@ -74,14 +74,13 @@ std::string method_table(const std::string& title, bool at_corners, Measured mea
 
 std::string method_tables() {
     return method_table(
-               "The normal that a texel tilted by 30 degrees stands for, inside of "
-               "triangles: RMS / largest error in degrees",
+               "The decoded normal of a texel tilted by 30 degrees, inside triangles: RMS / "
+               "maximum error in degrees",
                false, texel_errors) +
            method_table("The tangent's direction at vertices", true,
                         [](const TexturedMesh& reference, const CornerTangents& tangents,
                            ShaderBasis) { return corner_tangent_errors(reference, tangents); }) +
-           method_table("The tangent's direction inside of triangles", false,
-                        inner_tangent_errors) +
+           method_table("The tangent's direction inside triangles", false, inner_tangent_errors) +
            "\n";
 }
 
@@ -94,7 +93,7 @@ struct MeasuredCost {
     const char* device;
 };
 constexpr std::array measured_costs = {
-    MeasuredCost{"mikktspace", "1 (88 ns a triangle, one thread)", "28; 4 or 8", "1"},
+    MeasuredCost{"mikktspace", "1 (88 ns per triangle, one thread)", "28; 4 or 8", "1"},
     MeasuredCost{"area-weighted", "0.93", "28; 4 or 8", "1"},
     MeasuredCost{"lengyel", "0.87", "28; 4 or 8", "1"},
     MeasuredCost{"screen-space", "0", "12: normals alone", "1.05 to 1.08"}};
@@ -102,10 +101,10 @@ constexpr std::array measured_costs = {
 /// Returns a table of the errors on three meshes and the costs.
 std::string cost_table() {
     const std::array<std::string, 3> shown = {"torus, jittered", "cubic, anisotropic",
-                                              "plate with thin bevels, image sheared on those"};
+                                              "plate with thin bevels and a sheared image on them"};
     std::string text = "\n";
     text += table_header({"error: torus, jittered", "cubic, anisotropic", "plate with thin bevels",
-                          "computing", "bytes a vertex: floats; codes", "drawing"});
+                          "computing", "bytes per vertex: floats; codes", "drawing"});
     for (std::size_t i = 0; i < methods().size(); ++i) {
         const TangentFrameMethod& method = methods()[i];
         std::vector<std::string> cells;
@@ -145,7 +144,7 @@ std::string mismatch_table(const std::string& title, const TexturedMesh& referen
 
 std::string mismatch_tables() {
     return mismatch_table(
-               "Normals tilted by 30 degrees on the jittered torus: RMS / largest in degrees",
+               "Normals tilted by 30 degrees on the jittered torus: RMS / maximum in degrees",
                textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
                              TextureLayout::upright, 64, 1)) +
            mismatch_table("On a coarse torus, 16 x 16 cells, regular",
@@ -159,9 +158,9 @@ std::string encoding_tables() {
     const ReferenceFrames random = random_frames(count);
     const SampleFrames reference = sample_frames(random.normals, random.tangents);
     std::string text =
-        "\n100,000 random frames: mean / largest error in degrees of the normal, the tangent, and\n"
-        "the normal of a texel tilted by 30 degrees\n\n" +
-        table_header({"rounding", "bytes", "normal", "tangent", "tilted texel", "hands lost"});
+        "\n100,000 random frames: mean / maximum error in degrees of the normal, the tangent, "
+        "and\nthe normal of a texel tilted by 30 degrees\n\n" +
+        table_header({"rounding", "bytes", "normal", "tangent", "tilted texel", "handedness lost"});
     const auto mean_and_max = [](const ErrorStats& errors) {
         return fmt::format("{:.2g} / {:.2g}", errors.mean, errors.max);
     };

@@ -108,7 +108,7 @@ TEST_F(EffectOptions, ForceNeutralEffectsWithoutAChangeAndTakeOutOthersWithOne) 
         if (effect.at("effect") != "emission") continue;
         told = true;
         EXPECT_EQ(effect.at("on"), true);
-        EXPECT_EQ(effect.at("reason"), "forced on: the scene does not call for it");
+        EXPECT_EQ(effect.at("reason"), "forced on: the scene does not need it");
     }
     EXPECT_TRUE(told);
 }

@@ -179,12 +179,12 @@ void rewrite_reasons(DrawPlan& draw, const ForcedDraw& forced, const Requests& r
         if (refused != forced.refused.end()) {
             reason = {reason.effect, false, "cannot be forced on: " + refused->second};
         } else if (is_on && !was_on) {
-            reason = {reason.effect, true, "forced on: the scene does not call for it"};
+            reason = {reason.effect, true, "forced on: the scene does not need it"};
         } else if (was_on && !is_on) {
             const bool by_name =
                 requests.off(reason.effect) || requests.base() == EffectBase::nothing;
             reason = {reason.effect, false,
-                      by_name ? "taken out" : hidden_reason(*row, draw.features, forced.features)};
+                      by_name ? "removed" : hidden_reason(*row, draw.features, forced.features)};
         }
     }
 }
@@ -273,7 +273,7 @@ void remove_skybox(FramePlan& plan) {
     for (EffectReason& reason : plan.reasons) {
         for (const auto& [name, member] : frame_effects) {
             if (reason.effect != name || !reason.on || plan.*member) continue;
-            reason = {reason.effect, false, name == "skybox" ? "taken out" : "nothing shows it"};
+            reason = {reason.effect, false, name == "skybox" ? "removed" : "nothing shows it"};
         }
     }
 }

@@ -225,7 +225,7 @@ Decision of_alpha(Subject s, AlphaMode mode) {
                                : shown == AlphaMode::opaque               ? "is covered everywhere"
                                : shown == AlphaMode::mask
                                    ? "has holes where alpha is below its cutoff"
-                                   : "lets through what is behind it";
+                                   : "is blended with what is behind it";
     return of_material(s, shown == mode, reason, reason);
 }
 
@@ -266,7 +266,7 @@ Decision of_light_buffer(Subject s) {
 }
 
 Decision of_shadow(Subject s) {
-    if (!s.scene.shadow) return {false, "the scene asks for none"};
+    if (!s.scene.shadow) return {false, "the scene requests none"};
     switch (s.lights.shadow) {
         case ShadowTerm::directional_light:
             return {true, "the first directional light that is on casts one"};
@@ -311,7 +311,7 @@ bool scatters_light(Subject s) {
 
 Decision of_environment_light(Subject s) {
     if (!s.scene.environment) return {false, "the scene has no environment"};
-    if (!s.scene.environment->lights) return {false, "the environment is not to light surfaces"};
+    if (!s.scene.environment->lights) return {false, "the environment does not light surfaces"};
     return of_material(s, scatters_light(s), "scatters the environment's light", "is black");
 }
 
@@ -354,7 +354,7 @@ Decision of_schlick(Subject s) {
     const bool varies = s.material.grazing_reflectivity != s.material.reflectivity;
     return of_fresnel(
         s, FresnelTerm::schlick,
-        varies ? "an exact form is asked for" : "reflectivity is the same at every angle");
+        varies ? "an exact form is requested" : "reflectivity is the same at every angle");
 }
 
 Decision of_refraction(Subject s) {
@@ -367,7 +367,7 @@ Decision of_refraction(Subject s) {
 }
 
 Decision of_environment_tint(Subject s) {
-    if (!s.material.environment_tint) return {false, s.name + " does not ask for it"};
+    if (!s.material.environment_tint) return {false, s.name + " does not request it"};
     if (is_physical(s)) return {false, s.name + " is glTF's model"};
     if (!s.scene.environment) return {false, "the scene has no environment"};
     return {true, s.name + " has the color of the environment along its normal"};
@@ -386,9 +386,9 @@ Decision of_rotation(Subject s) {
 }
 
 Decision of_tone(Subject s, ToneMapping tone) {
-    if (s.scene.tone_mapping == tone) return {true, "the scene asks for it"};
+    if (s.scene.tone_mapping == tone) return {true, "the scene requests it"};
     return {false, s.scene.tone_mapping == ToneMapping::none ? "radiance above 1 is shown as 1"
-                                                             : "the scene asks for another curve"};
+                                                             : "the scene requests another curve"};
 }
 
 template <ToneMapping Tone>
@@ -592,20 +592,21 @@ std::vector<EffectRow> normal_rows() {
         {.effect = one_value<&F::detail, NormalDetail::bump_map>("bump map", no_normal),
          .decide = [](Subject s) { return of_texture(s, s.material.bump_map.has_value()); },
          .hidden_by = map_hidden_by},
-        {.effect = one_value<&F::frame, TangentFrame::derivatives>(
-             "derivative frames", "nothing asks for a tangent frame"),
+        {.effect = one_value<&F::frame, TangentFrame::derivatives>("derivative frames",
+                                                                   "nothing needs a tangent frame"),
          .decide =
              [](Subject s) {
                  return of_material(s, s.material.tangent_frame == TangentFrame::derivatives,
-                                    "takes its frame from derivatives", "uses the mesh's tangents");
+                                    "computes its frame from derivatives",
+                                    "uses the mesh's tangents");
              },
          .choice = "its map's frame is the material's choice"},
         {.effect = one_switch<&F::specular_antialiasing>("specular antialiasing",
                                                          "no normal map bends sharp highlights"),
          .decide =
              [](Subject s) {
-                 return of_material(s, s.material.specular_antialiasing, "asks for it",
-                                    "does not ask for it");
+                 return of_material(s, s.material.specular_antialiasing, "requests it",
+                                    "does not request it");
              },
          .choice = "it would widen the highlights of its map",
          .neutral = has_no_map},
@@ -646,7 +647,7 @@ std::vector<EffectRow> lighting_rows() {
          .decide = [](Subject s) -> Decision {
              if (!s.lights.highlight_colors)
                  return {false, "every light's highlights have the color of its light"};
-             return {true, "a light's highlights have a color of their own"};
+             return {true, "a light has a separate color of highlights"};
          },
          .phong_only = true},
         {.effect = one_switch<&F::lights_in_buffer>("light buffer", no_light),
@@ -662,22 +663,22 @@ std::vector<EffectRow> lighting_rows() {
              }},
         {.effect = one_switch<&F::environment_diffuse>("environment light", ""),
          .decide = of_environment_light,
-         .choice = "the environment is not to light surfaces",
+         .choice = "the environment does not light surfaces",
          .neutral = is_dark_around},
         {.effect = one_switch<&F::occlusion_texture>("occlusion texture",
-                                                     "no light comes from everywhere"),
+                                                     "there is no light from all around"),
          .decide =
              [](Subject s) {
                  return s.material.occlusion_strength > 0.0F
                             ? of_texture(s, s.material.occlusion_texture)
                             : of_texture(s, false);
              }},
-        {.effect =
-             one_switch<&F::vertex_occlusion>("vertex occlusion", "no light comes from everywhere"),
+        {.effect = one_switch<&F::vertex_occlusion>("vertex occlusion",
+                                                    "there is no light from all around"),
          .decide = [](Subject s) -> Decision {
              if (s.is_occluded) return {true, "surfaces hide some of the light from all around"};
              return {false, s.scene.ambient_occlusion ? "no surface hides light of another one"
-                                                      : "the scene does not ask for it"};
+                                                      : "the scene does not request it"};
          }},
         {.effect = one_value<&F::specular, SpecularTerm::phong>("Phong highlights", not_lit),
          .decide = [](Subject s) { return of_highlights(s, true); },
@@ -741,7 +742,7 @@ std::vector<EffectRow> picture_rows() {
              one_value<&F::fresnel, FresnelTerm::dielectric>("dielectric Fresnel", not_reflecting),
          .decide =
              [](Subject s) {
-                 return of_fresnel(s, FresnelTerm::dielectric, "it is not asked for");
+                 return of_fresnel(s, FresnelTerm::dielectric, "it is not requested");
              },
          .choice = "how much it mirrors is the material's choice",
          .neutral = mirrors_nothing,
@@ -749,7 +750,7 @@ std::vector<EffectRow> picture_rows() {
         {.effect =
              one_value<&F::fresnel, FresnelTerm::conductor>("conductor Fresnel", not_reflecting),
          .decide =
-             [](Subject s) { return of_fresnel(s, FresnelTerm::conductor, "it is not asked for"); },
+             [](Subject s) { return of_fresnel(s, FresnelTerm::conductor, "it is not requested"); },
          .choice = "how much it mirrors is the material's choice",
          .neutral = mirrors_nothing,
          .phong_only = true},

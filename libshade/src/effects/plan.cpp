@@ -82,12 +82,12 @@ void plan_environment(const Scene& scene, const FrameSettings& settings, FramePl
                                              : "the scene has no environment");
     };
     const bool is_picture = settings.view == DebugView::picture;
-    decide(&FramePlan::skybox, scene.environment && scene.environment->skybox && is_picture,
-           "the environment is to be seen behind the model",
-           is_picture ? "the environment is not to be seen itself"
-                      : "a debug view shows surfaces alone");
+    decide(
+        &FramePlan::skybox, scene.environment && scene.environment->skybox && is_picture,
+        "the environment is visible behind the model",
+        is_picture ? "the environment is not visible itself" : "a debug view shows only surfaces");
     decide(&FramePlan::blurred_skybox, plan.skybox && scene.environment->skybox_blur > 0.0F,
-           "its blur is not 0", "it is not blurred or not to be seen");
+           "its blur is not 0", "it is not blurred or not visible");
     const EnvironmentNeeds needs = environment_needs(plan);
     decide(&FramePlan::prefiltered_map, needs.blurred,
            plan.blurred_skybox ? "the skybox is blurred" : "a rough material reflects it",
@@ -107,8 +107,8 @@ void plan_finishing(const FrameSettings& settings, FramePlan& plan) {
         return draw.features.alpha == AlphaMode::blend;
     });
     set_frame_effect(plan, &FramePlan::sorted_blending, blends,
-                     blends ? "a material lets through what is behind it"
-                            : "every material is opaque or has holes only");
+                     blends ? "a material is blended with what is behind it"
+                            : "every material is opaque or masked");
     const bool shadows =
         std::any_of(plan.draws.begin(), plan.draws.end(),
                     [](const DrawPlan& draw) { return draw.features.shadow != ShadowTerm::none; });
@@ -124,10 +124,11 @@ void plan_finishing(const FrameSettings& settings, FramePlan& plan) {
     const bool averaged = settings.samples > 1 && !is_data(settings.view);
     set_frame_effect(
         plan, &FramePlan::finishing_pass, averaged || blends || transmits,
-        averaged ? fmt::format("{} samples a pixel are averaged in linear light", settings.samples)
-        : blends ? "what is blended must be in linear light"
+        averaged
+            ? fmt::format("{} samples per pixel are averaged in linear light", settings.samples)
+        : blends    ? "what is blended must be in linear light"
         : transmits ? "what shows through surfaces must be in linear light"
-                    : "one sample a pixel, and nothing is blended: surfaces write codes");
+                    : "one sample per pixel, and nothing is blended: surfaces write codes");
 }
 
 }  // namespace

@@ -279,7 +279,7 @@ void check_size(const Api& api, int width, int height, int samples) {
                                    height, api.renderer(), max_width, max_height));
     }
     if (samples > std::max(limits.samples, 1)) {
-        throw GpuError(fmt::format("{} samples a pixel: {} takes at most {}", samples,
+        throw GpuError(fmt::format("{} samples per pixel: {} allows at most {}", samples,
                                    api.renderer(), limits.samples));
     }
 }

@@ -47,9 +47,9 @@ struct SharedSampler {
 
 const std::map<std::string_view, SharedSampler>& shared_samplers() {
     static const std::map<std::string_view, SharedSampler> all = {
-        {"environment", {true, "the surface mirrors it, lets it through or has its color"}},
-        {"blurred_environment", {true, "the surface mirrors it blurred; a level for a roughness"}},
-        {"environment_brdf", {false, "how much a rough surface mirrors, by angle and roughness"}},
+        {"environment", {true, "the surface reflects it, refracts it or has its color"}},
+        {"blurred_environment", {true, "the surface reflects it blurred; one level per roughness"}},
+        {"environment_brdf", {false, "how much a rough surface reflects, by angle and roughness"}},
         {"behind", {true, "the surface shows what is behind it; levels for roughness"}},
         {"light_buffer", {false, "the lights are in a buffer"}},
         {"shadow_maps",

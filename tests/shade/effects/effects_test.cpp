@@ -257,15 +257,14 @@ TEST(EffectForcing, IgnoresCaseAndSeparatorsOfNames) {
     const FramePlan with = forced(scene, {{"Normal-Map", true}});
     EXPECT_EQ(with.draws[0].features.detail, NormalDetail::normal_map);
     EXPECT_TRUE(reason(with.draws[0], "normal map").on);
-    EXPECT_EQ(reason(with.draws[0], "normal map").reason,
-              "forced on: the scene does not call for it");
+    EXPECT_EQ(reason(with.draws[0], "normal map").reason, "forced on: the scene does not need it");
     EXPECT_TRUE(with.draws[0].needs_tangents);
     EXPECT_EQ(reason(with.draws[0], "computed tangents").reason,
               "a forced effect lies in their frame");
 
     const FramePlan without = forced(scene, {{"directional_lights", false}});
     EXPECT_EQ(without.draws[0].features, Features{});
-    EXPECT_EQ(reason(without.draws[0], "directional lights").reason, "taken out");
+    EXPECT_EQ(reason(without.draws[0], "directional lights").reason, "removed");
     EXPECT_EQ(reason(without.draws[0], "diffuse").reason, "no light source reaches the surface");
 }
 

@@ -901,7 +901,7 @@ TEST(EffectPlan, NamesTheReason) {
         {"alpha blending", {blended}, "material 'body' is covered everywhere"},
         {"alpha blending",
          {blended, translucent},
-         "material 'body' lets through what is behind it"},
+         "material 'body' is blended with what is behind it"},
         {"no falloff", {constant_light}, "no light falls off with distance"},
         {"no falloff", {point_light}, "every light falls off with the squared distance"},
         {"no falloff", {point_light, constant_light}, "some lights fall off with distance"},
@@ -945,7 +945,7 @@ TEST(EffectPlan, NamesTheReason) {
          "the material is not metallic-roughness, or no light reaches it"},
         {"clearcoat", {clearcoat}, "material 'body' has a clear coat"},
         {"environment light", {}, "the scene has no environment"},
-        {"environment light", {environment}, "the environment is not to light surfaces"},
+        {"environment light", {environment}, "the environment does not light surfaces"},
         {"environment light", {environment, scattered, black_surface}, "material 'body' is black"},
         {"environment rotation", {}, "the scene has no environment"},
         {"environment rotation", {environment, mirror}, "the environment is not rotated"},
@@ -958,7 +958,7 @@ TEST(EffectPlan, NamesTheReason) {
         {"mirror reflection", {}, "material 'body' reflects nothing"},
         {"mirror reflection", {mirror}, "the scene has no environment"},
         {"ACES tone mapping", {}, "radiance above 1 is shown as 1"},
-        {"ACES tone mapping", {reinhard}, "the scene asks for another curve"},
+        {"ACES tone mapping", {reinhard}, "the scene requests another curve"},
     };
     for (const Decision& decision : decisions) {
         Frame frame;

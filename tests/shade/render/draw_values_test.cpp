@@ -222,7 +222,7 @@ TEST(PlannedPasses, AreInTheOrderInWhichTheyAreDrawn) {
     EXPECT_EQ(passes[0].name, "surfaces");
     EXPECT_EQ(passes[1].name, "skybox");
     EXPECT_EQ(passes[2].name, "finishing");
-    EXPECT_EQ(passes[2].reason, "4 samples a pixel are averaged in linear light");
+    EXPECT_EQ(passes[2].reason, "4 samples per pixel are averaged in linear light");
     EXPECT_EQ(planned_passes(plan_effects(normal_mapped().scene, calling.settings)).size(), 1U);
 }
 
