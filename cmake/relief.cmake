@@ -159,42 +159,32 @@ if(RELIEF_TSAN)
          TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/tsan.supp:history_size=7)
 endif()
 
-# relief_add_tests(NAME sources... [LIBRARIES ...] [SLOW patterns...] [ALONE patterns...] [CLI patterns...]):
-# a group of test cases, compiled as an object library. relief_add_test_program() links groups to programs.
-#
-# Cases whose "Suite.Case" fits a pattern (with * and ?) listed below UNIT, GL, CLI, WINDOW or DOCS have that
-# label instead of their program's. Cases that fit a pattern below SLOW run only with `scripts/test --all`.
-# Cases that fit a pattern below ALONE have a process to themselves; others share it.
+# relief_add_tests(NAME sources... [LIBRARIES ...]): a group of test cases, compiled as an object library.
+# relief_add_test_program() links groups to programs. The sources state the labels of cases (tests/support/labels.h).
 function(relief_add_tests name)
-    string(TOUPPER "${RELIEF_TEST_LABELS}" labels)
-    cmake_parse_arguments(ARG "" "" "LIBRARIES;SLOW;ALONE;${labels}" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
     add_library(${name} OBJECT ${ARG_UNPARSED_ARGUMENTS})
     target_link_libraries(${name} PRIVATE relief_flags relief_test_support ${ARG_LIBRARIES} GTest::gmock
                                           GTest::gtest)
     relief_precompile(${name} LIKE relief_test_precompiled)
     relief_batch(${name} 12)
-    foreach(key ${labels} SLOW ALONE)
-        set_target_properties(${name} PROPERTIES RELIEF_${key}_CASES "${ARG_${key}}")
-    endforeach()
 endfunction()
 
-# relief_add_test_program(NAME LABEL label GROUPS groups... [OBJECTS libraries...] [NOT_SANITIZED patterns...]): one
-# GoogleTest program. Its cases have the label `label` if they fit no pattern of their group. Object libraries that
-# the groups need are named again, because CMake does not pass on their object files. Cases that fit a pattern
-# below NOT_SANITIZED do not run under sanitizers: they measure errors, memory or whole programs, or try thousands of
-# sets of effects or large files, and other cases run the same code on smaller inputs. A program of which no case runs
-# (`NOT_SANITIZED *`) is not built then.
+# relief_add_test_program(NAME LABEL label GROUPS groups... [OBJECTS libraries...] [NOT_SANITIZED]): one GoogleTest
+# program. Its cases have the label `label` unless the sources state another one. Object libraries that the groups need
+# are named again, because CMake does not pass on their object files. A program that is NOT_SANITIZED is not built for
+# sanitizers.
 #
-# scripts/dev/run-tests runs the programs. ctest has one entry for each program and label, which calls it.
+# scripts/dev/run-tests runs the programs. ctest has one entry for each program, which calls it.
 function(relief_add_test_program name)
-    cmake_parse_arguments(ARG "" "LABEL" "GROUPS;OBJECTS;NOT_SANITIZED" ${ARGN})
+    cmake_parse_arguments(ARG "NOT_SANITIZED" "LABEL" "GROUPS;OBJECTS" ${ARGN})
     if(NOT ARG_LABEL IN_LIST RELIEF_TEST_LABELS)
         message(FATAL_ERROR "${name}: the label '${ARG_LABEL}' is not one of ${RELIEF_TEST_LABELS}")
     endif()
     add_executable(${name})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${RELIEF_TEST_DIRECTORY})
     target_link_libraries(${name} PRIVATE ${ARG_GROUPS} ${ARG_OBJECTS} relief_test_main)
-    if(ARG_NOT_SANITIZED STREQUAL "*" AND (RELIEF_SANITIZE OR RELIEF_TSAN))
+    if(ARG_NOT_SANITIZED AND (RELIEF_SANITIZE OR RELIEF_TSAN))
         return()
     endif()
     set_property(GLOBAL APPEND PROPERTY RELIEF_TEST_TARGETS ${name})
@@ -205,39 +195,17 @@ function(relief_add_test_program name)
             add_dependencies(${name} ${needed})
         endif()
     endforeach()
+    relief_run_test_program(${name} ${ARG_LABEL} $<TARGET_FILE:${name}>)
+endfunction()
 
-    set(used ${ARG_LABEL})
-    set(patterns "")
-    foreach(key ${RELIEF_TEST_LABELS} slow alone)
-        string(TOUPPER ${key} upper)
-        set(cases "")
-        foreach(group ${ARG_GROUPS})
-            get_target_property(group_cases ${group} RELIEF_${upper}_CASES)
-            list(APPEND cases ${group_cases})
-        endforeach()
-        list(REMOVE_DUPLICATES cases)
-        if(cases)
-            list(JOIN cases "\", \"" list)
-            list(APPEND patterns "\"${key}\": [\"${list}\"]")
-            list(APPEND used ${key})
-        endif()
-    endforeach()
-    if(ARG_NOT_SANITIZED AND (RELIEF_SANITIZE OR RELIEF_TSAN))
-        list(JOIN ARG_NOT_SANITIZED "\", \"" list)
-        list(APPEND patterns "\"not_sanitized\": [\"${list}\"]")
-    endif()
-    list(JOIN patterns ", " patterns)
+# relief_run_test_program(NAME LABEL PATH): lists a program for scripts/dev/run-tests, and as an entry of ctest.
+function(relief_run_test_program name label path)
     set_property(
         GLOBAL APPEND
-        PROPERTY RELIEF_TEST_PROGRAMS
-                 "{\"name\": \"${name}\", \"path\": \"$<TARGET_FILE:${name}>\", \"label\": \"${ARG_LABEL}\", \"patterns\": {${patterns}}}")
-    list(REMOVE_ITEM used alone)
-    list(REMOVE_DUPLICATES used)
-    foreach(label ${used})
-        add_test(NAME ${name}.${label} COMMAND ${PROJECT_SOURCE_DIR}/scripts/dev/run-tests ${PROJECT_BINARY_DIR}
-                                               --program ${name} --labels ${label} --jobs 1)
-        set_tests_properties(${name}.${label} PROPERTIES LABELS ${label} SKIP_RETURN_CODE 77 TIMEOUT 7200)
-    endforeach()
+        PROPERTY RELIEF_TEST_PROGRAMS "{\"name\": \"${name}\", \"path\": \"${path}\", \"label\": \"${label}\"}")
+    add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/scripts/dev/run-tests ${PROJECT_BINARY_DIR}
+                                  --program ${name} --jobs 1)
+    set_tests_properties(${name} PROPERTIES LABELS ${label} SKIP_RETURN_CODE 77 TIMEOUT 7200)
 endfunction()
 
 # Writes tests/test-programs.json in the build folder, which scripts/dev/run-tests reads. The target relief_tests is all
@@ -253,6 +221,10 @@ function(relief_write_test_programs)
         list(APPEND variables "${entry}")
     endforeach()
     list(JOIN variables ",\n    " variables)
+    set(sanitized false)
+    if(RELIEF_SANITIZE OR RELIEF_TSAN)
+        set(sanitized true)
+    endif()
     file(GENERATE OUTPUT ${RELIEF_TEST_DIRECTORY}/test-programs.json
-         CONTENT "{\"case_seconds\": ${RELIEF_TEST_CASE_SECONDS},\n\"environment\": {\n    ${variables}},\n\"programs\": [\n    ${programs}]}\n")
+         CONTENT "{\"sources\": \"${PROJECT_SOURCE_DIR}\", \"sanitized\": ${sanitized}, \"case_seconds\": ${RELIEF_TEST_CASE_SECONDS},\n\"environment\": {\n    ${variables}},\n\"programs\": [\n    ${programs}]}\n")
 endfunction()

@@ -13,6 +13,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -57,6 +58,7 @@ const BakeReference& whole_map() {
     return reference;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BakeAccuracy, EqualsACheckOfTheWholeMap) {
     WavyBake& all = shared_bake();
     const BakeReference reference(all.baker, all.options.map, 64 * 192, 64);
@@ -76,6 +78,7 @@ TEST(BakeAccuracy, EqualsACheckOfTheWholeMap) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BakeAccuracy, MoreSamplesAndBitsHaveSmallerErrors) {
     const WavyBake& all = shared_bake();
     const BakeReference& reference = whole_map();
@@ -115,6 +118,7 @@ TEST(BakeAccuracy, APartHasNearlyTheErrorsOfTheWhole) {
                 measure_bake(whole_map(), {1}, all.formats).errors[1].rms, 0.01);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BakeAccuracy, SeparatesSamplingFromRoundingUpTo256Samples) {
     WavyBake& all = shared_bake();
     const BakeReference reference(all.baker, all.options.map, 64, 1024);

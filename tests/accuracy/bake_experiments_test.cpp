@@ -13,6 +13,7 @@
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/statistics.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -92,6 +93,7 @@ double rms_between(const Image& a, const Image& b) {
     return std::sqrt(squares * 3.0 / static_cast<double>(one.size()));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BakeTruth, ManyRaysConvergeToTheFormula) {
     const BumpyBake bake(stacks, side);
     const std::vector<test::TexelReference> all = references(bake);
@@ -118,6 +120,7 @@ const std::vector<Experiment>& quick_experiments() {
     return all;
 }
 
+TEST_LABELS(slow, not_sanitized);
 TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
     const std::vector<Experiment>& all = quick_experiments();
     test::expect_whole(all, Subject::bake);
@@ -139,6 +142,7 @@ TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
     EXPECT_NEAR(samples.charts.front().curves.back().order.value(), -1.0, 0.35);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BakeExperiments, HavePicturesOfErrorsAndMaps) {
     const std::vector<Experiment>& all = quick_experiments();
     for (const Experiment& one : all) {
@@ -160,6 +164,7 @@ TEST(BakeExperiments, HavePicturesOfErrorsAndMaps) {
     }
 }
 
+TEST_LABELS(slow, not_sanitized);
 TEST(BakeExperiments, FindThatRaysPayWhereTheFirstDiffer) {
     const std::vector<Experiment>& all = quick_experiments();
     const Experiment& adaptive = all.back();

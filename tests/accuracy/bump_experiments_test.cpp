@@ -15,6 +15,7 @@
 #include "experiment_checks.h"
 #include "relief/accuracy/asset.h"
 #include "relief/mesh/report.h"
+#include "support/labels.h"
 
 namespace relief::test {
 namespace {
@@ -255,10 +256,12 @@ const Experiment& quick(const std::string& title) {
     return titled(quick_experiments(), title);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BumpExperiments, AreComplete) {
     expect_whole(quick_experiments(), Subject::bump);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BumpExperiments, HaveTheErrorsOfThePage) {
     const Experiment detailed = quick("Bump: detailed, 8 bit");
     EXPECT_EQ(detailed.id, "bump/detailed-8");

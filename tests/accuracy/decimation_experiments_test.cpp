@@ -10,6 +10,7 @@
 #include "experiment_checks.h"
 #include "experiment_parts.h"
 #include "relief/mesh/topology.h"
+#include "support/labels.h"
 
 namespace relief::test {
 namespace {
@@ -75,11 +76,13 @@ const std::vector<Experiment>& quick_experiments() {
     return all;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(DecimationExperiments, AreComplete) {
     expect_whole(quick_experiments(), Subject::decimation);
     EXPECT_EQ(quick_experiments().size(), 5U);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(DecimationExperiments, ErrorsFallAtTheOrderOfTheory) {
     std::size_t checked = 0;
     for (const Experiment& experiment : quick_experiments()) {
@@ -94,6 +97,7 @@ TEST(DecimationExperiments, ErrorsFallAtTheOrderOfTheory) {
     EXPECT_EQ(checked, 16U);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(DecimationExperiments, AllMethodsReachTheSameNumberOfTriangles) {
     for (const Experiment& experiment : quick_experiments()) {
         for (const Measurement& one : experiment.measurements) {
@@ -104,6 +108,7 @@ TEST(DecimationExperiments, AllMethodsReachTheSameNumberOfTriangles) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(DecimationExperiments, PreservedFeaturesCostAccuracy) {
     const auto error = [](const char* method) -> const ErrorStats& {
         return measurement_of(titled(quick_experiments(), "Decimation: torus, distance"), method)

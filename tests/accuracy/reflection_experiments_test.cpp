@@ -11,6 +11,7 @@
 #include "relief/mesh/image.h"
 #include "relief/shade/image_compare.h"
 #include "rendered_methods.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -138,6 +139,7 @@ double sum_of_errors(const Curve& curve) {
     return sum;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(GlossyLevels, MoreLevelsHaveSmallerErrors) {
     if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const Experiment experiment = test::run_one("shading/glossy-levels");
@@ -163,6 +165,7 @@ TEST(GlossyLevels, MoreLevelsHaveSmallerErrors) {
         EXPECT_GT(none.points[i].error, none.points[i - 1].error) << none.points[i].x;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(GlossyLevels, WrongRoughnessOrEnvironmentHasALargeError) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";

@@ -6,6 +6,7 @@
 
 #include "experiment_checks.h"
 #include "experiment_driver.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -25,6 +26,7 @@ class RenderedExperiment : public ::testing::Test {
     inline static bool is_available_ = false;
 };
 
+TEST_LABELS(not_sanitized);
 TEST_F(RenderedExperiment, OnInterpolationRanksPhongGouraudFlat) {
     const Experiment experiment = test::run_one("shading/interpolation");
     ASSERT_EQ(experiment.measurements.size(), 15U);
@@ -41,6 +43,7 @@ TEST_F(RenderedExperiment, OnInterpolationRanksPhongGouraudFlat) {
     EXPECT_EQ(experiment.finding.find("frame"), std::string::npos) << experiment.finding;
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(RenderedExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
     const Experiment experiment = test::run_one("shading/highlights");
     EXPECT_LT(rms(experiment, "GGX"), 0.01);
@@ -49,12 +52,14 @@ TEST_F(RenderedExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
               rms(experiment, "Phong, Blinn's exponent"));
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(RenderedExperiment, OnEdgesRanksSamples) {
     const Experiment experiment = test::run_one("shading/edges");
     EXPECT_LT(rms(experiment, "MSAA, 4 samples"), 0.6 * rms(experiment, "1 sample"));
     EXPECT_LT(rms(experiment, "4 x 4 pixels"), 0.6 * rms(experiment, "2 x 2 pixels"));
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(RenderedExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
     const Experiment experiment = test::run_one("shading/specular-antialiasing");
     ASSERT_EQ(experiment.measurements.size(), 6U);
@@ -79,6 +84,7 @@ TEST_F(RenderedExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
     EXPECT_LT(widened.points[5].error, 1.3 * widened.points[2].error);
 }
 
+TEST_LABELS(slow);
 TEST(ShadingExperiments, AreComplete) {
     if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<Experiment> all = test::run_quick(Subject::shading);

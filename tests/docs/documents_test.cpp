@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/help_pages.h"
 #include "tools/linked_tools.h"
@@ -323,6 +324,7 @@ INSTANTIATE_TEST_SUITE_P(All, Document, testing::ValuesIn(documents()), test_nam
 
 class HelpExamples : public testing::TestWithParam<std::string> {};
 
+TEST_LABELS(slow);
 TEST_P(HelpExamples, RunWithoutAMessage) {
     for (const Page& page : help_pages(Workplace())) {
         if (page.name.starts_with(GetParam())) expect_to_run(page, FastWorkplace(), true);
@@ -334,6 +336,7 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                                          "relief-view"),
                          test_name);
 
+TEST_LABELS(slow);
 TEST(Site, HasNoBrokenLinkAndFitsAPhone) {
     const TemporaryDirectory folder;
     const std::string script = "'" + (source_directory() / "scripts/dev/site").string() + "'";

@@ -12,6 +12,7 @@
 #include <iterator>
 
 #include "support/images.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief::test {
@@ -21,6 +22,7 @@ using testing::HasSubstr;
 
 class GeneratedDocuments : public testing::TestWithParam<GeneratedDocument> {};
 
+TEST_LABELS(slow);
 TEST_P(GeneratedDocuments, EqualANewMeasurement) {
     const std::string path = (source_directory() / "docs" / GetParam().page).string();
     const std::string page = contents_of_page(path);

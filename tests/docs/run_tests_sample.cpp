@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/labels.h"
+
 namespace {
 
 int set_ups = 0;
@@ -16,6 +18,7 @@ class SharedFixture : public testing::Test {
     static void SetUpTestSuite() { ++set_ups; }
 };
 
+TEST_LABELS(alone);
 TEST_F(SharedFixture, First) {
     EXPECT_EQ(set_ups, 1);
 }
@@ -34,12 +37,15 @@ TEST(Sample, IsSkipped) {
     GTEST_SKIP() << "something is missing";
 }
 
+TEST_LABELS(gl);
 TEST(Crash, Before) {}
 
+TEST_LABELS(gl);
 TEST(Crash, Crashes) {
     std::abort();
 }
 
+TEST_LABELS(gl);
 TEST(Crash, After) {}
 
 TEST(Exit, LeavesTheProgram) {
@@ -68,6 +74,20 @@ TEST(Environment, IsChanged) {
     ::setenv("RUN_TESTS_SAMPLE_LEFT_BEHIND", "1", 1);
 }
 
+TEST_LABELS(slow);
 TEST(SlowOnes, Slow) {}
+
+TEST_LABELS(not_sanitized);
+TEST(Measured, Memory) {}
+
+class Parameter : public testing::TestWithParam<int> {};
+
+TEST_LABELS_OF("Large/*", slow);
+TEST_P(Parameter, IsNotNegative) {
+    EXPECT_GE(GetParam(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Small, Parameter, testing::Values(1));
+INSTANTIATE_TEST_SUITE_P(Large, Parameter, testing::Values(1000));
 
 }  // namespace

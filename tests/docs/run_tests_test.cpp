@@ -15,6 +15,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+std::string text_of(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 class RunTests : public testing::Test {
   protected:
     void SetUp() override {
@@ -23,13 +28,24 @@ class RunTests : public testing::Test {
     }
 
     /// Writes the description that CMake writes, with a time limit for each case.
-    void describe(int case_seconds) const {
+    void describe(int case_seconds, bool sanitized = false) const {
         std::ofstream(build_ / "tests/test-programs.json") << fmt::format(
-            R"({{"case_seconds": {}, "environment": {{"RUN_TESTS_SAMPLE_MARK": "{}"}},
-                 "programs": [{{"name": "sample", "path": "{}", "label": "unit",
-                                "patterns": {{"slow": ["SlowOnes.*"], "alone": ["SharedFixture.First"],
-                                              "gl": ["Crash.*", "Renamed.*"]}}}}]}})",
-            case_seconds, (build_ / "mark").string(), RELIEF_RUN_TESTS_SAMPLE);
+            R"({{"sources": "{}", "sanitized": {}, "case_seconds": {},
+                 "environment": {{"RUN_TESTS_SAMPLE_MARK": "{}"}},
+                 "programs": [{{"name": "sample", "path": "{}", "label": "unit"}}]}})",
+            sources_.string(), sanitized, case_seconds, (build_ / "mark").string(),
+            RELIEF_RUN_TESTS_SAMPLE);
+    }
+
+    /// Lists the cases after a change of the sample's source. Returns the errors.
+    [[nodiscard]] std::string errors_after(const std::string& text, const std::string& other) {
+        std::string source = text_of(sources_ / sample);
+        source.replace(source.find(text), text.size(), other);
+        sources_ = build_.path();
+        std::filesystem::create_directories((sources_ / sample).parent_path());
+        std::ofstream(sources_ / sample) << source;
+        describe(300);
+        return run("--list").error;
     }
 
     [[nodiscard]] ProgramResult run(const std::string& options, const std::string& ci = "") const {
@@ -39,13 +55,13 @@ class RunTests : public testing::Test {
             build_.path());
     }
 
-    [[nodiscard]] std::string results() const {
-        std::ifstream file(build_ / "test-results.xml");
-        return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    }
+    [[nodiscard]] std::string results() const { return text_of(build_ / "test-results.xml"); }
 
   private:
+    static constexpr const char* sample = "tests/docs/run_tests_sample.cpp";
+
     TemporaryDirectory build_;
+    std::filesystem::path sources_ = source_directory();
 };
 
 std::string last_line(const ProgramResult& result) {
@@ -65,8 +81,15 @@ TEST_F(RunTests, CountsCasesAndKeepsResults) {
     EXPECT_THAT(results(), HasSubstr("the reason"));
 }
 
-TEST_F(RunTests, WarnsOfPatternsThatNoCaseFits) {
-    EXPECT_EQ(run("--list").error, "run-tests: warning: sample: no case fits GL Renamed.*\n");
+TEST_F(RunTests, RefusesSourcesThatAreNewerThanTheProgram) {
+    EXPECT_THAT(errors_after("TEST(Measured, Memory)", "TEST(Measured, Time)"),
+                HasSubstr(" is not Measured.Memory (build the tests again)"));
+}
+
+TEST_F(RunTests, RefusesLabelsOfParametersThatNoCaseHas) {
+    EXPECT_EQ(errors_after("\"Large/", "\"Huge/"),
+              "run-tests: error: tests/docs/run_tests_sample.cpp: no case fits "
+              "TEST_LABELS_OF(\"Huge/*\")\n");
 }
 
 TEST_F(RunTests, ReportsTheCaseThatCrashedAndRunsTheOthers) {
@@ -115,8 +138,14 @@ TEST_F(RunTests, SelectsByLabelAndLeavesSlowCasesOut) {
     EXPECT_THAT(gl, HasSubstr("sample/Crash.Before gl\n"));
     EXPECT_THAT(gl, Not(HasSubstr("Sample.Passes")));
     EXPECT_THAT(run("--list").out, Not(HasSubstr("SlowOnes")));
-    EXPECT_EQ(run("-L slow --list").out, "sample/SlowOnes.Slow unit slow\n");
+    EXPECT_EQ(run("-L slow --list").out,
+              "sample/SlowOnes.Slow unit slow\n"
+              "sample/Large/Parameter.IsNotNegative/0 unit slow\n");
+    EXPECT_THAT(run("--list").out, HasSubstr("sample/Small/Parameter.IsNotNegative/0 unit\n"));
     EXPECT_THAT(run("--all --list").out, HasSubstr("sample/SlowOnes.Slow unit slow\n"));
+    EXPECT_THAT(run("--list").out, HasSubstr("sample/Measured.Memory unit\n"));
+    describe(300, true);
+    EXPECT_THAT(run("--list").out, Not(HasSubstr("Measured.Memory")));
     EXPECT_EQ(run("-L nothing").exit_code, 2);
     EXPECT_EQ(run("-R NoSuchCase").exit_code, 1);
 }

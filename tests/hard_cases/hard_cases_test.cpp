@@ -15,12 +15,14 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 
 namespace relief::test {
 namespace {
 
 class HardCases : public testing::TestWithParam<HardCase> {};
 
+TEST_LABELS_OF("*/8192_texels_across*", alone);
 TEST_P(HardCases, HaveTheirOutcome) {
     ASSERT_FALSE(GetParam().expectations.empty());
     for (const Expectation& expectation : GetParam().expectations)

@@ -23,6 +23,7 @@
 #include "relief/mesh/mesh.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 
 namespace relief::test {
 namespace {
@@ -294,6 +295,7 @@ INSTANTIATE_TEST_SUITE_P(Metamorphic, MeshChanges, testing::ValuesIn(changes_of_
 
 class MeshSweep : public testing::TestWithParam<Change> {};
 
+TEST_LABELS(slow);
 TEST_P(MeshSweep, LeavesFramesAlone) {
     expect_same_frames(GetParam(), 1);
 }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "relief/version.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
@@ -113,6 +114,7 @@ class Installed : public testing::Test {
 };
 std::unique_ptr<TemporaryDirectory> Installed::folder;
 
+TEST_LABELS(slow);
 TEST_F(Installed, NormalsAndTangentsFollowTheWave) {
     const std::string output = output_of("normals_and_tangents");
     // The wave's slope is -0.2 pi; between vertices at a distance of 1/32 it is 0.6 % less.
@@ -130,6 +132,7 @@ TEST_F(Installed, NormalsAndTangentsFollowTheWave) {
     EXPECT_EQ(tangent[3], 1.0);
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, PythonFindsImagesAndTools) {
     const std::filesystem::path modules = tree() / "lib/python3/dist-packages";
     if (!std::filesystem::exists(modules / "relief"))
@@ -146,6 +149,7 @@ TEST_F(Installed, PythonFindsImagesAndTools) {
     EXPECT_EQ(result.out, "mean 0.25\ntool " RELIEF_VERSION " " RELIEF_VERSION "\n");
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, TheHeightMapBecomesItsSlope) {
     const std::string output = output_of("height_map_to_normal_map");
     // (-1, 0, 2) / sqrt(5) as codes: 255 (n + 1) / 2, rounded up at the half.
@@ -155,6 +159,7 @@ TEST_F(Installed, TheHeightMapBecomesItsSlope) {
     EXPECT_EQ(numbers_after(output, "findings"), std::vector<double>{0});
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, TheBakeHasTheSlopesOfTheWave) {
     const std::string output = output_of("bake_in_memory");
     const std::vector<double> counts = numbers_after(output, "baked");
@@ -165,6 +170,7 @@ TEST_F(Installed, TheBakeHasTheSlopesOfTheWave) {
     EXPECT_NEAR(slopes[0] / slopes[1], 1.0, 0.02);  // Texels average over one 32nd of a wave.
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, TheCheckFindsGreenDown) {
     const std::string output = output_of("check_normal_map");
     EXPECT_THAT(output, HasSubstr("tangent-space normals: yes\n"));
@@ -173,6 +179,7 @@ TEST_F(Installed, TheCheckFindsGreenDown) {
     EXPECT_NEAR(numbers_after(output, "mean length:").at(0), 1.0, 0.01);
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, TheRenderedSphereFacesTheLight) {
     const std::string output = output_of("render_to_memory");
     for (const double channel : numbers_after(output, "center"))
@@ -182,6 +189,7 @@ TEST_F(Installed, TheRenderedSphereFacesTheLight) {
     EXPECT_LT(covered, M_PI / 4.0);
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, ExplanationListsTheInputs) {
     const std::string output = output_of("explain_effects");
     EXPECT_THAT(output, HasSubstr("\non  directional lights: "));
@@ -189,6 +197,7 @@ TEST_F(Installed, ExplanationListsTheInputs) {
     EXPECT_THAT(output, HasSubstr("\noff normal map: "));
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, ComponentsNeedOnlyTheirThirdParties) {
     const std::set<std::string> mesh = {"libfmt", "libtbb"};
     EXPECT_EQ(needed_libraries(*folder / "build/normals_and_tangents"), mesh);
@@ -198,6 +207,7 @@ TEST_F(Installed, ComponentsNeedOnlyTheirThirdParties) {
     EXPECT_EQ(needed_libraries(*folder / "build/bake_in_memory"), bake);
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, ToolsAndProgramsFindTheModuleInTheMovedTree) {
     const std::string tools = tree().string() + "/bin/";
     for (const std::string tool : {"relief-mesh", "relief-bake", "relief-view", "relief-accuracy"})
@@ -209,6 +219,7 @@ TEST_F(Installed, ToolsAndProgramsFindTheModuleInTheMovedTree) {
                 HasSubstr("green: up\n"));
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, SamplesRunTheFirstCommandsOfTheReadme) {
     const TemporaryDirectory empty;
     const std::string commands = first_commands();
@@ -220,6 +231,7 @@ TEST_F(Installed, SamplesRunTheFirstCommandsOfTheReadme) {
         EXPECT_TRUE(std::filesystem::exists(empty / file)) << file;
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, PkgConfigNamesTheSameProgram) {
     const std::string example = (source_directory() / "examples/normals_and_tangents.cpp").string();
     expect_success("PKG_CONFIG_PATH='" + tree().string() +
@@ -230,6 +242,7 @@ TEST_F(Installed, PkgConfigNamesTheSameProgram) {
     EXPECT_EQ(run_clean("./by_pkg_config", folder->path()).out, output_of("normals_and_tangents"));
 }
 
+TEST_LABELS(slow);
 TEST_F(Installed, HeadersAndShadersAreInTheTree) {
     for (const char* header : {"relief/mesh/frames.h", "relief/shade/renderer.h",
                                "relief/accuracy/asset.h", "relief/version.h", "relief/export.h"})
@@ -279,6 +292,7 @@ TEST(Packages, HaveTheirFilesOnly) {
         EXPECT_FALSE(file.starts_with("bin/") || file.starts_with("share/")) << file;
 }
 
+TEST_LABELS(slow);
 TEST(AddedFolder, GivesTheMeshComponentAlone) {
     const TemporaryDirectory folder;
     std::filesystem::create_directory(folder / "engine");
@@ -306,6 +320,7 @@ TEST(AddedFolder, GivesTheMeshComponentAlone) {
 }
 
 // A shared library of the objects of the static one, which are position independent.
+TEST_LABELS(slow);
 TEST(SharedMesh, ExportsTheFunctionsOfPublicHeaders) {
     const TemporaryDirectory folder;
     const std::string library = (folder / "librelief_mesh.so").string();
@@ -330,6 +345,7 @@ TEST(SharedMesh, ExportsTheFunctionsOfPublicHeaders) {
 
 // All components as shared libraries, of the objects of the static ones: each finds what it needs
 // in the exports of the others.
+TEST_LABELS(slow);
 TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
     struct Component {
         std::string name, folder, libraries;

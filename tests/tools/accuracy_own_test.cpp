@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/image_file.h"
+#include "support/labels.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -30,6 +31,7 @@ const json& measurement(const json& experiment, const std::string& method) {
     throw std::runtime_error("no method " + method);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, MeasuresAMeshAndRecommends) {
     const Workplace workplace;
     workplace.write_square("square.obj");
@@ -43,6 +45,7 @@ TEST(AccuracyOwn, MeasuresAMeshAndRecommends) {
     EXPECT_EQ(workplace.outputs(), "") << "nothing is written unless asked for";
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, JsonHoldsTheCommandThatRepeatsIt) {
     const Workplace workplace;
     workplace.write_square("a square.obj");
@@ -57,6 +60,7 @@ TEST(AccuracyOwn, JsonHoldsTheCommandThatRepeatsIt) {
                 0.0, 1e-4);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, DistinguishesHeightsFromNormals) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
@@ -78,6 +82,7 @@ TEST(AccuracyOwn, DistinguishesHeightsFromNormals) {
     EXPECT_THAT(told.out, Not(HasSubstr("if not:")));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, NeedsHighAndLowForAPair) {
     const Workplace workplace;
     workplace.write_square("high.obj");
@@ -96,6 +101,7 @@ TEST(AccuracyOwn, NeedsHighAndLowForAPair) {
     EXPECT_EQ(json::parse(two.out)["experiments"].size(), 8U);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
@@ -106,6 +112,7 @@ TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     EXPECT_THAT(strict.out, HasSubstr("no method is within 0 degrees: the smallest error is "));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
@@ -152,6 +159,7 @@ Image image_of_bumps(int channels, const std::function<double(int channel, doubl
     return image;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, WarnsAboutPhotographs) {
     const Workplace workplace;
     const auto in_color = [](int channel, double bump) {
@@ -170,6 +178,7 @@ TEST(AccuracyOwn, WarnsAboutPhotographs) {
                 HasSubstr("findings  none\n"));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, MeasuresHeightsInAlpha) {
     const Workplace workplace;
     const auto in_alpha = [](int channel, double bump) {
@@ -203,6 +212,7 @@ TEST(AccuracyOwn, MeasuresHeightsInAlpha) {
     EXPECT_EQ(workplace.run(done).exit_code, 0) << done;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, ReportsNonFiniteHeights) {
     const Workplace workplace;
     Image heights = to_float(image_of_bumps(1, [](int, double bump) { return bump; }));
@@ -215,6 +225,7 @@ TEST(AccuracyOwn, ReportsNonFiniteHeights) {
                 HasSubstr("findings  2 x non-finite height (column 6, row 1; column 4, row 14): "));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, CanKeepANormalMapUnchanged) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");

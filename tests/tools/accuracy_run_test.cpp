@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/labels.h"
 #include "tools/schema_page.h"
 #include "tools/workplace.h"
 
@@ -20,6 +21,7 @@ using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
 
+TEST_LABELS(slow, not_sanitized);
 TEST(AccuracyRun, PrintsATableAndWritesTheReport) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(

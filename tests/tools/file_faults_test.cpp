@@ -13,11 +13,14 @@
 #include <vector>
 
 #include "relief/mesh/image_file.h"
+#include "support/labels.h"
 #include "tools/file_faults.h"
 #include "tools/workplace.h"
 
 namespace relief::test {
 namespace {
+
+FILE_LABELS(not_sanitized);
 
 /// The contents of a folder's files by name.
 using Contents = std::map<std::string, std::string>;

@@ -9,10 +9,13 @@
 #include <utility>
 
 #include "relief/mesh/image_file.h"
+#include "support/labels.h"
 #include "tools/workplace.h"
 
 namespace relief::test {
 namespace {
+
+FILE_LABELS(not_sanitized);
 
 /// A map of noise: writing its normals takes a while.
 void write_noise(const std::filesystem::path& file, int size) {

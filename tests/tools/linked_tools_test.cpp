@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "support/labels.h"
 #include "tools/workplace.h"
 
 namespace relief::test {
@@ -46,6 +47,7 @@ Outcome outcome_of(const Workplace& workplace, const ProgramResult& result) {
     return outcome;
 }
 
+TEST_LABELS(slow, not_sanitized);
 TEST(LinkedTools, BehaveLikeThePrograms) {
     const Workplace linked;
     const Workplace programs;
@@ -82,6 +84,7 @@ TEST(LinkedTools, BehaveLikeThePrograms) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(LinkedTools, LeaveTheWorkingDirectoryAndTheOldStreams) {
     const std::filesystem::path before = std::filesystem::current_path();
     const Workplace workplace;

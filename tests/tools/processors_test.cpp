@@ -3,6 +3,7 @@
 // library, Embree and relief's own loops choose other code there.
 #include <gtest/gtest.h>
 
+#include "support/labels.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -34,6 +35,7 @@ void expect_same_bytes(const Workplace& workplace, const std::string& command,
     EXPECT_TRUE(own == workplace.read("out/plain" + ending)) << command;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Processors, MapsHaveTheSameBytes) {
     const Workplace workplace;
     for (const char* kernel : {"sobel5", "gaussian --kernel-radius 3"}) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/image_file.h"
+#include "support/labels.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -89,6 +90,7 @@ double min_in(const std::string& error) {
     return at == std::string::npos ? -1.0 : std::stod(error.substr(at + before.size()));
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(BakeAccuracy, FailsWithTheMinimumErrorOfAllChoices) {
     const auto error_of = [&](const std::string& options) {
         const ProgramResult result =

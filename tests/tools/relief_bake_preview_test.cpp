@@ -12,6 +12,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh.h"
 #include "relief/shade/scene.h"
+#include "support/labels.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
@@ -55,6 +56,7 @@ void expect_alike(const std::filesystem::path& file, std::size_t column = 16) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(MeshPreview, TheMapMakesTheLowModelLookLikeTheHighOne) {
     const Workplace workplace;
     write_pair(workplace);

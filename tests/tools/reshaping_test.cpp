@@ -14,6 +14,7 @@
 
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/topology.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
@@ -566,6 +567,7 @@ json lods_report(const Workplace& workplace, const std::string& arguments) {
     return json::parse(workplace.read("out/lods.json"));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(LodsCommand, SwitchesAtTheDistanceOfEqualDifference) {
     const Workplace workplace;
     const std::string line = "data/vase.obj out/lods.gltf --triangles 700,150";

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
@@ -117,6 +118,7 @@ TEST_F(ValidOutputs, FromBrokenAndHostileModels) {
     EXPECT_GT(written_, 50);
 }
 
+TEST_LABELS(slow);
 TEST_F(ValidOutputs, FromRealModels) {
     RELIEF_NEEDS_SHARED(folder, "data/models");
     run_one_each(models_below(folder));

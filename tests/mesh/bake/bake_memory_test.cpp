@@ -6,11 +6,14 @@
 #include "relief/mesh/bake.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
+#include "support/labels.h"
 #include "support/peak_memory.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
+
+FILE_LABELS(alone);
 
 /// Bakes a square whose chart is a small part of a map, so that the map determines the memory.
 std::size_t texels_of(BakeOptions options, float chart) {
@@ -26,6 +29,7 @@ std::size_t texels_of(BakeOptions options, float chart) {
 }
 
 /// The samples of a 2048 x 2048 map with 16 each would take a gigabyte, its texels 50 MB.
+TEST_LABELS(slow);
 TEST(BakeMemory, DoesNotGrowWithSamplesNorWithTheMap) {
     set_thread_limit(2);
     BakeOptions options;

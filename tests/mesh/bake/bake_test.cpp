@@ -18,6 +18,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -378,6 +379,7 @@ Errors errors_of(const Mesh& high, const Mesh& low, const BakedImage& baked, int
     return errors;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BakeSphere, HasTheHighNormalsWithinRounding) {
     const Mesh high = bumpy_sphere(100);
     Report report;

@@ -22,6 +22,7 @@
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -149,6 +150,7 @@ TEST(MapConvention, RecognizesItsOwnBakes) {
     EXPECT_FALSE(fit(encoded(object), VectorSpace::object).was_searched);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(MapConvention, RecognizesRotatedAxes) {
     const SignedAxis x{0, false}, y{1, false}, z{2, false}, minus_x{0, true}, minus_y{1, true};
     const auto axes_of = [](const std::function<glm::vec3(glm::vec3)>& change) {
@@ -168,6 +170,7 @@ TEST(MapConvention, RecognizesRotatedAxes) {
               (AxisMapping{y, minus_x, z}));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(MapConvention, SpacesAreRecognised) {
     const Image object = baked(pair().high, pair().low, options_of(VectorSpace::object));
     const ConventionFit told_tangent = fit(encoded(object));

@@ -15,6 +15,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -181,12 +182,14 @@ void expect_promise_kept(const FieldRecipe& recipe, int width, int height, bool 
 
 class KernelChoiceOnFields : public testing::TestWithParam<FieldRecipe> {};
 
+TEST_LABELS(slow);
 TEST_P(KernelChoiceOnFields, IsWithinAFifthOfTheBestKernel) {
     expect_promise_kept(GetParam(), 128, 128, false);
     expect_promise_kept(GetParam(), 256, 256, false);
     expect_promise_kept(GetParam(), 200, 200, false);
 }
 
+TEST_LABELS(slow);
 TEST_P(KernelChoiceOnFields, AlsoAfterDestaircasing) {
     expect_promise_kept(GetParam(), 128, 128, true);
     expect_promise_kept(GetParam(), 200, 200, true);

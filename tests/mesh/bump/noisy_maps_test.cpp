@@ -16,6 +16,7 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -269,6 +270,7 @@ constexpr double all_ratios[] = {0.1, 0.3, 0.5, 0.6, 1.0, 1.5, 2.0};
 
 class KernelChoiceAtAllRatios : public testing::TestWithParam<NoiseKind> {};
 
+TEST_LABELS(slow);
 TEST_P(KernelChoiceAtAllRatios, OnSines) {
     const bool is_colored = GetParam() == NoiseKind::blurred || GetParam() == NoiseKind::pink;
     for (const double ratio : all_ratios) {
@@ -278,6 +280,7 @@ TEST_P(KernelChoiceAtAllRatios, OnSines) {
     }
 }
 
+TEST_LABELS(slow);
 TEST_P(KernelChoiceAtAllRatios, OnMasks) {
     const Surface surface = soft_mask();
     for (const double ratio : all_ratios) {
@@ -294,6 +297,7 @@ struct NoisyCase {
 
 class KernelChoiceOnNoises : public testing::TestWithParam<NoisyCase> {};
 
+TEST_LABELS(not_sanitized);
 TEST_P(KernelChoiceOnNoises, IsNearTheBestAndExpectsTheErrorThatThereIs) {
     const auto [kind, ratio, bits] = GetParam();
     const double widest = kind == NoiseKind::blurred ? any_width : narrow;
@@ -310,10 +314,12 @@ INSTANTIATE_TEST_SUITE_P(
                     NoisyCase{NoiseKind::blurred, 2.0, 16}, NoisyCase{NoiseKind::spikes, 0.1, 8},
                     NoisyCase{NoiseKind::spikes, 1.0, 16}));
 
+TEST_LABELS(not_sanitized);
 TEST(KernelChoiceOnNoisyMaps, AlsoOnMasksWithSpikes) {
     expect_promise_kept(noisy_map(soft_mask(), NoiseKind::spikes, 0.5, 8), "spikes", any_width);
 }
 
+TEST_LABELS(slow);
 TEST_P(KernelChoiceAtAllRatios, OnAPhotograph) {
     RELIEF_NEEDS_SHARED(file, "data/textures/bricks_godot/texture_bricks.jpg");
     // Every other texel of the photograph after a Gaussian filter, whose derivatives are the
@@ -361,6 +367,7 @@ INSTANTIATE_TEST_SUITE_P(Noises, KernelChoiceAtAllRatios,
                          testing::Values(NoiseKind::white, NoiseKind::pink, NoiseKind::blurred,
                                          NoiseKind::quantized));
 
+TEST_LABELS(not_sanitized);
 TEST(KernelChoiceOnMasks, LevelsOfAMaskAreItsHeights) {
     Surface surface = surface_of([](double x, double y) { return discs(x, y, 1e-9); }, 1.0);
     Image mask = make_image(side, side, 1, 8, ColorSpace::data);
@@ -385,6 +392,7 @@ TEST(KernelChoiceOnMasks, LevelsOfAMaskAreItsHeights) {
     EXPECT_THAT(choice.reason, HasSubstr("a few levels, taken for the true heights"));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(KernelChoiceOnMasks, AntialiasedEdgesAreNotBlurred) {
     const BumpField map = noisy_map(soft_mask(), NoiseKind::white, 0.0, 8);
     const KernelChoice choice = choose_kernel(map.heights, map.options);
@@ -399,6 +407,7 @@ TEST(KernelChoiceOnMasks, AntialiasedEdgesAreNotBlurred) {
                        1.05);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(KernelChoiceOnGrain, StatesBothInterpretations) {
     // A map of grain only: the grain counts as detail, since a map of noise alone is useless.
     Surface flat{std::vector<double>(static_cast<std::size_t>(side) * side, 0.0),

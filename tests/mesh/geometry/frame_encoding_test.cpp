@@ -17,6 +17,7 @@
 #include "relief/mesh/statistics.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -296,6 +297,7 @@ void expect_codes_to_stay(const std::vector<std::uint32_t>& words, FrameEncoding
     EXPECT_TRUE(report.empty());
 }
 
+TEST_LABELS(not_sanitized);
 TEST(FrameEncoding, EverySmallCodeComesBackWithItsHand) {
     // All 8-bit tangents with all normals of a coarse grid of codes, except tangents close to the
     // normal.

@@ -14,6 +14,7 @@
 #include "relief/mesh/report.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -336,6 +337,7 @@ TEST(VertexNormals, ApproachTheSphereAtSecondOrder) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(VertexNormals, AFanOfAMillionTrianglesIsSummedExactly) {
     // A flat fan: every contribution is the same for any number of triangles.
     const std::uint32_t count = 1000000;

@@ -10,9 +10,12 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace {
+
+FILE_LABELS(alone);
 
 std::atomic<std::size_t> in_use{0};
 std::atomic<std::size_t> max_used{0};

@@ -16,6 +16,7 @@
 #include "relief/mesh/tangents.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -546,6 +547,7 @@ Mesh crowded(int kind, std::uint32_t count) {
     return mesh;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Tangents, AreLinearForAllShapes) {
     const char* const names[] = {"flat fan", "fan with a texture around it", "one edge", "line",
                                  "point"};

@@ -18,6 +18,7 @@
 #include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -506,6 +507,7 @@ TEST(Destaircase, TheNumberOfThreadsChangesNoBit) {
     EXPECT_EQ(one.samples, many.samples);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Destaircase, TheBestKernelGainsOnSmoothMapsAndLosesLittleOnDetailedOnes) {
     for (const FieldRecipe& recipe : tuning_fields()) {
         if (recipe.coding != FieldCoding::bits8 || recipe.noise > 0.0) continue;

@@ -19,6 +19,7 @@
 #include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -416,6 +417,7 @@ Image green_flipped(Image map) {
     return map;
 }
 
+TEST_LABELS(not_sanitized);
 TEST_P(RealNormalMaps, AreRecognizedWithBothDirectionsOfGreen) {
     RELIEF_NEEDS_SHARED(file, std::string("data/") + GetParam().file);
     const Image map = read_image(file, ImageUse::data);
@@ -453,6 +455,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "Normal_Plane.png",
                 Green::up}));
 
+TEST_LABELS(not_sanitized);
 TEST(RealPictures, AreNotTakenForNormalMaps) {
     RELIEF_NEEDS_SHARED(folder, "data/textures");
     int analyzed = 0;

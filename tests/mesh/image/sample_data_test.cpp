@@ -15,6 +15,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/texel_coverage.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -22,6 +23,7 @@ namespace {
 
 const std::filesystem::path data = test::source_directory() / "data";
 
+TEST_LABELS(slow);
 TEST(SampleData, TheProgramWritesTheSameFilesAgain) {
     const test::TemporaryDirectory folder;
     const std::string command = fmt::format("{} {}", RELIEF_MAKE_DATA, folder.path().string());

@@ -19,6 +19,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 #include "topology/edge_collapse.h"
@@ -243,6 +244,7 @@ double distance_to(const glm::dvec3& p, const Mesh& mesh) {
     return nearest;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Decimate, TheSurfacesAreNowhereFurtherApartThanMaxError) {
     const Mesh torus = make_torus(0.4F, 64, 32);
     for (const double most : {0.05, 0.02}) {

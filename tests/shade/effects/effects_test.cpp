@@ -13,6 +13,7 @@
 #include "relief/shade/frame_settings.h"
 #include "shade/effects/feature_sets.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -374,6 +375,7 @@ TEST(ScenesCallingFor, EveryCoveringSetArePlannedWithIt) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(EffectForcing, AllIsAFixedPointThatKeepsThePlan) {
     for (const Features& features : test::covering_features()) {
         const test::CallingScene calling = test::scene_calling_for(features);
@@ -403,6 +405,7 @@ TEST(DebugViews, HaveNamesOfTheirOwnAndAKind) {
     EXPECT_EQ(names.size(), 17U);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(DebugViews, OfAnyEffectsAreCanonical) {
     std::size_t at = 0;
     test::for_random_features(4000, [&](const Features& random) {

@@ -16,6 +16,7 @@
 #include "relief/shade/renderer.h"
 #include "shade/effects/feature_sets.h"
 #include "support/gl_environment.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -259,6 +260,7 @@ TEST(ShaderListings, AreEmptyWithoutDraws) {
     EXPECT_TRUE(shader_listings({}).empty());
 }
 
+TEST_LABELS(not_sanitized);
 TEST(SurfaceProgram, ComesTogetherForEveryCanonicalSet) {
     test::for_random_features(5000, [](const Features& f) {
         ASSERT_NO_THROW((void)surface_program(canonical(f))) << describe(f);

@@ -15,6 +15,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "shade/environment/test_environments.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -125,6 +126,7 @@ double albedo_over_light(double n_v, double roughness, int steps) {
     return sum * 2.0 * std::numbers::pi / (static_cast<double>(steps) * steps);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(EnvironmentBrdf, IsTheIntegralOverFacets) {
     double worst = 0.0;
     for (const double roughness : {1.0 / 64, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0}) {
@@ -320,6 +322,7 @@ TEST(IrradianceSh, SmallLightHasTheKnownError) {
     EXPECT_NEAR(worst, 3.0 / 32, 1e-3);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(IrradianceSh, RealPanoramaIsWithinTwoPercent) {
     RELIEF_NEEDS_SHARED(folder, "data/env/cube/venice_sunset_256");
     std::vector<Image> faces;
@@ -466,6 +469,7 @@ TEST(Blur, RoughestLevelIsTheCosineMean) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Blur, TheWalkIsCloseToTheSumOverAllTexels) {
     const std::vector<Image> faces = faces_of(128, sunny_room);
     // The levels of a prefiltered cube map have these values.
@@ -476,6 +480,7 @@ TEST(Blur, TheWalkIsCloseToTheSumOverAllTexels) {
     EXPECT_LT(relative_error(faces, 8, 1.0, 3), 0.005);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Blur, RealPanoramaIsWithinAPercent) {
     RELIEF_NEEDS_SHARED(folder, "data/env/cube/venice_sunset_256");
     std::vector<Image> faces;

@@ -19,6 +19,7 @@
 #include "gl/resources.h"
 #include "relief/shade/renderer.h"
 #include "support/gl_environment.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -324,6 +325,7 @@ std::string hashes(const std::string& output) {
     return output.substr(0, output.find("loaded:"));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Determinism, TheNumberOfThreadsChangesNoBit) {
     for (const char* backend : {"osmesa", "egl"}) {
         const bool is_osmesa = std::string(backend) == "osmesa";

@@ -11,6 +11,7 @@
 #include "relief/shade/image_compare.h"
 #include "shade/environment/test_environments.h"
 #include "support/gl_environment.h"
+#include "support/labels.h"
 
 namespace relief::gl {
 namespace {
@@ -31,6 +32,7 @@ glm::dvec3 room(glm::dvec3 d) {
     return glm::dvec3(0.5 + 0.3 * d.y, 0.5, 0.5 - 0.2 * d.x) + glm::dvec3(sun > 0.99 ? 60.0 : 0.0);
 }
 
+TEST_LABELS(not_sanitized);
 TEST_P(Prefilter, HasLevelsDownToEightTexels) {
     for (const auto& [source, size, levels] :
          {std::array{1, 128, 5}, {3, 128, 5}, {255, 128, 5}, {256, 256, 6}, {300, 256, 6}}) {

@@ -18,6 +18,7 @@
 #include "shade/render/draw_support.h"
 #include "shade/render/random_scene.h"
 
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -359,6 +360,7 @@ TEST_F(DebugViewPictures, OfDiffuseLightAgreeWithTheReferenceOfAMatteScene) {
 }
 
 /// The programs of views have only the inputs that the plan lists.
+TEST_LABELS(not_sanitized);
 TEST_F(DebugViewPictures, LinkForACoveringSetAndUseThePlannedInputs) {
     ProgramCache cache(context().api());
     std::set<Features> tried;

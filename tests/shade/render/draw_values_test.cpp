@@ -14,6 +14,7 @@
 #include "shade/effects/feature_sets.h"
 #include "support/gl_environment.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -119,6 +120,7 @@ TEST(ClipFromWorld, PutsNearAndFarAtTheEndsOfDepth) {
 class DrawUniforms : public test::GlTest {};
 RELIEF_ON_DEFAULT_BACKEND(DrawUniforms);
 
+TEST_LABELS(not_sanitized);
 TEST_P(DrawUniforms, HaveAValueForEveryPlannedName) {
     ProgramCache cache(api());
     const DrawValues values;

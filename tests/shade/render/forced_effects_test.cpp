@@ -15,6 +15,7 @@
 #include "relief/shade/scene_file.h"
 #include "shade/effects/feature_sets.h"
 #include "shade/render/draw_support.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -164,6 +165,7 @@ class ForcedEffects : public test::DrawTest {
     }
 };
 
+TEST_LABELS(not_sanitized);
 TEST_F(ForcedEffects, ChangeNoBitOneByOne) {
     std::set<std::string> forced;
     for (const auto& [name, scene] : scenes()) {
@@ -239,6 +241,7 @@ TEST_F(ForcedEffects, ThatNeedOthersChangeNoBitWithThem) {
     }
 }
 
+TEST_LABELS(slow);
 TEST_F(ForcedEffects, ChangeNoBitInScenesThatCoverAllPairs) {
     std::size_t scenes = 0;
     std::size_t added = 0;
@@ -288,6 +291,7 @@ Scene under_the_sky(Scene scene) {
     return scene;
 }
 
+TEST_LABELS(slow);
 TEST_F(ForcedEffects, ChangeNoBitOfTheScenesInData) {
     const auto all = scenes_in_data();
     EXPECT_GE(all.size(), 2U);

@@ -18,6 +18,7 @@
 #include "shade/render/draw_support.h"
 #include "shade/render/random_scene.h"
 #include "shade/render/reference_agreement.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -799,6 +800,7 @@ Scene glossy_sphere(float roughness, std::optional<float> metallic) {
     return scene;
 }
 
+TEST_LABELS(slow);
 TEST_F(AgainstReference, AgreesInABlurredEnvironment) {
     for (const float roughness : {0.1F, 0.15F, 0.3F, 0.5F, 0.7F, 1.0F}) {
         for (const std::optional<float> metallic :
@@ -1012,6 +1014,7 @@ class ManyRandomScenes : public AgainstReference, public testing::WithParamInter
 
 constexpr int parts = 10;
 
+TEST_LABELS(slow);
 TEST_P(ManyRandomScenes, AgreeWithTheReference) {
     const char* asked = std::getenv("RELIEF_RANDOM_SCENES");
     const std::uint64_t count = asked == nullptr ? 300 : std::strtoull(asked, nullptr, 10);

@@ -16,6 +16,7 @@
 #include "shade/render/random_scene.h"
 #include "shade/render/reference_agreement.h"
 #include "support/gl_environment.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -498,6 +499,7 @@ class TexturePairs : public ::testing::TestWithParam<std::tuple<Backend, std::si
     static void TearDownTestSuite() { test::release_shared_context(); }
 };
 
+TEST_LABELS(slow);
 TEST_P(TexturePairs, AgreeWithTheReference) {
     const auto [backend, slot] = GetParam();
     const Context* const context = test::shared_context(backend);

@@ -12,11 +12,14 @@
 #include <sstream>
 
 #include "relief/accuracy/experiment.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
+
+FILE_LABELS(docs);
 
 struct PageRow {
     std::string rms;
@@ -122,6 +125,7 @@ std::vector<std::string> commands_of_the_page() {
     return commands;
 }
 
+TEST_LABELS(slow);
 TEST(AccuracyDocument, HoldsTheErrorsOfTheSamplesInData) {
     const Page page = numbers_of_the_page();
     const test::Workplace workplace;

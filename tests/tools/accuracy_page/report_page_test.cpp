@@ -5,12 +5,14 @@
 #include <fstream>
 
 #include "report_page.h"
+#include "support/labels.h"
 #include "tools/accuracy_page/sample_report.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
 
+TEST_LABELS(slow, not_sanitized);
 TEST(ReportPage, WorksInABrowser) {
     const test::TemporaryDirectory folder;
     std::ofstream(folder / "report.html")

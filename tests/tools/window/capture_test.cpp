@@ -9,6 +9,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
 #include "support/gl_environment.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "tools/workplace.h"
 
@@ -131,6 +132,7 @@ std::size_t differing(const Workplace& workplace, const std::string& a, const st
         .differing_pixels;
 }
 
+TEST_LABELS(slow);
 TEST(SavedScene, DrawsTheSamePixelsForAllOptions) {
     const Workplace workplace;
     for (const std::string options :
@@ -154,6 +156,7 @@ TEST(SavedScene, DrawsTheSamePixelsForAllOptions) {
     EXPECT_EQ(differing(workplace, gold, "saved.json --samples 1"), 0U);
 }
 
+TEST_LABELS(slow);
 TEST(SavedScene, StaysInTheFolderOfItsSceneFile) {
     const Workplace workplace;
     // data/ belongs to the sources and must not change.

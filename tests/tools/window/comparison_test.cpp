@@ -9,6 +9,7 @@
 
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
+#include "support/labels.h"
 #include "tools/window/display.h"
 #include "tools/window/viewer_window.h"
 #include "tools/workplace.h"
@@ -218,6 +219,7 @@ void show_difference(ViewerWindow& window, const Display& display, const Workpla
         [&] { return changed_share(sides, display.picture(), 600, 200, 180, 400) == 0.0; }));
 }
 
+TEST_LABELS(window, slow);
 TEST(CompareWindow, TheLineIsDraggedAndTheDifferenceIsMeasured) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;
@@ -226,6 +228,7 @@ TEST(CompareWindow, TheLineIsDraggedAndTheDifferenceIsMeasured) {
     show_difference(window, *display, workplace);
 }
 
+TEST_LABELS(window, slow);
 TEST(CompareWindow, BothSidesAreThePicturesThatTheirCommandLinesDraw) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;
@@ -300,6 +303,7 @@ void choose_sides(ViewerWindow& window, const Display& display) {
     EXPECT_EQ(off["compare"]["on"], false);
 }
 
+TEST_LABELS(window, slow);
 TEST(CompareWindow, MethodsAndSidesAreChosenInPanels) {
     RELIEF_NEEDS_DISPLAY(display);
     const Workplace workplace;

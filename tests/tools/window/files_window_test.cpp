@@ -8,10 +8,13 @@
 #include <thread>
 
 #include "relief/mesh/image_file.h"
+#include "support/labels.h"
 #include "tools/window/viewer_window.h"
 
 namespace relief::tools {
 namespace {
+
+FILE_LABELS(window, slow);
 
 using nlohmann::json;
 using relief::Image;

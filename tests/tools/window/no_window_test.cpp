@@ -15,10 +15,13 @@
 #include <string>
 #include <thread>
 
+#include "support/labels.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
 namespace {
+
+FILE_LABELS(cli);
 
 using test::ProgramResult;
 using test::Workplace;

@@ -11,6 +11,7 @@
 #include <regex>
 #include <set>
 
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/window/display.h"
 #include "tools/window/viewer_window.h"
@@ -201,6 +202,7 @@ class Interface : public testing::Test {
     Workplace workplace_;
 };
 
+TEST_LABELS(window, slow);
 TEST_F(Interface, LayoutAndScaleAreSavedUnlessNoStateIsGiven) {
     if (display_ == nullptr) GTEST_SKIP() << "needs Xvfb and xdotool";
     workplace_.write_square("square.obj");
@@ -333,6 +335,7 @@ void Panel::change_environment() {
     close_panel("Environment");
 }
 
+TEST_LABELS(window, slow);
 TEST_F(Panel, LightsEnvironmentAndToneCurveChangeThePicture) {
     RELIEF_NEEDS_PANELS("data/vase.obj --light directional:40,30 --exposure 1");
     change_lights();
@@ -344,6 +347,7 @@ TEST_F(Panel, LightsEnvironmentAndToneCurveChangeThePicture) {
           [&](const json& now) { return now["revision"] > revision; });
 }
 
+TEST_LABELS(window, slow);
 TEST_F(Panel, MaterialsTakeMapsAndChangeTheirModel) {
     RELIEF_NEEDS_PANELS("data/vase.obj");
     open_panel("Materials");

@@ -9,10 +9,13 @@
 
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
+#include "support/labels.h"
 #include "tools/window/viewer_window.h"
 
 namespace relief::tools {
 namespace {
+
+FILE_LABELS(window);
 
 using nlohmann::json;
 using relief::Image;
@@ -241,6 +244,7 @@ class PanelsOfWindow : public Window {
     }
 };
 
+TEST_LABELS(slow);
 TEST_F(PanelsOfWindow, ShowHelpCostsAndShaders) {
     workplace().write_square("square.obj");
     RELIEF_NEEDS_WINDOW("square.obj --samples 1");
@@ -354,6 +358,7 @@ class SavingWindow : public Window {
     }
 };
 
+TEST_LABELS(slow);
 TEST_F(SavingWindow, PictureSceneModelAndTextDrawWhatIsShown) {
     open_beside_saved_files();
     RELIEF_NEEDS_WINDOW(saved_text);

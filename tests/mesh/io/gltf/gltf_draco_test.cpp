@@ -16,6 +16,7 @@
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -289,6 +290,7 @@ float largest_distance(const Mesh& a, const Mesh& b) {
     return largest;
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(GltfDraco, RealModelsMatchUncompressedOnes) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const auto compare = [&](const char* packed, const char* plain, float tolerance) {

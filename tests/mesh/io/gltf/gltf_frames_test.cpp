@@ -12,6 +12,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -461,6 +462,7 @@ void process_and_compare(const std::filesystem::path& file, const std::filesyste
     EXPECT_LE(test::unreferenced_bytes(out), test::unreferenced_bytes(file) + padding);
 }
 
+TEST_LABELS(slow);
 TEST_F(GltfFrames, ProcessingRealModelsLeavesNoUnusedData) {
     RELIEF_NEEDS_SHARED(models, "data/models");
     int processed = 0;

@@ -22,6 +22,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -465,6 +466,7 @@ Json beside_triangles(const std::filesystem::path& file) {
     return root;
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(GltfRoundTrip, ProcessingChangesFramesAndNothingElseAtAnyCorner) {
     RELIEF_NEEDS_SHARED(models, "data/models");
     const auto out = folder_ / "out.glb";
@@ -517,10 +519,10 @@ class GltfValidator : public testing::Test {
     void SetUp() override {
         const char* module = std::getenv("RELIEF_GLTF_VALIDATOR");
         if (module == nullptr) GTEST_SKIP() << "needs $RELIEF_GLTF_VALIDATOR and node";
-        command_ =
-            fmt::format("node {} --module {}",
-                        quoted_for_shell(test::source_directory() / "scripts/dev/validate-gltf.mjs"),
-                        quoted_for_shell(module));
+        command_ = fmt::format(
+            "node {} --module {}",
+            quoted_for_shell(test::source_directory() / "scripts/dev/validate-gltf.mjs"),
+            quoted_for_shell(module));
         if (output_of("node --version").second != 0) GTEST_SKIP() << "needs node";
     }
     std::string command_;

@@ -14,10 +14,13 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
+
+FILE_LABELS(alone, not_sanitized);
 
 using test::message_of;
 using test::TemporaryDirectory;

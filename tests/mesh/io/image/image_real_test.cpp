@@ -15,6 +15,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"
+#include "support/labels.h"
 #include "support/peak_memory.h"
 #include "support/shared_data.h"
 
@@ -141,6 +142,7 @@ FileOutcome outcome_of(const std::filesystem::path& file) {
     return outcome;
 }
 
+TEST_LABELS(alone);
 TEST(ImageFileBroken, EveryHostileFileEndsInAnErrorOrAnImage) {
     RELIEF_NEEDS_SHARED(folder, "data/broken/image");
     image_module("the memory that it takes");  // The measurement excludes the module.

@@ -10,11 +10,14 @@
 
 #include "relief/mesh/execution.h"
 #include "relief/mesh/normal_map_file.h"
+#include "support/labels.h"
 #include "support/peak_memory.h"
 #include "support/shared_data.h"
 
 namespace relief {
 namespace {
+
+FILE_LABELS(alone);
 
 /// Fills rows with slopes and noise.
 void fill_row(std::vector<std::uint16_t>& row, int y) {

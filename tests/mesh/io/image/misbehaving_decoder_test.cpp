@@ -17,6 +17,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -66,6 +67,9 @@ class MisbehavingDecoder : public testing::TestWithParam<Misbehavior> {
     std::optional<std::string> before_;
 };
 
+TEST_LABELS(alone);
+TEST_LABELS_OF("ForbiddenCalls/*", not_sanitized);
+TEST_LABELS_OF("Faults/*", not_sanitized);
 TEST_P(MisbehavingDecoder, EndsInADefinedResult) {
     const auto begin = std::chrono::steady_clock::now();
     const std::string error = GetParam().error;

@@ -19,6 +19,7 @@
 #include "mesh/io/image/module_reference.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -350,6 +351,7 @@ TEST(PlainPngs, AreReadAsByLibpng) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(PlainPngs, AmongRealFilesReadAsLibpngReadsThem) {
     RELIEF_NEEDS_SHARED(data, "data");
     const test::Comparison comparison = test::compare_all(data, ".png");
