@@ -482,6 +482,11 @@ class GltfDocument {
     /// \throws InvalidInput if instance attributes have a wrong type or differ in length
     [[nodiscard]] GltfView view() const;
 
+    /// Checks that one mesh of all instances in world space fits into the memory that the contents
+    /// of the file may take (limits.h), besides what was read. Documents that were not read have no
+    /// limit. \throws InvalidInput naming the first node that exceeds it; as view() does
+    void require_memory_of_instances() const;
+
     /// Returns the animations of nodes, and of properties by KHR_animation_pointer, in the
     /// document's order. A pointer to a property of a node becomes an animation of the node.
     ///
@@ -508,7 +513,8 @@ class GltfDocument {
 ///
 /// With a negative scale the winding is reversed, so that faces stay counter-clockwise. If only
 /// some primitives have normals, texture coordinates or colors, the others get flat normals, (0,0)
-/// and white. Tangents are left out. \throws InvalidInput as GltfDocument::view() and mesh()
+/// and white. Tangents are left out. \throws InvalidInput as GltfDocument::view(), mesh() and
+/// require_memory_of_instances()
 MeshFile flattened(const GltfDocument& document);
 
 }  // namespace relief

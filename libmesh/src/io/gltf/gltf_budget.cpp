@@ -12,9 +12,33 @@
 
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
+#include "relief/mesh/gltf_document.h"
 
 namespace relief {
 namespace {
+
+std::size_t element_count(const Json& root, std::size_t accessor) {
+    return size_in(root["accessors"][accessor], "count");
+}
+
+/// The vertices that a primitive uses at most, and its indices.
+struct PrimitiveSize {
+    std::size_t vertices = 0;
+    std::size_t corners = 0;
+};
+
+PrimitiveSize primitive_size(const Json& root, const Json& primitive, std::size_t position) {
+    const auto indices = index_in(primitive, "indices");
+    const std::size_t vertices = element_count(root, position);
+    const std::size_t corners = indices ? element_count(root, *indices) : vertices;
+    return {std::min(vertices, corners), corners};
+}
+
+/// The size of a triangle list's index, or of the triangle that a corner of a strip or a fan makes.
+std::size_t corner_size(const Json& primitive) {
+    const bool is_list = size_in(primitive, "mode", gltf_code::triangles) <= 4;
+    return is_list ? sizeof(std::uint32_t) : 3 * sizeof(std::uint32_t);
+}
 
 class ContentCount {
   public:
@@ -36,7 +60,7 @@ class ContentCount {
     }
 
     [[nodiscard]] std::size_t count_of(std::size_t number) const {
-        return size_in(accessor(number), "count");
+        return element_count(root_, number);
     }
 
     /// Elements that no bytes of the file stand for.
@@ -63,16 +87,13 @@ class ContentCount {
         const auto name = [&] { return fmt::format("meshes[{}].primitives[{}]", mesh, number); };
         const auto position = index_in(primitive["attributes"], "POSITION");
         if (!position) return;
-        const auto indices = index_in(primitive, "indices");
-        const std::size_t vertices = count_of(*position);
-        const std::size_t corners = indices ? count_of(*indices) : vertices;
-        const bool is_list = size_in(primitive, "mode", gltf_code::triangles) <= 4;
-        budget_.take(corners, is_list ? sizeof(std::uint32_t) : 3 * sizeof(std::uint32_t), name);
-        const std::size_t used = std::min(vertices, corners);
+        const PrimitiveSize size = primitive_size(root_, primitive, *position);
+        budget_.take(size.corners, corner_size(primitive), name);
         const auto take_attributes = [&](const Json& attributes) {
             for (const auto& [semantic, index] : attributes.items()) {
                 const Json& values = accessor(index.get<std::size_t>());
-                budget_.take(used, element_layout(values).components * sizeof(float), name);
+                budget_.take(size.vertices, element_layout(values).components * sizeof(float),
+                             name);
             }
         };
         take_attributes(primitive["attributes"]);
@@ -83,7 +104,9 @@ class ContentCount {
     /// A matrix, a name and what drawing needs, for each primitive of a node and each of its
     /// instances.
     void take_instances() {
-        constexpr std::size_t bytes_per_instance = 512;
+        constexpr std::size_t bytes_per_instance = 2560;
+        constexpr std::size_t bytes_per_pose = 16384;  // Textures, and an effect plan of its own.
+        constexpr std::size_t bytes_per_joint = 4 * sizeof(glm::mat4);
         const Json& nodes = array_in(root_, "nodes");
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const auto mesh = index_in(nodes[i], "mesh");
@@ -95,7 +118,10 @@ class ContentCount {
                     instances = std::max(instances, count_of(index.get<std::size_t>()));
             }
             const std::size_t primitives = root_["meshes"][*mesh]["primitives"].size();
-            budget_.take(instances, bytes_per_instance * primitives,
+            std::size_t bytes = bytes_per_instance;
+            if (const auto skin = index_in(nodes[i], "skin"))
+                bytes += bytes_per_pose + bytes_per_joint * root_["skins"][*skin]["joints"].size();
+            budget_.take(instances, bytes * primitives,
                          [&] { return fmt::format("nodes[{}]", i); });
         }
     }
@@ -142,6 +168,24 @@ class ContentCount {
 
 void take_contents(GltfContents& contents) {
     ContentCount(contents).take_all();
+}
+
+void GltfDocument::require_memory_of_instances() const {
+    // Position, normal, texture coordinates, and a color or a tangent.
+    constexpr std::size_t bytes_per_vertex = 12 * sizeof(float);
+    const Json& root = contents_->data.root;
+    MemoryBudget budget = contents_->data.budget;
+    for (const auto& item : view().primitives) {
+        const auto name = [&] { return fmt::format("nodes[{}]", item.node); };
+        const Json& primitive = root["meshes"][item.what.mesh]["primitives"][item.what.primitive];
+        const auto position = index_in(primitive["attributes"], "POSITION");
+        if (!position) continue;
+        const PrimitiveSize size = primitive_size(root, primitive, *position);
+        // Facets do not share vertices.
+        const bool is_flat = !primitive["attributes"].contains("NORMAL");
+        budget.take(is_flat ? size.corners : size.vertices, bytes_per_vertex, name);
+        budget.take(size.corners, corner_size(primitive), name);
+    }
 }
 
 }  // namespace relief

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "file_replacement.h"
 #include "files.h"
@@ -313,11 +314,8 @@ MtlMaterial translated(const GltfMaterial& material, const GltfView& view) {
 }
 
 /// Appends one transformed primitive and completes its missing arrays.
-void append(Mesh& all, Mesh part) {
+void append(Mesh& all, const Mesh& part) {
     const auto first = static_cast<std::uint32_t>(all.positions.size());
-    const std::size_t count = part.positions.size();
-    if (part.texcoords.empty()) part.texcoords.assign(count, glm::vec2(0.0F));
-    if (part.colors.empty()) part.colors.assign(count, glm::vec4(1.0F));
     all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
     all.normals.insert(all.normals.end(), part.normals.begin(), part.normals.end());
     all.texcoords.insert(all.texcoords.end(), part.texcoords.begin(), part.texcoords.end());
@@ -336,17 +334,27 @@ void append(Mesh& all, Mesh part) {
     }
 }
 
+struct ByIndex {
+    bool operator()(GltfPrimitiveId a, GltfPrimitiveId b) const {
+        return std::pair(a.mesh, a.primitive) < std::pair(b.mesh, b.primitive);
+    }
+};
+
 }  // namespace
 
 MeshFile flattened(const GltfDocument& document) {
+    document.require_memory_of_instances();
     const GltfView view = document.view();
-    std::vector<Mesh> parts;
+    std::map<GltfPrimitiveId, Mesh, ByIndex> parts;
     bool any_normals = false;
     bool any_texcoords = false;
     bool any_colors = false;
     std::size_t vertex_count = 0;
-    for (const auto& placed : view.primitives) {
-        const Mesh& part = parts.emplace_back(document.mesh(placed.what));
+    for (const auto& instance : view.primitives) {
+        auto entry = parts.find(instance.what);
+        if (entry == parts.end())
+            entry = parts.emplace(instance.what, document.mesh(instance.what)).first;
+        const Mesh& part = entry->second;
         any_normals = any_normals || !part.normals.empty();
         any_texcoords = any_texcoords || !part.texcoords.empty();
         any_colors = any_colors || !part.colors.empty();
@@ -356,17 +364,19 @@ MeshFile flattened(const GltfDocument& document) {
         throw InvalidInput(fmt::format("{} vertices are too many for one mesh", vertex_count));
     }
     MeshFile result;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (any_normals && parts[i].normals.empty()) {
+    for (auto& [id, part] : parts) {
+        if (any_normals && part.normals.empty()) {
             FrameOptions options;
             options.if_missing = NormalMode::flat;
             Report ignored;  // The document's own processing reports these findings.
-            parts[i] = with_frames(std::move(parts[i]), options, ignored).mesh;
+            part = with_frames(std::move(part), options, ignored).mesh;
         }
-        append(result.mesh, transformed(std::move(parts[i]), view.primitives[i].world_from_object));
+        const std::size_t count = part.positions.size();
+        if (any_texcoords && part.texcoords.empty()) part.texcoords.assign(count, glm::vec2(0.0F));
+        if (any_colors && part.colors.empty()) part.colors.assign(count, glm::vec4(1.0F));
     }
-    if (!any_texcoords) result.mesh.texcoords.clear();
-    if (!any_colors) result.mesh.colors.clear();
+    for (const auto& instance : view.primitives)
+        append(result.mesh, transformed(parts.at(instance.what), instance.world_from_object));
     for (const GltfMaterial& material : view.materials) {
         result.materials.push_back(translated(material, view));
     }

@@ -52,6 +52,7 @@ void append_primitives(JoinedModel& model, const GltfDocument& document, bool in
             append_part(model, document.mesh(id), document.describe(id));
         return;
     }
+    document.require_memory_of_instances();
     for (const auto& primitive : document.view().primitives) {
         append_part(model, transformed(document.mesh(primitive.what), primitive.world_from_object),
                     document.describe(primitive.what));

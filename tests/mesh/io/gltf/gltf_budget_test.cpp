@@ -10,7 +10,9 @@
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/limits.h"
+#include "relief/mesh/model.h"
 #include "relief/mesh/report.h"
+#include "support/invariants.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -106,6 +108,28 @@ TEST_F(GltfBudget, LimitsInstances) {
     }
     root["accessors"].push_back({{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
     EXPECT_THAT(error_of(root), HasSubstr("nodes["));
+}
+
+TEST_F(GltfBudget, LimitsInstancesThatAreJoinedInWorldSpace) {
+    json root = thousand_positions();
+    for (int i = 1; i <= 200; ++i) {
+        root["nodes"].push_back({{"mesh", 0}});
+        root["scenes"][0]["nodes"].push_back(i);
+    }
+    test::write_gltf_file(folder_ / "a.glb", root, std::string(12000, '\0'));
+    const auto flat = [&] { return flattened(GltfDocument::read(folder_ / "a.glb")); };
+    const auto joined = [&] { return joined_model(GltfDocument::read(folder_ / "a.glb"), true); };
+    set_input_limits({.memory = 16 << 20});
+    EXPECT_EQ(flat().mesh.positions.size(), 201U * 999U);
+    EXPECT_EQ(joined().mesh.positions.size(), 201U * 999U);
+
+    set_input_limits({.memory = 1 << 20});  // 256 times the bytes of the file are less than needed.
+    for (const std::string& error : {test::message_of<InvalidInput>([&] { flat(); }),
+                                     test::message_of<InvalidInput>([&] { joined(); })}) {
+        EXPECT_THAT(error, HasSubstr("nodes["));
+        EXPECT_THAT(error, HasSubstr("--max-memory raises this limit"));
+    }
+    EXPECT_NO_THROW(joined_model(GltfDocument::read(folder_ / "a.glb"), false));
 }
 
 TEST_F(GltfBudget, PrimitivesThatUseFewVerticesOfALargeAccessorAreReadInProportion) {
