@@ -18,7 +18,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
-from . import _relief
+from . import _arguments, _relief
 from ._relief import (
     BakeMismatch,
     Cancelled,
@@ -80,6 +80,8 @@ __all__ = [
     "triangle_normals", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
     "write_texture",
 ]
+
+_arguments.shorten_errors(globals())
 
 
 class Finding(TypedDict):

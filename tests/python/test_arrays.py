@@ -137,6 +137,25 @@ class Refusals(unittest.TestCase):
         with self.assertRaisesRegex(relief.InvalidInput, r"positions: has masked values .*positions\.filled\(0\)"):
             relief.vertex_normals(numpy.ma.masked_array(self.positions, hidden), self.triangles)
 
+    def test_wrong_arguments_have_short_errors(self):
+        height = numpy.zeros((64, 64), "uint16")
+
+        def error_of(call):
+            with self.assertRaises(TypeError) as refused:
+                call()
+            return str(refused.exception)
+
+        self.assertEqual(error_of(lambda: relief.bump(height, kernal="sobel3")),
+                         "bump() has no argument 'kernal': did you mean 'kernel'?")
+        self.assertEqual(error_of(lambda: relief.Scene.load("a.gltf", zz=1)),
+                         "Scene.load() has no argument 'zz': its arguments are file, studio, report")
+        self.assertEqual(error_of(lambda: relief.Mesh(self.positions, self.triangles, texcoord=self.texcoords)),
+                         "Mesh() has no argument 'texcoord': did you mean 'texcoords'?")
+        self.assertEqual(error_of(lambda: relief.Execution(thread=1)),
+                         "Execution() has no argument 'thread': did you mean 'threads'?")
+        self.assertRegex(error_of(lambda: relief.bump(height, strength="high")),
+                         r"^bump\(\) got \(ndarray, strength: str\), expected \(height: object, .*strength: float")
+
     def test_values(self):
         with self.assertRaisesRegex(relief.InvalidInput, "triangle 0 names vertex 5, but there are only 5"):
             relief.vertex_normals(self.positions[:5], self.triangles)
