@@ -232,7 +232,7 @@ Summary effect_summary(const Scene& scene, const FramePlan& plan) {
         return {
             {"instance", instance_name(scene, draw)}, {"material", material_name(scene, draw)},
             {"triangles", draw.range.triangle_count}, {"tangents_computed", draw.needs_tangents},
-            {"effects", list_of(draw.reasons)},       {"attributes", list_of(inputs.attributes)},
+            {"effects", list_of(*draw.reasons)},      {"attributes", list_of(inputs.attributes)},
             {"textures", list_of(inputs.textures)}};
     };
     summary.add_json({{"draws", json_list(plan.draws, draw_json)}});

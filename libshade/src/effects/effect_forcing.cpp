@@ -107,10 +107,13 @@ std::string refusal_reason(const ForcingSubject& subject, const EffectRow& row) 
     return displaced.empty() ? "" : fmt::format("it would replace '{}'", displaced);
 }
 
+/// The reasons by effect.
+using Refusals = std::map<std::string, std::string, std::less<>>;
+
 /// The features of a draw with effects forced, and why requested ones are not there.
 struct ForcedDraw {
     Features features;
-    std::map<std::string, std::string, std::less<>> refused;  ///< By effect.
+    Refusals refused;
 };
 
 void remove_effects(const Requests& requests, Features& f) {
@@ -170,7 +173,7 @@ ForcedDraw forced_draw(const ForcingSubject& subject, const Requests& requests) 
 }
 
 void rewrite_reasons(DrawPlan& draw, const ForcedDraw& forced, const Requests& requests) {
-    for (EffectReason& reason : draw.reasons) {
+    for (EffectReason& reason : draw.reasons.edit()) {
         const EffectRow* const row = find_effect(reason.effect);
         if (row == nullptr) continue;
         const auto refused = forced.refused.find(reason.effect);
@@ -195,7 +198,7 @@ void update_tangents(const Scene& scene, DrawPlan& draw) {
     const bool uses = std::binary_search(attributes.begin(), attributes.end(), "tangent_object");
     const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
     draw.needs_tangents = uses && mesh.tangents.empty();
-    for (EffectReason& reason : draw.reasons) {
+    for (EffectReason& reason : draw.reasons.edit()) {
         if (reason.effect != "computed tangents" || reason.on == draw.needs_tangents) continue;
         reason.on = draw.needs_tangents;
         reason.reason = uses ? "a forced effect lies in their frame" : "nothing uses tangents";
@@ -208,21 +211,46 @@ void refuse(const std::string& effect, const Material& material, const std::stri
                                    material.name, reason));
 }
 
+/// The mesh, the material, the effects, and the reasons, which equal draws share.
+using DrawKey = std::tuple<std::size_t, std::optional<std::uint32_t>, Features,
+                           const std::vector<EffectReason>*>;
+
+/// Equal draws with forced effects.
+struct ForcedPlan {
+    EffectReasons before;  ///< Keeps the reasons of the key.
+    DrawPlan plan;
+    Refusals refused;
+};
+
 void force_draws(const Scene& scene, const Requests& requests, FramePlan& plan) {
     std::map<std::string, std::pair<const Material*, std::string>> refused;
     std::map<std::string, std::size_t> refusals;
+    std::map<DrawKey, ForcedPlan> forced_plans;
     for (DrawPlan& draw : plan.draws) {
         const Material& material =
             draw.range.material ? scene.materials[*draw.range.material] : default_material();
-        const ForcedDraw forced = forced_draw({scene, material, draw.features}, requests);
-        for (const auto& [effect, reason] : forced.refused) {
+        const DrawKey key(scene.instances[draw.instance].mesh, draw.range.material, draw.features,
+                          &*draw.reasons);
+        auto entry = forced_plans.find(key);
+        if (entry == forced_plans.end()) {
+            ForcedDraw forced = forced_draw({scene, material, draw.features}, requests);
+            DrawPlan forced_plan = draw;
+            rewrite_reasons(forced_plan, forced, requests);
+            forced_plan.features = forced.features;
+            update_tangents(scene, forced_plan);
+            entry = forced_plans
+                        .emplace(key, ForcedPlan{draw.reasons, std::move(forced_plan),
+                                                 std::move(forced.refused)})
+                        .first;
+        }
+        for (const auto& [effect, reason] : entry->second.refused) {
             refused.try_emplace(effect, &material, reason);
             ++refusals[effect];
         }
-        rewrite_reasons(draw, forced, requests);
-        draw.features = forced.features;
+        draw.reasons = entry->second.plan.reasons;
+        draw.features = entry->second.plan.features;
+        draw.needs_tangents = entry->second.plan.needs_tangents;
         draw.follows_pose &= !requests.forces_pose();
-        update_tangents(scene, draw);
     }
     for (const auto& [effect, first] : refused) {
         if (refusals[effect] == plan.draws.size()) refuse(effect, *first.first, first.second);

@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "effects/features.h"
 #include "effects/light_rows.h"
@@ -45,6 +48,15 @@ DrawDecisions decide(const Scene& scene, const Material& material, const std::st
     return decisions;
 }
 
+/// Replaces the reason of an effect, if it differs.
+void set_reason(EffectReasons& reasons, EffectReason reason) {
+    const auto old = std::find_if(reasons.begin(), reasons.end(),
+                                  [&](const EffectReason& r) { return r.effect == reason.effect; });
+    if (old == reasons.end() || (old->on == reason.on && old->reason == reason.reason)) return;
+    const auto index = old - reasons.begin();
+    reasons.edit()[static_cast<std::size_t>(index)] = std::move(reason);
+}
+
 DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange& range,
                    OutputCoding output, ShadowTerm shadow) {
     const std::size_t mesh_index = scene.instances[instance].mesh;
@@ -55,15 +67,42 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
                                      &scene.instances[instance], output, shadow);
     const Features& f = decisions.features;
     const bool uses_tangents = lies_in_frame(f) && f.frame == TangentFrame::stored;
-    DrawPlan draw{instance, range, f, std::move(decisions.reasons),
-                  uses_tangents && mesh.tangents.empty()};
+    const bool needs_tangents = uses_tangents && mesh.tangents.empty();
     const std::string mesh_name = mesh_label(scene, mesh_index);
-    draw.reasons.push_back({"computed tangents", draw.needs_tangents,
-                            !uses_tangents        ? "nothing uses tangents"
-                            : draw.needs_tangents ? mesh_name + " has none"
+    decisions.reasons.push_back({"computed tangents", needs_tangents,
+                                 !uses_tangents   ? "nothing uses tangents"
+                                 : needs_tangents ? mesh_name + " has none"
                                                   : mesh_name + " has its own"});
-    return draw;
+    return {instance, range, f, std::move(decisions.reasons), needs_tangents};
 }
+
+/// Plans draws. Only poses and open shares distinguish the instances of a mesh, so that all others
+/// share one plan for each material.
+class DrawPlanner {
+  public:
+    DrawPlanner(const Scene& scene, OutputCoding output)
+        : scene_(scene), output_(output), shadow_(shadow_term(scene)) {}
+
+    DrawPlan plan(std::size_t index, const MaterialRange& range) {
+        const Instance& instance = scene_.instances[index];
+        if (instance.pose || !instance.open_shares->empty())
+            return plan_draw(scene_, index, range, output_, shadow_);
+        const auto [entry, is_new] = plans_.try_emplace({instance.mesh, range.material});
+        if (is_new) entry->second = plan_draw(scene_, index, range, output_, shadow_);
+        DrawPlan plan = entry->second;
+        plan.instance = index;
+        plan.range = range;
+        return plan;
+    }
+
+  private:
+    using Key = std::pair<std::size_t, std::optional<std::uint32_t>>;
+
+    const Scene& scene_;
+    OutputCoding output_;
+    ShadowTerm shadow_;
+    std::map<Key, DrawPlan> plans_;
+};
 
 /// Sets a frame-wide effect and adds its reason.
 void set_frame_effect(FramePlan& plan, bool FramePlan::*effect, bool on, std::string reason) {
@@ -175,10 +214,7 @@ void plan_pose(const Scene& scene, FramePlan& plan) {
             if (!row.follows_pose) continue;
             Decision decision = row.decide(subject);
             row.effect.set(requested, decision.on);
-            for (EffectReason& reason : draw.reasons) {
-                if (reason.effect == row.effect.name)
-                    reason = {reason.effect, decision.on, std::move(decision.reason)};
-            }
+            set_reason(draw.reasons, {row.effect.name, decision.on, std::move(decision.reason)});
         }
         draw.features = canonical(requested);
     }
@@ -198,16 +234,15 @@ void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& pl
 
 FramePlan plan_effects(const Scene& scene, const FrameSettings& settings) {
     FramePlan plan;
-    const ShadowTerm shadow = shadow_term(scene);
+    DrawPlanner planner(scene, settings.output);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
         const MaterialRange whole{0, static_cast<std::uint32_t>(mesh.triangles.size()),
                                   std::nullopt};
         const std::vector<MaterialRange>& ranges = mesh.material_ranges;
-        if (ranges.empty())
-            plan.draws.push_back(plan_draw(scene, i, whole, settings.output, shadow));
+        if (ranges.empty()) plan.draws.push_back(planner.plan(i, whole));
         for (const MaterialRange& range : ranges)
-            plan.draws.push_back(plan_draw(scene, i, range, settings.output, shadow));
+            plan.draws.push_back(planner.plan(i, range));
     }
     plan_frame(scene, settings, plan);
     return plan;

@@ -254,15 +254,20 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.reflection_roughness = material.reflection_roughness;
 }
 
+bool mirrors(const glm::mat4& world_from_object) {
+    const glm::dmat3 m(world_from_object);
+    return glm::dot(m[0], glm::cross(m[1], m[2])) < 0.0;
+}
+
 void set_place(DrawValues& values, const glm::mat4& world_from_object) {
     const glm::dmat3 m(world_from_object);
     const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
                                glm::cross(m[0], m[1]));
-    const bool mirrors = glm::dot(m[0], cofactors[0]) < 0.0;
     values.world_from_object = world_from_object;
-    values.world_from_object_normal = scaled_to_one(mirrors ? -cofactors : cofactors);
+    const bool is_mirrored = mirrors(world_from_object);
+    values.world_from_object_normal = scaled_to_one(is_mirrored ? -cofactors : cofactors);
     values.world_from_object_tangent = scaled_to_one(m);
-    values.handedness = mirrors ? -1.0F : 1.0F;
+    values.handedness = is_mirrored ? -1.0F : 1.0F;
     values.object_scale = static_cast<float>(cube_root_of_determinant(glm::dmat3(m)));
 }
 

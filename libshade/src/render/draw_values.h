@@ -129,6 +129,9 @@ glm::vec2 environment_turn(const Environment& environment);
 void set_shadow(DrawValues& values, const std::optional<ShadowView>& view,
                 const glm::mat4& world_from_object);
 
+/// Returns true if a matrix mirrors: it turns counter-clockwise triangles into clockwise ones.
+bool mirrors(const glm::mat4& world_from_object);
+
 /// Sets the values of an instance's matrix, except for clip_from_object and clip_from_world.
 ///
 /// The normal matrix is the cofactor matrix, which is the inverse transpose times the determinant

@@ -18,6 +18,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -267,7 +268,18 @@ struct RenderCache::Implementation {
 
 namespace {
 
-/// The resources and state of a draw.
+/// What the draws of a mesh with one material and the same effects share.
+struct Surface {
+    DrawValues values;  ///< Without those of instances and cameras.
+    std::array<BoundTexture, material_unit_count> textures;  ///< By TextureUnit.
+    bool both_sides = false;
+    bool casts_shadow = false;
+};
+
+/// The mesh, the material and the planned effects.
+using SurfaceKey = std::tuple<std::size_t, std::optional<std::uint32_t>, Features>;
+
+/// The resources and state of a draw. There may be hundreds of thousands.
 struct Draw {
     std::shared_ptr<const DrawProgram> program;
     Features features;
@@ -275,19 +287,13 @@ struct Draw {
     std::size_t instance = 0;
     std::size_t mesh = 0;
     MaterialRange range;
-    DrawValues values;
-    bool both_sides = false;
-    std::array<BoundTexture, material_unit_count> textures;  ///< By TextureUnit.
-    std::unique_ptr<SortedTriangles> sorted;                 ///< Only for blended draws.
-    bool casts_shadow = false;
+    const Surface* surface = nullptr;
+    glm::mat4 world_from_object{1.0F};
+    std::shared_ptr<SortedTriangles> sorted;  ///< Only for blended draws.
 };
 
-/// Returns the triangles of a blended draw at their deformed positions.
-std::unique_ptr<SortedTriangles> sorted_triangles(const Scene& scene, const Draw& draw) {
-    const Shared<Mesh> mesh =
-        is_deformed(draw.features) ? deformed_mesh(scene, draw.instance) : scene.meshes[draw.mesh];
-    return std::make_unique<SortedTriangles>(mesh, draw.range);
-}
+/// The mesh, the first triangle and the number of triangles.
+using SortedKey = std::tuple<std::size_t, std::uint32_t, std::uint32_t>;
 
 bool is_blended(const Draw& draw) {
     return draw.features.alpha == AlphaMode::blend;
@@ -382,11 +388,13 @@ struct Renderer::Implementation {
     void check_meshes(const Scene& scene) const;
     void replace_meshes(const Scene& scene);
     void prepare_draws(const Scene& scene);
+    Surface prepare_surface(const Scene& scene, const Planned& p);
     Draw prepare_draw(const Scene& scene, std::size_t planned_draw);
     void follow_poses(const Scene& scene);
     void upload_poses(const Scene& scene);
-    void bind_planned_textures(Draw& draw, const Planned& p);
-    void set_environment_values(Draw& draw) const;
+    void bind_planned_textures(Surface& surface, const Planned& p);
+    std::shared_ptr<SortedTriangles> sorted_triangles(const Scene& scene, const Draw& draw);
+    void set_environment_values(DrawValues& values) const;
     void move(const Scene& scene);
     void bind_textures(const Draw& draw) const;
     void set_state(const Draw& draw) const;
@@ -413,9 +421,11 @@ struct Renderer::Implementation {
     std::map<std::size_t, std::shared_ptr<GpuMesh>> meshes;  ///< Drawn meshes by index.
     std::map<std::size_t, PlannedStreams> streams;           ///< What they hold.
     std::map<std::size_t, Shared<Mesh>::Identity> drawn;     ///< The meshes that they were made of.
-    std::vector<Draw> draws;                                 ///< Opaque ones first.
-    std::map<std::size_t, GpuPose> poses;                    ///< Of deformed instances.
-    std::map<std::size_t, GpuOpenShares> open_shares;        ///< Of instances that need them.
+    std::map<SurfaceKey, Surface> surfaces;
+    std::map<SortedKey, std::shared_ptr<SortedTriangles>> sorted;  ///< Of meshes at rest.
+    std::vector<Draw> draws;                                       ///< Opaque ones first.
+    std::map<std::size_t, GpuPose> poses;                          ///< Of deformed instances.
+    std::map<std::size_t, GpuOpenShares> open_shares;              ///< Of instances that need them.
     std::optional<EnvironmentMaps> environment;
     std::optional<Skybox> skybox;
     std::unique_ptr<OverlayDrawing> overlays;  ///< If any is requested.
@@ -470,8 +480,12 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
 }
 
 void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report) {
-    for (const DrawPlan& draw : plan.draws)
-        streams[scene.instances[draw.instance].mesh].add(planned_interface(draw.features));
+    std::set<std::pair<std::size_t, Features>> added;
+    for (const DrawPlan& draw : plan.draws) {
+        const std::size_t mesh = scene.instances[draw.instance].mesh;
+        if (added.emplace(mesh, draw.features).second)
+            streams[mesh].add(planned_interface(draw.features));
+    }
     ProgressStage stage("uploading meshes", streams.size());
     for (const auto& [mesh, planned] : streams) {
         meshes.emplace(mesh, cache.meshes.get(scene.meshes[mesh], planned, report));
@@ -506,6 +520,9 @@ void Renderer::Implementation::replace_meshes(const Scene& scene) {
         meshes.at(index) = cache.meshes.get(mesh, streams.at(index), unused);
         identity = mesh.identity();
         has_changed = true;
+        std::erase_if(sorted, [replaced = index](const auto& entry) {
+            return std::get<0>(entry.first) == replaced;
+        });
         for (Draw& draw : draws) {
             if (draw.mesh == index && draw.sorted) draw.sorted = sorted_triangles(scene, draw);
         }
@@ -513,7 +530,21 @@ void Renderer::Implementation::replace_meshes(const Scene& scene) {
     if (has_changed) cache.meshes.drop_unused();
 }
 
+/// Returns the triangles of a blended draw at their deformed positions. Draws of a mesh at rest
+/// share them.
+std::shared_ptr<SortedTriangles> Renderer::Implementation::sorted_triangles(const Scene& scene,
+                                                                            const Draw& draw) {
+    if (is_deformed(draw.features)) {
+        return std::make_shared<SortedTriangles>(deformed_mesh(scene, draw.instance), draw.range);
+    }
+    std::shared_ptr<SortedTriangles>& at_rest =
+        sorted[{draw.mesh, draw.range.first_triangle, draw.range.triangle_count}];
+    if (!at_rest) at_rest = std::make_shared<SortedTriangles>(scene.meshes[draw.mesh], draw.range);
+    return at_rest;
+}
+
 void Renderer::Implementation::prepare_draws(const Scene& scene) {
+    draws.reserve(plan.draws.size());
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
         if (plan.draws[i].range.triangle_count == 0) continue;
         check_cancelled();
@@ -529,6 +560,20 @@ void Renderer::Implementation::prepare_draws(const Scene& scene) {
     upload_poses(scene);
 }
 
+Surface Renderer::Implementation::prepare_surface(const Scene& scene, const Planned& p) {
+    Surface surface;
+    surface.both_sides = p.material.double_sided;
+    surface.casts_shadow = casts_shadow(p.material);
+    set_material(surface.values, p.material, scene, picture.last_level());
+    if (p.features.sheen_roughness_texture &&
+        p.material.metallic_roughness->sheen_roughness_texture)
+        surface.values.sheen_albedo_rows =
+            cache.sheens.get(p.material.metallic_roughness->sheen_roughness);
+    set_environment_values(surface.values);
+    bind_planned_textures(surface, p);
+    return surface;
+}
+
 Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t planned_draw) {
     const DrawPlan& plan_of_draw = plan.draws[planned_draw];
     const Planned p = planned(scene, plan_of_draw);
@@ -541,21 +586,15 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t plan
     draw.instance = plan_of_draw.instance;
     draw.mesh = instance.mesh;
     draw.range = plan_of_draw.range;
-    draw.both_sides = p.material.double_sided;
-    set_material(draw.values, p.material, scene, picture.last_level());
-    if (p.features.sheen_roughness_texture &&
-        p.material.metallic_roughness->sheen_roughness_texture)
-        draw.values.sheen_albedo_rows =
-            cache.sheens.get(p.material.metallic_roughness->sheen_roughness);
-    set_environment_values(draw);
-    set_place(draw.values, instance.world_from_object);
-    set_shadow(draw.values, shadow, instance.world_from_object);
-    draw.casts_shadow = casts_shadow(p.material);
+    draw.world_from_object = instance.world_from_object;
+    const SurfaceKey key(draw.mesh, draw.range.material, p.features);
+    auto shared = surfaces.find(key);
+    if (shared == surfaces.end()) shared = surfaces.emplace(key, prepare_surface(scene, p)).first;
+    draw.surface = &shared->second;
     if (p.features.vertex_occlusion && !open_shares.contains(draw.instance)) {
         open_shares.emplace(
             draw.instance, GpuOpenShares(api, p.mesh, *meshes.at(draw.mesh), instance.open_shares));
     }
-    bind_planned_textures(draw, p);
     if (is_blended(draw)) draw.sorted = sorted_triangles(scene, draw);
     return draw;
 }
@@ -597,9 +636,9 @@ void Renderer::Implementation::upload_poses(const Scene& scene) {
     }
 }
 
-void Renderer::Implementation::bind_planned_textures(Draw& draw, const Planned& p) {
+void Renderer::Implementation::bind_planned_textures(Surface& surface, const Planned& p) {
     for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
-        BoundTexture& bound = draw.textures[static_cast<std::size_t>(used.unit)];
+        BoundTexture& bound = surface.textures[static_cast<std::size_t>(used.unit)];
         if (used.texture == nullptr) {
             bound = neutral_texture(cache.textures, used.unit);
             continue;
@@ -607,36 +646,34 @@ void Renderer::Implementation::bind_planned_textures(Draw& draw, const Planned& 
         const ImagePurpose purpose = purpose_of(used);
         bound = textures.bound(*used.texture, purpose);
         if (purpose.normals) {
-            set_planned_map(draw.values, used.unit, p.material,
+            set_planned_map(surface.values, used.unit, p.material,
                             textures.image(used.texture->image, purpose));
         }
     }
 }
 
-void Renderer::Implementation::set_environment_values(Draw& draw) const {
-    draw.values.blurred_levels = environment->blurred_levels();
-    draw.values.irradiance_sh = environment->irradiance_sh();
+void Renderer::Implementation::set_environment_values(DrawValues& values) const {
+    values.blurred_levels = environment->blurred_levels();
+    values.irradiance_sh = environment->irradiance_sh();
 }
 
 void Renderer::Implementation::move(const Scene& scene) {
     replace_meshes(scene);
     lights.update(api, scene);
     prepare_shadow(scene);
-    for (Draw& draw : draws) {
-        const glm::mat4& world_from_object = scene.instances[draw.instance].world_from_object;
-        set_place(draw.values, world_from_object);
-        set_shadow(draw.values, shadow, world_from_object);
-    }
+    for (Draw& draw : draws)
+        draw.world_from_object = scene.instances[draw.instance].world_from_object;
     follow_poses(scene);
     if (overlays) overlays->move(scene);
 }
 
 void Renderer::Implementation::bind_textures(const Draw& draw) const {
-    for (std::size_t i = 0; i < draw.textures.size(); ++i) {
-        if (draw.textures[i].texture == 0) continue;
+    const auto& textures_of_draw = draw.surface->textures;
+    for (std::size_t i = 0; i < textures_of_draw.size(); ++i) {
+        if (textures_of_draw[i].texture == 0) continue;
         api->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-        api->BindTexture(GL_TEXTURE_2D, draw.textures[i].texture);
-        api->BindSampler(static_cast<GLuint>(i), draw.textures[i].sampler);
+        api->BindTexture(GL_TEXTURE_2D, textures_of_draw[i].texture);
+        api->BindSampler(static_cast<GLuint>(i), textures_of_draw[i].sampler);
     }
     lights.bind(api, draw.features);
     if (const auto pose = poses.find(draw.instance); pose != poses.end()) pose->second.bind(api);
@@ -644,19 +681,21 @@ void Renderer::Implementation::bind_textures(const Draw& draw) const {
 }
 
 void Renderer::Implementation::set_state(const Draw& draw) const {
-    if (draw.both_sides) {
+    if (draw.surface->both_sides) {
         api->Disable(GL_CULL_FACE);
     } else {
         api->Enable(GL_CULL_FACE);
     }
     // A mirroring matrix reverses the winding, but not the front of a surface.
-    api->FrontFace(draw.values.handedness < 0.0F ? GL_CW : GL_CCW);
+    api->FrontFace(mirrors(draw.world_from_object) ? GL_CW : GL_CCW);
 }
 
 /// Sets the uniforms of a draw, except for that of the eye if there is no camera.
 void Renderer::Implementation::use_program(const DrawProgram& program, const Draw& draw,
                                            const glm::dmat4& to_clip, const Camera* camera) const {
-    DrawValues values = draw.values;
+    DrawValues values = draw.surface->values;
+    set_place(values, draw.world_from_object);
+    set_shadow(values, shadow, draw.world_from_object);
     values.clip_from_object = glm::mat4(to_clip * glm::dmat4(values.world_from_object));
     values.clip_from_world = glm::mat4(to_clip);
     if (camera != nullptr) values.eye_world = homogeneous_eye(*camera);
@@ -679,15 +718,14 @@ void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, cons
     }
     const glm::vec3 farther_world(-camera.world_from_view[2]);
     const glm::vec3 farther_object =
-        glm::transpose(glm::mat3(draw.values.world_from_object)) * farther_world;
+        glm::transpose(glm::mat3(draw.world_from_object)) * farther_world;
     meshes.at(draw.mesh)->draw(api, draw.sorted->sort(farther_object));
 }
 
 /// Draws blended surfaces over all others, farthest center first, without writing depth.
 void Renderer::Implementation::issue_blended(const glm::dmat4& to_clip, const Camera& camera) {
     const auto depth = [&](const Draw& draw) {
-        const glm::vec3 center(draw.values.world_from_object *
-                               glm::vec4(draw.sorted->center(), 1.0F));
+        const glm::vec3 center(draw.world_from_object * glm::vec4(draw.sorted->center(), 1.0F));
         return glm::dot(center - glm::vec3(camera.world_from_view[3]),
                         -glm::vec3(camera.world_from_view[2]));
     };
@@ -718,16 +756,17 @@ void Renderer::Implementation::count_fragments() const {
 }
 
 void Renderer::Implementation::draw_overlays(const glm::dmat4& to_clip) const {
-    std::vector<OverlaySurface> surfaces;
+    std::vector<OverlaySurface> drawn_surfaces;
     for (const Draw& draw : draws) {
         const auto pose = poses.find(draw.instance);
-        surfaces.push_back({meshes.at(draw.mesh).get(), draw.range, draw.values.world_from_object,
-                            draw.both_sides, draw.values.handedness < 0.0F,
-                            draw.features.alpha == AlphaMode::opaque, draw.features.morphing,
-                            draw.features.skinning, pose == poses.end() ? nullptr : &pose->second});
+        drawn_surfaces.push_back({meshes.at(draw.mesh).get(), draw.range, draw.world_from_object,
+                                  draw.surface->both_sides, mirrors(draw.world_from_object),
+                                  draw.features.alpha == AlphaMode::opaque, draw.features.morphing,
+                                  draw.features.skinning,
+                                  pose == poses.end() ? nullptr : &pose->second});
     }
     picture.bind_finished();
-    overlays->draw(to_clip, surfaces);
+    overlays->draw(to_clip, drawn_surfaces);
 }
 
 void Renderer::Implementation::prepare_shadow(const Scene& scene) {
@@ -746,7 +785,7 @@ void Renderer::Implementation::draw_shadow_maps() {
     has_old_shadow = false;
     std::vector<std::pair<const Draw*, std::shared_ptr<const DrawProgram>>> casting;
     for (const Draw& draw : draws) {
-        if (!draw.casts_shadow) continue;
+        if (!draw.surface->casts_shadow) continue;
         Features depth_only = draw.features;
         depth_only.view = DebugView::overdraw;
         casting.emplace_back(&draw, cache.programs.get(canonical(depth_only)));
@@ -791,7 +830,11 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
     if (plan.transmission_background) {
         picture.copy_behind();
         for (Draw& draw : draws) {
-            if (!is_covering(draw) && !is_blended(draw)) issue(draw, to_clip, camera);
+            if (is_covering(draw)) issue(draw, to_clip, camera);
+        }
+        if (skybox) {
+            api->Disable(GL_CULL_FACE);
+            skybox->draw(api, camera, picture.aspect());
         }
     }
     if (plan.sorted_blending) issue_blended(to_clip, camera);

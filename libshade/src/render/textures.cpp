@@ -175,13 +175,13 @@ void report_omitted(const Scene& scene, std::optional<std::uint32_t> material,
 void correct_reasons(DrawPlan& draw, const Features& planned) {
     for (const Effect& effect : effects()) {
         if (!effect.on(planned) || effect.on(draw.features)) continue;
-        for (EffectReason& reason : draw.reasons) {
+        for (EffectReason& reason : draw.reasons.edit()) {
             if (reason.effect == effect.name) reason = {effect.name, false, unreadable_reason};
         }
     }
     if (!draw.needs_tangents || lies_in_frame(draw.features)) return;
     draw.needs_tangents = false;
-    for (EffectReason& reason : draw.reasons) {
+    for (EffectReason& reason : draw.reasons.edit()) {
         if (reason.effect == "computed tangents")
             reason = {reason.effect, false, unreadable_reason};
     }

@@ -857,7 +857,8 @@ TEST(EffectPlan, HasEachEffectOnOneSideOfEachPartOfItsCondition) {
         }
     }
     const FramePlan plan = plan_effects(lit_scene(gray()), {.samples = 1});
-    for (const auto& reasons : {plan.draws.at(0).reasons, plan.reasons}) {
+    for (const std::vector<EffectReason>& reasons :
+         {EffectReasons(plan.draws.at(0).reasons), EffectReasons(plan.reasons)}) {
         for (const EffectReason& entry : reasons)
             EXPECT_TRUE(tested.count(entry.effect)) << entry.effect;
     }

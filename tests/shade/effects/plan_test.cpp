@@ -170,6 +170,25 @@ TEST(EffectPlan, HasOneDrawForEachRangeOfEachInstance) {
     EXPECT_EQ(plan.draws[0].features.output, OutputCoding::linear);
 }
 
+TEST(EffectPlan, DrawsThatAreAlikeShareTheirReasons) {
+    Scene scene = lit_scene(gray());
+    scene.instances.resize(3, scene.instances.at(0));
+    scene.instances[2].open_shares =
+        std::vector<float>(scene.meshes[0]->positions.size(), 0.5F);  // It has another plan.
+    FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_EQ(&*plan.draws.at(0).reasons, &*plan.draws.at(1).reasons);
+    EXPECT_NE(&*plan.draws[0].reasons, &*plan.draws.at(2).reasons);
+
+    const std::vector<EffectReason>* const planned = &*plan.draws[0].reasons;
+    plan = force_effects(scene, {.samples = 1}, std::move(plan),
+                         {EffectBase::planned, {{"diffuse", false}}});
+    EXPECT_NE(&*plan.draws[0].reasons, planned);
+    EXPECT_EQ(&*plan.draws[0].reasons, &*plan.draws[1].reasons);
+    EXPECT_NE(&*plan.draws[0].reasons, &*plan.draws[2].reasons);
+    EXPECT_EQ(reason(plan.draws[1].reasons, "diffuse").reason, "taken out");
+    EXPECT_EQ(plan.draws[1].instance, 1U);
+}
+
 TEST(EffectPlan, ExplainsEveryEffect) {
     const FramePlan plan = plan_effects(lit_scene(gray()), {.samples = 1});
     // There is a reason for every effect, and one for computed tangents.

@@ -140,12 +140,23 @@ struct EffectReason {
     std::string reason;  ///< "material 'body' has one and the mesh has texture coordinates"
 };
 
+/// The reasons for the effects of one draw. Equal draws share them until they are edited, because
+/// they need some kilobytes.
+class EffectReasons : public Shared<std::vector<EffectReason>> {
+  public:
+    using Shared::Shared;
+
+    [[nodiscard]] auto begin() const { return (**this).begin(); }
+    [[nodiscard]] auto end() const { return (**this).end(); }
+    [[nodiscard]] std::size_t size() const { return (**this).size(); }
+};
+
 /// The effects of one draw, and the reasons.
 struct DrawPlan {
     std::size_t instance = 0;
     MaterialRange range;
     Features features;
-    std::vector<EffectReason> reasons;
+    EffectReasons reasons;
     bool needs_tangents = false;  ///< The draw needs them and the mesh has none.
     /// plan_pose() decides how the mesh is deformed. False if that was forced.
     bool follows_pose = true;
