@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <variant>
@@ -74,8 +75,16 @@ bool holds(const py::array& array) {
 template <typename Scalar>
 Image::Samples copied_samples(const py::array& array) {
     const auto packed = py::array_t<Scalar, py::array::c_style | py::array::forcecast>(array);
-    const Scalar* first = packed.data();
-    return std::vector<Scalar>(first, first + packed.size());
+    const Scalar* const first = packed.data();
+    const auto size = static_cast<std::size_t>(packed.size());
+    constexpr std::size_t step = std::size_t{1} << 24;
+    std::vector<Scalar> samples;
+    samples.reserve(size);
+    for (std::size_t begin = 0; begin < size; begin += step) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        samples.insert(samples.end(), first + begin, first + std::min(size, begin + step));
+    }
+    return samples;
 }
 
 /// Makes a str of a message. File names in it may be any bytes: those that are not UTF-8 become

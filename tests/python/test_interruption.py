@@ -83,6 +83,23 @@ class Interruption(unittest.TestCase):
             self.expect_end(lambda: relief.write_texture(file, levels, quality="best"))
             self.assertEqual(os.listdir(folder), [])
 
+    def test_large_resizes_end(self):
+        normals = numpy.zeros((4096, 8192, 3), "float32")
+        normals[..., 2] = 1.0
+        for seconds in (0.05, 0.3):  # While the array is copied, and while it is resized.
+            with self.subTest(seconds):
+                self.expect_end(lambda: relief.resize_normals(normals, 4000, 3000), seconds)
+
+    def test_pictures_end(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.ply"
+            relief.write_mesh(file, self.low)
+            scene = relief.Scene.load(file)
+        scene.render(size=(64, 64), backend="osmesa")  # Loads the driver.
+        for seconds in (0.05, 0.15):
+            with self.subTest(seconds):
+                self.expect_end(lambda: scene.render(size=(2400, 2400), samples=4, backend="osmesa"), seconds)
+
     def test_exceptions_of_file_names_are_kept(self):
         class Stop:
             def __fspath__(self):

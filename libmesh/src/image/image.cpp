@@ -21,6 +21,7 @@
 #include "large_memory.h"
 #include "parallel.h"
 #include "portable_math.h"
+#include "progress_stage.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -98,6 +99,11 @@ template <typename Sample>
 std::vector<Sample> zeros(std::size_t count) {
     std::vector<Sample> samples;
     reserve_to_fill(samples, count);
+    constexpr std::size_t step = std::size_t{1} << 24;  // Memory that is used first takes time.
+    for (std::size_t size = step; size < count; size += step) {
+        check_cancelled();
+        samples.resize(size);
+    }
     samples.resize(count);
     return samples;
 }

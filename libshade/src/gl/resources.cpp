@@ -10,6 +10,7 @@
 #include <cassert>
 
 #include "gl/cube_map.h"
+#include "progress_stage.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/renderer.h"
@@ -347,7 +348,9 @@ RenderTarget::RenderTarget(const Api& api, int width, int height, ColorFormat fo
     check_size(api, width, height, samples);
     color_ = samples > 1 ? multisample_texture(api, width, height, format, samples)
                          : color_texture(api, width, height, format);
+    check_cancelled();  // Software OpenGL clears all new memory, which takes as long as drawing.
     depth_ = renderbuffer(api, width, height, GL_DEPTH_COMPONENT24, samples);
+    check_cancelled();
     draw_ = Framebuffer(api);
     api->BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
     api->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,

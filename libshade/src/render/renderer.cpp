@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
@@ -102,6 +103,13 @@ class Picture {
     /// Returns the finished picture: one level, row 0 at the bottom.
     [[nodiscard]] const gl::RenderTarget& target() const {
         return finished_ ? *finished_ : *samples_;
+    }
+
+    [[nodiscard]] int width() const { return samples_->width(); }
+    [[nodiscard]] int height() const { return samples_->height(); }
+    [[nodiscard]] std::size_t sample_total() const {
+        return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()) *
+               static_cast<std::size_t>(sample_count_);
     }
 
     /// Returns the last mip level of a copy.
@@ -371,6 +379,36 @@ void report_missing_shadow(const Scene& scene, Report& report) {
                "casts a shadow");
 }
 
+// Software OpenGL draws large pictures for seconds. Operations that can be cancelled wait for it
+// after these amounts of work.
+constexpr std::size_t samples_per_band = std::size_t{1} << 22;
+constexpr std::uint32_t triangles_per_piece = 1 << 18;
+/// Every band draws all triangles. A triangle costs as much as some samples.
+constexpr std::size_t samples_per_triangle = 8;
+/// Software OpenGL rasterizes tiles of this many rows.
+constexpr int rows_per_tile = 64;
+
+/// Limits drawing and clearing to some rows of the picture during the lifetime of this object.
+class Scissor {
+  public:
+    explicit Scissor(const gl::Api& api) : api_(&api) { api->Enable(GL_SCISSOR_TEST); }
+    ~Scissor() { (*api_)->Disable(GL_SCISSOR_TEST); }
+    Scissor(const Scissor&) = delete;
+    Scissor& operator=(const Scissor&) = delete;
+
+    void set(int first_row, int width, int rows) const {
+        (*api_)->Scissor(0, first_row, width, rows);
+    }
+
+  private:
+    const gl::Api* api_;
+};
+
+/// True if the operation can be cancelled.
+bool is_cancellable() {
+    return current_progress != nullptr;
+}
+
 /// Returns the numbers of instances and lights, which must stay the same when a scene moves.
 std::array<std::size_t, 4> object_counts(const Scene& scene) {
     return {scene.instances.size(), scene.directional_lights.size(), scene.point_lights.size(),
@@ -401,6 +439,9 @@ struct Renderer::Implementation {
     void use_program(const DrawProgram& program, const Draw& draw, const glm::dmat4& to_clip,
                      const Camera* camera) const;
     void issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera);
+    void draw_range(const Draw& draw);
+    void in_bands(const std::function<void()>& draw_band);
+    [[nodiscard]] int rows_per_band() const;
     void issue_blended(const glm::dmat4& to_clip, const Camera& camera);
     void count_fragments() const;
     void draw_overlays(const glm::dmat4& to_clip) const;
@@ -432,7 +473,9 @@ struct Renderer::Implementation {
     bool counts_fragments;                     ///< For the overdraw view.
     std::optional<ShadowView> shadow;          ///< If the plan has shadow maps.
     std::optional<gl::DepthLayers> shadow_maps;
-    bool has_old_shadow = false;  ///< The maps show an earlier scene, or none.
+    bool has_old_shadow = false;             ///< The maps show an earlier scene, or none.
+    std::size_t triangle_total = 0;          ///< Of all draws.
+    std::uint32_t unfinished_triangles = 0;  ///< Drawn since OpenGL was waited for.
 };
 
 Renderer::Implementation::Implementation(const Context& context, const Scene& scene,
@@ -549,6 +592,7 @@ void Renderer::Implementation::prepare_draws(const Scene& scene) {
         if (plan.draws[i].range.triangle_count == 0) continue;
         check_cancelled();
         lights.add(api, scene, plan.draws[i].features);
+        triangle_total += plan.draws[i].range.triangle_count;
         draws.push_back(prepare_draw(scene, i));
     }
     // Adjacent draws with the same program need no program change. The depth buffer hides the
@@ -713,13 +757,59 @@ void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, cons
     bind_textures(draw);
     set_state(draw);
     if (!draw.sorted) {
-        meshes.at(draw.mesh)->draw(api, draw.range);
+        draw_range(draw);
         return;
     }
     const glm::vec3 farther_world(-camera.world_from_view[2]);
     const glm::vec3 farther_object =
         glm::transpose(glm::mat3(draw.world_from_object)) * farther_world;
     meshes.at(draw.mesh)->draw(api, draw.sorted->sort(farther_object));
+}
+
+/// Draws the triangles of an opaque draw in pieces, after which the operation can be cancelled.
+void Renderer::Implementation::draw_range(const Draw& draw) {
+    const GpuMesh& mesh = *meshes.at(draw.mesh);
+    MaterialRange piece = draw.range;
+    const std::uint32_t end = piece.first_triangle + piece.triangle_count;
+    for (; piece.first_triangle < end; piece.first_triangle += piece.triangle_count) {
+        const std::uint32_t rest = end - piece.first_triangle;
+        piece.triangle_count =
+            is_cancellable() ? std::min(rest, triangles_per_piece - unfinished_triangles) : rest;
+        mesh.draw(api, piece);
+        if (!is_cancellable()) continue;
+        unfinished_triangles += piece.triangle_count;
+        if (unfinished_triangles < triangles_per_piece) continue;
+        api->Finish();
+        check_cancelled();
+        unfinished_triangles = 0;
+    }
+}
+
+/// Returns the rows of the picture after which the operation can be cancelled.
+int Renderer::Implementation::rows_per_band() const {
+    if (!is_cancellable()) return picture.height();
+    const std::size_t samples = picture.sample_total();
+    const std::size_t bands =
+        std::clamp<std::size_t>(samples / (samples_per_triangle * triangle_total + 1), 1,
+                                std::max<std::size_t>(samples / samples_per_band, 1));
+    const int tiles = picture.height() / rows_per_tile / static_cast<int>(bands);
+    return bands == 1 ? picture.height() : std::max(tiles, 1) * rows_per_tile;
+}
+
+/// Calls a function that draws the whole picture for each band of rows.
+void Renderer::Implementation::in_bands(const std::function<void()>& draw_band) {
+    const int rows = rows_per_band();
+    if (rows >= picture.height()) {
+        draw_band();
+        return;
+    }
+    const Scissor scissor(api);
+    for (int first = 0; first < picture.height(); first += rows) {
+        scissor.set(first, picture.width(), std::min(rows, picture.height() - first));
+        draw_band();
+        api->Finish();
+        check_cancelled();
+    }
 }
 
 /// Draws blended surfaces over all others, farthest center first, without writing depth.
@@ -811,24 +901,17 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
     api->CullFace(GL_BACK);
     set_attribute_constants(api);
     if (has_old_shadow) draw_shadow_maps();
-    picture.begin();
+    unfinished_triangles = 0;
     environment->bind(api);
     if (shadow) {
         api->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(TextureUnit::shadow_maps));
         api->BindTexture(GL_TEXTURE_2D_ARRAY, shadow_maps->texture().name());
         api->BindSampler(static_cast<GLuint>(TextureUnit::shadow_maps), 0);
     }
-    if (counts_fragments) count_fragments();
     const glm::dmat4 to_clip = clip_from_world(camera, static_cast<double>(picture.aspect()));
-    for (Draw& draw : draws) {
-        if (is_covering(draw)) issue(draw, to_clip, camera);
-    }
-    if (skybox) {
-        api->Disable(GL_CULL_FACE);
-        skybox->draw(api, camera, picture.aspect());
-    }
-    if (plan.transmission_background) {
-        picture.copy_behind();
+    in_bands([&] {
+        picture.begin();
+        if (counts_fragments) count_fragments();
         for (Draw& draw : draws) {
             if (is_covering(draw)) issue(draw, to_clip, camera);
         }
@@ -836,10 +919,18 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
             api->Disable(GL_CULL_FACE);
             skybox->draw(api, camera, picture.aspect());
         }
+    });
+    if (plan.transmission_background) {
+        picture.copy_behind();
+        in_bands([&] {
+            for (Draw& draw : draws) {
+                if (!is_covering(draw) && !is_blended(draw)) issue(draw, to_clip, camera);
+            }
+        });
     }
-    if (plan.sorted_blending) issue_blended(to_clip, camera);
+    if (plan.sorted_blending) in_bands([&] { issue_blended(to_clip, camera); });
     if (counts_fragments) api->Disable(GL_BLEND);
-    picture.finish();
+    in_bands([&] { picture.finish(); });
     if (overlays) draw_overlays(to_clip);
     api.check("drawing the scene");
 }

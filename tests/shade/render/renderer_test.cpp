@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <string>
 #include <vector>
 
+#include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
@@ -405,6 +407,50 @@ TEST_F(Rendering, IsTheSameTwice) {
     EXPECT_TRUE(test::same_bits(first.image, second.image));
     EXPECT_GT(first.times.prepare, 0.0);
     EXPECT_GT(second.times.draw, 0.0);
+}
+
+/// Adds a square with a material, in front of the others.
+void add_square(Scene& scene, const Material& material, float z) {
+    Mesh square = test::facing_square();
+    square.material_ranges = {{0, static_cast<std::uint32_t>(square.triangles.size()),
+                               static_cast<std::uint32_t>(scene.materials.size())}};
+    scene.instances.push_back(
+        {scene.meshes.size(),
+         glm::translate(glm::scale(glm::mat4(1.0F), glm::vec3(0.3F, 0.4F, 1.0F)),
+                        glm::vec3(z, -z, z)),
+         ""});
+    scene.meshes.push_back(square);
+    scene.materials.push_back(material);
+}
+
+TEST_F(Rendering, IsTheSameInBandsAfterWhichItCanBeCancelled) {
+    Scene scene = bumpy_scene();
+    Material material = test::black_material();
+    material.diffuse = {0.2F, 0.5F, 0.9F};
+    material.alpha_mode = AlphaMode::blend;
+    material.opacity = 0.5F;
+    add_square(scene, material, 0.5F);
+    add_square(scene, material, 0.9F);  // Both share their sorted triangles.
+    scene.instances.back().mesh = scene.instances.end()[-2].mesh;
+    material.alpha_mode = AlphaMode::opaque;
+    material.metallic_roughness = MetallicRoughness{};
+    material.metallic_roughness->transmission = 0.8F;
+    add_square(scene, material, 0.7F);
+    scene.environment = six_colors();
+    scene.environment->skybox = true;
+    scene.shadow = Shadow{};
+    const FrameSettings settings{1536, 1500, 4, OutputCoding::srgb};  // More than one band.
+    Report report;
+    Renderer renderer(context(), scene, settings, report);
+    const Image whole = renderer.draw(*scene.camera).image;
+    Progress progress;
+    {
+        const ProgressScope scope(progress);
+        EXPECT_TRUE(test::same_bits(renderer.draw(*scene.camera).image, whole));
+        progress.cancel();
+        EXPECT_THROW(renderer.draw(*scene.camera), Cancelled);
+    }
+    EXPECT_TRUE(test::same_bits(renderer.draw(*scene.camera).image, whole));
 }
 
 TEST_F(Rendering, RefusesInvalidScenes) {
