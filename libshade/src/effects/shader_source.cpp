@@ -152,7 +152,11 @@ class Assembler {
         open_.pop_back();
     }
 
-    ShaderSource take() { return std::move(source_); }
+    /// \throws GpuError if global variables have values, and no line is "void main() {"
+    ShaderSource take() {
+        if (!assignments_.empty()) throw GpuError("a shader has no line 'void main() {'");
+        return std::move(source_);
+    }
 
   private:
     const ShaderPart& read(std::string_view address, const std::string& place) {
@@ -209,6 +213,7 @@ class Assembler {
             if (line != "void main() {") return;
             for (const auto& [assignment, place] : assignments_)
                 add_line(fmt::format("    {}", assignment), place);
+            assignments_.clear();
         }
     }
 

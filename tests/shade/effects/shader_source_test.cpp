@@ -162,6 +162,8 @@ TEST_F(ShaderFolder, GivesGlobalVariablesTheirValuesInMainOfGlslEs) {
     EXPECT_THAT(source.text, HasSubstr("#define samplerBuffer sampler2D\n"));
     EXPECT_THAT(source.text, EndsWith("void main() {\n    looked_up = texture(map, at);\n"
                                       "    color = looked_up;\n}\n"));
+    write("other.glsl", "float x = f();\nvoid main() { color = x; }\n");
+    EXPECT_THROW((void)assemble("other.glsl", {}, {}, GlslVersion::es_300), GpuError);
     EXPECT_EQ(source.lines.size(), std::count(source.text.begin(), source.text.end(), '\n'));
 }
 
