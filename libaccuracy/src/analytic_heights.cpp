@@ -310,7 +310,8 @@ void store(Image heights, FieldCoding coding, BumpField& field) {
 
 BumpField make_bump_field(const FieldRecipe& original, int width, int height) {
     if (width < 8 || height < 8)
-        throw InvalidInput(fmt::format("{} x {} texels are too few for a field", width, height));
+        throw InvalidInput(
+            fmt::format("the field has {} x {} texels, which are too few", width, height));
     FieldRecipe recipe = original;
     recipe.shortest = std::min(recipe.shortest, 0.5 * std::max(width, height));
     AnalyticHeights reference = sampled_heights(width, height, shape_of(width, height, recipe));

@@ -227,7 +227,8 @@ struct Grid {
 };
 
 Grid grid_of(Triangulation triangulation, int cells) {
-    if (cells < 4) throw InvalidInput(fmt::format("{} cells are too few: 4 or more", cells));
+    if (cells < 4)
+        throw InvalidInput(fmt::format("the number of cells is {}, but must be at least 4", cells));
     const bool stretched = triangulation == Triangulation::anisotropic;
     const int columns = stretched ? 4 * cells : cells;
     const int rows = stretched ? std::max(cells / 4, 1) : cells;
@@ -315,7 +316,8 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
                            TextureLayout layout, int cells, std::uint32_t seed) {
     const Grid grid = grid_of(triangulation, cells);
     if (layout == TextureLayout::mirrored && grid.columns % 2 != 0)
-        throw InvalidInput(fmt::format("{} columns have no line in their middle", grid.columns));
+        throw InvalidInput(fmt::format(
+            "the number of columns of a mirrored texture is {}, but must be even", grid.columns));
     Random random(seed);
     const Parametrised where = parametrised(surface, random);
     TexturedMesh result;
@@ -375,7 +377,9 @@ std::function<ExactPoint(const glm::dvec3& position)> nearest_on_surface(Analyti
 }
 
 TexturedMesh beveled_plate(double width) {
-    if (!(width > 0.0)) throw InvalidInput(fmt::format("bevels {} wide: above 0", width));
+    if (!(width > 0.0))
+        throw InvalidInput(
+            fmt::format("the width of the bevels is {}, but must be above 0", width));
     TexturedMesh result;
     const auto add = [&](const glm::dvec3& position, const glm::dvec3& normal,
                          const glm::dvec2& place_in_image, bool inner) {
@@ -410,7 +414,8 @@ TexturedMesh beveled_plate(double width) {
 
 Mesh cubic_fan(int valence, std::uint32_t seed) {
     if (valence < 3)
-        throw InvalidInput(fmt::format("{} neighbors are too few: 3 or more", valence));
+        throw InvalidInput(
+            fmt::format("the number of neighbors is {}, but must be at least 3", valence));
     Random random(seed);
     const Cubic cubic = random_cubic(random, 2, 1.0);
     std::vector<double> angles;

@@ -360,7 +360,7 @@ class Files(unittest.TestCase):
             mesh.name = "two\nlines"
             report = []
             relief.write_mesh(pathlib.Path(folder) / "vase.obj", mesh, report=report)
-            self.assertEqual([finding["kind"] for finding in report], ["mesh name that OBJ cannot hold"])
+            self.assertEqual([finding["kind"] for finding in report], ["mesh name that OBJ cannot store"])
         numpy.testing.assert_array_equal(again.positions, mesh.positions)
         numpy.testing.assert_array_equal(again.triangles, mesh.triangles)
         self.assertEqual(mesh.origin, (0.0, 0.0, 0.0))

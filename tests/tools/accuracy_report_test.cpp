@@ -84,7 +84,7 @@ TEST(BrokenReport, IsRefusedWithAPointer) {
         {"/version", 2,
          "/version: is 2, but only 1 can be read (create the report again with this "
          "relief-accuracy, or use the version that created it)"},
-        {"/version", "1", "/version: is not a whole number of 0 or more"},
+        {"/version", "1", "/version: must be an integer of at least 0"},
         {"/experiments", 5, "/experiments: is of type number, not array"},
         {"/experiments/0/id", gone, "/experiments/0/id: is missing"},
         {"/experiments/0/subject", "colour",
@@ -95,9 +95,9 @@ TEST(BrokenReport, IsRefusedWithAPointer) {
         {"/experiments/0/measurements/1/error/rms", "much",
          "/experiments/0/measurements/1/error/rms: is of type string, not number"},
         {"/experiments/0/measurements/1/error/count", -1,
-         "/experiments/0/measurements/1/error/count: is not a whole number of 0 or more"},
+         "/experiments/0/measurements/1/error/count: must be an integer of at least 0"},
         {"/experiments/0/measurements/1/cost/one_thread/rounds/2", -1e-3,
-         "/experiments/0/measurements/1/cost/one_thread/rounds/2: is not more than 0 seconds"},
+         "/experiments/0/measurements/1/cost/one_thread/rounds/2: must be above 0 seconds"},
         {"/experiments/0/charts/0/curves/0/points/1", json::array({1}),
          "/experiments/0/charts/0/curves/0/points/1: has 1 numbers, not 2"},
         {"/machine", nullptr, "/machine: is of type null, not object"}};

@@ -265,7 +265,7 @@ TEST(ConformanceCommand, RefusesAKitThatIsNone) {
     std::filesystem::copy_file(workplace / "conformance/kit/fan.glb", workplace / "kit/fan.glb");
     workplace.write("kit/fan.f32", "short");
     EXPECT_THAT(error_of(R"({"format":1,"meshes":[{"name":"fan","group":"defect","about":""}]})"),
-                HasSubstr("kit/fan.f32: does not hold 450 tangents of 16 bytes"));
+                HasSubstr("kit/fan.f32: does not contain 450 tangents of 16 bytes"));
 }
 
 const fs::path kit_folder = test::source_directory() / "conformance/kit";

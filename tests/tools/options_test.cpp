@@ -135,7 +135,7 @@ TEST(LimitOptions, SetTheLimitsOfTheProcess) {
     EXPECT_EQ(given("--max-pixels", "1e6"), "accepted");
     EXPECT_EQ(input_limits().pixels, 1'000'000U);
     EXPECT_EQ(input_limits().memory, 600ULL << 20);
-    EXPECT_EQ(given("--max-memory", "600"), "--max-memory 600: no amount of memory");
+    EXPECT_EQ(given("--max-memory", "600"), "--max-memory 600: not an amount of memory");
     EXPECT_EQ(given("--max-memory", "-1G"), "--max-memory -1G: not between 0 and 1000000");
     EXPECT_EQ(given("--max-memory", "0G"), "--max-memory 0G: less than a byte");
     EXPECT_EQ(given("--max-pixels", "0"), "--max-pixels 0: not between 1 and 1000000000000");

@@ -192,9 +192,10 @@ TEST_F(WriteInto, RefusesMapsThatGltfCannotShow) {
     const std::string line = "relief-bake mesh high.obj low.obj ";
     expect_refusals(
         place_, "relief-bake", "old.png",
-        {{line + "out/n.exr --write-into out/m.glb", 2, "--write-into: glTF cannot hold out/n.exr"},
+        {{line + "out/n.exr --write-into out/m.glb", 2,
+          "--write-into: glTF cannot store out/n.exr"},
          {line + "out/n.png --occlusion-map out/o.tif --write-into out/m.glb", 2,
-          "--write-into: glTF cannot hold out/o.tif (use a .png)"},
+          "--write-into: glTF cannot store out/o.tif (use a .png)"},
          {line + "out/n.png --green down --write-into out/m.glb", 2,
           "--green, --write-into: glTF has green up"},
          {line + "out/n.png --for unreal --write-into out/m.glb", 2,

@@ -334,7 +334,7 @@ void check(const CLI::App& app, const WriteIntoOptions& options) {
 void check_image(const std::string& option, const std::filesystem::path& file) {
     const std::string extension = extension_of(file);
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") return;
-    throw UsageError(fmt::format("{}: glTF cannot hold {}", option, file.string()), "use a .png");
+    throw UsageError(fmt::format("{}: glTF cannot store {}", option, file.string()), "use a .png");
 }
 
 }  // namespace relief::tools

@@ -229,7 +229,7 @@ std::uint64_t parse_bytes(const std::string& subject, const std::string& text) {
     constexpr std::string_view units = "KMGT";
     const std::size_t unit = text.empty() ? units.npos : units.find(text.back());
     if (unit == units.npos) {
-        throw UsageError(subject + ": no amount of memory",
+        throw UsageError(subject + ": not an amount of memory",
                          "give a number with the unit K, M, G or T: 600M");
     }
     const double bytes =

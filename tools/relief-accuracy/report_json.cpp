@@ -190,7 +190,7 @@ std::optional<Timing> timing_at(const JsonCursor& cost, const std::string& key) 
     Timing timing;
     for (const JsonCursor& round : place->at("rounds").elements()) {
         timing.rounds.push_back(round.double_number());
-        if (!(timing.rounds.back() > 0.0)) round.fail("is not more than 0 seconds");
+        if (!(timing.rounds.back() > 0.0)) round.fail("must be above 0 seconds");
     }
     return timing;
 }

@@ -33,7 +33,7 @@ std::vector<glm::vec4> read_expected(const std::filesystem::path& file, std::siz
     const auto bytes = static_cast<std::streamsize>(corners * sizeof(glm::vec4));
     stream.read(reinterpret_cast<char*>(expected.data()), bytes);
     if (stream.gcount() != bytes || stream.peek() != std::ifstream::traits_type::eof())
-        throw FileError(file, fmt::format("does not hold {} tangents of 16 bytes", corners));
+        throw FileError(file, fmt::format("does not contain {} tangents of 16 bytes", corners));
     return expected;
 }
 

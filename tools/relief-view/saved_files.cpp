@@ -54,7 +54,7 @@ void frame(MeshFile& contents, FrameOptions options, Report& report) {
 void turn_y_up(Model& model) {
     auto* contents = std::get_if<MeshFile>(&model);
     if (contents == nullptr)
-        throw InvalidInput("is drawn with z up, which a copy of a glTF file cannot hold");
+        throw InvalidInput("is drawn with z up, which a copy of a glTF file cannot store");
     const auto turn = [](auto& v) {
         const auto y = v.y;
         v.y = v.z;

@@ -248,19 +248,22 @@ int samples_across(int samples) {
     for (const int side : {1, 2, 4, 8, 16, 32}) {
         if (side * side == samples) return side;
     }
-    throw InvalidInput(fmt::format("{} samples are not 1, 4, 16, 64, 256 or 1024", samples));
+    throw InvalidInput(
+        fmt::format("the number of samples is {}, but must be 1, 4, 16, 64, 256 or 1024", samples));
 }
 
 void check_distance(const std::optional<double>& distance, const char* what) {
     if (distance && !(*distance >= 0.0 && std::isfinite(*distance)))
-        throw InvalidInput(fmt::format("{} of {} is negative or not finite", what, *distance));
+        throw InvalidInput(
+            fmt::format("{} is {}, but must be finite and at least 0", what, *distance));
 }
 
 void check_surfaces(const BakeOptions& options) {
-    check_distance(options.offset, "an offset");
-    check_distance(options.max_distance, "a largest distance");
+    check_distance(options.offset, "the offset");
+    check_distance(options.max_distance, "the maximum distance");
     if (!(options.hardness >= 0.0 && options.hardness <= 1.0))
-        throw InvalidInput(fmt::format("a hardness of {} is not within 0 to 1", options.hardness));
+        throw InvalidInput(
+            fmt::format("the hardness is {}, but must be within [0, 1]", options.hardness));
 }
 
 void check_triangle_numbers(std::span<const std::uint32_t> numbers, std::size_t count) {
@@ -300,17 +303,19 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
     for (const int texels : {map.width, map.height}) {
         if (texels < 1 || texels > TexelRasterizer::largest_side / side) {
             throw InvalidInput(fmt::format(
-                "a map of {} x {} texels of {} samples is not within 1 to {}", map.width,
-                map.height, map.samples, TexelRasterizer::largest_side / side));
+                "the map has {} x {} texels of {} samples, but must have 1 to {} texels along each "
+                "side",
+                map.width, map.height, map.samples, TexelRasterizer::largest_side / side));
         }
     }
     if (map.padding < 0 || map.padding > max_padding) {
-        throw InvalidInput(
-            fmt::format("a padding of {} texels is not within 0 to {}", map.padding, max_padding));
+        throw InvalidInput(fmt::format("the padding is {} texels, but must be within [0, {}]",
+                                       map.padding, max_padding));
     }
     check_border(map);
     if (map.sample_angle && !(*map.sample_angle >= 0.0 && *map.sample_angle <= std::numbers::pi))
-        throw InvalidInput(fmt::format("an angle of {} is not within 0 to pi", *map.sample_angle));
+        throw InvalidInput(
+            fmt::format("the angle is {}, but must be within [0, pi]", *map.sample_angle));
     if (map.rows) check_rows(*map.rows, map);
     if (map.triangles) check_triangle_numbers(*map.triangles, low.triangles.size());
 }
@@ -318,7 +323,7 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
 void check_layers(const BakeLayers& requested, const BakeLayers& prepared) {
     if ((requested.normals && !prepared.normals) || (requested.curvature && !prepared.curvature) ||
         (requested.colors && !prepared.colors) || (requested.opacity && !prepared.opacity))
-        throw InvalidInput("a map wants a layer that its baker was not made for");
+        throw InvalidInput("a map requests a layer that its Baker does not have");
     if (requested.occlusion) check(*requested.occlusion);
 }
 

@@ -101,12 +101,14 @@ void store_mean(const glm::dvec3& sum, std::uint32_t hits, std::span<float> valu
 void check(const OcclusionOptions& options) {
     constexpr int max_rays = 65536;
     if (options.distance && !(*options.distance >= 0.0 && std::isfinite(*options.distance))) {
-        throw InvalidInput(fmt::format("a distance of occlusion of {} is negative or not finite",
-                                       *options.distance));
+        throw InvalidInput(
+            fmt::format("the distance of occlusion is {}, but must be finite and at least 0",
+                        *options.distance));
     }
     if (options.rays < 1 || options.rays > max_rays) {
         throw InvalidInput(
-            fmt::format("{} rays of occlusion are not within 1 to {}", options.rays, max_rays));
+            fmt::format("the number of occlusion rays is {}, but must be within [1, {}]",
+                        options.rays, max_rays));
     }
 }
 

@@ -546,16 +546,17 @@ void check(std::span<const glm::vec2> texcoords, std::span<const glm::uvec3> tri
            const CoverageOptions& options) {
     for (const int side : {options.width, options.height}) {
         if (side < 1 || side > TexelRasterizer::largest_side)
-            throw InvalidInput(fmt::format("a map of {} x {} texels is not within 1 to {}",
-                                           options.width, options.height,
-                                           TexelRasterizer::largest_side));
+            throw InvalidInput(
+                fmt::format("the map has {} x {} texels, but must have 1 to {} along each side",
+                            options.width, options.height, TexelRasterizer::largest_side));
     }
     const int across = options.samples_across;
     constexpr std::array known = {1, 2, 4, 8, 16, 32};
     const bool is_known = std::find(known.begin(), known.end(), across) != known.end();
     if (!is_known || options.width % across != 0 || options.height % across != 0)
-        throw InvalidInput(
-            fmt::format("{} samples across a texel are not 1, 2, 4, 8, 16 or 32", across));
+        throw InvalidInput(fmt::format(
+            "the number of samples across a texel is {}, but must be 1, 2, 4, 8, 16 or 32",
+            across));
     check_triangles(triangles, texcoords.size());
     if (options.only && !options.only->empty() && options.only->back() >= triangles.size())
         throw InvalidInput(fmt::format("there is no triangle {}", options.only->back()));

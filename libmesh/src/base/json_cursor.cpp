@@ -223,13 +223,13 @@ double JsonCursor::number_or_nan() const {
 int JsonCursor::whole_number(int min, int max) const {
     if (!value_->is_number_integer() || value_->get<double>() < min ||
         value_->get<double>() > max) {
-        fail(fmt::format("must be a whole number within [{}, {}]", min, max));
+        fail(fmt::format("must be an integer within [{}, {}]", min, max));
     }
     return value_->get<int>();
 }
 
 std::uint64_t JsonCursor::unsigned_number() const {
-    if (!value_->is_number_unsigned()) fail("is not a whole number of 0 or more");
+    if (!value_->is_number_unsigned()) fail("must be an integer of at least 0");
     return value_->get<std::uint64_t>();
 }
 

@@ -561,13 +561,13 @@ Image image_to_fill(int width, int height, int channels, int bits) {
 
 void check_bump(const BumpOptions& options) {
     if (!(std::abs(options.strength) <= max_strength)) {
-        throw InvalidInput(
-            fmt::format("the strength {} is not within +-{}", options.strength, max_strength));
+        throw InvalidInput(fmt::format("the strength is {}, but must be within +-{}",
+                                       options.strength, max_strength));
     }
     for (const double size : {options.texel.x, options.texel.y}) {
         if (!(size >= 1.0 / max_texel && size <= max_texel)) {
-            throw InvalidInput(fmt::format("the texel size {} is not within {} and {}", size,
-                                           1.0 / max_texel, max_texel));
+            throw InvalidInput(fmt::format("the texel size is {}, but must be within [{}, {}]",
+                                           size, 1.0 / max_texel, max_texel));
         }
     }
     gradient_kernel(options.kernel.value_or(Kernel::gaussian), options.gaussian_radius);

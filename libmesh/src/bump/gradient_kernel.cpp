@@ -41,8 +41,8 @@ GradientKernel symmetric(int order, const std::vector<double>& differences,
 /// g(x) g(y) x^2, which is separable.
 GradientKernel gaussian(int radius) {
     if (radius < 1 || radius > max_kernel_radius) {
-        throw InvalidInput(fmt::format("the kernel's radius {} is not within 1 and {}", radius,
-                                       max_kernel_radius));
+        throw InvalidInput(fmt::format("the kernel's radius is {}, but must be within [1, {}]",
+                                       radius, max_kernel_radius));
     }
     const double deviation = radius / 2.0;
     std::vector<double> differences;

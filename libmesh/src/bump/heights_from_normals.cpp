@@ -607,11 +607,12 @@ void check(const Image& normals, const IntegrationOptions& options) {
     };
     for (const double size : {options.texel.x, options.texel.y}) {
         if (!is_within(size, 1e-30, 1e30))
-            throw InvalidInput(fmt::format("a texel of size {} is not within 1e-30 to 1e30", size));
+            throw InvalidInput(
+                fmt::format("the texel size is {}, but must be within [1e-30, 1e30]", size));
     }
     if (!is_within(options.max_slope, 1e-3, 1e6)) {
-        throw InvalidInput(
-            fmt::format("a steepest slope of {} is not within 0.001 to 1e6", options.max_slope));
+        throw InvalidInput(fmt::format("the maximum slope is {}, but must be within [0.001, 1e6]",
+                                       options.max_slope));
     }
 }
 

@@ -332,7 +332,7 @@ Groups sharing_vertices(StridedSpan<const glm::vec3> positions,
     if (!weld_tolerance) return {};
     if (!(*weld_tolerance >= 0.0) || std::isinf(*weld_tolerance)) {
         throw InvalidInput(fmt::format(
-            "the weld tolerance is {}, but must be 0 or more, and finite", *weld_tolerance));
+            "the weld tolerance is {}, but must be finite and at least 0", *weld_tolerance));
     }
     return groups_of(*weld_tolerance > 0.0 ? weld_near_positions(positions, *weld_tolerance)
                                            : weld_positions(positions));

@@ -588,7 +588,7 @@ void encode_bc7_rows(const ImageView& image, BlockQuality quality, std::size_t b
 
 std::vector<std::byte> encode_bc7(const ImageView& image, BlockQuality quality, Report& report) {
     if (image.channels != 3 && image.channels != 4)
-        throw InvalidInput(fmt::format("bc7 holds 3 or 4 channels, not {}", image.channels));
+        throw InvalidInput(fmt::format("bc7 has 3 or 4 channels, not {}", image.channels));
     std::vector<std::byte> blocks(block_data_size(BlockFormat::bc7, image.width, image.height));
     const std::size_t rows = (static_cast<std::size_t>(image.height) + 3) / 4;
     const std::size_t grain = texels_per_piece / 16 / static_cast<std::size_t>(image.width) + 1;

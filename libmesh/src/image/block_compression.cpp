@@ -749,7 +749,7 @@ std::vector<std::byte> encode_blocks(const ImageView& image, BlockFormat format,
     check_size(image.width, image.height);
     if (format == BlockFormat::bc7) return encode_bc7(image, quality, report);
     if (image.channels != channels_of(format)) {
-        throw InvalidInput(fmt::format("{} holds {} channels, not {}", enum_name(format),
+        throw InvalidInput(fmt::format("{} has {} channels, not {}", enum_name(format),
                                        channels_of(format), image.channels));
     }
     return encode_channels(image, format, quality, report);

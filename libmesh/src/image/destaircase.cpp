@@ -181,7 +181,7 @@ void check(const Image& height, const DestaircaseOptions& options) {
     if (height.channels != 1)
         throw InvalidInput(fmt::format("a height field has one channel, not {}", height.channels));
     if (!(options.step >= 0.0 && std::isfinite(options.step)))
-        throw InvalidInput(fmt::format("the step {} is not 0 or more", options.step));
+        throw InvalidInput(fmt::format("the step is {}, but must be at least 0", options.step));
 }
 
 }  // namespace

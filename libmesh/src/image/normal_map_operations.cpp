@@ -162,7 +162,7 @@ void scale_slopes(Image& normals, double strength, Report& report) {
     check_floats(normals, 3, "normals");
     if (!(std::abs(strength) <= largest_strength)) {
         throw InvalidInput(
-            fmt::format("the strength {} is not within +-{}", strength, largest_strength));
+            fmt::format("the strength is {}, but must be within +-{}", strength, largest_strength));
     }
     const std::span<float> all = normals.as<float>();
     for_each_texel(all.size() / 3, report, [&](std::size_t texel, Report& found) {

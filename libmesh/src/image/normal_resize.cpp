@@ -131,8 +131,8 @@ void check_resize(int width, int height, const ResizeOptions& options) {
             fmt::format("the size is {} x {} texels, but must be at least 1 x 1", width, height));
     for (const double repeat : {options.repeat.x, options.repeat.y}) {
         if (!(repeat > 0.0 && repeat <= 1e4))
-            throw InvalidInput(
-                fmt::format("a map cannot be repeated {} times, but up to 1e4", repeat));
+            throw InvalidInput(fmt::format(
+                "the number of repeats is {}, but must be above 0 and at most 1e4", repeat));
     }
 }
 
@@ -316,7 +316,8 @@ double roughness_with_variance(double roughness, double variance) {
 Image roughness_from_lengths(const Image& lengths, double roughness) {
     check_floats(lengths, 1, "lengths");
     if (!(roughness >= 0.0 && roughness <= 1.0))
-        throw InvalidInput(fmt::format("the roughness {} is not within 0 and 1", roughness));
+        throw InvalidInput(
+            fmt::format("the roughness is {}, but must be within [0, 1]", roughness));
     Image result = make_image(lengths.width, lengths.height, 1, 32, ColorSpace::data);
     const std::span<const float> from = lengths.as<float>();
     const std::span<float> to = result.as<float>();

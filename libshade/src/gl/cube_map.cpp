@@ -38,7 +38,7 @@ void check_cube_size(const Api& api, int size, std::string_view name) {
     const int limit = api.limits().cube_size;
     if (size > limit) {
         throw GpuError(
-            fmt::format("cube map '{}' has faces of {} x {} texels, but {} holds at most {}", name,
+            fmt::format("cube map '{}' has faces of {} x {} texels, but {} allows at most {}", name,
                         size, size, api.renderer(), limit));
     }
 }

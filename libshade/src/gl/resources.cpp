@@ -113,7 +113,7 @@ void check_size(const Api& api, const Image& image, std::string_view name) {
     const int limit = api.limits().texture_size;
     if (image.width > limit || image.height > limit) {
         throw GpuError(
-            fmt::format("texture '{}' has {} x {} texels, but {} holds at most {} along a side",
+            fmt::format("texture '{}' has {} x {} texels, but {} allows at most {} along a side",
                         name, image.width, image.height, api.renderer(), limit));
     }
 }
@@ -218,7 +218,7 @@ Texture make_buffer_texture(const Api& api, const Buffer& buffer, GLenum format,
                             std::string_view name) {
     const auto limit = static_cast<std::size_t>(api.limits().buffer_texels);
     if (texels > limit) {
-        throw GpuError(fmt::format("buffer texture '{}' has {} texels, but {} holds at most {}",
+        throw GpuError(fmt::format("buffer texture '{}' has {} texels, but {} allows at most {}",
                                    name, texels, api.renderer(), limit));
     }
     Texture texture(api);

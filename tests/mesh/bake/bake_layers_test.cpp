@@ -191,10 +191,10 @@ TEST(BakeLayers, RefusesInvalidOptions) {
     BakeOptions options = sized(4, 4);
     options.map.layers.occlusion = OcclusionOptions{.rays = 0, .distance = {}};
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
-              "0 rays of occlusion are not within 1 to 65536");
+              "the number of occlusion rays is 0, but must be within [1, 65536]");
     options.map.layers.occlusion = OcclusionOptions{.rays = 4, .distance = -1.0};
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
-              "a distance of occlusion of -1 is negative or not finite");
+              "the distance of occlusion is -1, but must be finite and at least 0");
 }
 
 TEST(BakeLayers, OfAMapMustBeThoseOfItsBaker) {
@@ -219,7 +219,7 @@ TEST(BakeLayers, OfAMapMustBeThoseOfItsBaker) {
                   baker.bake(
                       map, [](const auto&) {}, report);
               }),
-              "a map wants a layer that its baker was not made for");
+              "a map requests a layer that its Baker does not have");
 }
 
 RayMesh ray_mesh(const Mesh& mesh) {

@@ -281,11 +281,11 @@ TEST(Bake, RefusesInvalidInput) {
     BakeOptions options = sized(4, 4);
     options.map.samples = 3;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
-              "3 samples are not 1, 4, 16, 64, 256 or 1024");
+              "the number of samples is 3, but must be 1, 4, 16, 64, 256 or 1024");
     options = sized(4, 4);
     options.offset = -1.0;
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
-              "an offset of -1 is negative or not finite");
+              "the offset is -1, but must be finite and at least 0");
     EXPECT_THROW(bake({make_quad()}, make_quad(), sized(0, 4)), InvalidInput);
 }
 

@@ -209,11 +209,14 @@ TEST(Baker, RefusesInvalidMapOptions) {
     };
     BakeMapOptions map = sized(std::numeric_limits<int>::max(), 4).map;
     map.samples = 64;
-    EXPECT_EQ(message(map), "a map of 2147483647 x 4 texels of 64 samples is not within 1 to 8192");
+    EXPECT_EQ(message(map),
+              "the map has 2147483647 x 4 texels of 64 samples, but must have 1 to 8192 texels "
+              "along each side");
     map = sized(4, 1 << 30).map;
     map.samples = 16;
     EXPECT_EQ(message(map),
-              "a map of 4 x 1073741824 texels of 16 samples is not within 1 to 16384");
+              "the map has 4 x 1073741824 texels of 16 samples, but must have 1 to 16384 texels "
+              "along each side");
     const std::vector<std::uint32_t> beyond = {0, 2}, turned = {1, 0};
     map = sized(4, 4).map;
     map.triangles = beyond;

@@ -271,7 +271,8 @@ TEST(TexelCoverage, RefusesInvalidSizes) {
                 texcoords, triangles, options, [](int, auto) {}, report);
         });
     };
-    EXPECT_EQ(message(size(0, 8), {0, 1, 2}), "a map of 0 x 8 texels is not within 1 to 65536");
+    EXPECT_EQ(message(size(0, 8), {0, 1, 2}),
+              "the map has 0 x 8 texels, but must have 1 to 65536 along each side");
     EXPECT_EQ(message(size(8, 8), {0, 1, 3}), "triangle 0 names vertex 3, but there are only 3");
 }
 

@@ -247,7 +247,7 @@ TEST(BlockEncoder, RefusesOtherChannels) {
               "bc4 holds 1 channels, not 2");
     EXPECT_EQ(message_of<InvalidInput>(
                   [&] { encode_blocks(image, BlockFormat::bc7, BlockQuality::fast); }),
-              "bc7 holds 3 or 4 channels, not 2");
+              "bc7 has 3 or 4 channels, not 2");
     EXPECT_EQ(message_of<InvalidInput>([&] {
                   const Image normals = make_image(4, 4, 3, 32, ColorSpace::data);
                   encode_normal_blocks(normals, {.format = BlockFormat::bc7});

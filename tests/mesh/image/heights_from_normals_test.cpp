@@ -276,7 +276,7 @@ TEST(HeightsFromNormals, RefuseInvalidMaps) {
     IntegrationOptions options;
     options.max_slope = 0.0;
     EXPECT_EQ(message(make_image(2, 2, 3, 32, ColorSpace::data), options),
-              "a steepest slope of 0 is not within 0.001 to 1e6");
+              "the maximum slope is 0, but must be within [0.001, 1e6]");
 }
 
 }  // namespace

@@ -264,7 +264,7 @@ TEST(ScaleSlopes, NormalsWithoutSlopeAreCounted) {
     EXPECT_THAT(samples_of<float>(normals), ElementsAre(0, 0, 1, 0, 0, -1, 0, 0, 1));
     EXPECT_EQ(report.count("normal without direction"), 1U);
     EXPECT_EQ(message_of<InvalidInput>([&] { scale_slopes(normals, NAN, report); }),
-              "the strength nan is not within +-1000000");
+              "the strength is nan, but must be within +-1000000");
 }
 
 TEST(SlopesFromNormals, AreFiniteForEveryNormal) {

@@ -213,7 +213,7 @@ TEST(ResizeNormals, RefusesSizesThatAreNone) {
     ResizeOptions none;
     none.repeat.y = 0.0;
     EXPECT_EQ(message_of<InvalidInput>([&] { resize_normals(normals, 4, 4, none, report); }),
-              "a map cannot be repeated 0 times, but up to 1e4");
+              "the number of repeats is 0, but must be above 0 and at most 1e4");
 }
 
 TEST(FittedDetail, IsOnePeriodIfTheBaseHasAnIntegerNumber) {
@@ -343,7 +343,7 @@ TEST(NormalMips, RefusesInvalidImages) {
               "normals have 3 float channels, not 3 of 8 bits");
     const Image lengths = make_image(2, 2, 1, 32, ColorSpace::data);
     EXPECT_EQ(test::message_of<InvalidInput>([&] { roughness_from_lengths(lengths, 1.5); }),
-              "the roughness 1.5 is not within 0 and 1");
+              "the roughness is 1.5, but must be within [0, 1]");
 }
 
 }  // namespace

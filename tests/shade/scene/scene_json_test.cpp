@@ -436,7 +436,7 @@ TEST_F(SceneFile, RefusesUnknownKeysWithAPointer) {
            "/environment/left_handed: applies only to six faces");
     expect(R"("environment": {"folder": "nowhere"})", "cannot be read as a folder");
     expect(R"("picture": {"width": 0, "height": 1})",
-           "/picture/width: must be a whole number within [1, 16384]");
+           "/picture/width: must be an integer within [1, 16384]");
     expect(R"("ambient": 1, "ambient": 2)", "the key 'ambient' occurs twice in one object");
     expect(R"("ambient": -1)", "ambient light is (-1, -1, -1)");  // The check of the scene itself.
     expect(R"("relief_scene": 2)", "occurs twice");

@@ -122,7 +122,7 @@ DracoMesh::DracoMesh(std::string_view bytes) {
         throw InvalidInput(
             fmt::format("its Draco data is damaged: {}", type.status().error_msg_string()));
     if (type.value() != draco::TRIANGULAR_MESH)
-        throw InvalidInput("its Draco data holds points, not triangles");
+        throw InvalidInput("its Draco data contains points, not triangles");
     draco::Decoder decoder;
     auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
     if (!mesh.ok())
@@ -326,7 +326,7 @@ std::size_t Unpacking::fill_attribute(std::size_t accessor, std::size_t view,
     const ElementLayout layout = element_layout(json);
     if (text_in(json, "type").starts_with("MAT"))
         throw InvalidInput(
-            fmt::format("accessors[{}] holds matrices, which Draco has not", accessor));
+            fmt::format("accessors[{}] contains matrices, which Draco does not support", accessor));
     return fill(accessor, {view, id},
                 decoded(view).attribute(id, layout.components, component_of(layout)),
                 gltf_code::array_buffer);
@@ -364,7 +364,8 @@ void Unpacking::unpack(Json& primitive) {
     for (const auto& [name, unique_id] : draco["attributes"].items()) {
         const auto accessor = index_in(primitive["attributes"], name.c_str());
         if (!accessor)
-            throw InvalidInput(fmt::format("its Draco data has {}, but the primitive not", name));
+            throw InvalidInput(
+                fmt::format("its Draco data has {}, but the primitive does not", name));
         primitive["attributes"][name] = fill_attribute(*accessor, view, unique_id);
     }
     erase_extension(primitive, draco_extension);

@@ -208,7 +208,7 @@ ImageModuleReader* open_proxy(const char* format, std::unique_ptr<OIIO::Filesyst
     if (!reader->input->open(std::string("image.") + format, spec, request))
         return fail(failure, pending_error(*reader->input)), nullptr;
     if (spec.deep || spec.depth > 1)
-        return fail(failure, "holds a volume or deep samples"), nullptr;
+        return fail(failure, "contains a volume or deep samples"), nullptr;
     reader->header = {spec.width, spec.height, spec.nchannels, bits_of(spec)};
     *header = reader->header;
     hand_out_text(spec, text);

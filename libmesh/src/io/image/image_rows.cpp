@@ -79,7 +79,7 @@ void check_writable(const std::string& format, const ImageShape& shape,
     const int bits = shape.bits;
     const bool holds_float_only = format == "openexr" || format == "hdr";
     if (holds_float_only && bits != 32)
-        throw InvalidInput(fmt::format("EXR and HDR hold float samples, not {} bits", bits));
+        throw InvalidInput(fmt::format("EXR and HDR store float samples, not {} bits", bits));
     if (options.half && format != "openexr")
         throw InvalidInput("half-float samples are written to EXR only");
     if (!shape.channel_names.empty() && format != "openexr" && format != "tiff")
@@ -90,12 +90,12 @@ void check_writable(const std::string& format, const ImageShape& shape,
                                max_png_row) {
         throw InvalidInput(fmt::format("a row of {} texels is too long for PNG", shape.width));
     }
-    if (format == "png" && bits == 32) throw InvalidInput("PNG holds 8 or 16 bits, not float");
+    if (format == "png" && bits == 32) throw InvalidInput("PNG stores 8 or 16 bits, not float");
     if (format == "jpeg" && bits != 8)
-        throw InvalidInput(fmt::format("JPEG holds 8 bits, not {}", bits));
+        throw InvalidInput(fmt::format("JPEG stores 8 bits, not {}", bits));
     if (format == "jpeg" && shape.channels % 2 == 0) throw InvalidInput("JPEG cannot store alpha");
     if (format == "hdr" && shape.channels != 3)
-        throw InvalidInput(fmt::format("HDR holds 3 channels, not {}", shape.channels));
+        throw InvalidInput(fmt::format("HDR stores 3 channels, not {}", shape.channels));
     if (shape.color_space == ColorSpace::linear && bits != 32)
         throw InvalidInput("linear color is stored as float; encode it with to_srgb first");
     if (shape.color_space == ColorSpace::srgb && bits == 32)

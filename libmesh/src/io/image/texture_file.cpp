@@ -277,7 +277,7 @@ std::vector<std::byte> encode_texture_level(const ImageView& image, TextureForma
     const bool has_channels =
         image.channels == traits.channels || (traits.channels == 4 && image.channels == 3);
     if (!has_channels || image.bits() != traits.bits) {
-        throw InvalidInput(fmt::format("{} holds {} channels of {} bits, not {} of {}",
+        throw InvalidInput(fmt::format("{} has {} channels of {} bits, not {} of {}",
                                        enum_name(format), traits.channels, traits.bits,
                                        image.channels, image.bits()));
     }

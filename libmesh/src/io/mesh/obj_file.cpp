@@ -378,7 +378,7 @@ std::vector<std::string> material_names(const std::vector<MtlMaterial>& material
         for (int i = 2; !taken.insert(name).second; ++i)
             name = fmt::format("{}_{}", base, i);
         if (name != material.name) {
-            report.add("material name that OBJ cannot hold", "material", names.size(),
+            report.add("material name that OBJ cannot store", "material", names.size(),
                        "is written with _ for blanks, and with a number if it is taken");
         }
         names.push_back(name);
@@ -539,7 +539,7 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents, Repo
     if (!mesh.name.empty()) {
         const std::string name = name_in_statement(mesh.name);
         if (name != mesh.name)
-            report.add("mesh name that OBJ cannot hold", "mesh", 0,
+            report.add("mesh name that OBJ cannot store", "mesh", 0,
                        "is written with _ for line breaks");
         text += fmt::format("o {}\n", name);
     }

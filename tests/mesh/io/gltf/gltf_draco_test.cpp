@@ -260,7 +260,7 @@ TEST_F(GltfDraco, EveryContradictionIsNamed) {
                 HasSubstr("attribute 1 of its Draco data has 2 components, not 3"));
     EXPECT_THAT(with((draco + "/attributes/POSITION").c_str(), "0"), HasSubstr("is not an index"));
     EXPECT_THAT(with((draco + "/attributes/NORMAL").c_str(), 0),
-                HasSubstr("its Draco data has NORMAL, but the primitive not"));
+                HasSubstr("its Draco data has NORMAL, but the primitive does not"));
     EXPECT_THAT(with((draco + "/bufferView").c_str(), 1),
                 HasSubstr("bufferView is 1, but there are only 1 bufferViews"));
     EXPECT_THAT(with("/meshes/0/primitives/0/mode", 6), HasSubstr("no primitives of mode 6"));
@@ -269,7 +269,7 @@ TEST_F(GltfDraco, EveryContradictionIsNamed) {
     EXPECT_THAT(with("/accessors/3/componentType", 5126), HasSubstr("is used for indices"));
     const std::string points = packed_points();
     EXPECT_THAT(error_of(quad_document(points.size()), points),
-                HasSubstr("its Draco data holds points, not triangles"));
+                HasSubstr("its Draco data contains points, not triangles"));
     EXPECT_EQ(error_of(root_, packed_), "no error");
 }
 

@@ -300,7 +300,7 @@ TEST_F(Obj, MaterialsComeBack) {
     write_mesh(folder_ / "c.obj", contents, names);
     ASSERT_EQ(names.findings().size(), 2U);
     EXPECT_EQ(names.findings()[0].first, (std::vector<std::size_t>{0, 1}));
-    EXPECT_EQ(names.count("mesh name that OBJ cannot hold"), 1U);
+    EXPECT_EQ(names.count("mesh name that OBJ cannot store"), 1U);
     const MeshFile read = read_mesh(folder_ / "c.obj", report_);
     EXPECT_THAT(read.mesh.material_ranges,
                 ElementsAre(MaterialRange{0, 2, std::nullopt}, MaterialRange{2, 4, 0U},
