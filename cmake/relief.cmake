@@ -14,12 +14,12 @@ target_compile_options(
 if(RELIEF_WERROR)
     target_compile_options(relief_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()
-# The libraries, which do the work, have the full optimization of the build type. Tools call them and tests check
-# them: with -Og they compile in 60 % of the time. (If a library and a test both hold an inline function that was
-# not inlined, the linker takes either.)
+# The libraries have the full optimization of the build type. The tools have -O2, which compiles in a tenth less time:
+# if a tool and a library both hold an inline function that was not inlined, the linker takes the tool's. Only tests,
+# whose code is in no program that users run, have -Og: they compile in 60 % of the time.
 set(is_test $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tests,$<TARGET_PROPERTY:SOURCE_DIR>>)
 set(is_tool $<PATH:IS_PREFIX,${PROJECT_SOURCE_DIR}/tools,$<TARGET_PROPERTY:SOURCE_DIR>>)
-target_compile_options(relief_flags INTERFACE $<$<AND:$<CONFIG:Release>,$<OR:${is_test},${is_tool}>>:-Og>)
+target_compile_options(relief_flags INTERFACE $<$<CONFIG:Release>:$<${is_test}:-Og>$<${is_tool}:-O2>>)
 if(RELIEF_SANITIZE)
     # Instrumented code is slow to compile, and two thirds of it was the tests' own. Tests are therefore
     # compiled with AddressSanitizer only, without optimization and line numbers, and the tools, which are thin,
