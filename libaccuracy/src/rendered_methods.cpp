@@ -35,7 +35,13 @@ Image drawn(Renderer& renderer, const RenderedMethod& method) {
 /// A single frame takes less than a time slice of the scheduler (see repeats_per_round()).
 constexpr std::size_t frames_per_round = 4;
 
-/// Mean seconds of a few frames of one renderer, without reading back.
+std::string note_of(const RenderedMethod& method, const GlDevice& device) {
+    const std::string where = rendering_note(device);
+    return method.note.empty() ? where : method.note + " " + where;
+}
+
+}  // namespace
+
 double seconds_of_frames(Renderer& renderer, const Camera& camera) {
     Renderer* const only = &renderer;
     const FrameSeries series = time_frames({&only, 1}, camera, {frames_per_round, 0}).front();
@@ -43,17 +49,21 @@ double seconds_of_frames(Renderer& renderer, const Camera& camera) {
     return 1e-3 * milliseconds / static_cast<double>(frames_per_round);
 }
 
-std::string note_of(const RenderedMethod& method, const GlDevice& device) {
-    const std::string where = fmt::format(
+std::string rendering_note(const GlDevice& device) {
+    return fmt::format(
         "Rendered by {}; the time excludes reading the image back.{}",
         device.context().renderer_name(),
         device.context().is_software()
             ? " The time on one thread is that of all threads of the driver on one processor."
             : "");
-    return method.note.empty() ? where : method.note + " " + where;
 }
 
-}  // namespace
+void time_frames_by(PreparedExperiment& prepared, const GlDevice& device,
+                    std::function<double(MethodId)> round) {
+    prepared.costs.one_thread = device.context().is_software();
+    prepared.limits_processors = true;
+    prepared.round = std::move(round);
+}
 
 GlDevice::GlDevice(Backend backend) {
     try {
@@ -114,12 +124,10 @@ PreparedExperiment prepare_rendering(
                                     .stored_bytes = method.stored_bytes,
                                     .note = note_of(method, *state->device)});
     }
-    prepared.costs.one_thread = state->device->context().is_software();
-    prepared.limits_processors = true;
-    prepared.round = [state](MethodId id) {
+    time_frames_by(prepared, *state->device, [state](MethodId id) {
         const std::size_t i = index_of(id);
         return seconds_of_frames(state->renderer(i), *state->renderings.methods[i].scene.camera);
-    };
+    });
     if (finish) {
         prepared.finish = [state, finish = std::move(finish)](Experiment& finished) {
             finish(finished, state->renderings);

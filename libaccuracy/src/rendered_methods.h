@@ -77,6 +77,17 @@ PreparedExperiment prepare_rendering(
     Image ground_truth,
     std::function<void(Experiment& report, const Renderings& renderings)> finish);
 
+/// Returns the mean seconds of a few frames of a renderer, without reading back.
+double seconds_of_frames(Renderer& renderer, const Camera& camera);
+
+/// Returns the note on the renderer and its times that every rendered method has.
+std::string rendering_note(const GlDevice& device);
+
+/// Sets how frames are timed, as prepare_rendering() does.
+/// \param round  draws a few frames of a method and returns the seconds of one
+void time_frames_by(PreparedExperiment& prepared, const GlDevice& device,
+                    std::function<double(MethodId)> round);
+
 /// An experiment without methods, whose finding says why OpenGL is not available.
 PreparedExperiment not_rendered(Experiment report, const GlDevice& device);
 

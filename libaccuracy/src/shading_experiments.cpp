@@ -467,6 +467,7 @@ std::vector<PlannedExperiment> shading_plan(const PlanOptions& options) {
         planned("shading/cube-map-size", "The size of a reflected cube map", reflection_experiment),
         planned("shading/glossy-levels", "Rough mirrors by levels of a cube map",
                 glossy_experiment),
+        planned("shading/energy", "Energy lost by rough surfaces", energy_experiment),
         planned("shading/specular-antialiasing", "Highlights smaller than a pixel",
                 specular_aliasing_experiment),
         planned("shading/edges", "Edges by several samples per pixel", edge_experiment)};

@@ -26,6 +26,7 @@ PreparedExperiment metal_experiment(const PlanOptions& options);
 PreparedExperiment unit_normal_experiment(const PlanOptions& options);
 PreparedExperiment reflection_experiment(const PlanOptions& options);
 PreparedExperiment glossy_experiment(const PlanOptions& options);
+PreparedExperiment energy_experiment(const PlanOptions& options);
 
 /// One way to compute a formula. It knows its inputs, and writes one result per input.
 struct FormulaMethod {

@@ -53,6 +53,23 @@ TEST_F(RenderedExperiment, OnHighlightsFindsTheFactorBetweenExponents) {
 }
 
 TEST_LABELS(not_sanitized);
+TEST_F(RenderedExperiment, OnEnergyFindsThatAllBouncesKeepIt) {
+    const Experiment experiment = test::run_one("shading/energy");
+    ASSERT_EQ(experiment.measurements.size(), 2U);
+    // From the front, a white metal of roughness 1 mirrors 1 - log(2) of even light at once.
+    EXPECT_NEAR(test::measurement_of(experiment, "one bounce").error.max, 69.3, 0.5);
+    EXPECT_LT(test::measurement_of(experiment, "all bounces").error.max, 0.5);
+    ASSERT_EQ(experiment.charts.size(), 2U);
+    for (const Chart& chart : experiment.charts) {
+        const Curve& one = test::curve_of(chart, "one bounce");
+        const Curve& all = test::curve_of(chart, "all bounces");
+        for (std::size_t i = 0; i < all.points.size(); ++i)
+            EXPECT_LT(all.points[i].error, 0.5) << chart.id << " " << all.points[i].x;
+        EXPECT_GT(one.points.back().error, 5.0 * one.points[3].error) << chart.id;
+    }
+}
+
+TEST_LABELS(not_sanitized);
 TEST_F(RenderedExperiment, OnEdgesRanksSamples) {
     const Experiment experiment = test::run_one("shading/edges");
     EXPECT_LT(rms(experiment, "MSAA, 4 samples"), 0.6 * rms(experiment, "1 sample"));
