@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The description of a tool for its users: help pages, their JSON form, manual pages and shell
-/// completions. All are written from the options as the commands add them.
+/// The description of a tool for its users: help pages and their JSON form, written from the
+/// options as the commands add them. scripts/dev/make-manuals writes manual pages and completions
+/// from the JSON.
 ///
 /// Tests: tests/tools/help_test.cpp, command_test.cpp.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -45,16 +45,5 @@ nlohmann::ordered_json describe(const CLI::App& app);
 
 /// The same for a tool that does not run.
 nlohmann::ordered_json describe(const Tool& tool);
-
-/// A file of the manual or of a shell's completions.
-struct ManualFile {
-    std::filesystem::path path;  ///< Relative to the folder for shared data.
-    std::string text;
-};
-
-/// Returns the manual pages of a tool and of its commands in the format of man(7), and its
-/// completions for bash, zsh and fish.
-/// \param tool  the result of describe()
-std::vector<ManualFile> manual_files(const nlohmann::ordered_json& tool);
 
 }  // namespace relief::tools
