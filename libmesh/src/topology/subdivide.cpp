@@ -176,7 +176,7 @@ void check(const Mesh& mesh, int levels) {
     for (int level = 0; level < levels; ++level) {
         triangles *= 4;
         if (triangles <= most) continue;
-        throw InvalidInput(fmt::format("{} triangles make {} after {} levels, but {} are the most",
+        throw InvalidInput(fmt::format("{} triangles make {} after {} levels, but the limit is {}",
                                        mesh.triangles.size(), triangles, level + 1, most));
     }
 }

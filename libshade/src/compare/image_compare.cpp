@@ -620,7 +620,7 @@ void raise_band(const std::array<const LinearPicture*, 2>& pictures, const FlipF
 
 void check(const Image& reference, const Image& test, double pixels_per_degree) {
     for (const Image* image : {&reference, &test}) {
-        if (image->empty()) throw InvalidInput("FLIP compares pictures, and one has no pixels");
+        if (image->empty()) throw InvalidInput("FLIP compares pictures, but one is empty");
         if (image->color_space == ColorSpace::data)
             throw InvalidInput("FLIP compares colors, and one image holds data");
     }
@@ -630,7 +630,8 @@ void check(const Image& reference, const Image& test, double pixels_per_degree) 
     }
     if (!(pixels_per_degree >= 10.0 && pixels_per_degree <= 1000.0)) {
         throw InvalidInput(
-            fmt::format("{} pixels per degree: FLIP takes 10 to 1000", pixels_per_degree));
+            fmt::format("the resolution is {} pixels per degree, but must be within [10, 1000]",
+                        pixels_per_degree));
     }
 }
 

@@ -37,8 +37,10 @@ void check_markers(const Scene& scene, const std::vector<Marker>& markers) {
 
 void check_frame_length(const std::optional<float>& share) {
     if (!share || (*share > 0.0F && *share <= 1000.0F)) return;
-    throw InvalidInput(fmt::format(
-        "vertex frames of {} times the scene's size; from above 0 to 1000 can be drawn", *share));
+    throw InvalidInput(
+        fmt::format("the length of vertex frames is {} times the scene's size, but must be above 0 "
+                    "and at most 1000",
+                    *share));
 }
 
 ShaderSteps overlay_steps(const char* color, bool morphing, bool skinning) {

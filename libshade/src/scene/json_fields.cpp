@@ -72,7 +72,7 @@ ImageSource JsonImages::source(const JsonCursor& cursor) const {
 }
 
 std::size_t JsonImages::model_image(const JsonCursor& number) const {
-    if (images_.empty()) number.fail("is the number of an image, but no model has brought one");
+    if (images_.empty()) number.fail("is the index of an image, but there is no model with images");
     return static_cast<std::size_t>(number.whole_number(0, static_cast<int>(images_.size()) - 1));
 }
 

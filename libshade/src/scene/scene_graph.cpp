@@ -483,8 +483,9 @@ class NodeMatrices {
     [[nodiscard]] std::optional<glm::mat4> world_from_object(const Carried& carried) const {
         if (!carried.node) return std::nullopt;
         if (*carried.node >= world_from_node_.size()) {
-            throw InvalidInput(fmt::format("something hangs on node {}, but there are only {}",
-                                           *carried.node, world_from_node_.size()));
+            throw InvalidInput(
+                fmt::format("an object is attached to node {}, but there are only {}",
+                            *carried.node, world_from_node_.size()));
         }
         const glm::mat4& node = world_from_node_[*carried.node];
         if (!carried.position_only) return node * carried.node_from_object;

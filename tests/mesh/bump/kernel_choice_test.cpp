@@ -230,7 +230,7 @@ TEST(KernelChoice, StatesItsReason) {
     const KernelChoice walls = choice_on({"", terraces, 24, 1.0, float32, 0, 1});
     EXPECT_EQ(walls.kernel, Kernel::central3);
     EXPECT_GT(walls.walls, 0.01);
-    EXPECT_THAT(walls.reason, HasSubstr("beside sharp walls"));
+    EXPECT_THAT(walls.reason, HasSubstr("next to sharp walls"));
 }
 
 TEST(KernelChoice, StatesTheFractionOfOutliers) {

@@ -241,7 +241,7 @@ TEST(Subdivide, RefusesLevelsThatAreNoneOrTooMany) {
     };
     EXPECT_EQ(refusal(0), "the number of levels is 0, but must be at least 1");
     EXPECT_EQ(refusal(20),
-              "2 triangles make 2147483648 after 15 levels, but 1431655765 are the most");
+              "2 triangles make 2147483648 after 15 levels, but the limit is 1431655765");
 }
 
 Topology topology(const Mesh& mesh, Report& report) {

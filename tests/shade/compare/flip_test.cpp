@@ -398,9 +398,11 @@ TEST(Flip, RefusesIncomparableImages) {
               "pictures of 12 x 9 and 9 x 12 pixels cannot be compared");
     EXPECT_EQ(message(image, make_image(12, 9, 3, 8, ColorSpace::data), 60),
               "FLIP compares colors, and one image holds data");
-    EXPECT_EQ(message(Image{}, image, 60), "FLIP compares pictures, and one has no pixels");
-    EXPECT_EQ(message(image, image, 9), "9 pixels per degree: FLIP takes 10 to 1000");
-    EXPECT_EQ(message(image, image, std::nan("")), "nan pixels per degree: FLIP takes 10 to 1000");
+    EXPECT_EQ(message(Image{}, image, 60), "FLIP compares pictures, but one is empty");
+    EXPECT_EQ(message(image, image, 9),
+              "the resolution is 9 pixels per degree, but must be within [10, 1000]");
+    EXPECT_EQ(message(image, image, std::nan("")),
+              "the resolution is nan pixels per degree, but must be within [10, 1000]");
     EXPECT_EQ(message(image, image, 1000), "accepted");
 }
 

@@ -239,7 +239,7 @@ TEST_F(Overlay, RefusesInvalidMarkers) {
         return test::message_of<InvalidInput>([&] { (void)render(scene, settings); });
     };
     settings.overlays.vertex_frames = 0.0F;
-    EXPECT_THAT(message(), testing::HasSubstr("vertex frames of 0 times"));
+    EXPECT_THAT(message(), testing::HasSubstr("the length of vertex frames is 0 times"));
     settings.overlays.vertex_frames.reset();
     settings.overlays.markers = std::make_shared<std::vector<Marker>>(1, Marker{7, {}, {}});
     EXPECT_THAT(message(), testing::HasSubstr("marker 0 is on instance 7, but there are only 1"));

@@ -428,9 +428,10 @@ TEST_F(SceneFile, RefusesUnknownKeysWithAPointer) {
            "/nodes/0/translation/2: is 1e+99, but must be within");
     expect(R"("nodes": [{"rotation": {"axis": [0, 0, 0], "angle": 3}}])",
            "/nodes/0/rotation/axis: must have a length");
-    expect(R"("nodes": [{"camera": {}}], "camera": {})", "/camera: is the second camera");
-    expect(R"("camera": {"eye": [1, 2, 3], "azimuth": 3})", "/camera/azimuth: says where");
-    expect(R"("camera": {"eye": [0, 0, 0]})", "/camera/eye: is where the target is");
+    expect(R"("nodes": [{"camera": {}}], "camera": {})", "/camera: is a second camera");
+    expect(R"("camera": {"eye": [1, 2, 3], "azimuth": 3})",
+           "/camera/azimuth: sets the camera's transform");
+    expect(R"("camera": {"eye": [0, 0, 0]})", "/camera/eye: is at the target");
     expect(R"("environment": {})", "/environment: must have one of 'faces'");
     expect(R"("environment": {"cross": "a.png", "left_handed": true})",
            "/environment/left_handed: applies only to six faces");

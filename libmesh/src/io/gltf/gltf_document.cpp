@@ -278,7 +278,7 @@ GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
     } catch (const InvalidInput& error) {
         throw FileError(file, error.what());
     } catch (const std::bad_alloc&) {
-        throw FileError(file, "needs more memory than there is");
+        throw FileError(file, "needs more memory than is available");
     }
 }
 

@@ -67,9 +67,9 @@ const char* format_by_extension(const std::filesystem::path& file) {
     if (extension == ".exr") return "openexr";
     if (extension == ".hdr") return "hdr";
     if (extension == ".jpg" || extension == ".jpeg") return "jpeg";
-    throw FileError(file, fmt::format("relief writes no '{}' images; it writes .png, .tif, .exr, "
-                                      ".hdr and .jpg",
-                                      extension));
+    throw FileError(
+        file, fmt::format("relief cannot write '{}' images, only .png, .tif, .exr, .hdr and .jpg",
+                          extension));
 }
 
 /// Refuses images that the format cannot hold without loss. \throws InvalidInput
@@ -271,7 +271,7 @@ void ImageRowReader::read(std::span<std::byte> rows) {
 void ImageRowReader::skip(int rows) {
     Implementation& self = *implementation_;
     if (rows < 0 || rows > info().height - self.next) {
-        throw InvalidInput(fmt::format("{} rows cannot be left out where {} are left", rows,
+        throw InvalidInput(fmt::format("{} rows cannot be skipped: only {} are left", rows,
                                        info().height - self.next));
     }
     self.source->skip(static_cast<std::size_t>(rows));

@@ -215,7 +215,7 @@ MeshFile read_mesh(const std::filesystem::path& file, Report& report) {
         if (extension == ".stl") return read(read_stl);
         if (extension == ".off") return read(read_off);
     } catch (const std::bad_alloc&) {
-        throw FileError(file, "needs more memory than there is");
+        throw FileError(file, "needs more memory than is available");
     }
     throw FileError(
         file, fmt::format("'{}' is not a mesh format that relief reads: .obj, .ply, .stl and .off",

@@ -39,7 +39,8 @@ OffHeader parse_header(TextScanner& text, std::size_t file_size) {
     header.has_texcoords = take("ST");
     header.has_colors = take("C");
     header.has_normals = take("N");
-    if (!word.empty()) text.fail(fmt::format("'{}OFF' is a kind that is not read", word));
+    if (!word.empty())
+        text.fail(fmt::format("'{}OFF' is a kind of OFF that relief does not read", word));
     const std::string_view first = text.word();
     const auto vertex_count = number_in<std::uint64_t>(first);
     if (!vertex_count)

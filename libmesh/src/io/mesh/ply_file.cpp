@@ -98,7 +98,7 @@ PlyProperty parse_property(TextScanner& text) {
     property.name = text.word_on_line();
     if (property.name.empty()) text.fail("a property has no name");
     if (const auto more = text.word_on_line(); !more.empty()) {
-        text.fail(fmt::format("a property line goes on with {}", quoted(more)));
+        text.fail(fmt::format("a property line continues with {}", quoted(more)));
     }
     return property;
 }

@@ -380,8 +380,8 @@ struct AnimatedPng::Implementation {
 AnimatedPng::AnimatedPng(const std::filesystem::path& file, std::uint32_t frames, double seconds) {
     if (frames == 0) throw InvalidInput("an animation of 0 frames");
     if (!(seconds >= 0.0 && seconds <= 65.0)) {
-        throw InvalidInput(
-            fmt::format("a frame is shown for {} seconds, but 0 to 65 can be", seconds));
+        throw InvalidInput(fmt::format(
+            "the duration of a frame is {} seconds, but must be within [0, 65]", seconds));
     }
     implementation_.reset(
         new Implementation{FileReplacement(file),
@@ -408,7 +408,8 @@ void AnimatedPng::add(const Image& frame) {
         (frame.width != self.shape->width || frame.height != self.shape->height ||
          frame.channels != self.shape->channels || frame.bits() != self.shape->bits() ||
          frame.color_space != self.shape->color_space)) {
-        throw InvalidInput(fmt::format("frame {} is not of the first one's shape", self.added));
+        throw InvalidInput(
+            fmt::format("frame {} has another size or format than the first one", self.added));
     }
     if (frame.bits() == 32) throw InvalidInput("PNG cannot store float samples");
     const std::string png = encode_png(frame, {});

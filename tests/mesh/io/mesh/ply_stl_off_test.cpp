@@ -308,7 +308,8 @@ TEST_F(Off, DamagedFilesAreRefused) {
     EXPECT_THAT(error_of(head + "2000000000 0 1 2\n"), HasSubstr("a face has 2000000000 corners"));
     EXPECT_THAT(error_of(head + "3 0 1\n"), HasSubstr("the file ends"));
     EXPECT_THAT(error_of("OFF\n4000000000 1 0\n"), HasSubstr("too short for 4000000000 vertices"));
-    EXPECT_THAT(error_of("4OFF\n1 1 0\n"), HasSubstr("'4OFF' is a kind that is not read"));
+    EXPECT_THAT(error_of("4OFF\n1 1 0\n"),
+                HasSubstr("'4OFF' is a kind of OFF that relief does not read"));
     EXPECT_THAT(error_of("OFF BINARY\n"), HasSubstr("vertex count"));
     EXPECT_THAT(error_of("solid\n"), HasSubstr("does not begin with 'OFF'"));
 }
