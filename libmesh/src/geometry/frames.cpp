@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -19,6 +18,7 @@
 #include "geometry/check_triangles.h"
 #include "geometry/corners.h"
 #include "geometry/direction.h"
+#include "geometry/value_order.h"
 #include "progress_stage.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
@@ -26,20 +26,6 @@
 
 namespace relief {
 namespace {
-
-/// Returns the rank in the total order of floats: -0 equals +0, NaNs are ordered by their bits.
-std::uint32_t ordinal(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
-    return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
-}
-
-template <int N>
-bool comes_before(const glm::vec<N, float>& a, const glm::vec<N, float>& b) {
-    for (int i = 0; i < N; ++i) {
-        if (ordinal(a[i]) != ordinal(b[i])) return ordinal(a[i]) < ordinal(b[i]);
-    }
-    return false;
-}
 
 template <int N>
 VertexSplit split(std::size_t vertex_count, std::span<const glm::uvec3> triangles,
@@ -59,10 +45,10 @@ VertexSplit split(std::size_t vertex_count, std::span<const glm::uvec3> triangle
         check_cancelled(v);
         around.assign(corners.at(v).begin(), corners.at(v).end());
         std::sort(around.begin(), around.end(),
-                  [&](Corner a, Corner b) { return comes_before<N>(values[a], values[b]); });
+                  [&](Corner a, Corner b) { return compare_values(values[a], values[b]) < 0; });
         auto vertex = static_cast<std::uint32_t>(v);
         for (std::size_t i = 1; i < around.size(); ++i) {
-            if (comes_before<N>(values[around[i - 1]], values[around[i]])) {
+            if (compare_values(values[around[i - 1]], values[around[i]]) != 0) {
                 vertex = static_cast<std::uint32_t>(result.source_vertex.size());
                 result.source_vertex.push_back(static_cast<std::uint32_t>(v));
             }

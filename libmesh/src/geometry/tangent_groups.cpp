@@ -210,7 +210,7 @@ class GroupAverager {
         : input_(input),
           corners_(corners),
           findings_(findings),
-          linker_(input.mesh.triangles, input.gradients.kinds),
+          linker_(input.mesh, input.gradients.kinds),
           indices_(input.mesh.triangles.longs() != nullptr ? &input.mesh.triangles.longs()->x
                                                            : nullptr) {}
 

@@ -4,8 +4,8 @@
 // Two triangles that run along an edge in opposite directions are neighbors. If an edge has more
 // triangles (where the result of the reference implementation depends on the order of triangles),
 // triangles with the same texture orientation are paired first, those with the smaller third
-// vertices with each other. The rest are paired with triangles without a gradient, which can join
-// either orientation. Identical triangles count once.
+// vertices, by value, with each other. The rest are paired with triangles without a gradient, which
+// can join either orientation. Identical triangles count once.
 //
 // Triangles without a gradient contribute nothing. They get a sign first from the groups at their
 // vertices that could include them, then from their neighbors, in rounds.
@@ -16,6 +16,7 @@
 #include <tuple>
 
 #include "geometry/tangent_signs.h"
+#include "geometry/value_order.h"
 #include "parallel.h"
 
 namespace relief {
@@ -24,7 +25,7 @@ struct EdgeUse {
     bool arrives;                ///< True if the triangle runs towards the vertex.
     Gradient kind;
     std::uint32_t third_vertex;
-    std::uint32_t rotation;  ///< Index of the triangle's corner at its smallest vertex.
+    std::uint32_t rotation;  ///< Index of the triangle's corner at its first position by value.
     std::uint32_t triangle;
     CornerLinker::Place corner;  ///< Corner of the triangle at the vertex.
 
@@ -41,10 +42,14 @@ namespace {
 
 using Uses = std::span<EdgeUse>;
 
-/// Returns the index of the corner of a triangle at its smallest vertex.
-std::uint32_t rotation_of(const glm::uvec3& triangle) {
-    if (triangle.x < triangle.y && triangle.x < triangle.z) return 0;
-    return triangle.y < triangle.z ? 1 : 2;
+/// Returns the index of the corner of a triangle at its first position by value. Of identical
+/// triangles, those that begin at the same corner have contributions with the same bits.
+std::uint32_t rotation_of(const TangentInput& mesh, const glm::uvec3& triangle) {
+    const auto comes_first = [&](std::uint32_t a, std::uint32_t b) {
+        return compare_values(mesh.positions[a], mesh.positions[b]) < 0;
+    };
+    if (comes_first(triangle.x, triangle.y) && comes_first(triangle.x, triangle.z)) return 0;
+    return comes_first(triangle.y, triangle.z) ? 1 : 2;
 }
 
 /// Uses of one direction of an edge, sorted by kind: upright, mirrored, none.
@@ -63,8 +68,8 @@ std::array<Uses, 3> by_kind(Uses uses) {
 
 }  // namespace
 
-CornerLinker::CornerLinker(TriangleSpan triangles, std::span<const Gradient> kinds)
-    : triangles_(triangles), kinds_(kinds) {}
+CornerLinker::CornerLinker(const TangentInput& mesh, std::span<const Gradient> kinds)
+    : mesh_(mesh), kinds_(kinds) {}
 
 CornerLinker::~CornerLinker() = default;
 
@@ -74,9 +79,9 @@ void CornerLinker::collect(std::span<const Corner> around) {
     for (Place place = 0; place < around.size(); ++place) {
         const Corner corner = around[place];
         const std::uint32_t triangle = triangle_of(corner);
-        const std::uint32_t next = vertex_of(next_in_triangle(corner), triangles_);
-        const std::uint32_t previous = vertex_of(previous_in_triangle(corner), triangles_);
-        const std::uint32_t rotation = rotation_of(triangles_[triangle]);
+        const std::uint32_t next = vertex_of(next_in_triangle(corner), mesh_.triangles);
+        const std::uint32_t previous = vertex_of(previous_in_triangle(corner), mesh_.triangles);
+        const std::uint32_t rotation = rotation_of(mesh_, mesh_.triangles[triangle]);
         const Gradient kind = kinds_[triangle];
         uses_.push_back({next, false, kind, previous, rotation, triangle, place});
         uses_.push_back({previous, true, kind, next, rotation, triangle, place});
@@ -111,6 +116,19 @@ void CornerLinker::pair_up(Uses& leaving, Uses& arriving) {
     arriving = arriving.subspan(pairs);
 }
 
+/// Sorts triangles at one side of an edge by the values of their third vertices, so that the
+/// numbering of vertices does not matter.
+void CornerLinker::sort_by_value(Uses uses) {
+    std::sort(uses.begin(), uses.end(), [&](const EdgeUse& a, const EdgeUse& b) {
+        const auto order = [&](const auto& values) {
+            return compare_values(values[a.third_vertex], values[b.third_vertex]);
+        };
+        if (const int by_position = order(mesh_.positions)) return by_position < 0;
+        if (const int by_normal = order(mesh_.normals)) return by_normal < 0;
+        return order(mesh_.texcoords) < 0;
+    });
+}
+
 /// Finds the neighbors at one edge.
 void CornerLinker::link_edge(Uses uses) {
     const auto turn =
@@ -121,8 +139,11 @@ void CornerLinker::link_edge(Uses uses) {
     }
     std::array<Uses, 3> leaving = by_kind(without_twins({uses.begin(), turn}));
     std::array<Uses, 3> arriving = by_kind(without_twins({turn, uses.end()}));
-    for (std::size_t kind = 0; kind < 3; ++kind)
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+        sort_by_value(leaving[kind]);
+        sort_by_value(arriving[kind]);
         pair_up(leaving[kind], arriving[kind]);
+    }
     // The two calls apply to different triangles. Seen from the other end of the edge, where
     // leaving and arriving are exchanged, they run in the other order with the same result.
     for (std::size_t kind = 0; kind < 2; ++kind) {
@@ -151,13 +172,13 @@ namespace {
 /// Participating triangles without a gradient, and their neighbors across edges.
 class OpenTriangles {
   public:
-    OpenTriangles(TriangleSpan triangles, const CornersByVertex& corners,
+    OpenTriangles(const TangentInput& mesh, const CornersByVertex& corners,
                   const TriangleGradients& gradients) {
         for (const std::uint32_t triangle : gradients.without) {
             if (gradients.kinds[triangle] == Gradient::none) triangles_.push_back(triangle);
         }
         across_.assign(3 * triangles_.size(), no_corner);
-        link(triangles, corners, gradients.kinds);
+        link(mesh, corners, gradients.kinds);
     }
 
     static constexpr std::size_t not_open = std::numeric_limits<std::size_t>::max();
@@ -180,17 +201,17 @@ class OpenTriangles {
 
   private:
     /// Visits every vertex of the open triangles.
-    void link(TriangleSpan triangles, const CornersByVertex& corners,
+    void link(const TangentInput& mesh, const CornersByVertex& corners,
               std::span<const Gradient> kinds) {
         std::vector<std::uint32_t> vertices;
         for (const std::uint32_t triangle : triangles_) {
             for (int i = 0; i < 3; ++i)
-                vertices.push_back(triangles[triangle][i]);
+                vertices.push_back(mesh.triangles[triangle][i]);
         }
         std::sort(vertices.begin(), vertices.end());
         vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
         parallel_for(vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
-            CornerLinker linker(triangles, kinds);
+            CornerLinker linker(mesh, kinds);
             for (std::size_t i = begin; i < end; ++i)
                 link_at(corners.at(vertices[i]), linker);
         });
@@ -297,7 +318,7 @@ class SignFinder {
 
 }  // namespace
 
-TriangleSigns triangle_signs(TriangleSpan triangles, const CornersByVertex& corners,
+TriangleSigns triangle_signs(const TangentInput& mesh, const CornersByVertex& corners,
                              const TriangleGradients& gradients) {
     const std::vector<Gradient>& kinds = gradients.kinds;
     if (std::none_of(gradients.without.begin(), gradients.without.end(),
@@ -305,7 +326,7 @@ TriangleSigns triangle_signs(TriangleSpan triangles, const CornersByVertex& corn
         return {kinds, {}};
     std::vector<std::int8_t> signs(kinds.size());
     std::transform(kinds.begin(), kinds.end(), signs.begin(), sign_of);
-    const OpenTriangles open(triangles, corners, gradients);
+    const OpenTriangles open(mesh, corners, gradients);
     SignFinder(open, signs).find();
     return {kinds, std::move(signs)};
 }

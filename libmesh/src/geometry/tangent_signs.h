@@ -3,10 +3,10 @@
 /// Neighbors of triangles around a vertex, and the handedness of every triangle's tangents.
 ///
 /// Two triangles are neighbors if they run along an edge in opposite directions. At an edge with
-/// more than two triangles, each has at most one neighbor. A fixed rule chooses it by vertices and
-/// textures, never by the order of triangles, and gives the same result at both ends of the edge.
-/// The time is that of sorting the edges of the vertex. Triangles without a texture gradient take
-/// their sign from their neighbors.
+/// more than two triangles, each has at most one neighbor. A fixed rule chooses it by the values of
+/// vertices and by textures, never by the order of triangles and vertices, and gives the same
+/// result at both ends of the edge. The time is that of sorting the edges of the vertex. Triangles
+/// without a texture gradient take their sign from their neighbors.
 #pragma once
 
 #include <array>
@@ -37,8 +37,8 @@ class CornerLinker {
     using Place = std::uint32_t;
     static constexpr Place nowhere = std::numeric_limits<Place>::max();
 
-    /// \param triangles  with indices of welded vertices
-    CornerLinker(TriangleSpan triangles, std::span<const Gradient> kinds);
+    /// \param mesh  triangles with indices of welded vertices
+    CornerLinker(const TangentInput& mesh, std::span<const Gradient> kinds);
     ~CornerLinker();
     CornerLinker(const CornerLinker&) = delete;
     CornerLinker& operator=(const CornerLinker&) = delete;
@@ -59,10 +59,11 @@ class CornerLinker {
     void collect(std::span<const Corner> around);
     void link_edge(std::span<EdgeUse> uses);
     std::span<EdgeUse> without_twins(std::span<EdgeUse> uses);
+    void sort_by_value(std::span<EdgeUse> uses);
     void pair_up(std::span<EdgeUse>& leaving, std::span<EdgeUse>& arriving);
     void link(const EdgeUse& leaving, const EdgeUse& arriving);
 
-    TriangleSpan triangles_;
+    const TangentInput& mesh_;
     std::span<const Gradient> kinds_;
     std::vector<EdgeUse> uses_;
     std::vector<Place> across_;
@@ -159,11 +160,11 @@ class TriangleSigns {
 /// have a sign already; +1 if they balance, 0 if there are none. (The reference implementation
 /// takes the sign of the first group in the list.)
 ///
-/// \param triangles  with indices of welded vertices
+/// \param mesh  triangles with indices of welded vertices
 /// \param corners    corners of participating triangles
-/// \return signs that do not depend on the order of triangles. The time is linear except for
-///         sorting the edges of vertices of triangles without a gradient
-TriangleSigns triangle_signs(TriangleSpan triangles, const CornersByVertex& corners,
+/// \return signs that do not depend on the order of triangles and vertices. The time is linear
+///         except for sorting the edges of vertices of triangles without a gradient
+TriangleSigns triangle_signs(const TangentInput& mesh, const CornersByVertex& corners,
                              const TriangleGradients& gradients);
 
 }  // namespace relief

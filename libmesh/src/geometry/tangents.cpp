@@ -282,7 +282,7 @@ void compute_tangents(TangentInput input, TangentWeight weight, TangentGroups gr
     const CornersByVertex corners(input.positions.size(), input.triangles,
                                   [&](std::size_t t) { return takes_part(gradients.kinds[t]); });
     stage.advance(1);
-    const TriangleSigns signs = triangle_signs(input.triangles, corners, gradients);
+    const TriangleSigns signs = triangle_signs(input, corners, gradients);
     stage.advance(1);
     const GroupInput group_input{input, corners, gradients, signs, groups};
     const GroupFindings findings = average_groups(group_input, tangents);

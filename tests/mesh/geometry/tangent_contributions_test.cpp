@@ -109,6 +109,20 @@ constexpr Gradient upright = Gradient::upright;
 constexpr Gradient mirrored = Gradient::mirrored;
 constexpr Gradient no_gradient = Gradient::none;
 
+/// Vertices in ascending order of their values.
+struct OrderedVertices {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec2> texcoords;
+
+    explicit OrderedVertices(std::size_t count) : texcoords(count) {
+        for (std::size_t i = 0; i < count; ++i)
+            positions.emplace_back(i, 0, 0);
+    }
+    [[nodiscard]] TangentInput with(const std::vector<glm::uvec3>& triangles) const {
+        return {positions, positions, texcoords, triangles};
+    }
+};
+
 /// The links of all vertices, as corners and triangles of the whole mesh.
 struct Links {
     std::vector<Corner> across;
@@ -121,7 +135,9 @@ Links links_of(const std::vector<glm::uvec3>& triangles, const std::vector<Gradi
     const CornersByVertex corners(vertex_count, triangles);
     const std::vector<Corner> nobody(3 * triangles.size(), no_corner);
     Links links{nobody, nobody, std::vector<std::uint32_t>(triangles.size())};
-    CornerLinker linker(triangles, kinds);
+    const OrderedVertices vertices(vertex_count);
+    const TangentInput mesh = vertices.with(triangles);
+    CornerLinker linker(mesh, kinds);
     for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) {
         const std::span<const Corner> around = corners.at(vertex);
         linker.link(around);
@@ -238,7 +254,9 @@ bool is_walked_whole(const std::vector<std::uint32_t>& next,
         triangles.emplace_back(100, next[i], previous[i]);
     }
     const std::vector<Gradient> kinds(next.size(), upright);
-    CornerLinker linker(triangles, kinds);
+    const OrderedVertices vertices(101);
+    const TangentInput mesh = vertices.with(triangles);
+    CornerLinker linker(mesh, kinds);
     linker.link(around);
     for (CornerLinker::Place i = 0; i < next.size(); ++i) {
         if (linker.twin(i) != i) return false;
@@ -503,6 +521,16 @@ TEST(TangentContributions, AMillionOfTheLongestDoNotOverflow) {
     EXPECT_EQ(sum.x, sum.longest);
     EXPECT_EQ(sum.x % 1'000'000, 0);
     EXPECT_GT(sum.x, std::int64_t(1) << 58) << "the room is used";
+}
+
+TEST(TextureGradient, OfANeedleNearTheOriginDependsOnTheFirstCorner) {
+    // The pole of a sphere at sin(pi): seen from the far corner, the near ones have equal edges.
+    const std::vector<glm::vec3> positions = {
+        {0.097F, -1.001F, -0.019F}, {1.22e-16F, -1.0F, -1.2e-17F}, {1.20e-16F, -1.0F, -2.4e-17F}};
+    const std::vector<glm::vec2> texcoords = {{0.0F, 0.96875F}, {0.015625F, 1.0F}, {0.0F, 1.0F}};
+    EXPECT_EQ(triangle_gradient(positions, texcoords, {0, 1, 2}).kind, Gradient::none);
+    EXPECT_NE(triangle_gradient(positions, texcoords, {1, 2, 0}).kind, Gradient::none);
+    EXPECT_NE(triangle_gradient(positions, texcoords, {2, 0, 1}).kind, Gradient::none);
 }
 
 }  // namespace

@@ -117,6 +117,11 @@ ChosenNormals chosen_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
 
 /// The edges across which a surface is not smooth. By default there are none. The groups are not
 /// copied: they must be valid until the call with these edges returns.
+///
+/// An edge is smooth if the angle between the normals of its two triangles, in space, is within the
+/// crease angle; angles do not add up around a vertex. At an edge of three or more triangles, any
+/// two within the limit are joined, also through others at the edge. The normals of neighbors with
+/// inconsistent winding are opposite, so their edge is hard.
 struct HardEdges {
     /// In radians, 0 to pi: edges whose triangle normals differ by a larger angle are hard. A
     /// tolerance of 1e-5 makes edges exactly at the limit smooth, independent of rounding.
@@ -141,8 +146,13 @@ struct CornerNormals {
 /// \throws InvalidInput as vertex_normals(); if the angle is not within 0 to pi; if there are
 ///         groups, but not one for each triangle
 ///
+/// Triangles without area join no others and contribute nothing. If the corners of one are at three
+/// positions on a line, the triangles along its longest side and along its other sides share an
+/// edge; if two corners are at one position, the triangles at both sides share one already. So
+/// collapsed triangles change no other normal.
+///
 /// Vertices whose corners differ must be split: see frames.h. The same input gives the same bits,
-/// as for vertex_normals().
+/// as for vertex_normals(), and so does any order of vertices and any first corner of triangles.
 CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
                              std::optional<NormalWeight> weight, const NormalOptions& options,
                              const HardEdges& hard_edges, Report& report = IgnoredReport());

@@ -68,9 +68,17 @@ constexpr bool computes_tangents(TangentMethod method) {
 ///         vertex. If averaged tangents cancel, each corner keeps the tangent of its own triangle
 /// \throws InvalidInput if array lengths differ or a triangle names a vertex that does not exist
 ///
-/// The same input gives the same bits for any order of triangles, number of threads, compiler and
-/// instruction set. Vertices with equal position, normal and texture coordinate count as one, and
-/// identical triangles count once. The time is nearly linear for every shape; the memory is at most
+/// The same input gives the same bits for any order of triangles and vertices, number of threads,
+/// compiler and instruction set. Vertices with equal position, normal and texture coordinate count
+/// as one, and identical triangles count once.
+///
+/// Rotated corners of a triangle can change tangents, because gradients are computed in float from
+/// the first corner, as in the reference implementation. If all triangles at a position are certain
+/// in the sense of identify_tangents(), and not seen edge-on along the normal, the tangents there
+/// turn by less than 0.001 degrees. On thinner triangles the first corner can decide whether there
+/// is a gradient; see docs/tangents.md.
+///
+/// The time is nearly linear for every shape; the memory is at most
 /// half that of input and result.
 ///
 /// The corners of one vertex may differ (mirrored texture, hard texture seams): use frames.h to
