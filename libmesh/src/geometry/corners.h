@@ -42,6 +42,12 @@ inline std::uint32_t vertex_of(Corner corner, TriangleSpan triangles) {
     return triangles[corner / 3][static_cast<int>(corner % 3)];
 }
 
+/// Returns the vertices of the corner's triangle, beginning at the corner.
+inline glm::uvec3 triangle_from(Corner corner, TriangleSpan triangles) {
+    return {vertex_of(corner, triangles), vertex_of(next_in_triangle(corner), triangles),
+            vertex_of(previous_in_triangle(corner), triangles)};
+}
+
 /// The corners at every vertex, ascending.
 class CornersByVertex {
   public:

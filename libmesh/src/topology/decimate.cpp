@@ -15,6 +15,7 @@
 #include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -232,72 +233,90 @@ std::uint64_t curve_key(const glm::dvec3& p) {
     return spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2);
 }
 
-/// An index with a key of 48 bits.
-struct KeyedIndex {
+/// Returns the corner of a triangle with the first position by value. All computations begin there,
+/// because their rounding depends on the first corner.
+Corner first_corner(const Mesh& mesh, std::uint32_t triangle) {
+    Corner first = 3 * triangle;
+    for (Corner corner = first + 1; corner < 3 * triangle + 3; ++corner) {
+        if (compare(mesh.positions[vertex_of(corner, mesh.triangles)],
+                    mesh.positions[vertex_of(first, mesh.triangles)]) < 0)
+            first = corner;
+    }
+    return first;
+}
+
+/// The first corner of a triangle with a key of 48 bits.
+struct KeyedCorner {
     std::uint64_t key = 0;
-    std::uint32_t index = 0;
+    Corner corner = 0;
 };
 
 /// Sorts by key; equal keys keep their order.
-void radix_sort(std::vector<KeyedIndex>& values) {
+void radix_sort(std::vector<KeyedCorner>& values) {
     constexpr unsigned digit_bits = 12;
     constexpr std::size_t digits = std::size_t(1) << digit_bits;
-    std::vector<KeyedIndex> sorted(values.size());
+    std::vector<KeyedCorner> sorted(values.size());
     std::vector<std::size_t> place(digits);
     for (unsigned shift = 0; shift < 48; shift += digit_bits) {
         std::fill(place.begin(), place.end(), 0);
-        const auto digit = [&](const KeyedIndex& value) {
+        const auto digit = [&](const KeyedCorner& value) {
             return static_cast<std::size_t>(value.key >> shift) & (digits - 1);
         };
-        for (const KeyedIndex& value : values)
+        for (const KeyedCorner& value : values)
             ++place[digit(value)];
         std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t(0));
-        for (const KeyedIndex& value : values)
+        for (const KeyedCorner& value : values)
             sorted[place[digit(value)]++] = value;
         values.swap(sorted);
     }
 }
 
-/// Returns the triangles in an order that depends only on their values.
-std::vector<std::uint32_t> canonical_order(const AttributedMesh& surface, const UnitSpace& space,
-                                           const Parts& parts) {
+/// Returns the first corners of the triangles in an order that depends only on their values.
+std::vector<Corner> canonical_order(const AttributedMesh& surface, const UnitSpace& space,
+                                    const Parts& parts) {
     const Mesh& mesh = surface.mesh;
-    std::vector<KeyedIndex> keyed(mesh.triangles.size());
+    std::vector<KeyedCorner> keyed(mesh.triangles.size());
     parallel_for(keyed.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
+            const Corner first = first_corner(mesh, static_cast<std::uint32_t>(t));
+            const glm::uvec3 triangle = triangle_from(first, mesh.triangles);
             glm::dvec3 sum(0.0);
             for (int i = 0; i < 3; ++i)
-                sum += space(mesh.positions[mesh.triangles[t][i]]);
+                sum += space(mesh.positions[triangle[i]]);
             const bool finite = is_finite(glm::vec3(sum));
-            keyed[t] = {finite ? curve_key(sum / 3.0) : 0, static_cast<std::uint32_t>(t)};
+            keyed[t] = {finite ? curve_key(sum / 3.0) : 0, first};
         }
     });
     radix_sort(keyed);
-    const auto is_before = [&](const KeyedIndex& a, const KeyedIndex& b) {
+    const auto is_before = [&](const KeyedCorner& a, const KeyedCorner& b) {
+        const glm::uvec3 triangle_a = triangle_from(a.corner, mesh.triangles);
+        const glm::uvec3 triangle_b = triangle_from(b.corner, mesh.triangles);
         for (int i = 0; i < 3; ++i) {
-            const std::uint32_t va = mesh.triangles[a.index][i];
-            const std::uint32_t vb = mesh.triangles[b.index][i];
+            const std::uint32_t va = triangle_a[i];
+            const std::uint32_t vb = triangle_b[i];
             if (va == vb) continue;
             auto order = compare(mesh.positions[va], mesh.positions[vb]);
             if (order == 0) order = surface.compare_attributes(va, vb);
             if (order != 0) return order < 0;
         }
-        if (parts[a.index] != parts[b.index]) return parts[a.index] < parts[b.index];
+        const std::uint32_t ta = triangle_of(a.corner);
+        const std::uint32_t tb = triangle_of(b.corner);
+        if (parts[ta] != parts[tb]) return parts[ta] < parts[tb];
         if (!mesh.smoothing_groups.empty() &&
-            mesh.smoothing_groups[a.index] != mesh.smoothing_groups[b.index])
-            return mesh.smoothing_groups[a.index] < mesh.smoothing_groups[b.index];
-        return a.index < b.index;
+            mesh.smoothing_groups[ta] != mesh.smoothing_groups[tb])
+            return mesh.smoothing_groups[ta] < mesh.smoothing_groups[tb];
+        return a.corner < b.corner;
     };
     for (auto first = keyed.begin(); first != keyed.end();) {
         const auto last = std::find_if(
-            first, keyed.end(), [&](const KeyedIndex& value) { return value.key != first->key; });
+            first, keyed.end(), [&](const KeyedCorner& value) { return value.key != first->key; });
         std::sort(first, last, is_before);
         first = last;
     }
-    std::vector<std::uint32_t> order;
+    std::vector<Corner> order;
     order.reserve(keyed.size());
-    for (const KeyedIndex& value : keyed)
-        order.push_back(value.index);
+    for (const KeyedCorner& value : keyed)
+        order.push_back(value.corner);
     return order;
 }
 
@@ -384,10 +403,13 @@ Remains gathered_remains(const Mesh& mesh, const Collapsed& collapsed,
     std::vector<std::pair<std::uint32_t, glm::uvec3>> all;
     all.reserve(collapsed.remaining.size() + set_aside.size());
     for (std::size_t i = 0; i < collapsed.remaining.size(); ++i) {
-        const glm::uvec3& wedges = collapsed.wedges[i];
-        all.emplace_back(sources[collapsed.remaining[i]],
-                         glm::uvec3(vertex_of_wedge[wedges.x], vertex_of_wedge[wedges.y],
-                                    vertex_of_wedge[wedges.z]));
+        const std::uint32_t source = sources[collapsed.remaining[i]];
+        const Corner first = first_corner(mesh, source);
+        glm::uvec3 triangle{};
+        for (int k = 0; k < 3; ++k)
+            triangle[static_cast<int>((first + static_cast<Corner>(k)) % 3)] =
+                vertex_of_wedge[collapsed.wedges[i][k]];
+        all.emplace_back(source, triangle);
     }
     for (const std::uint32_t t : set_aside)
         all.emplace_back(t, mesh.triangles[t]);
@@ -446,7 +468,7 @@ Prepared prepared(const AttributedMesh& surface, const DecimateOptions& options,
     free_memory(input.topology.position_vertex);
     input.wedges.reserve(result.sources.size());
     for (const std::uint32_t source : result.sources) {
-        const glm::uvec3& triangle = mesh.triangles[source];
+        const glm::uvec3 triangle = triangle_from(first_corner(mesh, source), mesh.triangles);
         const std::uint32_t part = parts[source];
         input.wedges.emplace_back(wedges.at(triangle.x, part), wedges.at(triangle.y, part),
                                   wedges.at(triangle.z, part));
@@ -480,7 +502,13 @@ double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
     Mesh before;
     Mesh after;
     before.positions = mesh.positions;
-    before.triangles = mesh.triangles;
+    // Triangles with two corners at one position have no surface.
+    const std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
+    std::copy_if(mesh.triangles.begin(), mesh.triangles.end(), std::back_inserter(before.triangles),
+                 [&](const glm::uvec3& t) {
+                     return classes[t.x] != classes[t.y] && classes[t.y] != classes[t.z] &&
+                            classes[t.z] != classes[t.x];
+                 });
     after.positions = mesh.positions;
     for (const auto& [vertex, position] : remains.moved)
         after.positions[vertex] = position;

@@ -55,7 +55,7 @@ void for_each_edge(std::size_t vertex_count, std::span<const glm::uvec3> triangl
 class TopologyMaker {
   public:
     TopologyMaker(const Mesh& mesh, std::span<const std::uint32_t> classes,
-                  std::span<const std::uint32_t> order, Report& report)
+                  std::span<const Corner> order, Report& report)
         : mesh_(mesh), classes_(classes), order_(order), report_(report) {}
 
     Topology make();
@@ -70,7 +70,7 @@ class TopologyMaker {
 
     const Mesh& mesh_;
     std::span<const std::uint32_t> classes_;
-    std::span<const std::uint32_t> order_;
+    std::span<const Corner> order_;
     Report& report_;
     Topology result_;
     /// Triangles of the result with the indices of position classes.
@@ -84,19 +84,20 @@ void TopologyMaker::choose_triangles() {
     result_.source_triangle.reserve(mesh_.triangles.size());
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
         check_cancelled(i);
-        const std::uint32_t t = order_.empty() ? i : order_[i];
-        const glm::uvec3& triangle = mesh_.triangles[t];
+        const Corner first = order_.empty() ? 3 * i : order_[i];
+        const std::uint32_t t = triangle_of(first);
+        const glm::uvec3 triangle = triangle_from(first, mesh_.triangles);
+        const glm::uvec3 welded{classes_[triangle.x], classes_[triangle.y], classes_[triangle.z]};
+        if (welded.x == welded.y || welded.y == welded.z || welded.z == welded.x) {
+            report_.add("collapsed triangle", "triangle", t, "is left out: it has no area");
+            continue;
+        }
         const bool finite = is_finite(mesh_.positions[triangle.x]) &&
                             is_finite(mesh_.positions[triangle.y]) &&
                             is_finite(mesh_.positions[triangle.z]);
         if (!finite) {
             report_.add("triangle with a non-finite position", "triangle", t, "is kept as it is");
             result_.set_aside.push_back(t);
-            continue;
-        }
-        const glm::uvec3 welded{classes_[triangle.x], classes_[triangle.y], classes_[triangle.z]};
-        if (welded.x == welded.y || welded.y == welded.z || welded.z == welded.x) {
-            report_.add("collapsed triangle", "triangle", t, "is left out: it has no area");
             continue;
         }
         welded_.push_back(welded);
@@ -200,7 +201,7 @@ Topology TopologyMaker::make() {
 }  // namespace
 
 Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report,
-                     std::span<const std::uint32_t> order) {
+                     std::span<const Corner> order) {
     return TopologyMaker(mesh, classes, order, report).make();
 }
 
