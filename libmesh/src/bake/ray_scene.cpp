@@ -120,11 +120,21 @@ constexpr double max_share_of_high = 4.0;  // Of the distance measured from the 
 
 /// Points on the triangles of a mesh, distributed by the two-dimensional golden ratio sequence.
 std::vector<glm::dvec3> points_on(const Mesh& mesh) {
+    // Triangles with two corners at one position have no surface.
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const glm::uvec3& corners = mesh.triangles[t];
+        const glm::vec3& a = mesh.positions[corners.x];
+        const glm::vec3& b = mesh.positions[corners.y];
+        const glm::vec3& c = mesh.positions[corners.z];
+        if (a != b && b != c && c != a) triangles.push_back(t);
+    }
     std::vector<glm::dvec3> points;
-    const std::size_t count = mesh.triangles.size();
+    const std::size_t count = triangles.size();
     for (std::size_t i = 0; i < point_count && count > 0; ++i) {
         // One triangle after another; if there are more triangles than points, with a stride.
-        const std::size_t index = count > point_count ? i * count / point_count : i % count;
+        const std::size_t index =
+            triangles[count > point_count ? i * count / point_count : i % count];
         const auto k = static_cast<double>(i);
         double second = std::fmod(0.5 + k * 0.7548776662466927, 1.0);
         double third = std::fmod(0.5 + k * 0.5698402909980532, 1.0);

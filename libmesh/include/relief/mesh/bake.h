@@ -419,7 +419,8 @@ class BakeMismatch : public InvalidInput {
 /// d is the maximum distance of 16384 points on the low mesh to the high meshes. If vertices of the
 /// high meshes (as many) are farther from the low mesh, d is their maximum distance, but at most 4
 /// times the former value, because the high meshes may have parts that the low mesh lacks. Both
-/// distances are 1.5 d plus 1% of half of the longest side of the low mesh's box.
+/// distances are 1.5 d plus 1% of half of the longest side of the low mesh's box. The points depend
+/// on the order of the low triangles and their first corners. Collapsed triangles have none.
 BakeDistances automatic_distances(std::span<const Mesh> high, const Mesh& low);
 
 /// High meshes that only some triangles of the low mesh see. The rays of all other triangles ignore
@@ -442,8 +443,11 @@ struct BakePart {
 /// inside of several intersecting solids, their outermost surface counts. See ray_scene.h.
 ///
 /// Hits of Embree are refined in double precision. The result is the same bits for any number of
-/// threads. Memory: about 100 bytes per triangle of the high meshes, and for each map the memory of
-/// cover_texels() and about 64 MB, or 64 rows and twice the padding; never the whole map.
+/// threads. The order of triangles and vertices, and the first corners of triangles, change it by
+/// rounding only, with two exceptions: of identical triangles in the texture the first one wins,
+/// and automatic_distances() depend on the order of the low triangles. Memory: about 100 bytes per
+/// triangle of the high meshes, and for each map the memory of cover_texels() and about 64 MB, or
+/// 64 rows and twice the padding; never the whole map.
 class Baker {
   public:
     /// Prepares the meshes.
