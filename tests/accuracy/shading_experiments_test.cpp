@@ -105,7 +105,7 @@ TEST_LABELS(slow);
 TEST(ShadingExperiments, AreComplete) {
     if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<Experiment> all = test::run_quick(Subject::shading);
-    EXPECT_EQ(all.size(), 9U);
+    EXPECT_EQ(all.size(), 10U);
     test::expect_whole(all, Subject::shading);
     for (const Experiment& one : all) {
         SCOPED_TRACE(one.id);
