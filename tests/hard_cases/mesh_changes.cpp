@@ -76,7 +76,11 @@ void add_collapsed(MeshVariant& variant, Dice& dice) {
         const std::uint32_t b =
             dice.one_in(3) ? dice.below(static_cast<std::uint32_t>(mesh.positions.size())) : here.y;
         std::uint32_t same = a;
-        if (dice.one_in(2)) {
+        // Positions that are not finite are equal to none.
+        const glm::vec3 at_a = mesh.positions[a];
+        const bool is_finite =
+            std::isfinite(at_a.x) && std::isfinite(at_a.y) && std::isfinite(at_a.z);
+        if (dice.one_in(2) && is_finite) {
             same = static_cast<std::uint32_t>(mesh.positions.size());
             const auto repeat = [a](auto& values) {
                 if (!values.empty())
