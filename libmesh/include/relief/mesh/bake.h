@@ -444,8 +444,9 @@ struct BakePart {
 ///
 /// Hits of Embree are refined in double precision. The result is the same bits for any number of
 /// threads. The order of triangles and vertices, and the first corners of triangles, change it by
-/// rounding only, with two exceptions: of identical triangles in the texture the first one wins,
-/// and automatic_distances() depend on the order of the low triangles. Memory: about 100 bytes per
+/// rounding only (a ray that meets an edge may hit its other triangle), with three exceptions: of
+/// identical triangles in the texture the first one wins, automatic_distances() depend on the order
+/// of the low triangles, and repeated high triangles have no curvature. Memory: about 100 bytes per
 /// triangle of the high meshes, and for each map the memory of cover_texels() and about 64 MB, or
 /// 64 rows and twice the padding; never the whole map.
 class Baker {
