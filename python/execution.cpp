@@ -145,7 +145,7 @@ class Call {
     void serve(const std::optional<Progress::State>& news) {
         const py::gil_scoped_acquire acquire;
         if (error_) return;
-        // What a handler or a progress function calls has no progress function.
+        // relief functions that a signal handler or the progress function calls report no progress.
         Execution* const before = std::exchange(current_execution, nullptr);
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -300,7 +300,7 @@ class FastWorkplace : public Workplace {
     FastWorkplace() { shrink_bricks(); }
 };
 
-/// What a fresh clone has. Tools are in PATH, as after scripts/install.
+/// A folder with the files of a fresh clone. Tools are in PATH, as after scripts/install.
 class FreshClone : public FastWorkplace {
   public:
     FreshClone() {

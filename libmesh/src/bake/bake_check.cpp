@@ -397,7 +397,7 @@ Image part_of(const Image& map, int first, int last) {
 void check(const Image& map, const BakeMapOptions& options) {
     if (map.channels < 3)
         throw InvalidInput(
-            fmt::format("the image has {} channels, but normals need at least 3", map.channels));
+            fmt::format("the map has {} channels, but normals need 3", map.channels));
     if (map.width != options.width || map.height != options.height) {
         throw InvalidInput(fmt::format("the map is of {} x {} texels, not {} x {}", map.width,
                                        map.height, options.width, options.height));

@@ -42,7 +42,7 @@ glm::dvec3 converted(const Mesh& mesh, const CoveredTexel& texel, const glm::dve
 }
 
 void check(const Image& normals, const Mesh& mesh) {
-    if (normals.empty()) throw InvalidInput("the image is empty");
+    if (normals.empty()) throw InvalidInput("the normal map is empty");
     if (normals.channels != 3 || normals.bits() != 32) {
         throw InvalidInput(fmt::format("normals have 3 float channels, not {} of {} bits",
                                        normals.channels, normals.bits()));

@@ -597,7 +597,7 @@ void store(const Field& heights, IntegratedHeights& result) {
 }
 
 void check(const Image& normals, const IntegrationOptions& options) {
-    if (normals.empty()) throw InvalidInput("the image is empty");
+    if (normals.empty()) throw InvalidInput("the normal map is empty");
     if (normals.channels != 3 || normals.bits() != 32) {
         throw InvalidInput(fmt::format("normals have 3 float channels, not {} of {} bits",
                                        normals.channels, normals.bits()));

@@ -126,7 +126,7 @@ void count_pairs_around_zero(const ImageView& map, int x, int y,
 }
 
 void check_map(const ImageView& map) {
-    if (map.empty()) throw InvalidInput("the image is empty");
+    if (map.empty()) throw InvalidInput("the normal map is empty");
     if (map.channels < 3) {
         throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
     }
@@ -223,7 +223,7 @@ FlatCodes FlatCodeCount::codes() const {
 }
 
 std::optional<std::array<std::uint16_t, 2>> flat_texel_codes(const ImageView& map, int x, int y) {
-    if (map.empty()) throw InvalidInput("the image is empty");
+    if (map.empty()) throw InvalidInput("the normal map is empty");
     if (std::min(x, y) < 0 || std::max(x, y) >= map.channels) {
         throw InvalidInput(
             fmt::format("channels {} and {} of an image that has {}", x, y, map.channels));

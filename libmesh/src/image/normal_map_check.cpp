@@ -374,7 +374,7 @@ void look_at_surface(const ImageView& map, SampleMeaning meaning, const MapStati
 }  // namespace
 
 MapContent judged_content(const ImageView& map, FlatCode flat) {
-    if (map.empty()) throw InvalidInput("the image is empty");
+    if (map.empty()) throw InvalidInput("the normal map is empty");
     if (map.channels == 1) return MapContent::gray;
     const Meaning meaning = meaning_of(map, flat);
     if (meaning.content != MapContent::other) return meaning.content;
@@ -386,7 +386,7 @@ MapContent judged_content(const ImageView& map, FlatCode flat) {
 NormalMapCheck check_normal_map(const ImageView& map,
                                 const std::map<std::string, std::string>& metadata,
                                 std::string_view color_tag, std::optional<MapContent> assumed) {
-    if (map.empty()) throw InvalidInput("the image is empty");
+    if (map.empty()) throw InvalidInput("the normal map is empty");
     NormalMapCheck check;
     FoundConditions found(check);
     look_at_channels(map, check);

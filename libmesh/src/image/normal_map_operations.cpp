@@ -103,7 +103,7 @@ void check_xy_channels(int count, const XyChannels& channels) {
 
 Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green green, FlatCode flat,
                     Report& report, FlatTexels texels) {
-    if (map.empty()) throw InvalidInput("the image is empty");
+    if (map.empty()) throw InvalidInput("the normal map is empty");
     check_xy_channels(map.channels, channels);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
     float* const normals = result.as<float>().data();
@@ -128,7 +128,7 @@ Image decode_xy_rows(const ImageView& map, const XyChannels& channels, FlatCode 
 
 void append_row_lengths(const Image& map, FlatCode flat, std::vector<RowLengths>& lengths,
                         Report& report) {
-    if (map.empty()) throw InvalidInput("the image is empty");
+    if (map.empty()) throw InvalidInput("the normal map is empty");
     if (map.channels < 3)
         throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
     const std::size_t first = lengths.size();

@@ -26,7 +26,7 @@ struct CubeMap {
     Texture texture;  ///< GL_TEXTURE_CUBE_MAP, complete, linear light at lookup.
     int size = 0;     ///< Texels along a side of a face.
     int levels = 0;   ///< All levels, down to 1x1.
-    /// Of float radiance: half, unless a sample is beyond half floats.
+    /// The format of float radiance: half, unless a sample is beyond half floats.
     FloatStorage storage = FloatStorage::half;
 };
 

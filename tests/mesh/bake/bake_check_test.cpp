@@ -286,7 +286,7 @@ TEST(BakeCheck, RefusesMapsOfAnotherSize) {
                   checked(make_quad(), make_quad(), options,
                           make_image(16, 16, 2, 8, ColorSpace::data));
               }),
-              "the image has 2 channels, but normals need at least 3");
+              "the map has 2 channels, but normals need 3");
 }
 
 }  // namespace

@@ -423,7 +423,7 @@ TEST(NormalSpace, RefusesMeshesWithoutFrames) {
     const auto message = [&](const Image& map, const Mesh& mesh) {
         return test::message_of<InvalidInput>([&] { object_from_tangent(map, mesh, {}, report); });
     };
-    EXPECT_EQ(message(Image{}, make_quad()), "the image is empty");
+    EXPECT_EQ(message(Image{}, make_quad()), "the normal map is empty");
     EXPECT_EQ(message(flat_map(4, 4), make_quad()), "the mesh has no tangents");
     Mesh bare = test::with_tangents(make_quad());
     bare.texcoords.clear();

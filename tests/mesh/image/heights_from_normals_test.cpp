@@ -270,7 +270,7 @@ TEST(HeightsFromNormals, RefuseInvalidMaps) {
         return test::message_of<InvalidInput>(
             [&] { heights_from_normals(image, options, report); });
     };
-    EXPECT_EQ(message(Image{}), "the image is empty");
+    EXPECT_EQ(message(Image{}), "the normal map is empty");
     EXPECT_EQ(message(make_image(2, 2, 3, 8, ColorSpace::data)),
               "normals have 3 float channels, not 3 of 8 bits");
     IntegrationOptions options;

@@ -306,7 +306,7 @@ TEST(NormalMapCheck, IsTheSameForAnyNumberOfThreads) {
 
 TEST(NormalMapCheck, AcceptsOneTexelAndRefusesAnEmptyImage) {
     EXPECT_EQ(test::message_of<InvalidInput>([] { check_normal_map(Image{}); }),
-              "the image is empty");
+              "the normal map is empty");
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {3, 2}}) {
         const NormalMapCheck check =
             check_normal_map(map_from(hilly_normals(width == 1 ? 8 : width, 8, 0.1)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What a map says about itself: the kind of its values, its conventions, its color space and the
+/// The metadata of a map: the kind of its values, its conventions, its color space and the
 /// meaning of its alpha. It is stored as text entries of image and texture files (image_file.h,
 /// texture_file.h). Tests: tests/mesh/image/map_description_test.cpp.
 #pragma once
@@ -74,7 +74,7 @@ inline constexpr auto enum_names<AlphaContent> =
                                            {"height", AlphaContent::height},
                                            {"length", AlphaContent::length}});
 
-/// What a map says about itself. Absent: it does not say.
+/// The metadata of a map. An absent entry is not stated.
 struct MapDescription {
     std::optional<MapKind> kind{};
     /// After a comma in the entry of the kind: the engine of a packed map.

@@ -94,7 +94,7 @@ void add_levels(Json& root, std::size_t node, std::span<const GltfLevel> levels,
 std::size_t GltfDocument::copy_mesh(std::size_t mesh) {
     Json& root = contents_->data.root;
     const std::size_t count = array_in(root, "meshes").size();
-    if (mesh >= count) fail_gltf("there is no mesh {}, but only {}", mesh, count);
+    if (mesh >= count) fail_gltf("mesh {} does not exist, there are only {}", mesh, count);
     Json copy = root["meshes"][mesh];
     root["meshes"].push_back(std::move(copy));
     return count;

@@ -214,7 +214,8 @@ void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
     GltfContents& contents = contents_->data;
     Json& root = contents.root;
     const std::size_t count = array_in(root, "materials").size();
-    if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
+    if (material >= count)
+        fail_gltf("material {} does not exist, there are only {}", material, count);
     Json& json = root["materials"][material];
     const SlotMember member = member_of(slot);
     const Json* const before =
@@ -251,7 +252,8 @@ void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
 void GltfDocument::set_normal_scale(std::size_t material, double scale) {
     Json& root = contents_->data.root;
     const std::size_t count = array_in(root, "materials").size();
-    if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
+    if (material >= count)
+        fail_gltf("material {} does not exist, there are only {}", material, count);
     Json& json = root["materials"][material];
     if (!json.contains("normalTexture")) fail_gltf("material {} has no normal map", material);
     json["normalTexture"]["scale"] = scale;
@@ -260,7 +262,8 @@ void GltfDocument::set_normal_scale(std::size_t material, double scale) {
 void GltfDocument::set_alpha_mode(std::size_t material, AlphaMode mode, float cutoff) {
     Json& root = contents_->data.root;
     const std::size_t count = array_in(root, "materials").size();
-    if (material >= count) fail_gltf("there is no material {}, but only {}", material, count);
+    if (material >= count)
+        fail_gltf("material {} does not exist, there are only {}", material, count);
     Json& json = root["materials"][material];
     json.erase("alphaMode");
     json.erase("alphaCutoff");

@@ -28,7 +28,7 @@
 namespace relief {
 namespace {
 
-/// What an attribute gets in place of a value that glTF forbids.
+/// The value of an attribute that replaces one that glTF forbids.
 struct Replacement {
     std::string_view kind;  ///< The name of the attribute without its number.
     std::array<float, 4> value;

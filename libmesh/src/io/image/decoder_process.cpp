@@ -364,7 +364,7 @@ void DecoderProcess::receive(void* bytes, std::size_t size, DecoderTime& time) {
     time.computing = computing_end - computed();
 }
 
-/// Nothing may arrive before a request.
+/// Throws if the decoder has sent data before a request.
 void DecoderProcess::refuse_early_reply() {
     char byte = 0;
     const ssize_t got = ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What glTF forbids is repaired where a command computes or converts meshes, and refused where a
-// document is written; values of documents that renderers trip over are reported.
+// Commands that compute or convert meshes repair values that glTF forbids; writers of documents
+// refuse them. Values of documents that renderers trip over are reported.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -171,7 +171,7 @@ TEST_F(GltfValidity, TexturesNeedTextureCoordinates) {
     };
     EXPECT_THAT(written(with_map()), HasSubstr("bricks-normal.png"));
     EXPECT_EQ(findings(), "");
-    // Of two primitives, one has none.
+    // One of two primitives has no texture coordinates.
     json& primitives = square.root["meshes"][0]["primitives"];
     primitives.push_back(primitives[0]);
     primitives[1]["attributes"].erase("TEXCOORD_0");
