@@ -6,8 +6,9 @@
 //   node scripts/dev/validate-gltf.mjs [--module DIR] --baseline IN OUT [--baseline IN OUT]...
 //
 // DIR is the folder of the npm package gltf-validator; without it, NODE_PATH is searched. With a
-// baseline only what is new in OUT counts: messages of a code that IN has fewer of. Exit status: 0
-// if there are no (new) errors or warnings, 1 if there are, 2 if the validator is not to be found.
+// baseline, errors of OUT count, but other messages only if they are new: of a code that IN has fewer
+// of. Images that are missing in both count as such messages. Exit status: 0 if there are no errors
+// or (new) warnings, 1 if there are, 2 if the validator is not to be found.
 import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import path from "node:path";
@@ -51,11 +52,13 @@ async function messagesOf(validator, file) {
     return report.issues.messages;
 }
 
-/// Messages whose code stands more often in `after` than in `before`: the surplus, the last ones.
+/// Errors in `after`, except missing files, and other messages whose code stands more often in
+/// `after` than in `before`: the surplus, the last ones.
 function newMessages(before, after) {
     const allowed = new Map();
     for (const message of before) allowed.set(message.code, (allowed.get(message.code) ?? 0) + 1);
     return after.filter((message) => {
+        if (message.severity === 0 && message.code !== "IO_ERROR") return true;
         const left = allowed.get(message.code) ?? 0;
         allowed.set(message.code, left - 1);
         return left <= 0;

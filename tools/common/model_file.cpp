@@ -72,7 +72,7 @@ std::vector<std::string> write_document(const std::filesystem::path& file,
                                         const std::filesystem::path& input, bool has_tangents,
                                         Report& report) {
     if (is_document(writable_format(file))) {
-        document.write(file);
+        document.write(file, report);
         return {};
     }
     const MeshFile flat = about(input, [&] { return flattened(document); });

@@ -61,8 +61,8 @@ bool may_share_companions(const std::vector<Job>& jobs);
 ///
 /// \param input         the file name in errors about the model
 /// \param has_tangents  whether the model has tangents, which mesh files cannot store
-/// \param report        receives textures that are omitted because their files are missing, and
-///                      names that the format cannot hold
+/// \param report        receives textures that are omitted because their files are missing, names
+///                      that the format cannot hold, and repairs of what glTF forbids
 /// \return the content that the format cannot store: "tangents", "2 animations", ...
 std::vector<std::string> write_model(const std::filesystem::path& file, const Model& model,
                                      const std::filesystem::path& input, bool has_tangents,

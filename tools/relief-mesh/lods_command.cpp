@@ -301,7 +301,10 @@ void LevelMaker::write(std::size_t level) {
     if (!command_.separate) return;
     done_.files.push_back(level_file(command_.output, level));
     stages_.run("write", [&] {
-        document_.write(done_.files.back());
+        Report report;
+        document_.write(done_.files.back(), report);
+        // Repairs of the input are the same in all files.
+        if (level == 0) done_.findings.add("", report);
         return 0;
     });
 }
@@ -362,7 +365,9 @@ void LevelMaker::make_all() {
     }
     done_.files.push_back(command_.output);
     stages_.run("write", [&] {
-        document_.write(command_.output);
+        Report report;
+        document_.write(command_.output, report);
+        done_.findings.add("", report);
         return 0;
     });
 }

@@ -323,17 +323,21 @@ class GltfDocument {
     /// is (2 / (Ns + 2))^(1/4), metallic 0, Ke becomes emission (KHR_materials_emissive_strength
     /// above 1), norm the normal map. Images are embedded without re-encoding, with the names of
     /// their files, which are converted from Latin-1 if they are not UTF-8. Bump maps (heights),
-    /// specular and opacity maps are left out, because glTF cannot hold them. Normals are
-    /// normalized (OBJ allows any length). The origin of the file becomes the node's translation.
+    /// specular and opacity maps are left out, because glTF cannot hold them. So are the textures
+    /// of a primitive without texture coordinates, and tangents without normals. Normals are
+    /// normalized (OBJ allows any length). Values that are not finite stay, and write() refuses
+    /// them. The origin of the file becomes the node's translation.
     ///
     /// \throws FileError if an image is missing or neither PNG nor JPEG; InvalidInput if the mesh
     ///         is not valid, has no triangle or names a missing material
     static GltfDocument from_mesh(const MeshFile& contents);
 
-    /// The same, but a material whose image is missing loses that texture.
+    /// The same, but a material whose image is missing loses that texture, and values that glTF
+    /// forbids are repaired as set_frames() with a report does.
     ///
-    /// \param report  names each such texture: its material, its file and the problem; counts
-    ///                converted names
+    /// \param report  names each such texture, and each map_d that is not map_Kd: material, file
+    /// and
+    ///                problem; counts converted names, and each kind of repaired value
     static GltfDocument from_mesh(const MeshFile& contents, Report& report);
 
     GltfDocument(GltfDocument&&) noexcept;
@@ -348,10 +352,25 @@ class GltfDocument {
     /// Buffers are joined into one with the name and extras of the first. Replaced parts are left
     /// out; everything else keeps its bytes. For a .gltf in another folder, image files are copied
     /// to the same relative paths. Missing images stay missing.
+    ///
+    /// The written file is valid glTF 2.0, except for missing images and for extensions that relief
+    /// does not know. Faults of the document that was read are repaired in the file, not in this
+    /// object: accessors that glTF does not permit at their place (buffer views shared without
+    /// byteStride, offsets and strides of vertices that are not multiples of 4) are stored anew;
+    /// bounds are recomputed; normals, tangents and rotations get unit length, the w of tangents
+    /// becomes 1 or -1; weights of joints get the sum 1; colors and factors are clamped; texture
+    /// coordinates become (0,0) and tangents MikkTSpace's if a material needs them; extensions are
+    /// declared; empty arrays and properties without a meaning are left out.
+    ///
+    /// \param report  counts each kind of repair
     /// \throws FileError if the file cannot be written, if another file is in the place of an
     ///         image, if NAME.bin is a buffer of another document that was read as this one, or if
-    ///         an image lies outside the document's folder and the target is in another folder
-    void write(const std::filesystem::path& file) const;
+    ///         an image lies outside the document's folder and the target is in another folder;
+    ///         also, with the place and the remedy, if a fault has no repair: indices of vertices
+    ///         or joints out of range, values that are not finite, attributes of different lengths
+    ///         or of types that glTF forbids, matrices that are no translation, rotation and scale,
+    ///         skins whose joints have no common root, and required arrays that are empty
+    void write(const std::filesystem::path& file, Report& report = IgnoredReport()) const;
 
     /// Returns all primitives of triangles (lists, strips, fans) with positions, each once, in
     /// document order.
@@ -403,8 +422,8 @@ class GltfDocument {
     /// rewritten, and all other attributes and morph targets follow, in their own types. Unchanged
     /// attributes keep their bytes. Primitives that shared the replaced data keep it, and share the
     /// new data if it is equal. Without normals or tangents in `framed`, the primitive and its
-    /// morph targets lose them.
-    /// \throws InvalidInput if `framed` does not belong to this primitive
+    /// morph targets lose them. Values that are not finite stay, and write() refuses them.
+    /// \throws InvalidInput if `framed` does not belong to this primitive, or as mesh()
     void set_frames(GltfPrimitiveId id, const FramedMesh& framed);
 
     /// Like the above, and also updates NORMAL and TANGENT of morph targets.
@@ -414,10 +433,15 @@ class GltfDocument {
     /// split. A target gets the attributes that it had. If the primitive had no NORMAL (TANGENT)
     /// and has it now, a target that changes the shape gets it too, because renderers derived it
     /// from the displaced shape. Attributes that are kept in the primitive are kept in its targets.
+    ///
+    /// Values that glTF forbids are repaired: the corners of triangles with a position that is not
+    /// finite become one vertex, and such a position becomes that of another vertex; normals that
+    /// are zero or not finite become (0,0,1), tangents that are not finite (1,0,0,1), colors 1, and
+    /// other components and displacements that are not finite 0.
     /// \param framed   the result of with_frames() for mesh(id) with these options
     /// \param report   counts targets whose shape has findings that the primitive does not have
-    ///         (degenerate triangles, for example), and those that would change the handedness of
-    ///         tangents
+    ///         (degenerate triangles, for example), those that would change the handedness of
+    ///         tangents, and each kind of repaired value
     /// \return the new number of vertices of the primitive
     /// \throws InvalidInput as above, or if a target's displacements have the wrong type
     std::size_t set_frames(GltfPrimitiveId id, const FramedMesh& framed,
@@ -463,10 +487,11 @@ class GltfDocument {
     ///
     /// \param image    PNG or JPEG
     /// \param storage  external: write() copies the file beside a .gltf; a .glb embeds all images
-    /// \param report   counts converted names, and properties of the material that hide or
-    ///                 transform the map
+    /// \param report   counts converted names, properties of the material that hide or transform
+    ///                 the map, and primitives of the material without texture coordinates for it
     /// \throws FileError if the image cannot be read, is neither PNG nor JPEG, or has the name of
-    ///         another external image; InvalidInput if there is no such material
+    ///         another external image; InvalidInput if there is no such material, or if no
+    ///         primitive of the material has the texture coordinates of the map
     void set_texture(std::size_t material, GltfTextureSlot slot, const std::filesystem::path& image,
                      GltfImageStorage storage, Report& report = IgnoredReport());
 

@@ -316,6 +316,8 @@ struct Visitor {
     virtual void property(const ValuePath&, const Rule&, Json* /*value*/) {}
     virtual void index(const ValuePath&, std::string_view /*target*/, Json& /*value*/) {}
     virtual void extension(const ValuePath&, std::string_view /*name*/, Json& /*value*/) {}
+    /// Called before the walk descends into an object. It may erase properties.
+    virtual void object(std::string_view /*type*/, Json& /*value*/) {}
 };
 
 void walk(Json& object, std::string_view type, const ValuePath& place, Visitor& visitor);
@@ -370,6 +372,7 @@ void walk_property(Json& value, const Rule& rule, const ValuePath& place, Visito
 
 /// Walks an object and everything in it that the table knows. Properties come in the table's order.
 void walk(Json& object, std::string_view type, const ValuePath& place, Visitor& visitor) {
+    visitor.object(type, object);
     for (const Rule& rule : rules_of(type)) {
         const auto found = object.find(rule.property);
         const ValuePath inner{&place, rule.property};
@@ -500,6 +503,16 @@ void visit_references(Json& root,
         void index(const ValuePath&, std::string_view target, Json& value) override {
             (*visit)(target, value);
         }
+    } visitor;
+    visitor.visit = &visit;
+    walk(root, "glTF", {}, visitor);
+}
+
+void visit_objects(Json& root,
+                   const std::function<void(std::string_view type, Json& object)>& visit) {
+    struct : Visitor {
+        const std::function<void(std::string_view, Json&)>* visit = nullptr;
+        void object(std::string_view type, Json& value) override { (*visit)(type, value); }
     } visitor;
     visitor.visit = &visit;
     walk(root, "glTF", {}, visitor);

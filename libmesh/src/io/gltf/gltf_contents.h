@@ -102,12 +102,13 @@ Vector vector_in(const Json& object, const char* key, Vector absent) {
 /// Bytes of a buffer. They may be the tail of a file that was read as a whole.
 struct GltfBuffer {
     std::string storage;
+    std::string_view borrowed;  ///< In place of `storage`: bytes that another document holds.
     std::size_t begin = 0;
     std::size_t size = 0;
     bool is_placeholder = false;  ///< It has no bytes: all its views are compressed.
 
     [[nodiscard]] std::string_view bytes() const {
-        return std::string_view(storage).substr(begin, size);
+        return (borrowed.empty() ? std::string_view(storage) : borrowed).substr(begin, size);
     }
 };
 
@@ -178,6 +179,11 @@ void check_schema(const Json& root);
 void visit_references(Json& root,
                       const std::function<void(std::string_view target, Json& index)>& visit);
 
+/// Calls `visit` for each object of a type that the table names, and for each extension of one, in
+/// the document's order: "node", "material+KHR_materials_ior". It may erase and change properties.
+void visit_objects(Json& root,
+                   const std::function<void(std::string_view type, Json& object)>& visit);
+
 /// Returns true if any object carries the extension.
 bool has_extension(const Json& root, std::string_view name);
 
@@ -204,6 +210,16 @@ void take_contents(GltfContents& contents);
 void check_values(GltfContents& contents, Report& report);
 
 // The rule of validity for all documents that are written
+
+/// Repairs what the document inherits from its file: faults that relief reads over but that glTF
+/// forbids. Each repair keeps the picture as relief and most renderers draw it.
+///
+/// \param report  counts each kind of repair
+void repair_document(GltfContents& contents, Report& report);
+
+/// The part of repair_document() for accessors: their layout in buffer views, their bounds, and the
+/// values of vertices, animations and skins.
+void repair_accessors(GltfContents& contents, Report& report);
 
 /// Checks that the document can be read again, that all indices of its triangles name vertices, and
 /// that its vertices have finite values.

@@ -127,7 +127,8 @@ GltfBuffer read_buffer(const Json& buffer, std::size_t index, const GltfContents
     if (uri == nullptr) {
         const bool is_chunk = index == 0 && container.has_binary;
         if (!is_chunk) throw FileError(file, name() + " has no data");
-        result = {{}, container.binary_begin, container.binary_size};
+        result.begin = container.binary_begin;
+        result.size = container.binary_size;
         result.storage = std::move(container.bytes);
     } else if (is_data_uri(uri->get_ref<const std::string&>())) {
         try {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rule of validity for documents that are written: what the reader checks, and what it leaves
-// to the users of meshes because reading must show it: indices in range and finite vertex values.
+// to the users of meshes because reading must show it: indices in range, finite values, and the
+// faults that repair_document() cannot repair.
 //
 // Values that a command has computed or converted are repaired, which is reported. A document that
-// is still not valid is not written. Source: glTF 2.0 (ISO/IEC 12113), sections 3.6.2 and 3.7.2.
+// is still not valid is not written. Source: glTF 2.0 (ISO/IEC 12113), sections 3.5 to 3.7 and 5.
 // Tests: tests/mesh/io/gltf/gltf_validity_test.cpp, tests/tools/valid_outputs_test.cpp.
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -148,6 +150,255 @@ class PrimitiveChecker {
     const GltfContents& contents_;
     std::set<std::tuple<std::size_t, std::optional<std::size_t>, std::size_t>> checked_;
     std::set<std::size_t> finite_;
+};
+
+std::string name_of_node(const Json& nodes, std::size_t number) {
+    const std::string name = text_in(nodes[number], "name");
+    return name.empty() ? fmt::format("nodes[{}]", number) : fmt::format("node '{}'", name);
+}
+
+/// Checks what glTF requires of nodes, skins, accessors and arrays.
+class DocumentChecker {
+  public:
+    explicit DocumentChecker(const GltfContents& contents)
+        : contents_(contents), root_(contents.root) {}
+
+    void check() {
+        check_arrays();
+        const Json& nodes = array_in(root_, "nodes");
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            check_matrix(nodes, i);
+            check_joints(nodes, i);
+        }
+        const Json& skins = array_in(root_, "skins");
+        for (std::size_t i = 0; i < skins.size(); ++i)
+            check_skin(skins[i], i);
+        check_cameras();
+        check_images();
+        check_accessors();
+    }
+
+  private:
+    void check_arrays() const {
+        const auto require = [](const Json& holder, const char* key, const char* array,
+                                std::size_t number) {
+            if (!holder[key].empty()) return;
+            fail_gltf("{}[{}].{} is empty, which glTF does not permit (remove it)", array, number,
+                      key);
+        };
+        const Json& meshes = array_in(root_, "meshes");
+        for (std::size_t i = 0; i < meshes.size(); ++i) {
+            require(meshes[i], "primitives", "meshes", i);
+            const Json& primitives = meshes[i]["primitives"];
+            for (std::size_t k = 0; k < primitives.size(); ++k)
+                check_primitive(primitives, {i, k});
+        }
+        const Json& animations = array_in(root_, "animations");
+        for (std::size_t i = 0; i < animations.size(); ++i) {
+            require(animations[i], "channels", "animations", i);
+            require(animations[i], "samplers", "animations", i);
+        }
+        const Json& skins = array_in(root_, "skins");
+        for (std::size_t i = 0; i < skins.size(); ++i)
+            require(skins[i], "joints", "skins", i);
+    }
+
+    void check_primitive(const Json& primitives, GltfPrimitiveId id) const {
+        const Json& primitive = primitives[id.primitive];
+        const std::string name = describe_primitive(contents_, id);
+        if (array_in(primitive, "targets").size() != array_in(primitives[0], "targets").size()) {
+            fail_gltf("{}: has {} morph targets, but the first primitive {} (give all the same)",
+                      name, array_in(primitive, "targets").size(),
+                      array_in(primitives[0], "targets").size());
+        }
+        for (const char* prefix : {"COLOR_", "JOINTS_", "WEIGHTS_"}) {
+            std::size_t sets = 0;
+            for (const auto& [attribute, accessor] : primitive["attributes"].items())
+                sets += attribute.starts_with(prefix) ? 1 : 0;
+            for (std::size_t set = 0; set < sets; ++set) {
+                const std::string wanted = fmt::format("{}{}", prefix, set);
+                if (primitive["attributes"].contains(wanted)) continue;
+                fail_gltf("{}: has {} sets of {}n, but no {} (number them from 0)", name, sets,
+                          prefix, wanted);
+            }
+            if (std::string_view(prefix) != "JOINTS_") continue;
+            const bool has_weights =
+                sets == 0 ? !primitive["attributes"].contains("WEIGHTS_0")
+                          : primitive["attributes"].contains(fmt::format("WEIGHTS_{}", sets - 1)) &&
+                                !primitive["attributes"].contains(fmt::format("WEIGHTS_{}", sets));
+            if (!has_weights)
+                fail_gltf("{}: has not as many WEIGHTS_n as JOINTS_n (export the skin again)",
+                          name);
+        }
+        for (const auto& [attribute, accessor] : primitive["attributes"].items()) {
+            const Json& json = root_["accessors"][accessor.get<std::size_t>()];
+            if (size_in(json, "count") == 0) fail_gltf("{}: has no vertices (remove it)", name);
+            if (element_layout(json).component_type == gltf_code::uint32) {
+                fail_gltf(
+                    "{}: {} has integers of 32 bits, which glTF does not permit (store "
+                    "floats)",
+                    name, attribute);
+            }
+        }
+    }
+
+    /// The columns of a matrix must be orthogonal, of a length above 0 that floats can hold.
+    void check_matrix(const Json& nodes, std::size_t number) const {
+        const Json* matrix = find(nodes[number], "matrix");
+        if (matrix == nullptr) return;
+        std::array<std::array<double, 3>, 3> columns{};
+        bool is_valid = true;
+        for (std::size_t i = 0; i < 16; ++i) {
+            const auto value = static_cast<double>((*matrix)[i].get<float>());
+            if (i % 4 == 3)
+                is_valid = is_valid && value == (i == 15 ? 1.0 : 0.0);
+            else if (i < 12)
+                columns[i / 4][i % 4] = value;
+            is_valid = is_valid && std::isfinite(value);
+        }
+        const auto dot = [&](std::size_t a, std::size_t b) {
+            return columns[a][0] * columns[b][0] + columns[a][1] * columns[b][1] +
+                   columns[a][2] * columns[b][2];
+        };
+        constexpr double tolerance = 1e-3;
+        constexpr double max_square = 1e25;  // A product of three lengths is a float.
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
+            is_valid = is_valid && dot(k, k) > 0.0 && dot(k, k) < max_square &&
+                       std::abs(dot(k, next)) <=
+                           tolerance * std::sqrt(dot(k, k)) * std::sqrt(dot(next, next));
+        }
+        if (is_valid) return;
+        fail_gltf(
+            "{}: its matrix is not a translation, rotation and scale, which glTF requires (apply "
+            "the transform to the mesh in the modeling program)",
+            name_of_node(nodes, number));
+    }
+
+    void check_joints(const Json& nodes, std::size_t number) {
+        const auto mesh = index_in(nodes[number], "mesh");
+        const auto skin = index_in(nodes[number], "skin");
+        if (!mesh || !skin) return;
+        const std::size_t joints = root_["skins"][*skin]["joints"].size();
+        for (const Json& primitive : root_["meshes"][*mesh]["primitives"]) {
+            for (const auto& [attribute, accessor] : primitive["attributes"].items()) {
+                if (!attribute.starts_with("JOINTS_")) continue;
+                const auto index = accessor.get<std::size_t>();
+                const auto [known, is_new] = largest_joints_.emplace(index, 0.0F);
+                if (is_new) {
+                    for (const glm::vec4& of_vertex : float_elements<glm::vec4>(contents_, index))
+                        known->second = std::max(
+                            {known->second, of_vertex.x, of_vertex.y, of_vertex.z, of_vertex.w});
+                }
+                if (static_cast<std::size_t>(known->second) < joints) continue;
+                fail_gltf("{}: {} names joint {}, but its skin has only {} (export the skin again)",
+                          name_of_node(nodes, number), attribute,
+                          static_cast<std::size_t>(known->second), joints);
+            }
+        }
+    }
+
+    void check_skin(const Json& skin, std::size_t number) const {
+        const Json& nodes = root_["nodes"];
+        const Json& joints = skin["joints"];
+        if (std::set<Json>(joints.begin(), joints.end()).size() != joints.size())
+            fail_gltf("skins[{}] names a joint twice (export the skin again)", number);
+        std::vector<std::size_t> parents(nodes.size(), nodes.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            for (const Json& child : array_in(nodes[i], "children"))
+                parents[child.get<std::size_t>()] = i;
+        }
+        std::set<std::size_t> roots;
+        for (const Json& joint : joints) {
+            auto node = joint.get<std::size_t>();
+            while (parents[node] < nodes.size())
+                node = parents[node];
+            roots.insert(node);
+        }
+        if (roots.size() > 1) {
+            fail_gltf("skins[{}] has joints without a common root (give them a common parent node)",
+                      number);
+        }
+        const auto matrices = index_in(skin, "inverseBindMatrices");
+        if (!matrices) return;
+        const Json& accessor = root_["accessors"][*matrices];
+        if (size_in(accessor, "count") < joints.size() || text_in(accessor, "type") != "MAT4" ||
+            element_layout(accessor).component_type != gltf_code::float32) {
+            fail_gltf(
+                "skins[{}] has {} joints, but not as many inverse bind matrices of floats "
+                "(export the skin again)",
+                number, joints.size());
+        }
+    }
+
+    void check_cameras() const {
+        const Json& cameras = array_in(root_, "cameras");
+        for (std::size_t i = 0; i < cameras.size(); ++i) {
+            const std::string type = text_in(cameras[i], "type");
+            const Json* lens = find(cameras[i], type.c_str());
+            bool is_valid = lens != nullptr && (type == "perspective" || type == "orthographic");
+            if (is_valid) {
+                const float near = float_in(*lens, "znear", 0.0F);
+                const bool is_perspective = type == "perspective";
+                is_valid =
+                    float_in(*lens, "zfar", near + 1.0F) > near &&
+                    (is_perspective ? near > 0.0F && float_in(*lens, "yfov", 0.0F) > 0.0F &&
+                                          float_in(*lens, "aspectRatio", 1.0F) > 0.0F
+                                    : near >= 0.0F && float_in(*lens, "xmag", 0.0F) != 0.0F &&
+                                          float_in(*lens, "ymag", 0.0F) != 0.0F);
+            }
+            if (is_valid) continue;
+            fail_gltf("cameras[{}] has no lens that glTF permits (remove or correct the camera)",
+                      i);
+        }
+    }
+
+    void check_images() const {
+        const Json& images = array_in(root_, "images");
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            const Json& image = images[i];
+            if (image.contains("uri") == image.contains("bufferView")) {
+                fail_gltf(
+                    "images[{}] must have either a uri or a bufferView (remove or correct "
+                    "it)",
+                    i);
+            }
+            const std::string uri = text_in(image, "uri");
+            bool is_uri = !uri.starts_with(':');
+            for (std::size_t at = uri.find('%'); at != std::string::npos && !is_data_uri(uri);
+                 at = uri.find('%', at + 1)) {
+                constexpr std::string_view digits = "0123456789abcdefABCDEF";
+                is_uri = is_uri && at + 2 < uri.size() &&
+                         digits.find(uri[at + 1]) != std::string_view::npos &&
+                         digits.find(uri[at + 2]) != std::string_view::npos;
+            }
+            if (!is_uri)
+                fail_gltf("images[{}].uri '{}' is no URI (name a file beside the document)", i,
+                          uri);
+        }
+    }
+
+    void check_accessors() const {
+        const Json& accessors = array_in(root_, "accessors");
+        for (std::size_t i = 0; i < accessors.size(); ++i) {
+            if (contents_.retired_accessors.contains(i)) continue;
+            if (size_in(accessors[i], "count") == 0)
+                fail_gltf("accessors[{}] has no elements, which glTF does not permit (remove it)",
+                          i);
+            if (!is_float(contents_, i)) continue;
+            const PackedElements packed = packed_elements(contents_, i);
+            const auto place = first_non_finite(packed.bytes());
+            if (!place) continue;
+            fail_gltf(
+                "element {} of accessors[{}] is not finite, which glTF does not permit "
+                "(correct or remove the accessor)",
+                *place / element_layout(accessors[i]).components, i);
+        }
+    }
+
+    const GltfContents& contents_;
+    const Json& root_;
+    std::map<std::size_t, float> largest_joints_;
 };
 
 /// Repairs one primitive.
@@ -307,6 +558,7 @@ class ValueRepair {
 void require_valid(const GltfContents& contents) {
     check_gltf(contents.root);
     PrimitiveChecker(contents).check();
+    DocumentChecker(contents).check();
 }
 
 void repair_values(GltfContents& contents, GltfPrimitiveId id, Report& report) {

@@ -65,7 +65,7 @@ class ValueChecker {
         const bool needs_float = kind == "POSITION" || kind == "NORMAL" || kind == "TANGENT";
         if (needs_float && !is_float && !uses_quantization()) {
             report_.add("integer vectors without KHR_mesh_quantization", "accessor", accessor,
-                        "are kept as they are");
+                        "are read as they are");
         }
         if (kind == "POSITION") check_bounds(accessor, is_float);
         if (!is_float) return;
@@ -88,7 +88,7 @@ class ValueChecker {
     void check_floats(std::size_t accessor, std::string_view kind, const IsValid& is_valid) {
         bool all_valid = true;
         visit<float>(accessor, [&](float value, std::size_t) { all_valid &= is_valid(value); });
-        if (!all_valid) report_.add(kind, "accessor", accessor, "is kept as it is");
+        if (!all_valid) report_.add(kind, "accessor", accessor, "is read as it is");
     }
 
     /// Visits the components of an accessor. An accessor that cannot be read is an error where it
@@ -170,7 +170,7 @@ class ValueChecker {
         const auto q = vector_in(node, "rotation", glm::vec4(0.0F, 0.0F, 0.0F, 1.0F));
         constexpr float tolerance = 0.01F;
         if (std::abs(glm::length(q) - 1.0F) <= tolerance) return;
-        report_.add("rotation that is not of unit length", "node", number, "is kept as it is");
+        report_.add("rotation that is not of unit length", "node", number, "is read as it is");
     }
 
     void check_joints(const Json& node, std::size_t number) {
@@ -183,7 +183,7 @@ class ValueChecker {
                 if (!name.starts_with("JOINTS_")) continue;
                 if (largest_joint(accessor.get<std::size_t>()) < joints) continue;
                 report_.add("joint that its skin does not have", "node", number,
-                            "is kept as it is");
+                            "is read as it is");
                 return;
             }
         }
@@ -198,10 +198,10 @@ class ValueChecker {
             const auto level = id.get<std::size_t>();
             if (level == number) {
                 report_.add("node that is its own level of detail", "node", number,
-                            "is kept as it is");
+                            "is read as it is");
             } else if (find(nodes[level], "extensions", "MSFT_lod") != nullptr) {
                 report_.add("level of detail that has levels itself", "node", level,
-                            "is kept as it is");
+                            "is read as it is");
             }
         }
     }
@@ -218,7 +218,7 @@ class ValueChecker {
                     values->begin(), values->end(),
                     [](const Json& value) { return std::abs(value.get<double>()) <= limit; });
                 if (is_usable) continue;
-                report_.add("transform with numbers beyond 1e18", "node", i, "is kept as it is");
+                report_.add("transform with numbers beyond 1e18", "node", i, "is read as it is");
                 break;
             }
         }

@@ -29,6 +29,7 @@
 #include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -608,9 +609,58 @@ void write_json(const std::filesystem::path& file, const GltfContents& contents)
 
 }  // namespace
 
-void GltfDocument::write(const std::filesystem::path& file) const {
-    const GltfContents& contents = contents_->data;
+namespace {
+
+/// A copy that borrows the bytes of the buffers. Data that is added to it goes to a new buffer.
+GltfContents borrowing_copy(const GltfContents& contents) {
+    GltfContents copy;
+    copy.root = contents.root;
+    copy.file = contents.file;
+    for (const GltfBuffer& buffer : contents.buffers) {
+        GltfBuffer& borrower = copy.buffers.emplace_back();
+        borrower.borrowed = buffer.bytes();
+        borrower.size = buffer.size;
+        borrower.is_placeholder = buffer.is_placeholder;
+    }
+    copy.extra_chunks = contents.extra_chunks;
+    copy.retired_accessors = contents.retired_accessors;
+    copy.retired_views = contents.retired_views;
+    copy.retired_images = contents.retired_images;
+    copy.retired_bytes = contents.retired_bytes;
+    copy.image_files = contents.image_files;
+    copy.position_uses = contents.position_uses;
+    return copy;
+}
+
+/// Adds the normals and tangents that a material needs for another texture than a normal map. With
+/// a normal map, glTF lets the renderer compute them.
+void add_required_tangents(GltfDocument& document, const GltfContents& contents, Report& report) {
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        const Json& primitive = primitive_json(contents, id);
+        const Json& attributes = primitive["attributes"];
+        const auto material = index_in(primitive, "material");
+        if (!material || (attributes.contains("NORMAL") && attributes.contains("TANGENT")))
+            continue;
+        const GltfTangentTexcoords texcoords = document.tangent_texcoords(id);
+        if (texcoords.texture.empty() || texcoords.texture == "normalTexture") continue;
+        FrameOptions options;
+        options.normals = attributes.contains("NORMAL") ? NormalMode::keep : NormalMode::flat;
+        options.tangents = TangentMethod::mikktspace;
+        report.add(fmt::format("{} of a primitive without tangents", texcoords.texture), "material",
+                   *material, "gets MikkTSpace's tangents");
+        document.set_frames(id, with_frames(document.mesh(id, texcoords.set), options, report),
+                            options, report);
+    }
+}
+
+}  // namespace
+
+void GltfDocument::write(const std::filesystem::path& file, Report& report) const {
+    GltfDocument copy(std::make_unique<Contents>(Contents{borrowing_copy(contents_->data)}));
+    GltfContents& contents = copy.contents_->data;
     try {
+        repair_document(contents, report);
+        add_required_tangents(copy, contents, report);
         require_valid(contents);
     } catch (const InvalidInput& error) {
         throw FileError(file, fmt::format("cannot be written: {}", error.what()));

@@ -213,7 +213,7 @@ TEST_F(GltfValidity, LevelsOfDetailAndTransformsAreChecked) {
     EXPECT_EQ(findings(), "");
     levels = {0, 1};
     read(square);
-    EXPECT_EQ(findings(), "1 x node that is its own level of detail (node 0): is kept as it is\n");
+    EXPECT_EQ(findings(), "1 x node that is its own level of detail (node 0): is read as it is\n");
     levels = {1};
     square.root["nodes"][1]["extensions"]["MSFT_lod"]["ids"] = {0};
     read(square);
@@ -226,7 +226,7 @@ TEST_F(GltfValidity, LevelsOfDetailAndTransformsAreChecked) {
     square = {};
     square.root["nodes"][0]["scale"] = {1, 1e30, 1};
     read(square);
-    EXPECT_EQ(findings(), "1 x transform with numbers beyond 1e18 (node 0): is kept as it is\n");
+    EXPECT_EQ(findings(), "1 x transform with numbers beyond 1e18 (node 0): is read as it is\n");
 }
 
 }  // namespace
