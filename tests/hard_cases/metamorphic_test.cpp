@@ -92,15 +92,15 @@ class CertainGradients {
         std::sort(normals_.begin(), normals_.end(), is_before);
     }
 
-    /// Tests whether the gradients of all triangles at a position are certain, and have a direction
-    /// in the plane of this normal.
+    /// Tests whether the gradients of all triangles at a position are certain, and seen from the
+    /// front along this normal. Otherwise averages may cancel.
     [[nodiscard]] bool are_certain_at(std::uint32_t vertex, const glm::dvec3& normal) const {
         constexpr double edge_on = 0.05;
         const Entry key(place_of(vertex), glm::dvec3(0.0));
         const auto [first, last] =
             std::equal_range(normals_.begin(), normals_.end(), key, is_before);
         return std::all_of(first, last, [&](const Entry& entry) {
-            return std::abs(glm::dot(entry.second, normal)) > edge_on;
+            return glm::dot(entry.second, normal) > edge_on;
         });
     }
 

@@ -74,9 +74,9 @@ constexpr bool computes_tangents(TangentMethod method) {
 ///
 /// Rotated corners of a triangle can change tangents, because gradients are computed in float from
 /// the first corner, as in the reference implementation. If all triangles at a position are certain
-/// in the sense of identify_tangents(), and not seen edge-on along the normal, the tangents there
-/// turn by less than 0.001 degrees. On thinner triangles the first corner can decide whether there
-/// is a gradient; see docs/tangents.md.
+/// in the sense of identify_tangents(), and seen from the front along the normal, the tangents
+/// there turn by less than 0.001 degrees. On thinner triangles the first corner can decide whether
+/// there is a gradient; see docs/tangents.md.
 ///
 /// The time is nearly linear for every shape; the memory is at most
 /// half that of input and result.
