@@ -207,7 +207,14 @@ void DocumentBuilder::add_material(const MtlMaterial& material, std::size_t inde
          clamped(std::sqrt(std::sqrt(2.0F / (std::max(material.shininess, 0.0F) + 2.0F))))}};
     add_texture(pbr, "baseColorTexture", "diffuse texture", material.diffuse_map, material, index);
     Json json = {{"name", material.name}, {"pbrMetallicRoughness", pbr}};
-    if (opacity < 1.0F) json["alphaMode"] = "BLEND";
+    const bool has_alpha_texture =
+        material.opacity_map && material.opacity_map == material.diffuse_map;
+    if (opacity < 1.0F || has_alpha_texture) json["alphaMode"] = "BLEND";
+    if (material.opacity_map && !has_alpha_texture && report_ != nullptr) {
+        report_->add(fmt::format("map_d '{}' of material '{}', which is not its map_Kd",
+                                 material.opacity_map->string(), material.name),
+                     "material", index, "is left out (store the opacity in the alpha of map_Kd)");
+    }
     add_texture(json, "emissiveTexture", "emission texture", material.emission_map, material,
                 index);
     // An emissive texture needs a factor to have an effect, but the default of Ke in MTL is black.

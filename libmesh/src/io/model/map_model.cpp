@@ -29,7 +29,7 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
 }
 
 /// Converts materials by the rules of GltfDocument::from_mesh().
-MapAppearance appearance_of(const std::vector<MtlMaterial>& materials) {
+MapAppearance appearance_of(const std::vector<MtlMaterial>& materials, Report& report) {
     MapAppearance appearance;
     const auto texture = [&](const MtlMaterial& material,
                              const std::optional<std::filesystem::path>& file) {
@@ -55,6 +55,12 @@ MapAppearance appearance_of(const std::vector<MtlMaterial>& materials) {
         const bool has_alpha_texture =
             material.opacity_map && material.opacity_map == material.diffuse_map;
         if (opacity < 1.0F || has_alpha_texture) converted.alpha_mode = AlphaMode::blend;
+        if (material.opacity_map && !has_alpha_texture) {
+            report.add(fmt::format("map_d '{}' of material '{}', which is not its map_Kd",
+                                   material.opacity_map->string(), material.name),
+                       "material", appearance.materials.size(),
+                       "is not read (store the opacity in the alpha of map_Kd)");
+        }
         converted.base_color_texture = texture(material, material.diffuse_map);
         converted.normal_texture = texture(material, material.normal_map);
         appearance.materials.push_back(std::move(converted));
@@ -146,7 +152,7 @@ MapModel map_model(Model model, ModelSpace space, Report& report) {
                             std::move(contents.object_of), 0});
     for (const MtlMaterial& material : contents.materials)
         result.materials.push_back(material.name);
-    result.appearance = appearance_of(contents.materials);
+    result.appearance = appearance_of(contents.materials, report);
     result.origin = contents.origin;
     result.world_from_object = glm::dmat3(1.0);
     return result;

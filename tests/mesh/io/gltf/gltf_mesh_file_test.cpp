@@ -20,6 +20,7 @@
 #include "io/gltf/gltf_contents.h"
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/model.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
 #include "support/labels.h"
@@ -117,6 +118,27 @@ TEST_F(GltfFromMesh, PhongMaterialsAreTranslated) {
     EXPECT_FLOAT_EQ(back.shininess, 510.0F);
     EXPECT_EQ(back.opacity, 0.75F);
     EXPECT_EQ(back.emission, material.emission);
+}
+
+TEST_F(GltfFromMesh, OpacityMapsAreTheAlphaOfTheDiffuseMapOrReported) {
+    MeshFile file{test::cube(), {}};
+    MtlMaterial material;
+    material.name = "leaf";
+    material.diffuse_map = test::source_directory() / "data/bricks-diffuse.png";
+    material.opacity_map = material.diffuse_map;
+    file.materials = {material};
+    file.mesh.material_ranges = {{0, 12, 0U}};
+    const auto alpha_mode = [&] {
+        report_ = Report();
+        return GltfDocument::from_mesh(file, report_).view().materials.at(0).alpha_mode;
+    };
+    EXPECT_EQ(alpha_mode(), AlphaMode::blend);
+    file.materials[0].opacity_map = "holes.png";
+    EXPECT_EQ(alpha_mode(), AlphaMode::opaque);
+    EXPECT_EQ(report_.count("map_d 'holes.png' of material 'leaf', which is not its map_Kd"), 1U);
+    report_ = Report();
+    map_model(file, ModelSpace::object, report_);
+    EXPECT_EQ(report_.count("map_d 'holes.png' of material 'leaf', which is not its map_Kd"), 1U);
 }
 
 TEST_F(GltfFromMesh, ImagesAreEmbeddedOnceAsTheyAre) {
