@@ -126,7 +126,7 @@ void py_write_texture(const FileName& file, const py::list& levels, const std::s
                     ? encode_normal_blocks(image, {.format = *blocks, .quality = effort}, findings)
                     : encode_texture_level(image, texture.format, effort, findings));
         }
-        write_texture(file, texture, {.zstd_level = zstd});
+        write_texture(file, texture, {.zstd_level = zstd}, findings);
     });
     append(findings, report);
 }

@@ -429,11 +429,11 @@ class LevelWriter {
             }
         }
         const TextureWriteOptions options{request_.texture.zstd_level};
-        stages_.run("write", [&] { write_texture(job_.output, texture, options); });
+        stages_.run("write", [&] { write_texture(job_.output, texture, options, report_); });
         if (!request_.mips.roughness) return;
         const std::filesystem::path file = level_file(job_.output, 0, true);
         roughness.metadata = roughness_entries(bits_of(roughness.format));
-        stages_.run("write", [&] { write_texture(file, roughness, options); });
+        stages_.run("write", [&] { write_texture(file, roughness, options, report_); });
         for (WrittenLevel& level : result_.levels)
             level.roughness_file = file;
     }

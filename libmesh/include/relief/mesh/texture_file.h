@@ -115,13 +115,16 @@ struct TextureWriteOptions {
 /// Writes a texture. The extension decides the format: .ktx2 or .dds.
 ///
 /// A temporary file is written and renamed. The same texture gives the same bytes. KTX2 files name
-/// relief as their writer, and right and down as the directions of x and y.
+/// relief as their writer, and right and down as the directions of x and y. DDS holds no text: the
+/// entries of the texture are lost, so a reader must be told what they say.
+///
+/// \param report  names the entries that a DDS file loses
 /// \throws FileError if the file cannot be written, or for another extension
 /// \throws InvalidInput if a level has another size than the format requires, a level or the
 ///         format's sRGB variant does not exist, DDS is to store a compression, or a text is
 ///         invalid
 void write_texture(const std::filesystem::path& file, const GpuTexture& texture,
-                   const TextureWriteOptions& options = {});
+                   const TextureWriteOptions& options = {}, Report& report = IgnoredReport());
 
 /// Reads a KTX2 or DDS file with one of the formats of TextureFormat, with all its levels.
 /// \throws FileError if the file is missing, damaged or truncated, has another format (which is

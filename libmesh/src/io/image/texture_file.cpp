@@ -414,7 +414,7 @@ Image read_largest_level(const TextureContainer& container, Bytes bytes,
 }
 
 void write_texture(const std::filesystem::path& file, const GpuTexture& texture,
-                   const TextureWriteOptions& options) {
+                   const TextureWriteOptions& options, Report& report) {
     const std::string extension = lower_extension(file);
     if (!is_texture_extension(extension))
         throw FileError(
@@ -425,6 +425,12 @@ void write_texture(const std::filesystem::path& file, const GpuTexture& texture,
     const std::vector<std::byte> bytes =
         extension == ".dds" ? dds_bytes(texture) : ktx2_bytes(texture, options);
     replace_file(file, bytes);
+    if (extension != ".dds" || texture.metadata.empty()) return;
+    std::string entries;
+    for (const auto& [key, text] : texture.metadata)
+        entries += fmt::format("{}{} '{}'", entries.empty() ? "" : ", ", key, text);
+    report.add(fmt::format("metadata that DDS cannot hold: {}", entries), "file", 0,
+               "are lost (write .ktx2 to keep them)");
 }
 
 GpuTexture read_texture(Bytes bytes, const std::string& name) {

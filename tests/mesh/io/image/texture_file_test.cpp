@@ -210,6 +210,20 @@ TEST(Ktx2File, SmallZstdFileMustNotExpandToGigabytes) {
     set_input_limits({});
 }
 
+TEST(DdsFile, LosesMetadataWithAFinding) {
+    GpuTexture texture = texture_of(TextureFormat::bc7);
+    Report report;
+    write_texture(temporary("plain.dds"), texture, {}, report);
+    texture.metadata = {{"relief:content", "normal map, tangent space"}, {"relief:green", "down"}};
+    write_texture(temporary("kept.ktx2"), texture, {}, report);
+    EXPECT_TRUE(report.empty());
+    write_texture(temporary("lost.dds"), texture, {}, report);
+    ASSERT_EQ(report.findings().size(), 1U);
+    EXPECT_EQ(to_string(report.findings()[0]),
+              "1 x metadata that DDS cannot hold: relief:content 'normal map, tangent space', "
+              "relief:green 'down' (file 0): are lost (write .ktx2 to keep them)");
+}
+
 TEST(DdsFile, TheBytesOfABc7File) {
     GpuTexture texture = texture_of(TextureFormat::bc7);
     texture.is_srgb = true;
