@@ -803,7 +803,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& give
             for (const PlacedFinding& placed : stored->findings.all()) {
                 Report report;
                 report.add(placed.finding);
-                conversion.findings.add(placed.where, report);
+                conversion.findings.add(placed.where, report, placed.map_width);
             }
         }
         outputs.commit();

@@ -461,7 +461,8 @@ void apply_content(const std::map<std::string, std::string>& metadata, BakeRecor
 SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& request,
                            Stages& stages) {
     SurfaceCheck result;
-    const auto metadata = read_image_info(request.verify.map).metadata;
+    const ImageInfo info = read_image_info(request.verify.map);
+    const auto& metadata = info.metadata;
     result.of_file = read_record(request.verify.map, metadata);
     apply_content(metadata, result.of_file);
     result.used = merged(record_of(app), result.of_file);
@@ -493,7 +494,7 @@ SurfaceCheck check_surface(const CLI::App& app, const SurfaceCheckRequest& reque
                                     request.verify, report);
         });
     });
-    result.findings.add("", report);
+    result.findings.add("", report, info.width);
     return result;
 }
 

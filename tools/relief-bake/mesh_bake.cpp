@@ -227,7 +227,7 @@ void write_into(const MaterialRequest& request, Stages& stages, MeshBake& bake) 
     for (const PlacedFinding& placed : bake.stored->findings.all()) {
         Report report;
         report.add(placed.finding);
-        bake.findings.add(placed.where, report);
+        bake.findings.add(placed.where, report, placed.map_width);
     }
 }
 
