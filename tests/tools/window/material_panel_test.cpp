@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
 #include "tools/workplace.h"
@@ -101,6 +103,13 @@ class MapSlots : public testing::Test {
     [[nodiscard]] std::filesystem::path colors() const {
         return workplace_ / "data/bricks-diffuse.png";
     }
+    [[nodiscard]] std::filesystem::path normals() const {
+        return workplace_ / "data/scenes/bricks-normal.png";
+    }
+    /// A file of the kind that the slot accepts.
+    [[nodiscard]] std::filesystem::path file_for(const MapSlot& slot) const {
+        return slot.name == std::string("Normal map") ? normals() : colors();
+    }
     Scene& scene() { return scene_; }
     Workplace& workplace() { return workplace_; }
 
@@ -114,13 +123,13 @@ TEST_F(MapSlots, CanBeSetAndCleared) {
     material.metallic_roughness.emplace();
     for (const MapSlot& slot : map_slots()) {
         EXPECT_FALSE(map_name(scene(), 0, slot)) << slot.name;
-        set_map(scene(), 0, slot, colors());
-        EXPECT_EQ(map_name(scene(), 0, slot), colors().string()) << slot.name;
+        set_map(scene(), 0, slot, file_for(slot));
+        EXPECT_EQ(map_name(scene(), 0, slot), file_for(slot).string()) << slot.name;
         EXPECT_FALSE(map_name(scene(), 1, slot)) << slot.name << " of the other one";
         slot.set(material, std::nullopt);
         EXPECT_FALSE(map_name(scene(), 0, slot)) << slot.name;
     }
-    EXPECT_EQ(scene().images.size(), 1U) << "one file is one image";
+    EXPECT_EQ(scene().images.size(), 2U) << "one file is one image";
     EXPECT_NO_THROW(validate(scene()));
 }
 
@@ -130,17 +139,36 @@ TEST_F(MapSlots, NormalMapAndBumpMapReplaceEachOther) {
     material.bump_map->strength = 5.0F;
     set_map(scene(), 0, slot_named("Bump map"), colors());
     EXPECT_EQ(material.bump_map->strength, 5.0F) << "another image as strong";
-    set_map(scene(), 0, slot_named("Normal map"), colors());
+    set_map(scene(), 0, slot_named("Normal map"), normals());
     EXPECT_FALSE(material.bump_map);
     material.normal_map->scale = 2.0F;
     material.normal_map->flat = FlatCode::middle;
-    std::filesystem::copy_file(colors(), workplace() / "other.png");
+    std::filesystem::copy_file(normals(), workplace() / "other.png");
     set_map(scene(), 0, slot_named("Normal map"), workplace() / "other.png");
     EXPECT_EQ(material.normal_map->scale, 2.0F);
     EXPECT_FALSE(material.normal_map->flat) << "told by the image again";
     set_map(scene(), 0, slot_named("Bump map"), heights());
     EXPECT_FALSE(material.normal_map);
     EXPECT_NO_THROW(validate(scene()));
+}
+
+TEST_F(MapSlots, RejectMapsOfAnotherKind) {
+    Material& material = scene().materials[0];
+    set_map(scene(), 0, slot_named("Normal map"), normals());
+    EXPECT_THAT([&] { set_map(scene(), 0, slot_named("Normal map"), colors()); },
+                ThrowsMessage<FileError>(HasSubstr("holds no normals: its texels are colors")));
+    EXPECT_EQ(map_name(scene(), 0, slot_named("Normal map")), normals().string());
+    EXPECT_THAT([&] { set_map(scene(), 0, slot_named("Bump map"), normals()); },
+                ThrowsMessage<FileError>(HasSubstr("normal map")));
+    EXPECT_FALSE(material.bump_map);
+    // What the file states about itself holds.
+    const std::filesystem::path down = workplace() / "down.png";
+    write_image(down, read_image(normals(), ImageUse::data),
+                write_description({.kind = MapKind::object_normal, .green = Green::down}, 8));
+    set_map(scene(), 0, slot_named("Normal map"), down);
+    EXPECT_EQ(material.normal_map->green, Green::down);
+    EXPECT_EQ(material.normal_map->space, NormalSpace::object);
+    EXPECT_THROW(set_map(scene(), 0, slot_named("Diffuse map"), down), FileError);
 }
 
 TEST_F(MapSlots, KeepTheWrapMode) {

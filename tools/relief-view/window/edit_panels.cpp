@@ -12,8 +12,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
+#include "common/map_kind.h"
 #include "light_options.h"
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
 #include "relief/shade/frame_settings.h"
 #include "view_options.h"
 #include "window/panels.h"
@@ -517,6 +519,19 @@ std::optional<std::string> map_name(const Scene& scene, std::size_t material, co
     return scene.images[texture->image].name;
 }
 
+namespace {
+
+/// The kinds of maps that a slot accepts. Those of the other slots may be packed in many ways.
+std::vector<MapKind> accepted_kinds(const MapSlot& slot) {
+    if (slot.set == set_normal_texture) return {MapKind::normal, MapKind::object_normal};
+    if (slot.set == set_bump_texture) return {MapKind::height};
+    if (slot.set == put<&Material::diffuse_texture> || slot.set == put<&Material::emission_texture>)
+        return {MapKind::color};
+    return {};
+}
+
+}  // namespace
+
 void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
              const std::filesystem::path& file) {
     const ImageInfo info = read_image_info(file);
@@ -525,9 +540,19 @@ void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
             "{}: a normal map has 3 or 4 channels, not {}; a height map is a \"Bump map\"",
             file.string(), info.channels));
     }
+    const std::vector<MapKind> accepted = accepted_kinds(slot);
+    if (!accepted.empty()) check_kind(file, accepted, {});
     Texture texture = slot.texture(scene.materials[material]).value_or(Texture{});
     texture.image = image_of(scene, file);
     slot.set(scene.materials[material], texture);
+    if (slot.set != set_normal_texture) return;
+    const MapDescription stated = read_description(info.metadata);
+    NormalMap& map = *scene.materials[material].normal_map;
+    map.green = stated.green.value_or(map.green);
+    if (stated.kind) {
+        map.space =
+            *stated.kind == MapKind::object_normal ? NormalSpace::object : NormalSpace::tangent;
+    }
 }
 
 namespace {
