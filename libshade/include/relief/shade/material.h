@@ -133,8 +133,9 @@ struct MetallicRoughness {
 glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
 
 /// Returns true if the light that bounces between facets is added to what they mirror. False for a
-/// dielectric of roughness 0.05 and less that mirrors up to 4.5% at normal incidence and has neither
-/// a coat nor anisotropy: the light adds less than 1% to what it mirrors, at grazing angles only.
+/// dielectric of roughness 0.05 and less that mirrors up to 4.5% at normal incidence and has
+/// neither a coat nor anisotropy: the light adds less than 1% to what it mirrors, at grazing angles
+/// only.
 bool compensates_energy(const MetallicRoughness& model);
 
 /// A material. All vectors are in world space and of unit length: n (the normal, perturbed by a
@@ -238,8 +239,8 @@ bool compensates_energy(const MetallicRoughness& model);
 ///                  + occlusion (scene.ambient + (A + B) reflected(2 (n'.v) n' - v)))
 ///
 /// Both roughnesses are at least 0.045. If compensates_energy(), the coat mirrors all light of its
-/// weight: its pi D V is divided by A + B, and (1 - A - B) reflected(n'), blurred by roughness 1, is
-/// added to its environment.
+/// weight: its pi D V is divided by A + B, and (1 - A - B) reflected(n'), blurred by roughness 1,
+/// is added to its environment.
 ///
 /// alpha = opacity * diffuse_texture.a * vertex color.a * opacity_texture.r. An unlit material
 /// shows only diffuse (or base_color) * tint.
