@@ -56,15 +56,14 @@ TEST_F(MaterialCommand, StoresMapsAndTangentsOfAnyModel) {
     const GltfView view = document.view();
     ASSERT_EQ(view.materials.size(), 1U);
     const GltfMaterial& material = view.materials[0];
-    ASSERT_TRUE(material.normal_texture && material.base_color_texture &&
-                material.emission_texture);
-    EXPECT_EQ(material.normal_scale, 0.5F);
+    ASSERT_TRUE(material.normal_map && material.diffuse_texture && material.emission_texture);
+    EXPECT_EQ(material.normal_map->scale, 0.5F);
     EXPECT_EQ(material.emission, glm::vec3(1.0F));
     // Each file is stored once, with its bytes.
     ASSERT_EQ(view.images.size(), 2U);
-    EXPECT_EQ(material.base_color_texture->image, material.emission_texture->image);
+    EXPECT_EQ(material.diffuse_texture->image, material.emission_texture->image);
     const auto& bytes =
-        std::get<std::vector<std::byte>>(view.images[material.normal_texture->image].source);
+        std::get<std::vector<std::byte>>(view.images[material.normal_map->texture.image].source);
     const std::string original = workplace_.read(normal_map);
     ASSERT_EQ(bytes.size(), original.size());
     EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), original);

@@ -268,8 +268,9 @@ TEST(ProcessCommand, MissingTexturesOfMtlAreOmittedAndReported) {
         const GltfView view = GltfDocument::read(workplace / "out/a.glb", report).view();
         EXPECT_TRUE(view.images.empty());
         ASSERT_EQ(view.materials.size(), 1U);
-        EXPECT_FALSE(view.materials[0].base_color_texture);
-        EXPECT_EQ(view.materials[0].base_color, glm::vec4(0.5F, 0.25F, 1.0F, 1.0F));
+        EXPECT_FALSE(view.materials[0].diffuse_texture);
+        EXPECT_EQ(view.materials[0].metallic_roughness->base_color, glm::vec3(0.5F, 0.25F, 1.0F));
+        EXPECT_EQ(view.materials[0].opacity, 1.0F);
     }
 }
 

@@ -166,8 +166,8 @@ TEST_F(WriteInto, StoresTheMapOfBumpWithItsScale) {
     EXPECT_THAT(result.out, HasSubstr("material  'brick', new\n"));
     const GltfView view = read_document(place_ / "out/wall.glb").view();
     ASSERT_EQ(view.materials.size(), 1U);
-    ASSERT_TRUE(view.materials[0].normal_texture);
-    EXPECT_EQ(view.materials[0].normal_scale, 0.5F);
+    ASSERT_TRUE(view.materials[0].normal_map);
+    EXPECT_EQ(view.materials[0].normal_map->scale, 0.5F);
     EXPECT_FALSE(read_document(place_ / "out/wall.glb").mesh({0, 0}).tangents.empty());
 }
 

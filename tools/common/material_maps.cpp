@@ -68,58 +68,42 @@ int baked_set(const GltfDocument& document, std::size_t material) {
     return 0;
 }
 
-const std::optional<GltfTexture>& texture_of(const GltfMaterial& material, GltfTextureSlot slot) {
-    switch (slot) {
-        case GltfTextureSlot::normal:
-            return material.normal_texture;
-        case GltfTextureSlot::base_color:
-            return material.base_color_texture;
-        case GltfTextureSlot::metallic_roughness:
-            return material.metallic_roughness_texture;
-        case GltfTextureSlot::occlusion:
-            return material.occlusion_texture;
-        case GltfTextureSlot::emissive:
-            break;
-    }
-    return material.emission_texture;
-}
-
 /// Checks that a material shows a baked map as it is stored. \throws FileError
 void check_baked(const MaterialRequest& request, const GltfDocument& document, std::size_t material,
                  const MaterialMap& map, Report& report) {
     const GltfMaterial view = document.view().materials[material];
-    const std::optional<GltfTexture>& texture = texture_of(view, map.slot);
-    const std::string what = fmt::format("the {} texture of material '{}'", to_string(map.slot),
-                                         shown_name(view, material));
-    if (texture && texture->transform != GltfTextureTransform{}) {
+    const GltfTexcoords& texcoords = view.texcoords_of(map.slot);
+    const std::string what = fmt::format("the {} texture of material '{}'",
+                                         slot_info(map.slot).name, shown_name(view, material));
+    if (texcoords.transform != GltfTextureTransform{}) {
         throw failure(request.input,
                       what + " has KHR_texture_transform, which would move the baked map",
                       "remove the transform");
     }
     const int set = baked_set(document, material);
-    if ((texture ? texture->texcoord_set : 0) != set) {
+    if (texcoords.set != set) {
         throw failure(request.input,
                       fmt::format("{} uses another texture coordinate set than {}, for which the "
                                   "map is baked",
                                   what, set),
                       "change one of them");
     }
-    const bool is_white = request.alpha ? view.base_color == glm::vec4(1.0F)
-                                        : glm::vec3(view.base_color) == glm::vec3(1.0F);
-    if (map.slot == GltfTextureSlot::base_color && !is_white) {
+    const bool is_white = view.metallic_roughness->base_color == glm::vec3(1.0F) &&
+                          (!request.alpha || view.opacity == 1.0F);
+    if (map.slot == TextureSlot::base_color && !is_white) {
         report.add("base color factor of a material with baked colors", "material", material,
                    "multiplies them");
     }
 }
 
 /// The kinds of maps that a slot accepts.
-std::vector<MapKind> accepted_kinds(GltfTextureSlot slot) {
+std::vector<MapKind> accepted_kinds(TextureSlot slot) {
     switch (slot) {
-        case GltfTextureSlot::normal:
+        case TextureSlot::normal:
             return {MapKind::normal};
-        case GltfTextureSlot::metallic_roughness:
+        case TextureSlot::metallic_roughness:
             return {MapKind::packed};
-        case GltfTextureSlot::occlusion:
+        case TextureSlot::occlusion:
             return {MapKind::occlusion, MapKind::packed};
         default:
             return {MapKind::color};
@@ -138,7 +122,7 @@ void check_slot(const MaterialMap& map, const AssumedKinds& assumed) {
                       fmt::format("convert it with relief-bake convert {} OUT.png {}",
                                   quoted(map.file), option));
     };
-    if (map.slot == GltfTextureSlot::normal) {
+    if (map.slot == TextureSlot::normal) {
         refuse(stated.green == Green::down, "green down, but glTF has green up", "--flip green");
         refuse(stated.flat == FlatCode::middle, "zero at 128, but glTF decodes zero at 127.5",
                "--zero-code 127.5");
@@ -159,8 +143,8 @@ void store_in_material(GltfDocument& document, std::size_t material, const Mater
         check_slot(map, request.assumed);
         if (request.are_baked) check_baked(request, document, material, map, report);
         document.set_texture(material, map.slot, map.file, storage, report);
-        if (map.slot != GltfTextureSlot::normal) continue;
-        const float old_scale = document.view().materials[material].normal_scale;
+        if (map.slot != TextureSlot::normal) continue;
+        const float old_scale = document.view().materials[material].normal_map->scale;
         if (request.normal_scale)
             document.set_normal_scale(material, *request.normal_scale);
         else if (request.are_baked && old_scale != 1.0F)
@@ -193,26 +177,10 @@ void set_alpha(GltfDocument& document, const std::vector<std::size_t>& materials
 
 bool has_normal_map(const StoredMaterial& material) {
     return std::ranges::any_of(
-        material.maps, [](const MaterialMap& map) { return map.slot == GltfTextureSlot::normal; });
+        material.maps, [](const MaterialMap& map) { return map.slot == TextureSlot::normal; });
 }
 
 }  // namespace
-
-const char* to_string(GltfTextureSlot slot) {
-    switch (slot) {
-        case GltfTextureSlot::base_color:
-            return "base color";
-        case GltfTextureSlot::metallic_roughness:
-            return "metallic-roughness";
-        case GltfTextureSlot::normal:
-            return "normal";
-        case GltfTextureSlot::occlusion:
-            return "occlusion";
-        case GltfTextureSlot::emissive:
-            break;
-    }
-    return "emissive";
-}
 
 void check_materials(const MaterialRequest& request) {
     Report unused;  // store_maps() reports the same findings.
@@ -276,9 +244,10 @@ Summary summary_of(const MaterialResult& result) {
         names.push_back(fmt::format("'{}'{}", material.name, material.is_new ? ", new" : ""));
         Json maps = Json::array();
         for (const MaterialMap& map : material.maps) {
-            const std::string line = fmt::format("{}: {}", to_string(map.slot), map.file.string());
+            const std::string line =
+                fmt::format("{}: {}", slot_info(map.slot).name, map.file.string());
             if (std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
-            maps.push_back({{"map", to_string(map.slot)}, {"file", map.file.string()}});
+            maps.push_back({{"map", slot_info(map.slot).name}, {"file", map.file.string()}});
         }
         materials.push_back(
             {{"material", material.name}, {"is_new", material.is_new}, {"maps", std::move(maps)}});

@@ -24,7 +24,7 @@ struct BakedAlpha {
 };
 
 struct MaterialMap {
-    GltfTextureSlot slot = GltfTextureSlot::normal;
+    TextureSlot slot = TextureSlot::normal;
     std::filesystem::path file;  ///< PNG or JPEG.
 };
 
@@ -63,9 +63,6 @@ struct MaterialResult {
     std::size_t primitives_with_new_tangents = 0;
     Findings findings;
 };
-
-/// "base color", "normal", ...
-const char* to_string(GltfTextureSlot slot);
 
 /// Reads a model, stores the maps, adds tangents for normal maps and writes the model.
 /// \throws FileError; then the output is unchanged

@@ -770,7 +770,7 @@ MaterialResult write_into_model(const WriteIntoOptions& write_into, const Job& j
                                 Stages& stages) {
     MaterialRequest request;
     request.input = request.output = *write_into.model;
-    request.materials.push_back({write_into.material, {{GltfTextureSlot::normal, job.output}}});
+    request.materials.push_back({write_into.material, {{TextureSlot::normal, job.output}}});
     request.embeds = write_into.embed;
     request.normal_scale = write_into.scale;
     request.assumed = {MapKind::normal};  // The options were checked before the conversion.

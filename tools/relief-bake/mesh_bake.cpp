@@ -189,13 +189,13 @@ void draw_preview(MeshPreview& preview, const MeshBakeRequest& request, const Me
 
 /// The maps of a bake that glTF materials have.
 std::vector<MaterialMap> material_maps(const MeshBakeRequest& request, const MapPlan& plan) {
-    std::vector<MaterialMap> maps = {{GltfTextureSlot::normal, plan.output}};
-    const auto add = [&](LayerKind kind, GltfTextureSlot slot) {
+    std::vector<MaterialMap> maps = {{TextureSlot::normal, plan.output}};
+    const auto add = [&](LayerKind kind, TextureSlot slot) {
         const auto file = request.layers.files.find(kind);
         if (file != request.layers.files.end()) maps.push_back({slot, plan.named(file->second)});
     };
-    add(LayerKind::occlusion, GltfTextureSlot::occlusion);
-    add(LayerKind::color, GltfTextureSlot::base_color);
+    add(LayerKind::occlusion, TextureSlot::occlusion);
+    add(LayerKind::color, TextureSlot::base_color);
     return maps;
 }
 

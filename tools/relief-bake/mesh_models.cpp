@@ -155,10 +155,11 @@ std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& mo
 }
 
 SurfaceTexture HighTextures::texture(const std::filesystem::path& model,
-                                     const MapAppearance& appearance, const GltfTexture& texture,
-                                     ImageUse use) {
-    return {image(model, appearance, texture.image, use), texture.wrap_u, texture.wrap_v,
-            texture.filter, texture.transform};
+                                     const MapAppearance& appearance, const GltfMaterial& material,
+                                     TextureSlot slot) {
+    const Texture& texture = *find_texture(material, slot);
+    return {image(model, appearance, texture.image, slot_info(slot).use), texture.wrap_u,
+            texture.wrap_v, texture.filter, material.texcoords_of(slot).transform};
 }
 
 SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float scale,
@@ -212,30 +213,28 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
     for (std::size_t i = 0; i < appearance.materials.size(); ++i) {
         const GltfMaterial& source = appearance.materials[i];
         HighMaterial material;
-        if (source.normal_texture && !options.normal_map) {
-            material.normal_map =
-                normal_map(texture(file, appearance, *source.normal_texture, ImageUse::data),
-                           source.normal_scale, options.assumed);
+        if (source.normal_map && !options.normal_map) {
+            material.normal_map = normal_map(texture(file, appearance, source, TextureSlot::normal),
+                                             source.normal_map->scale, options.assumed);
             ++normal_maps_;
         }
         if (with_colors && !options.color) {
-            material.color = glm::vec3(source.base_color);
+            material.color = source.metallic_roughness->base_color;
             if (source.alpha_mode != AlphaMode::opaque) {
-                material.opacity = source.base_color.w;
+                material.opacity = source.opacity;
                 add_alpha({source.alpha_mode, source.alpha_cutoff});
             }
         }
-        const bool has_texture = with_colors && !options.color && source.base_color_texture;
-        const bool differs_in_texcoords =
-            has_texture && source.normal_texture &&
-            source.normal_texture->texcoord_set != source.base_color_texture->texcoord_set;
+        const bool has_texture = with_colors && !options.color && source.diffuse_texture;
+        const bool differs_in_texcoords = has_texture && source.normal_map &&
+                                          source.texcoords_of(TextureSlot::normal).set !=
+                                              source.texcoords_of(TextureSlot::base_color).set;
         if (differs_in_texcoords) {
             report.add("color texture with other texture coordinates than the normal map",
                        "material", i, "is left out");
         } else if (has_texture) {
             material.color_texture =
-                color(texture(file, appearance, *source.base_color_texture, ImageUse::color),
-                      options.assumed);
+                color(texture(file, appearance, source, TextureSlot::base_color), options.assumed);
             ++color_textures_;
         }
         detail.materials.push_back(std::move(material));

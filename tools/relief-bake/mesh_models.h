@@ -52,8 +52,9 @@ class HighTextures {
                                        const MapAppearance& appearance, std::size_t index,
                                        ImageUse use);
     std::shared_ptr<const Image> image(const std::filesystem::path& file, ImageUse use);
+    /// Returns a texture that the material has.
     SurfaceTexture texture(const std::filesystem::path& model, const MapAppearance& appearance,
-                           const GltfTexture& texture, ImageUse use);
+                           const GltfMaterial& material, TextureSlot slot);
     /// \throws FileError if it is no normal map in tangent space
     [[nodiscard]] SurfaceNormalMap normal_map(const SurfaceTexture& texture, float scale,
                                               const AssumedKinds& assumed) const;

@@ -131,10 +131,9 @@ void include(Bounds& all, const Bounds& more) {
 
 MaterialInfo material_info(const GltfMaterial& material, std::size_t index) {
     MaterialInfo info{material_name(material.name, index), {}};
-    if (material.base_color_texture) info.textures.emplace_back("base color");
-    if (material.metallic_roughness_texture) info.textures.emplace_back("metallic-roughness");
-    if (material.normal_texture) info.textures.emplace_back("normal");
-    if (material.emission_texture) info.textures.emplace_back("emission");
+    for (const TextureSlotInfo& slot : texture_slots) {
+        if (find_texture(material, slot.slot) != nullptr) info.textures.emplace_back(slot.name);
+    }
     return info;
 }
 

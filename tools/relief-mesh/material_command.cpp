@@ -51,14 +51,14 @@ MaterialRequest request_of(const MaterialCommand& command) {
     request.normal_scale = command.scale;
     request.assumed = command.assumed;
     request.materials.push_back({command.material, {}});
-    const auto add = [&](GltfTextureSlot slot, const OptionalFile& file) {
+    const auto add = [&](TextureSlot slot, const OptionalFile& file) {
         if (file) request.materials.front().maps.push_back({slot, *file});
     };
-    add(GltfTextureSlot::base_color, command.base_color);
-    add(GltfTextureSlot::metallic_roughness, command.metallic_roughness);
-    add(GltfTextureSlot::normal, command.normal);
-    add(GltfTextureSlot::occlusion, command.occlusion);
-    add(GltfTextureSlot::emissive, command.emissive);
+    add(TextureSlot::base_color, command.base_color);
+    add(TextureSlot::metallic_roughness, command.metallic_roughness);
+    add(TextureSlot::normal, command.normal);
+    add(TextureSlot::occlusion, command.occlusion);
+    add(TextureSlot::emission, command.emissive);
     return request;
 }
 

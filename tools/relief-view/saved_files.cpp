@@ -112,8 +112,8 @@ void save_maps(const ViewOptions& options) {
     request.assumed = options.assumed;
     if (options.green) request.assumed.push_back(MapKind::normal);
     std::vector<MaterialMap> maps;
-    if (options.normal_map) maps.push_back({GltfTextureSlot::normal, *options.normal_map});
-    if (options.diffuse_map) maps.push_back({GltfTextureSlot::base_color, *options.diffuse_map});
+    if (options.normal_map) maps.push_back({TextureSlot::normal, *options.normal_map});
+    if (options.diffuse_map) maps.push_back({TextureSlot::base_color, *options.diffuse_map});
     if (maps.empty()) return;
     request.materials.push_back({std::nullopt, std::move(maps)});
     Stages unused(true);

@@ -30,8 +30,7 @@ void drop_tone(Features& f) {
 
 void drop_second_texcoords(Features& f) {
     std::uint32_t sampled = 0;
-    for (std::size_t i = 0; i < second_textures.size(); ++i)
-        sampled |= (f.*second_textures[i].effect ? 1U : 0U) << i;
+    for_each_second_bit(f, [&](const SecondTexture&, std::uint32_t bit) { sampled |= bit; });
     f.second_texcoords &= sampled;
 }
 
@@ -311,9 +310,9 @@ std::string describe(const Features& f) {
             parts.push_back(counted(light->second, light->first));
         }
     }
-    for (std::size_t i = 0; i < second_textures.size(); ++i) {
+    for (std::size_t i = 0; i < texture_slot_count; ++i) {
         if ((f.second_texcoords >> i & 1U) != 0)
-            parts.push_back(fmt::format("{} at second coordinates", second_textures[i].sampler));
+            parts.push_back(fmt::format("{} at second coordinates", texture_slots[i].sampler));
     }
     if (f.view != DebugView::picture)
         parts.push_back(fmt::format("view of {}", debug_view_info(f.view).name));

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "effects/light_rows.h"
 
@@ -18,7 +19,6 @@ namespace {
 using Subject = const DrawSubject&;
 using Forced = const ForcingSubject&;
 using F = Features;
-using M = MetallicRoughness;
 
 /// Returns an effect that is one switch.
 template <bool Features::*Member>
@@ -60,10 +60,7 @@ Effect lights(const char* name) {
 const char* const no_light =
     "no light reaches the surface, or its material does not respond to light";
 const char* const no_layer = "the material is not metallic-roughness, or no light reaches it";
-const char* const no_reflectance = "dielectrics reflect the 4% of the index 1.5";
 const char* const no_facets = "the material is not metallic-roughness, or reflects nothing";
-const char* const no_coat = "there is no coat";
-const char* const no_film = "there is no film";
 const char* const no_normal = "neither light nor reflection shows the normal";
 const char* const no_color = "there is no scattered light to tint";
 const char* const no_highlights = "there are no highlights";
@@ -176,26 +173,25 @@ Decision of_texture(Subject s, bool has_texture) {
     return {true, s.name + " has one and the mesh has texture coordinates"};
 }
 
-/// The same for a texture that may be looked up at the second texture coordinates.
-Decision of_texture(Subject s, const std::optional<Texture>& texture) {
-    if (!texture || !texture->second_texcoords) return of_texture(s, texture.has_value());
+/// The same for the texture of a slot, which may be looked up at the second texture coordinates.
+Decision of_texture(Subject s, TextureSlot slot) {
+    const Texture* const texture = find_texture(s.material, slot);
+    const bool at_first =
+        texture == nullptr || !texture->second_texcoords || slot_info(slot).in_tangent_frame;
+    if (at_first) return of_texture(s, texture != nullptr);
     if (s.mesh.texcoords_2.empty()) {
         return {false, fmt::format("{} has one, but mesh '{}' has no second texture coordinates",
                                    s.name, s.mesh.name)};
     }
     return {true, s.name + " has one and the mesh has second texture coordinates"};
 }
-Decision of_texture(Subject s, const std::optional<NormalMap>& map) {
-    return of_texture(s, map.has_value());
-}
 
-/// Returns the row of a texture of glTF's model, which shows only with another effect.
-template <auto Feature, auto Member>
-EffectRow model_texture(const char* name, const char* hidden) {
-    return {.effect = one_switch<Feature>(name, hidden), .decide = [](Subject s) {
-                const auto& model = s.material.metallic_roughness;
-                return model ? of_texture(s, (*model).*Member) : of_texture(s, false);
-            }};
+/// Returns the row of the texture of a slot.
+template <TextureSlot Slot>
+EffectRow texture_row() {
+    constexpr SlotEffect sampling = slot_effects[static_cast<std::size_t>(Slot)];
+    return {.effect = one_switch<sampling.effect>(slot_info(Slot).effect, sampling.hidden),
+            .decide = [](Subject s) { return of_texture(s, Slot); }};
 }
 
 Decision of_vertex_colors(Subject s) {
@@ -414,8 +410,7 @@ const char* coat_map_hidden_by(const Features& requested, const Features& /*show
 }
 
 EffectRow coat_map_row() {
-    EffectRow row = model_texture<&F::clearcoat_normal_map, &M::clearcoat_normal_map>(
-        "clearcoat normal map", no_coat);
+    EffectRow row = texture_row<TextureSlot::clearcoat_normal>();
     // Frames from derivatives have a normal of unit length, which the plain coat's is not exactly.
     row.choice = "the coat's normal would be rounded";
     row.neutral = has_stored_frame_or_no_coat;
@@ -423,8 +418,20 @@ EffectRow coat_map_row() {
     return row;
 }
 
+/// Returns the rows of the textures of glTF's extensions, which show only with other effects.
+std::vector<EffectRow> extension_texture_rows() {
+    constexpr auto first = static_cast<std::size_t>(TextureSlot::specular_weight);
+    constexpr auto coat_map = static_cast<std::size_t>(TextureSlot::clearcoat_normal);
+    const auto rows_from = []<std::size_t... I>(std::index_sequence<I...>) {
+        return std::vector<EffectRow>{texture_row<static_cast<TextureSlot>(first + I)>()...};
+    };
+    std::vector<EffectRow> rows = rows_from(std::make_index_sequence<texture_slot_count - first>());
+    rows[coat_map - first] = coat_map_row();
+    return rows;
+}
+
 std::vector<EffectRow> model_rows() {
-    return {
+    std::vector<EffectRow> rows = {
         {.effect = one_switch<&F::unlit>("unlit", ""),
          .decide = [](Subject s) { return of_material(s, s.material.unlit, "is unlit", "is lit"); },
          .choice = "whether light counts is the material's choice"},
@@ -434,13 +441,7 @@ std::vector<EffectRow> model_rows() {
                  return of_material(s, is_physical(s), "is glTF's model", "is Phong's model");
              },
          .choice = "its model is the material's choice"},
-        {.effect = one_switch<&F::metallic_roughness_texture>(
-             "metallic-roughness texture", "the material is not metallic-roughness"),
-         .decide =
-             [](Subject s) {
-                 return is_physical(s) ? of_texture(s, s.material.metallic_roughness->texture)
-                                       : of_texture(s, false);
-             }},
+        texture_row<TextureSlot::metallic_roughness>(),
         {.effect = one_switch<&F::dielectric_reflectance>("dielectric reflectance",
                                                           "the material is not metallic-roughness"),
          .decide = of_dielectric_reflectance},
@@ -481,28 +482,14 @@ std::vector<EffectRow> model_rows() {
          .decide = of_anisotropy,
          .choice = "the mesh has no tangent frame",
          .neutral = is_isotropic},
-        model_texture<&F::specular_weight_texture, &M::specular_texture>("specular weight texture",
-                                                                         no_reflectance),
-        model_texture<&F::specular_color_texture, &M::specular_color_texture>(
-            "specular color texture", no_reflectance),
-        model_texture<&F::sheen_color_texture, &M::sheen_color_texture>("sheen color texture",
-                                                                        "there is no sheen"),
-        model_texture<&F::sheen_roughness_texture, &M::sheen_roughness_texture>(
-            "sheen roughness texture", "there is no sheen"),
-        model_texture<&F::clearcoat_texture, &M::clearcoat_texture>("clearcoat texture", no_coat),
-        model_texture<&F::clearcoat_roughness_texture, &M::clearcoat_roughness_texture>(
-            "clearcoat roughness texture", "there is no coat, or it reflects nothing"),
-        coat_map_row(),
-        model_texture<&F::anisotropy_texture, &M::anisotropy_texture>("anisotropy texture",
-                                                                      "there is no anisotropy"),
-        model_texture<&F::iridescence_texture, &M::iridescence_texture>("iridescence texture",
-                                                                        no_film),
-        model_texture<&F::film_thickness_texture, &M::iridescence_thickness_texture>(
-            "film thickness texture", no_film),
-        model_texture<&F::transmission_texture, &M::transmission_texture>(
-            "transmission texture", "the surface transmits no light"),
-        model_texture<&F::thickness_texture, &M::thickness_texture>("thickness texture",
-                                                                    "there is no volume"),
+    };
+    for (EffectRow& row : extension_texture_rows())
+        rows.push_back(std::move(row));
+    return rows;
+}
+
+std::vector<EffectRow> interpolation_rows() {
+    return {
         {.effect = one_value<&F::interpolation, Interpolation::gouraud>("Gouraud",
                                                                         "no light is interpolated"),
          .decide =
@@ -564,8 +551,7 @@ std::vector<EffectRow> deformation_rows() {
 
 std::vector<EffectRow> color_rows() {
     return {
-        {.effect = one_switch<&F::diffuse_texture>("diffuse texture", no_color),
-         .decide = [](Subject s) { return of_texture(s, s.material.diffuse_texture); }},
+        texture_row<TextureSlot::base_color>(),
         {.effect = one_switch<&F::vertex_colors>("vertex colors", no_color),
          .decide = of_vertex_colors},
         {.effect = one_value<&F::alpha, AlphaMode::mask>("alpha mask", ""),
@@ -573,8 +559,7 @@ std::vector<EffectRow> color_rows() {
         {.effect = one_value<&F::alpha, AlphaMode::blend>("alpha blending", ""),
          .decide = [](Subject s) { return of_alpha(s, AlphaMode::blend); },
          .choice = "it hides nothing that is behind it, and is drawn after all else"},
-        {.effect = one_switch<&F::opacity_texture>("opacity texture", "the material is opaque"),
-         .decide = [](Subject s) { return of_texture(s, s.material.opacity_texture); }},
+        texture_row<TextureSlot::opacity>(),
     };
 }
 
@@ -618,6 +603,21 @@ std::vector<EffectRow> normal_rows() {
              },
          .hidden_by = sides_hidden_by},
     };
+}
+
+EffectRow occlusion_texture_row() {
+    EffectRow row = texture_row<TextureSlot::occlusion>();
+    row.decide = [](Subject s) {
+        return s.material.occlusion_strength > 0.0F ? of_texture(s, TextureSlot::occlusion)
+                                                    : of_texture(s, false);
+    };
+    return row;
+}
+
+EffectRow specular_texture_row() {
+    EffectRow row = texture_row<TextureSlot::specular>();
+    row.phong_only = true;
+    return row;
 }
 
 std::vector<EffectRow> lighting_rows() {
@@ -665,14 +665,7 @@ std::vector<EffectRow> lighting_rows() {
          .decide = of_environment_light,
          .choice = "the environment does not light surfaces",
          .neutral = is_dark_around},
-        {.effect = one_switch<&F::occlusion_texture>("occlusion texture",
-                                                     "there is no light from all around"),
-         .decide =
-             [](Subject s) {
-                 return s.material.occlusion_strength > 0.0F
-                            ? of_texture(s, s.material.occlusion_texture)
-                            : of_texture(s, false);
-             }},
+        occlusion_texture_row(),
         {.effect = one_switch<&F::vertex_occlusion>("vertex occlusion",
                                                     "there is no light from all around"),
          .decide = [](Subject s) -> Decision {
@@ -695,9 +688,7 @@ std::vector<EffectRow> lighting_rows() {
                  return Decision{grows, s.name + (grows ? " has it" : " has white highlights")};
              },
          .phong_only = true},
-        {.effect = one_switch<&F::specular_texture>("specular texture", no_highlights),
-         .decide = [](Subject s) { return of_texture(s, s.material.specular_texture); },
-         .phong_only = true},
+        specular_texture_row(),
         {.effect = one_switch<&F::environment_tint>(
              "environment tint", "the surface has no lit color to tint, or is glTF's model"),
          .decide = of_environment_tint,
@@ -711,9 +702,7 @@ std::vector<EffectRow> lighting_rows() {
              [](Subject s) {
                  return of_material(s, is_not_black(s.material.emission), "shines", "has none");
              }},
-        {.effect = one_switch<&F::emission_texture>(
-             "emission texture", "the material has no emission that it could tint"),
-         .decide = [](Subject s) { return of_texture(s, s.material.emission_texture); }},
+        texture_row<TextureSlot::emission>(),
     };
 }
 
@@ -848,13 +837,10 @@ DrawSubject draw_subject(const Scene& scene, const Material& material, const std
 
 std::uint32_t second_texcoords_of(const Material& material) {
     std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < second_textures.size(); ++i) {
-        const SecondTexture& row = second_textures[i];
-        const auto& model = material.metallic_roughness;
-        const std::optional<Texture>* texture = row.texture != nullptr ? &(material.*row.texture)
-                                                : model ? &((*model).*row.model_texture)
-                                                        : nullptr;
-        if (texture != nullptr && *texture && (*texture)->second_texcoords) bits |= 1U << i;
+    for (std::size_t i = 0; i < texture_slot_count; ++i) {
+        const Texture* const texture = find_texture(material, texture_slots[i].slot);
+        const bool is_second = texture != nullptr && texture->second_texcoords;
+        if (is_second && !texture_slots[i].in_tangent_frame) bits |= 1U << i;
     }
     return bits;
 }
@@ -862,8 +848,8 @@ std::uint32_t second_texcoords_of(const Material& material) {
 const std::vector<EffectRow>& effect_rows() {
     static const std::vector<EffectRow> all = [] {
         std::vector<EffectRow> rows = model_rows();
-        for (const auto& more :
-             {deformation_rows(), color_rows(), normal_rows(), lighting_rows(), picture_rows()})
+        for (const auto& more : {interpolation_rows(), deformation_rows(), color_rows(),
+                                 normal_rows(), lighting_rows(), picture_rows()})
             rows.insert(rows.end(), more.begin(), more.end());
         return rows;
     }();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -96,54 +97,59 @@ struct EnvironmentNeeds {
 
 EnvironmentNeeds environment_needs(const FramePlan& plan);
 
-// Textures at the second texture coordinates
+// Textures
 
-/// A texture that may be looked up at the second texture coordinates.
-struct SecondTexture {
-    std::string_view sampler;
-    bool Features::*effect;
-    std::optional<Texture> Material::*texture = nullptr;
-    std::optional<Texture> MetallicRoughness::*model_texture = nullptr;
+/// The effect that samples the texture of a slot.
+struct SlotEffect {
+    bool Features::*effect;  ///< Null for the maps of Features::detail.
+    const char* hidden;      ///< The reason why canonical() drops it.
 };
 
-/// Their order is that of the bits of Features::second_texcoords.
-inline constexpr std::array<SecondTexture, 16> second_textures{{
-    {"diffuse_texture", &Features::diffuse_texture, &Material::diffuse_texture},
-    {"specular_texture", &Features::specular_texture, &Material::specular_texture},
-    {"emission_texture", &Features::emission_texture, &Material::emission_texture},
-    {"occlusion_texture", &Features::occlusion_texture, &Material::occlusion_texture},
-    {"opacity_texture", &Features::opacity_texture, &Material::opacity_texture},
-    {"metallic_roughness_texture", &Features::metallic_roughness_texture, nullptr,
-     &MetallicRoughness::texture},
-    {"specular_weight_texture", &Features::specular_weight_texture, nullptr,
-     &MetallicRoughness::specular_texture},
-    {"specular_color_texture", &Features::specular_color_texture, nullptr,
-     &MetallicRoughness::specular_color_texture},
-    {"sheen_color_texture", &Features::sheen_color_texture, nullptr,
-     &MetallicRoughness::sheen_color_texture},
-    {"clearcoat_texture", &Features::clearcoat_texture, nullptr,
-     &MetallicRoughness::clearcoat_texture},
-    {"clearcoat_roughness_texture", &Features::clearcoat_roughness_texture, nullptr,
-     &MetallicRoughness::clearcoat_roughness_texture},
-    {"iridescence_texture", &Features::iridescence_texture, nullptr,
-     &MetallicRoughness::iridescence_texture},
-    {"film_thickness_texture", &Features::film_thickness_texture, nullptr,
-     &MetallicRoughness::iridescence_thickness_texture},
-    {"transmission_texture", &Features::transmission_texture, nullptr,
-     &MetallicRoughness::transmission_texture},
-    {"thickness_texture", &Features::thickness_texture, nullptr,
-     &MetallicRoughness::thickness_texture},
-    {"sheen_roughness_texture", &Features::sheen_roughness_texture, nullptr,
-     &MetallicRoughness::sheen_roughness_texture},
+/// The effects of textures, by slot. Those of glTF's extensions get their rows of the table of
+/// effects from here.
+inline constexpr std::array<SlotEffect, texture_slot_count> slot_effects{{
+    {&Features::diffuse_texture, "there is no scattered light to tint"},
+    {&Features::specular_texture, "there are no highlights"},
+    {&Features::metallic_roughness_texture, "the material is not metallic-roughness"},
+    {nullptr, ""},
+    {nullptr, ""},
+    {&Features::occlusion_texture, "there is no light from all around"},
+    {&Features::emission_texture, "the material has no emission that it could tint"},
+    {&Features::opacity_texture, "the material is opaque"},
+    {&Features::specular_weight_texture, "dielectrics reflect the 4% of the index 1.5"},
+    {&Features::specular_color_texture, "dielectrics reflect the 4% of the index 1.5"},
+    {&Features::sheen_color_texture, "there is no sheen"},
+    {&Features::sheen_roughness_texture, "there is no sheen"},
+    {&Features::clearcoat_texture, "there is no coat"},
+    {&Features::clearcoat_roughness_texture, "there is no coat, or it reflects nothing"},
+    {&Features::clearcoat_normal_map, "there is no coat"},
+    {&Features::anisotropy_texture, "there is no anisotropy"},
+    {&Features::iridescence_texture, "there is no film"},
+    {&Features::film_thickness_texture, "there is no film"},
+    {&Features::transmission_texture, "the surface transmits no light"},
+    {&Features::thickness_texture, "there is no volume"},
 }};
+
+/// A texture that may be looked up at the second texture coordinates.
+using SecondTexture = TextureSlotInfo;
+
+/// Calls visit(texture, bit) for each of them that these features sample. Its bit of
+/// Features::second_texcoords is 1 << slot.
+template <typename Visit>
+void for_each_second_bit(const Features& f, const Visit& visit) {
+    for (std::size_t i = 0; i < texture_slot_count; ++i) {
+        const bool Features::*const effect = slot_effects[i].effect;
+        if (effect != nullptr && !texture_slots[i].in_tangent_frame && f.*effect)
+            visit(texture_slots[i], 1U << i);
+    }
+}
 
 /// Calls visit(texture, is_second) for each of them that these features sample.
 template <typename Visit>
 void for_each_sampled(const Features& f, const Visit& visit) {
-    for (std::size_t i = 0; i < second_textures.size(); ++i) {
-        if (f.*second_textures[i].effect)
-            visit(second_textures[i], (f.second_texcoords >> i & 1U) != 0);
-    }
+    for_each_second_bit(f, [&](const SecondTexture& texture, std::uint32_t bit) {
+        visit(texture, (f.second_texcoords & bit) != 0);
+    });
 }
 
 /// Returns the bits of the textures that a material looks up at the second texture coordinates.

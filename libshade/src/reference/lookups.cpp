@@ -22,30 +22,6 @@ namespace relief::reference {
 
 namespace {
 
-/// Calls each(texture, use) for every texture slot of a material.
-template <typename Each>
-void for_each_texture(const Material& material, Each each) {
-    each(material.diffuse_texture, ImageUse::color);
-    each(material.specular_texture, ImageUse::color);
-    each(material.emission_texture, ImageUse::color);
-    each(material.occlusion_texture, ImageUse::data);
-    each(material.opacity_texture, ImageUse::data);
-    if (const auto& model = material.metallic_roughness) {
-        for (const auto* data :
-             {&model->texture, &model->specular_texture, &model->clearcoat_texture,
-              &model->clearcoat_roughness_texture, &model->anisotropy_texture,
-              &model->iridescence_texture, &model->iridescence_thickness_texture,
-              &model->transmission_texture, &model->thickness_texture,
-              &model->sheen_roughness_texture})
-            each(*data, ImageUse::data);
-        each(model->specular_color_texture, ImageUse::color);
-        each(model->sheen_color_texture, ImageUse::color);
-        if (model->clearcoat_normal_map) each(model->clearcoat_normal_map->texture, ImageUse::data);
-    }
-    if (material.normal_map) each(material.normal_map->texture, ImageUse::data);
-    if (material.bump_map) each(material.bump_map->texture, ImageUse::data);
-}
-
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -107,18 +83,19 @@ glm::dvec4 Texels::nearest(const glm::dvec2& uv, Wrap u, Wrap v, Trace& trace) c
 }
 
 void SceneTexels::request(const Scene& scene, const Material& material) {
-    for_each_texture(material, [&](const std::optional<Texture>& texture, ImageUse use) {
-        if (!texture) return;
-        const auto key = std::pair(texture->image, use);
-        if (texels_.contains(key) || unreadable_.contains(texture->image)) return;
+    for (const TextureSlotInfo& slot : texture_slots) {
+        const Texture* const texture = find_texture(material, slot.slot);
+        if (texture == nullptr) continue;
+        const auto key = std::pair(texture->image, slot.use);
+        if (texels_.contains(key) || unreadable_.contains(texture->image)) continue;
         const ImageSource& source = scene.images[texture->image];
         try {
-            texels_.emplace(key, Texels(decode(source, use)));
+            texels_.emplace(key, Texels(decode(source, slot.use)));
         } catch (const FileError& error) {
             if (source.is_required) throw;
             unreadable_.emplace(texture->image, error.what());
         }
-    });
+    }
 }
 
 glm::dvec4 SceneTexels::look_up(const Texture& texture, ImageUse use, const glm::dvec2& uv,

@@ -219,11 +219,13 @@ struct Context {
     const Surface& surface;
     Trace& trace;
 
-    [[nodiscard]] glm::dvec4 look_up(const std::optional<Texture>& texture, ImageUse use) const {
-        if (!texture) return glm::dvec4(1.0);
+    /// Returns the texel of a slot of the material; white without a texture.
+    [[nodiscard]] glm::dvec4 look_up(TextureSlot slot) const {
+        const Texture* const texture = find_texture(material, slot);
+        if (texture == nullptr) return glm::dvec4(1.0);
         const bool second = texture->second_texcoords;
         if (!(second ? surface.has_texcoord_2 : surface.has_texcoord)) return glm::dvec4(1.0);
-        return prepared.texels.look_up(*texture, use,
+        return prepared.texels.look_up(*texture, slot_info(slot).use,
                                        second ? surface.texcoord_2 : surface.texcoord, trace);
     }
 };
@@ -231,9 +233,8 @@ struct Context {
 /// Returns the opacity of a surface, whatever its alpha mode.
 double alpha_at(const Context& context) {
     return static_cast<double>(context.material.opacity) *
-           context.look_up(context.material.diffuse_texture, ImageUse::color).a *
-           context.surface.color.a *
-           context.look_up(context.material.opacity_texture, ImageUse::data).r;
+           context.look_up(TextureSlot::base_color).a * context.surface.color.a *
+           context.look_up(TextureSlot::opacity).r;
 }
 
 /// Tells whether a surface between a point and the light blocks it.
@@ -375,7 +376,7 @@ LightSums interpolated_light_sums(const Context& context, const Hit& hit) {
 
 double occlusion(const Context& context) {
     const double strength = static_cast<double>(context.material.occlusion_strength);
-    const double share = context.look_up(context.material.occlusion_texture, ImageUse::data).r;
+    const double share = context.look_up(TextureSlot::occlusion).r;
     return (1.0 + strength * (share - 1.0)) * context.surface.open_share;
 }
 
@@ -414,7 +415,7 @@ glm::dvec3 refracted(const Context& context) {
 }
 
 glm::dvec3 emission_texel(const Context& context) {
-    return glm::dvec3(context.look_up(context.material.emission_texture, ImageUse::color));
+    return glm::dvec3(context.look_up(TextureSlot::emission));
 }
 
 /// Returns the emission of metallic-roughness.
@@ -442,8 +443,7 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
              (ambient + limited(context, diffuse * environment_irradiance(context))) +
          lights.scattered);
     const glm::dvec3 highlights =
-        around * glm::dvec3(context.look_up(material.specular_texture, ImageUse::color)) *
-        lights.highlights;
+        around * glm::dvec3(context.look_up(TextureSlot::specular)) * lights.highlights;
     // Without an environment there are neither reflections nor transmitted light.
     glm::dvec3 mirrors(0.0);
     double transmission = 0.0;
@@ -510,26 +510,24 @@ struct Microfacets {
 
 Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
-    const glm::dvec4 texel = context.look_up(model.texture, ImageUse::data);
+    const glm::dvec4 texel = context.look_up(TextureSlot::metallic_roughness);
     const double metallic = static_cast<double>(model.metallic) * texel.b;
     const double roughness = static_cast<double>(model.roughness) * texel.g;
     const glm::dvec3 base = glm::dvec3(model.base_color) * tint;
-    const double specular = static_cast<double>(model.specular) *
-                            context.look_up(model.specular_texture, ImageUse::data).a;
+    const double specular =
+        static_cast<double>(model.specular) * context.look_up(TextureSlot::specular_weight).a;
     const glm::dvec3 color =
-        glm::dvec3(model.specular_color) *
-        glm::dvec3(context.look_up(model.specular_color_texture, ImageUse::color));
+        glm::dvec3(model.specular_color) * glm::dvec3(context.look_up(TextureSlot::specular_color));
     const double index = static_cast<double>(model.refractive_index);
     const glm::dvec3 dielectric = specular * glm::min(fresnel(index, 1.0) * color, 1.0);
-    const double film = static_cast<double>(model.iridescence) *
-                        context.look_up(model.iridescence_texture, ImageUse::data).r;
-    const double thickness =
-        glm::mix(static_cast<double>(model.iridescence_thickness_minimum),
-                 static_cast<double>(model.iridescence_thickness),
-                 context.look_up(model.iridescence_thickness_texture, ImageUse::data).g);
+    const double film =
+        static_cast<double>(model.iridescence) * context.look_up(TextureSlot::iridescence).r;
+    const double thickness = glm::mix(static_cast<double>(model.iridescence_thickness_minimum),
+                                      static_cast<double>(model.iridescence_thickness),
+                                      context.look_up(TextureSlot::iridescence_thickness).g);
     const double largest = std::max({dielectric.r, dielectric.g, dielectric.b});
-    const double transmission = static_cast<double>(model.transmission) *
-                                context.look_up(model.transmission_texture, ImageUse::data).r;
+    const double transmission =
+        static_cast<double>(model.transmission) * context.look_up(TextureSlot::transmission).r;
     return {base * ((1.0 - metallic) * (1.0 - transmission)),
             base * ((1.0 - metallic) * transmission),
             glm::mix(dielectric, base, metallic),
@@ -726,8 +724,8 @@ glm::dvec3 passing_light(const Context& context, const Microfacets& facets, cons
     const glm::dmat3 world_from_object(
         context.prepared.scene.instances[hit.instance].world_from_object);
     const double scale = portable::pow(std::abs(glm::determinant(world_from_object)), 1.0 / 3.0);
-    const double length = static_cast<double>(model.thickness) * scale *
-                          context.look_up(model.thickness_texture, ImageUse::data).g;
+    const double length =
+        static_cast<double>(model.thickness) * scale * context.look_up(TextureSlot::thickness).g;
     const glm::dvec3 path = length * glm::refract(-at.view_world, at.normal_world, ratio);
     const double spread = index > 0.0 ? std::clamp(2.0 * index - 2.0, 0.0, 1.0) : 1.0;
     const double blur = spread * (facets.roughness - min_roughness) / (1.0 - min_roughness);
@@ -762,12 +760,10 @@ glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
     if (model.sheen_color == glm::vec3(0.0F)) return base;
     const glm::dvec3 color =
-        glm::dvec3(model.sheen_color) *
-        glm::dvec3(context.look_up(model.sheen_color_texture, ImageUse::color));
+        glm::dvec3(model.sheen_color) * glm::dvec3(context.look_up(TextureSlot::sheen_color));
     const Surface& at = context.surface;
     const glm::dvec3& n = at.normal_world;
-    const double texel =
-        std::clamp(context.look_up(model.sheen_roughness_texture, ImageUse::data).a, 0.0, 1.0);
+    const double texel = std::clamp(context.look_up(TextureSlot::sheen_roughness).a, 0.0, 1.0);
     const double alpha = sheen_alpha(static_cast<double>(model.sheen_roughness) * texel);
     const double n_dot_v = std::clamp(glm::dot(n, at.view_world), 0.0, 1.0);
     const PreparedScene& prepared = context.prepared;
@@ -790,12 +786,11 @@ glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
 glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
     if (model.clearcoat == 0.0F) return base;
-    const double weight = static_cast<double>(model.clearcoat) *
-                          context.look_up(model.clearcoat_texture, ImageUse::data).r;
-    const double roughness =
-        std::max(static_cast<double>(model.clearcoat_roughness) *
-                     context.look_up(model.clearcoat_roughness_texture, ImageUse::data).g,
-                 min_roughness);
+    const double weight =
+        static_cast<double>(model.clearcoat) * context.look_up(TextureSlot::clearcoat).r;
+    const double roughness = std::max(static_cast<double>(model.clearcoat_roughness) *
+                                          context.look_up(TextureSlot::clearcoat_roughness).g,
+                                      min_roughness);
     Surface at = context.surface;
     at.normal_world = at.coat_normal_world;
     const Context plain{context.prepared, context.material, at, context.trace};
@@ -847,7 +842,7 @@ Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& mate
              Trace& trace) {
     const Surface surface = surface_at(prepared, hit, material, trace);
     const Context context{prepared, material, surface, trace};
-    const glm::dvec4 texel = context.look_up(material.diffuse_texture, ImageUse::color);
+    const glm::dvec4 texel = context.look_up(TextureSlot::base_color);
     const glm::dvec3 tint = glm::dvec3(texel) * glm::dvec3(surface.color);
     const double alpha = alpha_at(context);
     if (material.unlit) {

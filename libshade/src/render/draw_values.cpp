@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "effects/light_rows.h"
@@ -32,8 +34,25 @@ bool set_sheen_rows(const gl::LinkedProgram& program, std::string_view name,
     return values.sheen_albedo_rows == nullptr || program.set(name, *values.sheen_albedo_rows);
 }
 
-const std::map<std::string_view, Setter>& setters() {
-    static const std::map<std::string_view, Setter> all = {
+/// Sets the uniform of a factor of glTF's model, by its place among the fields.
+template <std::size_t Place>
+bool set_factor(const gl::LinkedProgram& program, std::string_view name, const DrawValues& values) {
+    return program.set(name, values.model.*std::get<Place>(fields_of<MetallicRoughness>).member);
+}
+
+template <std::size_t... Places>
+void add_factors(std::map<std::string_view, Setter>& setters, std::index_sequence<Places...>) {
+    const auto add = [&]<std::size_t Place>(std::integral_constant<std::size_t, Place>) {
+        constexpr auto field = std::get<Place>(fields_of<MetallicRoughness>);
+        using Value = decltype(field.default_value());
+        if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>)
+            setters.emplace(field.name, set_factor<Place>);
+    };
+    (add(std::integral_constant<std::size_t, Places>()), ...);
+}
+
+std::map<std::string_view, Setter> member_setters() {
+    return {
         {"clip_from_object", set_member<&DrawValues::clip_from_object>},
         {"world_from_object", set_member<&DrawValues::world_from_object>},
         {"world_from_object_normal", set_member<&DrawValues::world_from_object_normal>},
@@ -48,27 +67,15 @@ const std::map<std::string_view, Setter>& setters() {
         {"specular_gain", set_member<&DrawValues::specular_gain>},
         {"shininess", set_member<&DrawValues::shininess>},
         {"emission_color", set_member<&DrawValues::emission_color>},
-        {"base_color", set_member<&DrawValues::base_color>},
-        {"metallic", set_member<&DrawValues::metallic>},
-        {"roughness", set_member<&DrawValues::roughness>},
         {"dielectric_color", set_member<&DrawValues::dielectric_color>},
         {"dielectric_weight", set_member<&DrawValues::dielectric_weight>},
         {"energy_compensation", set_member<&DrawValues::energy_compensation>},
-        {"sheen_color", set_member<&DrawValues::sheen_color>},
         {"sheen_alpha", set_member<&DrawValues::sheen_alpha>},
         {"sheen_albedo", set_member<&DrawValues::sheen_albedo>},
-        {"clearcoat", set_member<&DrawValues::clearcoat>},
-        {"clearcoat_roughness", set_member<&DrawValues::clearcoat_roughness>},
         {"clearcoat_normal_scale", set_member<&DrawValues::clearcoat_normal_scale>},
         {"clearcoat_normal_bias", set_member<&DrawValues::clearcoat_normal_bias>},
-        {"anisotropy", set_member<&DrawValues::anisotropy>},
         {"anisotropy_direction", set_member<&DrawValues::anisotropy_direction>},
-        {"iridescence", set_member<&DrawValues::iridescence>},
-        {"iridescence_index", set_member<&DrawValues::iridescence_index>},
-        {"iridescence_thickness", set_member<&DrawValues::iridescence_thickness>},
-        {"iridescence_thickness_minimum", set_member<&DrawValues::iridescence_thickness_minimum>},
         {"clip_from_world", set_member<&DrawValues::clip_from_world>},
-        {"thickness", set_member<&DrawValues::thickness>},
         {"object_scale", set_member<&DrawValues::object_scale>},
         {"absorption", set_member<&DrawValues::absorption>},
         {"volume_index_ratio", set_member<&DrawValues::volume_index_ratio>},
@@ -103,6 +110,16 @@ const std::map<std::string_view, Setter>& setters() {
         {"sheen_roughness", set_member<&DrawValues::sheen_roughness>},
         {"sheen_albedo_rows", set_sheen_rows},
     };
+}
+
+const std::map<std::string_view, Setter>& setters() {
+    static const auto all = [] {
+        std::map<std::string_view, Setter> result = member_setters();
+        constexpr auto count =
+            std::tuple_size_v<std::decay_t<decltype(fields_of<MetallicRoughness>)>>;
+        add_factors(result, std::make_index_sequence<count>());
+        return result;
+    }();
     return all;
 }
 
@@ -145,7 +162,6 @@ double cube_root_of_determinant(const glm::dmat3& matrix) {
 void set_transmission(DrawValues& values, const MetallicRoughness& model, int last) {
     const double index = static_cast<double>(model.refractive_index);
     values.transmission = model.transmission;
-    values.thickness = model.thickness;
     values.volume_index_ratio = index > 0.0 ? static_cast<float>(1.0 / index) : 0.0F;
     values.blurred_level = static_cast<float>(last * passing_blur(index));
     if (!model.attenuation_distance) return;
@@ -167,7 +183,6 @@ void write_table(const SheenAlbedo& table, std::size_t first, std::array<glm::ve
 void set_sheen(DrawValues& values, const MetallicRoughness& model) {
     if (!is_not_black(model.sheen_color)) return;
     const double roughness = static_cast<double>(model.sheen_roughness);
-    values.sheen_color = model.sheen_color;
     values.sheen_alpha = static_cast<float>(sheen_alpha(roughness));
     values.sheen_roughness = model.sheen_roughness;
     write_table(sheen_albedo_table(roughness), 0, values.sheen_albedo);
@@ -215,20 +230,12 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.emission_color = material.emission;
     if (const auto& physical = material.metallic_roughness) {
         values.ambient_scattered = ambient;
-        values.diffuse_color = values.base_color = physical->base_color;
-        values.metallic = physical->metallic;
-        values.roughness = physical->roughness;
+        values.model = *physical;
+        values.diffuse_color = physical->base_color;
         values.dielectric_color = reflectance_of_index(*physical);
         values.dielectric_weight = physical->specular;
         values.energy_compensation = compensates_energy(*physical) ? 1.0F : 0.0F;
-        values.clearcoat = physical->clearcoat;
-        values.clearcoat_roughness = physical->clearcoat_roughness;
         set_sheen(values, *physical);
-        values.iridescence = physical->iridescence;
-        values.iridescence_index = physical->iridescence_index;
-        values.iridescence_thickness = physical->iridescence_thickness;
-        values.iridescence_thickness_minimum = physical->iridescence_thickness_minimum;
-        values.anisotropy = physical->anisotropy;
         const double rotation = static_cast<double>(physical->anisotropy_rotation);
         values.anisotropy_direction = glm::vec2(portable::cos(rotation), portable::sin(rotation));
         set_transmission(values, *physical, last);

@@ -34,7 +34,7 @@ class SheenCache {
     std::map<float, std::shared_ptr<const SheenRows>> rows_;
 };
 
-/// The uniforms of the surface shaders; each member has the name of its uniform.
+/// The uniforms of the surface shaders; each member but `model` has the name of its uniform.
 struct DrawValues {
     glm::mat4 clip_from_object{1.0F};
     glm::mat4 world_from_object{1.0F};
@@ -51,27 +51,18 @@ struct DrawValues {
     glm::vec3 specular_color{0.0F};  ///< With the normalization of the model.
     float shininess = 0.0F;
     glm::vec3 emission_color{0.0F};
-    glm::vec3 base_color{0.0F};
-    float metallic = 0.0F;
-    float roughness = 1.0F;
+    /// The factors of glTF's model. The uniform of each has its name (fields_of), unless another
+    /// member does.
+    MetallicRoughness model;
     glm::vec3 dielectric_color{0.04F};  ///< Reflectance at normal incidence, without weight.
     float dielectric_weight = 1.0F;
     float energy_compensation = 0.0F;  ///< 1 if the material compensates_energy().
-    glm::vec3 sheen_color{0.0F};
     float sheen_alpha = 1.0F;
     std::array<glm::vec4, 8> sheen_albedo{};  ///< sheen_albedo_table().
-    float clearcoat = 0.0F;
-    float clearcoat_roughness = 0.0F;
-    glm::vec3 clearcoat_normal_scale{1.0F};  ///< normal = texel * scale + bias.
+    glm::vec3 clearcoat_normal_scale{1.0F};   ///< normal = texel * scale + bias.
     glm::vec3 clearcoat_normal_bias{0.0F};
-    float anisotropy = 0.0F;
     glm::vec2 anisotropy_direction{1.0F, 0.0F};  ///< In the tangent frame; unit.
-    float iridescence = 0.0F;
-    float iridescence_index = 1.3F;
-    float iridescence_thickness = 400.0F;
-    float iridescence_thickness_minimum = 100.0F;
     glm::mat4 clip_from_world{1.0F};
-    float thickness = 0.0F;
     float object_scale = 1.0F;  ///< The cube root of the determinant of world_from_object.
     glm::vec3 absorption{0.0F};
     float volume_index_ratio = 1.0F;

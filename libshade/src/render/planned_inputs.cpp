@@ -73,7 +73,7 @@ PlannedTexture texture_of(const Scene& scene, const DrawPlan& draw, const std::s
         draw.range.material ? scene.materials[*draw.range.material] : default_material();
     const Mesh& mesh = scene.meshes[scene.instances[draw.instance].mesh];
     for (const UsedTexture& used : used_textures(draw.features, material, mesh)) {
-        if (sampler_name(used.unit) != sampler) continue;
+        if (slot_info(used.slot).sampler != sampler) continue;
         if (used.texture == nullptr) return {sampler, "", false, "neutral: forced on"};
         return {sampler, scene.images[used.texture->image].name, true,
                 material_label(scene, draw.range.material) + " has it"};

@@ -31,27 +31,7 @@ std::vector<gl::Location> attribute_locations() {
             at("texcoord_2", Attribute::texcoord_2)};
 }
 
-constexpr std::array<std::pair<const char*, TextureUnit>, 33> texture_units{{
-    {"diffuse_texture", TextureUnit::diffuse_texture},
-    {"specular_texture", TextureUnit::specular_texture},
-    {"emission_texture", TextureUnit::emission_texture},
-    {"occlusion_texture", TextureUnit::occlusion_texture},
-    {"opacity_texture", TextureUnit::opacity_texture},
-    {"metallic_roughness_texture", TextureUnit::metallic_roughness_texture},
-    {"normal_texture", TextureUnit::normal_texture},
-    {"bump_texture", TextureUnit::bump_texture},
-    {"specular_weight_texture", TextureUnit::specular_weight_texture},
-    {"specular_color_texture", TextureUnit::specular_color_texture},
-    {"sheen_color_texture", TextureUnit::sheen_color_texture},
-    {"sheen_roughness_texture", TextureUnit::sheen_roughness_texture},
-    {"clearcoat_texture", TextureUnit::clearcoat_texture},
-    {"clearcoat_roughness_texture", TextureUnit::clearcoat_roughness_texture},
-    {"clearcoat_normal_texture", TextureUnit::clearcoat_normal_texture},
-    {"anisotropy_texture", TextureUnit::anisotropy_texture},
-    {"iridescence_texture", TextureUnit::iridescence_texture},
-    {"film_thickness_texture", TextureUnit::film_thickness_texture},
-    {"transmission_texture", TextureUnit::transmission_texture},
-    {"thickness_texture", TextureUnit::thickness_texture},
+constexpr std::array<std::pair<const char*, TextureUnit>, 13> texture_units{{
     {"environment", TextureUnit::environment},
     {"blurred_environment", TextureUnit::blurred_environment},
     {"environment_brdf", TextureUnit::environment_brdf},
@@ -69,22 +49,16 @@ constexpr std::array<std::pair<const char*, TextureUnit>, 33> texture_units{{
 
 }  // namespace
 
-std::string_view sampler_name(TextureUnit unit) {
-    const auto* const entry = std::find_if(texture_units.begin(), texture_units.end(),
-                                           [&](const auto& row) { return row.second == unit; });
-    assert(entry != texture_units.end());
-    return entry->first;
-}
-
 gl::LinkedProgram link(const gl::Api& api, const std::string& name, const ShaderSource& vertex,
                        const ShaderSource& fragment) {
     try {
         gl::LinkedProgram program(api,
                                   {name, vertex.text, fragment.text, attribute_locations(), {}});
         program.use();
-        for (const auto& [sampler, unit] : texture_units) {
+        for (const TextureSlotInfo& slot : texture_slots)
+            program.set(slot.sampler, static_cast<int>(slot.slot));
+        for (const auto& [sampler, unit] : texture_units)
             program.set(sampler, static_cast<int>(unit));
-        }
         program.bind_block("Lights", lights_binding);
         return program;
     } catch (const GpuError& error) {

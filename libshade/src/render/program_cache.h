@@ -27,29 +27,9 @@ enum class Attribute : GLuint {
     texcoord_2
 };
 
-/// Texture units, by the GLSL names of samplers. Those of materials come first.
+/// Texture units, by the GLSL names of samplers. Those of materials come first: TextureSlot.
 enum class TextureUnit : GLint {
-    diffuse_texture,
-    specular_texture,
-    emission_texture,
-    occlusion_texture,
-    opacity_texture,
-    metallic_roughness_texture,
-    normal_texture,
-    bump_texture,
-    specular_weight_texture,
-    specular_color_texture,
-    sheen_color_texture,
-    sheen_roughness_texture,
-    clearcoat_texture,
-    clearcoat_roughness_texture,
-    clearcoat_normal_texture,
-    anisotropy_texture,
-    iridescence_texture,
-    film_thickness_texture,
-    transmission_texture,
-    thickness_texture,
-    environment,
+    environment = texture_slot_count,
     blurred_environment,
     environment_brdf,
     light_buffer,
@@ -63,12 +43,6 @@ enum class TextureUnit : GLint {
     hidden_shares,
     drawn,
 };
-
-/// Returns the GLSL name of the sampler of a unit.
-std::string_view sampler_name(TextureUnit unit);
-
-/// The number of units of materials.
-inline constexpr std::size_t material_unit_count = 20;
 
 /// The binding point of the uniform block Lights.
 inline constexpr GLuint lights_binding = 0;

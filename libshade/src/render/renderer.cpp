@@ -279,7 +279,7 @@ namespace {
 /// What the draws of a mesh with one material and the same effects share.
 struct Surface {
     DrawValues values;  ///< Without those of instances and cameras.
-    std::array<BoundTexture, material_unit_count> textures;  ///< By TextureUnit.
+    std::array<BoundTexture, texture_slot_count> textures;  ///< By TextureSlot.
     bool both_sides = false;
     bool casts_shadow = false;
 };
@@ -325,24 +325,28 @@ Planned planned(const Scene& scene, const DrawPlan& draw) {
             scene.meshes[scene.instances[draw.instance].mesh]};
 }
 
-bool is_normal_map(TextureUnit unit) {
-    return unit == TextureUnit::normal_texture || unit == TextureUnit::clearcoat_normal_texture;
-}
-
 ImagePurpose purpose_of(const UsedTexture& used) {
-    return {used.use, is_normal_map(used.unit)};
+    const TextureSlotInfo& slot = slot_info(used.slot);
+    return {slot.use, slot.neutral == NeutralTexel::flat};
 }
 
 /// Returns the texture of an effect that is forced on without one.
-BoundTexture neutral_texture(TextureCache& textures, TextureUnit unit) {
-    if (is_normal_map(unit)) return textures.flat();
-    return unit == TextureUnit::anisotropy_texture ? textures.tangent() : textures.white();
+BoundTexture neutral_texture(TextureCache& textures, NeutralTexel texel) {
+    switch (texel) {
+        case NeutralTexel::flat:
+            return textures.flat();
+        case NeutralTexel::tangent:
+            return textures.tangent();
+        case NeutralTexel::white:
+            break;
+    }
+    return textures.white();
 }
 
 /// Sets the decoding of the surface's normal map, or of its coat's.
-void set_planned_map(DrawValues& values, TextureUnit unit, const Material& material,
+void set_planned_map(DrawValues& values, TextureSlot slot, const Material& material,
                      const GpuImage& image) {
-    const bool coats = unit == TextureUnit::clearcoat_normal_texture;
+    const bool coats = slot == TextureSlot::clearcoat_normal;
     const NormalMap& map =
         coats ? *material.metallic_roughness->clearcoat_normal_map : *material.normal_map;
     DrawValues decoding;
@@ -682,15 +686,15 @@ void Renderer::Implementation::upload_poses(const Scene& scene) {
 
 void Renderer::Implementation::bind_planned_textures(Surface& surface, const Planned& p) {
     for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
-        BoundTexture& bound = surface.textures[static_cast<std::size_t>(used.unit)];
+        BoundTexture& bound = surface.textures[static_cast<std::size_t>(used.slot)];
         if (used.texture == nullptr) {
-            bound = neutral_texture(cache.textures, used.unit);
+            bound = neutral_texture(cache.textures, slot_info(used.slot).neutral);
             continue;
         }
         const ImagePurpose purpose = purpose_of(used);
         bound = textures.bound(*used.texture, purpose);
         if (purpose.normals) {
-            set_planned_map(surface.values, used.unit, p.material,
+            set_planned_map(surface.values, used.slot, p.material,
                             textures.image(used.texture->image, purpose));
         }
     }

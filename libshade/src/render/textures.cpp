@@ -26,141 +26,30 @@ namespace {
 
 const char* const unreadable_reason = "its image cannot be read";
 
-/// A texture of a material: its unit, its use, the effects that sample it, and access to it.
-struct TextureRow {
-    TextureUnit unit;
-    ImageUse use;
-    std::vector<std::string_view> effects;  ///< At most one of them is on.
-    const Texture* (*texture)(const Material& m);
-    void (*remove)(Material& m);
-};
-
-template <auto Member>
-const Texture* optional_texture(const Material& m) {
-    return m.*Member ? &*(m.*Member) : nullptr;
-}
-template <auto Member>
-const Texture* texture_of_map(const Material& m) {
-    return m.*Member ? &(m.*Member)->texture : nullptr;
-}
-template <auto Member>
-void remove_optional(Material& m) {
-    (m.*Member).reset();
-}
-
-template <auto Member>
-const Texture* texture_of_model(const Material& m) {
-    const auto& model = m.metallic_roughness;
-    return model && (*model).*Member ? &*((*model).*Member) : nullptr;
-}
-template <auto Member>
-void remove_of_model(Material& m) {
-    ((*m.metallic_roughness).*Member).reset();
-}
-const Texture* texture_of_coat(const Material& m) {
-    const auto& model = m.metallic_roughness;
-    return model && model->clearcoat_normal_map ? &model->clearcoat_normal_map->texture : nullptr;
-}
-
-/// Returns the row of a texture of glTF's model.
-template <auto Member>
-TextureRow model_row(TextureUnit unit, ImageUse use, std::string_view effect) {
-    return {unit, use, {effect}, texture_of_model<Member>, remove_of_model<Member>};
-}
-
-/// The rows, in the order of TextureUnit.
-const std::array<TextureRow, material_unit_count>& texture_rows() {
-    using M = Material;
-    using P = MetallicRoughness;
-    static const std::array<TextureRow, material_unit_count> all{{
-        {TextureUnit::diffuse_texture,
-         ImageUse::color,
-         {"diffuse texture"},
-         optional_texture<&M::diffuse_texture>,
-         remove_optional<&M::diffuse_texture>},
-        {TextureUnit::specular_texture,
-         ImageUse::color,
-         {"specular texture"},
-         optional_texture<&M::specular_texture>,
-         remove_optional<&M::specular_texture>},
-        {TextureUnit::emission_texture,
-         ImageUse::color,
-         {"emission texture"},
-         optional_texture<&M::emission_texture>,
-         [](M& m) {
-             m.emission_texture.reset();
-             m.emission = glm::vec3(0.0F);
-         }},
-        {TextureUnit::occlusion_texture,
-         ImageUse::data,
-         {"occlusion texture"},
-         optional_texture<&M::occlusion_texture>,
-         remove_optional<&M::occlusion_texture>},
-        {TextureUnit::opacity_texture,
-         ImageUse::data,
-         {"opacity texture"},
-         optional_texture<&M::opacity_texture>,
-         remove_optional<&M::opacity_texture>},
-        model_row<&P::texture>(TextureUnit::metallic_roughness_texture, ImageUse::data,
-                               "metallic-roughness texture"),
-        {TextureUnit::normal_texture,
-         ImageUse::data,
-         {"normal map", "object-space normal map"},
-         texture_of_map<&M::normal_map>,
-         remove_optional<&M::normal_map>},
-        {TextureUnit::bump_texture,
-         ImageUse::data,
-         {"bump map"},
-         texture_of_map<&M::bump_map>,
-         remove_optional<&M::bump_map>},
-        model_row<&P::specular_texture>(TextureUnit::specular_weight_texture, ImageUse::data,
-                                        "specular weight texture"),
-        model_row<&P::specular_color_texture>(TextureUnit::specular_color_texture, ImageUse::color,
-                                              "specular color texture"),
-        model_row<&P::sheen_color_texture>(TextureUnit::sheen_color_texture, ImageUse::color,
-                                           "sheen color texture"),
-        model_row<&P::sheen_roughness_texture>(TextureUnit::sheen_roughness_texture, ImageUse::data,
-                                               "sheen roughness texture"),
-        model_row<&P::clearcoat_texture>(TextureUnit::clearcoat_texture, ImageUse::data,
-                                         "clearcoat texture"),
-        model_row<&P::clearcoat_roughness_texture>(TextureUnit::clearcoat_roughness_texture,
-                                                   ImageUse::data, "clearcoat roughness texture"),
-        {TextureUnit::clearcoat_normal_texture,
-         ImageUse::data,
-         {"clearcoat normal map"},
-         texture_of_coat,
-         remove_of_model<&P::clearcoat_normal_map>},
-        model_row<&P::anisotropy_texture>(TextureUnit::anisotropy_texture, ImageUse::data,
-                                          "anisotropy texture"),
-        model_row<&P::iridescence_texture>(TextureUnit::iridescence_texture, ImageUse::data,
-                                           "iridescence texture"),
-        model_row<&P::iridescence_thickness_texture>(TextureUnit::film_thickness_texture,
-                                                     ImageUse::data, "film thickness texture"),
-        model_row<&P::transmission_texture>(TextureUnit::transmission_texture, ImageUse::data,
-                                            "transmission texture"),
-        model_row<&P::thickness_texture>(TextureUnit::thickness_texture, ImageUse::data,
-                                         "thickness texture"),
-    }};
-    return all;
-}
-
-const TextureRow& row_of(TextureUnit unit) {
-    return texture_rows().at(static_cast<std::size_t>(unit));
+/// Returns the effects that sample the texture of a slot; at most one of them is on.
+const std::vector<const Effect*>& effects_of(TextureSlot slot) {
+    static const auto all = [] {
+        std::array<std::vector<const Effect*>, texture_slot_count> effects;
+        for (std::size_t i = 0; i < texture_slot_count; ++i)
+            effects[i].push_back(&find_effect(texture_slots[i].effect)->effect);
+        effects[static_cast<std::size_t>(TextureSlot::normal)].push_back(
+            &find_effect("object-space normal map")->effect);
+        return effects;
+    }();
+    return all[static_cast<std::size_t>(slot)];
 }
 
 /// Returns the effect by which these features sample a texture, or null.
-const Effect* sampling_effect(const TextureRow& row, const Features& features) {
-    for (const std::string_view name : row.effects) {
-        const Effect& effect = find_effect(name)->effect;
-        if (effect.on(features)) return &effect;
+const Effect* sampling_effect(TextureSlot slot, const Features& features) {
+    for (const Effect* const effect : effects_of(slot)) {
+        if (effect->on(features)) return effect;
     }
     return nullptr;
 }
 
-void omit_effect(Features& features, TextureUnit unit) {
-    if (const Effect* effect = sampling_effect(row_of(unit), features))
-        effect->set(features, false);
-    if (unit == TextureUnit::emission_texture) features.emission = false;
+void omit_effect(Features& features, TextureSlot slot) {
+    if (const Effect* effect = sampling_effect(slot, features)) effect->set(features, false);
+    if (slot == TextureSlot::emission) features.emission = false;
 }
 
 void report_omitted(const Scene& scene, std::optional<std::uint32_t> material,
@@ -204,24 +93,21 @@ GLenum wrap_of(Wrap wrap) {
 std::vector<UsedTexture> used_textures(const Features& features, const Material& material,
                                        const Mesh& mesh) {
     std::vector<UsedTexture> used;
-    for (const TextureRow& row : texture_rows()) {
-        if (sampling_effect(row, features) == nullptr) continue;
-        const Texture* texture = row.texture(material);
-        const bool is_map = row.unit == TextureUnit::normal_texture ||
-                            row.unit == TextureUnit::bump_texture ||
-                            row.unit == TextureUnit::clearcoat_normal_texture ||
-                            row.unit == TextureUnit::anisotropy_texture;
+    for (const TextureSlotInfo& slot : texture_slots) {
+        if (sampling_effect(slot.slot, features) == nullptr) continue;
+        const Texture* texture = find_texture(material, slot.slot);
         const bool has_texcoords =
-            texture != nullptr && !(is_map ? mesh.texcoords : texcoords_of(mesh, *texture)).empty();
+            texture != nullptr &&
+            !(slot.in_tangent_frame ? mesh.texcoords : texcoords_of(mesh, *texture)).empty();
         if (!has_texcoords) texture = nullptr;
-        used.push_back({row.unit, texture, row.use});
+        used.push_back({slot.slot, texture});
     }
     return used;
 }
 
 void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::string>& unreadable,
                         FramePlan& plan, Report& report) {
-    std::set<std::pair<std::optional<std::uint32_t>, TextureUnit>> reported;
+    std::set<std::pair<std::optional<std::uint32_t>, TextureSlot>> reported;
     for (DrawPlan& draw : plan.draws) {
         const std::optional<std::uint32_t> number = draw.range.material;
         const Material& material = number ? scene.materials[*number] : default_material();
@@ -231,9 +117,9 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
             const auto entry =
                 used.texture == nullptr ? unreadable.end() : unreadable.find(used.texture->image);
             if (entry == unreadable.end()) continue;
-            omit_effect(draw.features, used.unit);
-            if (!reported.emplace(number, used.unit).second) continue;
-            report_omitted(scene, number, sampling_effect(row_of(used.unit), planned)->name, *entry,
+            omit_effect(draw.features, used.slot);
+            if (!reported.emplace(number, used.slot).second) continue;
+            report_omitted(scene, number, sampling_effect(used.slot, planned)->name, *entry,
                            report);
         }
         if (draw.features == planned) continue;
@@ -246,20 +132,23 @@ void leave_out_textures(const Scene& scene, const std::map<std::size_t, std::str
                         std::uint32_t number, Material& material, Report& report) {
     const bool has_object_map =
         material.normal_map && material.normal_map->space == NormalSpace::object;
-    for (const TextureRow& row : texture_rows()) {
-        const Texture* const texture = row.texture(material);
+    for (const TextureSlotInfo& slot : texture_slots) {
+        const Texture* const texture = find_texture(material, slot.slot);
         const auto entry = texture == nullptr ? unreadable.end() : unreadable.find(texture->image);
         if (entry == unreadable.end()) continue;
-        const bool is_object_map = has_object_map && row.unit == TextureUnit::normal_texture;
-        report_omitted(scene, number, is_object_map ? row.effects.back() : row.effects.front(),
+        const bool is_object_map = has_object_map && slot.slot == TextureSlot::normal;
+        const std::vector<const Effect*>& effects = effects_of(slot.slot);
+        report_omitted(scene, number, (is_object_map ? effects.back() : effects.front())->name,
                        *entry, report);
-        row.remove(material);
+        remove_texture(material, slot.slot);
+        if (slot.slot == TextureSlot::emission) material.emission = glm::vec3(0.0F);
     }
 }
 
 bool has_textures(const Material& material) {
-    return std::any_of(texture_rows().begin(), texture_rows().end(),
-                       [&](const TextureRow& row) { return row.texture(material) != nullptr; });
+    return std::any_of(
+        texture_slots.begin(), texture_slots.end(),
+        [&](const TextureSlotInfo& slot) { return find_texture(material, slot.slot) != nullptr; });
 }
 
 /// A file whose stamp cannot be read counts as missing; reading it reports the reason.

@@ -35,10 +35,9 @@ namespace RELIEF_API relief {
 
 /// A sampler of the program of a draw.
 struct UsedTexture {
-    TextureUnit unit{};
-    const Texture* texture =
-        nullptr;  ///< Null: a neutral texture, because a forced plan names a missing one.
-    ImageUse use = ImageUse::color;
+    TextureSlot slot{};
+    /// Null: a neutral texture, because a forced plan names a missing one.
+    const Texture* texture = nullptr;
 };
 
 /// Returns the material samplers of a program with these features.

@@ -105,54 +105,48 @@ constexpr float min_roughness = 0.045F;
 /// tan^2 of 3 degrees: facets with a smaller tilt mirror a recognizable picture.
 constexpr float mirror_tan_squared = 0.0027465F;
 
-/// Returns the factors of a material, with those that glTF forbids as the nearest allowed ones. An
-/// index of 0 is allowed, others begin at 1.
-MetallicRoughness factors_of(const GltfMaterial& material) {
-    MetallicRoughness model{usable(glm::vec3(material.base_color), 1.0F),
-                            usable(material.metallic, 1.0F), usable(material.roughness, 1.0F),
-                            std::nullopt};
-    const float index =
-        usable(material.refractive_index, field_of(&MetallicRoughness::refractive_index).range.max);
-    model.refractive_index = index > 0.0F ? std::max(index, 1.0F) : 0.0F;
-    model.specular = usable(material.specular, 1.0F);
-    model.specular_color = usable(material.specular_color, max_reflectance);
-    model.clearcoat = usable(material.clearcoat, 1.0F);
-    model.clearcoat_roughness = usable(material.clearcoat_roughness, 1.0F);
-    model.sheen_color = usable(material.sheen_color, 1.0F);
-    model.sheen_roughness = usable(material.sheen_roughness, 1.0F);
-    model.anisotropy = usable(material.anisotropy, 1.0F);
-    if (std::isfinite(material.anisotropy_rotation))
-        model.anisotropy_rotation = material.anisotropy_rotation;
-    const auto film = [&](float value, float MetallicRoughness::*member) {
-        const FieldRange range = field_of(member).range;
-        return std::max(usable(value, range.max), range.min);
-    };
-    model.iridescence = film(material.iridescence, &MetallicRoughness::iridescence);
-    model.iridescence_index =
-        film(material.iridescence_index, &MetallicRoughness::iridescence_index);
-    model.iridescence_thickness =
-        film(material.iridescence_thickness, &MetallicRoughness::iridescence_thickness);
-    model.iridescence_thickness_minimum = film(material.iridescence_thickness_minimum,
-                                               &MetallicRoughness::iridescence_thickness_minimum);
-    model.transmission = usable(material.transmission, 1.0F);
-    model.thickness = usable(material.thickness, std::numeric_limits<float>::max());
-    model.attenuation_color = usable(material.attenuation_color, 1.0F);
-    if (material.attenuation_distance && std::isfinite(*material.attenuation_distance)) {
-        model.attenuation_distance = std::max(*material.attenuation_distance, positive_range.min);
-    }
+/// Returns the allowed value of a foreign factor that is nearest. NaN counts as the minimum, and a
+/// number without limits that is not finite counts as absent.
+template <typename Owner>
+float allowed(float value, const SceneField<Owner, float>& field) {
+    const FieldRange& range = field.range;
+    if (range == FieldRange{}) return std::isfinite(value) ? value : field.default_value();
+    return value > range.min ? std::min(value, range.max) : range.min;
+}
+template <typename Owner>
+glm::vec3 allowed(const glm::vec3& color, const SceneField<Owner, glm::vec3>& field) {
+    return {usable(color.r, field.range.max), usable(color.g, field.range.max),
+            usable(color.b, field.range.max)};
+}
+template <typename Owner>
+std::optional<float> allowed(const std::optional<float>& value,
+                             const SceneField<Owner, std::optional<float>>& field) {
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    return std::max(*value, field.range.min);
+}
+
+/// Returns the model with factors that glTF forbids as the nearest allowed ones. An index of 0 is
+/// allowed, others begin at 1.
+MetallicRoughness allowed(MetallicRoughness model) {
+    for_each_field<MetallicRoughness>([&](const auto& field) {
+        auto& value = model.*field.member;
+        if constexpr (requires { allowed(value, field); }) value = allowed(value, field);
+    });
+    if (model.refractive_index > 0.0F)
+        model.refractive_index = std::max(model.refractive_index, 1.0F);
     return model;
 }
 
 }  // namespace
 
-Material phong_from_metallic_roughness(const GltfMaterial& material, const TextureMeans& means) {
-    const glm::vec3 base = usable(glm::vec3(material.base_color), 1.0F);
-    const float metallic = usable(material.metallic * means.metallic, 1.0F);
-    const float roughness =
-        std::max(usable(material.roughness * means.roughness, 1.0F), min_roughness);
+Material phong_from_metallic_roughness(const Material& material, const TextureMeans& means) {
+    const MetallicRoughness model = allowed(*material.metallic_roughness);
+    const glm::vec3& base = model.base_color;
+    const float metallic = usable(material.metallic_roughness->metallic * means.metallic, 1.0F);
+    const float roughness = std::max(
+        usable(material.metallic_roughness->roughness * means.roughness, 1.0F), min_roughness);
     const float alpha_squared = roughness * roughness * roughness * roughness;
-    const MetallicRoughness read = factors_of(material);
-    const glm::vec3 dielectric = dielectric_reflectance(read);
+    const glm::vec3 dielectric = dielectric_reflectance(model);
     const glm::vec3 f0 = glm::mix(dielectric, base * means.base_color, metallic);
     const float mirror = mirror_tan_squared / (mirror_tan_squared + alpha_squared);
 
@@ -163,7 +157,7 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
     phong.specular = f0 * ((phong.shininess + 2.0F) / 8.0F);
     phong.reflectivity = f0 * mirror;
     phong.grazing_reflectivity =
-        glm::vec3(mirror * (1.0F + (read.specular - 1.0F) * (1.0F - metallic)));
+        glm::vec3(mirror * (1.0F + (model.specular - 1.0F) * (1.0F - metallic)));
     phong.diffuse = base * (1.0F - metallic);
     phong.ambient = phong.diffuse + glm::mix(dielectric, base, metallic);
     phong.emission = usable(material.emission, max_reflectance);
@@ -175,57 +169,37 @@ Material phong_from_metallic_roughness(const GltfMaterial& material, const Textu
 
 namespace {
 
-/// The texture coordinates at which a texture is looked up.
-struct TexcoordSource {
-    int set = 0;
-    GltfTextureTransform transform;
-
-    friend bool operator==(const TexcoordSource&, const TexcoordSource&) = default;
-};
-
-TexcoordSource source_of(const GltfTexture& texture) {
-    return {texture.texcoord_set, texture.transform};
-}
-
 /// The two sets of texture coordinates that a mesh of the scene carries for a material. The first
 /// are those of the maps in the tangent frame, or else of the material's first texture, in the
-/// order base color, metallic-roughness, occlusion, emission, and then those of extensions. The
-/// second are the next ones that differ.
+/// order of TextureSlot. The second are the next ones that differ.
 struct TexcoordSources {
-    TexcoordSource first;
-    std::optional<TexcoordSource> second = std::nullopt;
+    GltfTexcoords first;
+    std::optional<GltfTexcoords> second = std::nullopt;
 };
 
 TexcoordSources texcoord_sources(const GltfMaterial& material) {
-    std::optional<TexcoordSource> first;
-    std::optional<TexcoordSource> second;
-    for (const std::optional<GltfTexture>* texture :
-         {&material.normal_texture, &material.clearcoat_normal_texture,
-          &material.anisotropy_texture, &material.base_color_texture,
-          &material.metallic_roughness_texture, &material.occlusion_texture,
-          &material.emission_texture, &material.specular_texture, &material.specular_color_texture,
-          &material.clearcoat_texture, &material.clearcoat_roughness_texture,
-          &material.sheen_color_texture, &material.sheen_roughness_texture,
-          &material.iridescence_texture, &material.iridescence_thickness_texture,
-          &material.transmission_texture, &material.thickness_texture}) {
-        if (!*texture) continue;
-        const TexcoordSource source = source_of(**texture);
-        if (!first) first = source;
-        if (!second && source != *first) second = source;
+    std::optional<GltfTexcoords> first;
+    std::optional<GltfTexcoords> second;
+    for (const bool in_tangent_frame : {true, false}) {
+        for (const TextureSlotInfo& slot : texture_slots) {
+            if (slot.in_tangent_frame != in_tangent_frame) continue;
+            if (find_texture(material, slot.slot) == nullptr) continue;
+            const GltfTexcoords& source = material.texcoords_of(slot.slot);
+            if (!first) first = source;
+            if (!second && source != *first) second = source;
+        }
     }
-    return {first.value_or(TexcoordSource{}), second};
+    return {first.value_or(GltfTexcoords{}), second};
 }
 
 /// Returns the texture of the scene, or none if its mesh has no coordinates for it.
-/// \param is_map  it lies in the tangent frame, which belongs to the first coordinates
-std::optional<Texture> texture_from(const std::optional<GltfTexture>& texture,
-                                    const TexcoordSources& sources, bool is_map,
-                                    std::size_t material, Report& report) {
-    if (!texture) return std::nullopt;
-    Texture result{texture->image, texture->wrap_u, texture->wrap_v, texture->filter};
-    const TexcoordSource source = source_of(*texture);
+std::optional<Texture> texture_from(const GltfMaterial& read, const TextureSlotInfo& slot,
+                                    const TexcoordSources& sources, std::size_t material,
+                                    Report& report) {
+    Texture result = *find_texture(read, slot.slot);
+    const GltfTexcoords& source = read.texcoords_of(slot.slot);
     if (source == sources.first) return result;
-    if (source == sources.second && !is_map) {
+    if (source == sources.second && !slot.in_tangent_frame) {
         result.second_texcoords = true;
         return result;
     }
@@ -303,9 +277,9 @@ class MeansOfImages {
 std::vector<bool> color_only(const GltfView& view) {
     std::vector<bool> result(view.images.size(), true);
     for (const GltfMaterial& material : view.materials) {
-        if (material.normal_texture) result[material.normal_texture->image] = false;
-        if (material.metallic_roughness_texture) {
-            result[material.metallic_roughness_texture->image] = false;
+        for (const TextureSlotInfo& slot : texture_slots) {
+            const Texture* const texture = find_texture(material, slot.slot);
+            if (texture != nullptr && slot.use != ImageUse::color) result[texture->image] = false;
         }
     }
     return result;
@@ -324,16 +298,17 @@ std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageS
     const std::vector<bool> keep_none(images.size(), false);
     MeansOfImages surfaces(images, ImageUse::data, keep_none);
     const auto has_surface = [&](const GltfMaterial& material) {
-        return material.metallic_roughness_texture && !material.unlit &&
-               (material.metallic > 0.0F || material.roughness > 0.0F);
+        const MetallicRoughness& model = *material.metallic_roughness;
+        return model.texture && !material.unlit &&
+               (model.metallic > 0.0F || model.roughness > 0.0F);
     };
     for (const GltfMaterial& material : view.materials) {
-        if (has_surface(material)) surfaces.request(material.metallic_roughness_texture->image);
+        if (has_surface(material)) surfaces.request(material.metallic_roughness->texture->image);
     }
     surfaces.decode_all();
     for (std::size_t i = 0; i < count; ++i) {
         if (!has_surface(view.materials[i])) continue;
-        const glm::vec3 mean = surfaces.mean(view.materials[i].metallic_roughness_texture->image,
+        const glm::vec3 mean = surfaces.mean(view.materials[i].metallic_roughness->texture->image,
                                              "metallic-roughness texture", label(view, i), report);
         means[i].roughness = mean.y;
         means[i].metallic = mean.z;
@@ -344,64 +319,40 @@ std::vector<TextureMeans> texture_means(const GltfView& view, std::vector<ImageS
     MeansOfImages colors(images, ImageUse::color, keep);
     const auto is_textured_metal = [&](std::size_t i) {
         const GltfMaterial& material = view.materials[i];
-        return material.base_color_texture && !material.unlit &&
-               material.metallic * means[i].metallic > 0.0F;
+        return material.diffuse_texture && !material.unlit &&
+               material.metallic_roughness->metallic * means[i].metallic > 0.0F;
     };
     for (std::size_t i = 0; i < count; ++i) {
-        if (is_textured_metal(i)) colors.request(view.materials[i].base_color_texture->image);
+        if (is_textured_metal(i)) colors.request(view.materials[i].diffuse_texture->image);
     }
     colors.decode_all();
     for (std::size_t i = 0; i < count; ++i) {
         if (!is_textured_metal(i)) continue;
-        means[i].base_color = colors.mean(view.materials[i].base_color_texture->image,
+        means[i].base_color = colors.mean(view.materials[i].diffuse_texture->image,
                                           "diffuse texture", label(view, i), report);
     }
     return means;
-}
-
-/// Sets the textures of glTF's extensions.
-template <typename ToTexture>
-void add_textures(MetallicRoughness& model, const GltfMaterial& material,
-                  const ToTexture& texture) {
-    model.specular_texture = texture(material.specular_texture);
-    model.specular_color_texture = texture(material.specular_color_texture);
-    model.clearcoat_texture = texture(material.clearcoat_texture);
-    model.clearcoat_roughness_texture = texture(material.clearcoat_roughness_texture);
-    if (const auto normal = texture(material.clearcoat_normal_texture, true)) {
-        model.clearcoat_normal_map =
-            NormalMap{*normal, material.clearcoat_normal_scale, Green::up, std::nullopt};
-    }
-    model.sheen_color_texture = texture(material.sheen_color_texture);
-    model.sheen_roughness_texture = texture(material.sheen_roughness_texture);
-    model.anisotropy_texture = texture(material.anisotropy_texture, true);
-    model.iridescence_texture = texture(material.iridescence_texture);
-    model.iridescence_thickness_texture = texture(material.iridescence_thickness_texture);
-    model.transmission_texture = texture(material.transmission_texture);
-    model.thickness_texture = texture(material.thickness_texture);
 }
 
 /// Sets textures and alpha, which are the same in both material models.
 void add_textures(Material& result, const GltfMaterial& material, std::size_t index,
                   Report& report) {
     const TexcoordSources sources = texcoord_sources(material);
-    const auto texture = [&](const std::optional<GltfTexture>& given, bool is_map = false) {
-        return texture_from(given, sources, is_map, index, report);
-    };
-    result.diffuse_texture = texture(material.base_color_texture);
-    if (result.metallic_roughness) {
-        result.metallic_roughness->texture = texture(material.metallic_roughness_texture);
-        add_textures(*result.metallic_roughness, material, texture);
+    for (const TextureSlotInfo& slot : texture_slots) {
+        if (find_texture(material, slot.slot) == nullptr) continue;
+        if (is_of_metallic_roughness(slot) && !result.metallic_roughness) continue;
+        if (const auto texture = texture_from(material, slot, sources, index, report)) {
+            set_texture(result, slot.slot, *texture);
+        } else {
+            remove_texture(result, slot.slot);
+        }
     }
-    result.emission_texture = texture(material.emission_texture);
+    if (result.normal_map) result.normal_map->scale = material.normal_map->scale;
     // As for a texture that cannot be read: most texels are black.
     if (material.emission_texture && !result.emission_texture) result.emission = glm::vec3(0.0F);
-    result.occlusion_texture = texture(material.occlusion_texture);
     result.occlusion_strength = usable(material.occlusion_strength, 1.0F);
-    if (const auto normal = texture(material.normal_texture, true)) {
-        result.normal_map = NormalMap{*normal, material.normal_scale, Green::up, std::nullopt};
-    }
     result.alpha_mode = material.alpha_mode;
-    result.opacity = usable(material.base_color.a, 1.0F);
+    result.opacity = usable(material.opacity, 1.0F);
     result.alpha_cutoff = usable(material.alpha_cutoff, max_reflectance);
 }
 
@@ -412,11 +363,12 @@ void add_undrawn_extensions(Material& result, const GltfMaterial& material, std:
     names = material.more_extensions;
     // Phong's model has neither layers nor films nor anisotropy.
     if (!result.metallic_roughness && !result.unlit) {
-        if (material.anisotropy > 0.0F) names.emplace_back("KHR_materials_anisotropy");
-        if (material.iridescence > 0.0F) names.emplace_back("KHR_materials_iridescence");
-        if (material.clearcoat > 0.0F) names.emplace_back("KHR_materials_clearcoat");
-        if (material.sheen_color != glm::vec3(0.0F)) names.emplace_back("KHR_materials_sheen");
-        if (material.transmission > 0.0F) names.emplace_back("KHR_materials_transmission");
+        const MetallicRoughness& model = *material.metallic_roughness;
+        if (model.anisotropy > 0.0F) names.emplace_back("KHR_materials_anisotropy");
+        if (model.iridescence > 0.0F) names.emplace_back("KHR_materials_iridescence");
+        if (model.clearcoat > 0.0F) names.emplace_back("KHR_materials_clearcoat");
+        if (model.sheen_color != glm::vec3(0.0F)) names.emplace_back("KHR_materials_sheen");
+        if (model.transmission > 0.0F) names.emplace_back("KHR_materials_transmission");
         std::sort(names.begin(), names.end());
     }
     for (const std::string& name : names) {
@@ -440,7 +392,8 @@ std::vector<Material> materials_from(const GltfView& view, const SceneOptions& o
         const GltfMaterial& material = view.materials[i];
         Material& result =
             materials.emplace_back(phong_from_metallic_roughness(material, means[i]));
-        if (!phong && !material.unlit) result.metallic_roughness = factors_of(material);
+        if (!phong && !material.unlit)
+            result.metallic_roughness = allowed(*material.metallic_roughness);
         add_textures(result, material, i, report);
         add_undrawn_extensions(result, material, i, view.required_extensions, report);
     }
@@ -558,8 +511,8 @@ std::optional<DeformableMesh> deformable_mesh(const ReadDocument& read,
                    (options.normals == NormalMode::keep && !options.crease_angle));
     const std::vector<MaterialRange>& ranges = mesh.material_ranges;
     const auto uses_frame = [](const GltfMaterial& material) {
-        return material.normal_texture || material.clearcoat_normal_texture ||
-               material.anisotropy > 0.0F;
+        const MetallicRoughness& model = *material.metallic_roughness;
+        return material.normal_map || model.clearcoat_normal_map || model.anisotropy > 0.0F;
     };
     const bool is_framed = !ranges.empty() && ranges.front().material &&
                            uses_frame(view.materials[*ranges.front().material]) &&
@@ -709,29 +662,18 @@ KeyChannel moving(const KeyChannel& channel, std::string property, std::size_t i
                   [](const glm::vec4& value) { return value; });
 }
 
-/// The factors of glTF's materials that become numbers of MetallicRoughness as they are.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 19> animated_factors{{
-    {"pbrMetallicRoughness/metallicFactor", "metallic"},
-    {"pbrMetallicRoughness/roughnessFactor", "roughness"},
-    {"extensions/KHR_materials_ior/ior", "refractive_index"},
-    {"extensions/KHR_materials_specular/specularFactor", "specular"},
-    {"extensions/KHR_materials_specular/specularColorFactor", "specular_color"},
-    {"extensions/KHR_materials_clearcoat/clearcoatFactor", "clearcoat"},
-    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", "clearcoat_roughness"},
-    {"extensions/KHR_materials_sheen/sheenColorFactor", "sheen_color"},
-    {"extensions/KHR_materials_sheen/sheenRoughnessFactor", "sheen_roughness"},
-    {"extensions/KHR_materials_anisotropy/anisotropyStrength", "anisotropy"},
-    {"extensions/KHR_materials_anisotropy/anisotropyRotation", "anisotropy_rotation"},
-    {"extensions/KHR_materials_iridescence/iridescenceFactor", "iridescence"},
-    {"extensions/KHR_materials_iridescence/iridescenceIor", "iridescence_index"},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum",
-     "iridescence_thickness_minimum"},
-    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", "iridescence_thickness"},
-    {"extensions/KHR_materials_transmission/transmissionFactor", "transmission"},
-    {"extensions/KHR_materials_volume/thicknessFactor", "thickness"},
-    {"extensions/KHR_materials_volume/attenuationDistance", "attenuation_distance"},
-    {"extensions/KHR_materials_volume/attenuationColor", "attenuation_color"},
-}};
+/// Returns the name of the number or color of a path in glTF; null if the owner has none.
+template <typename Owner>
+const char* field_of_path(std::string_view path) {
+    const char* name = nullptr;
+    for_each_field<Owner>([&]<typename Value>(const SceneField<Owner, Value>& field) {
+        constexpr bool is_number = std::is_same_v<Value, float> ||
+                                   std::is_same_v<Value, glm::vec3> ||
+                                   std::is_same_v<Value, std::optional<float>>;
+        if (is_number && field.gltf == path) name = field.name;
+    });
+    return name;
+}
 
 /// Returns the channels for an animated property of a material; none if the scene has no such
 /// number.
@@ -755,15 +697,13 @@ std::vector<KeyChannel> moving_material(const GltfMaterial& read, const Material
             return glm::vec4(read.emission_factor * v.x, 0.0F);
         })};
     }
-    if (property == "alphaCutoff") return {moving(channel, "materials.alpha_cutoff", index)};
-    if (property == "occlusionTexture/strength")
-        return {moving(channel, "materials.occlusion_strength", index)};
     if (property == "normalTexture/scale" && material.normal_map)
         return {moving(channel, "materials.normal_map.scale", index)};
-    const auto factor = std::find_if(animated_factors.begin(), animated_factors.end(),
-                                     [&](const auto& f) { return f.first == property; });
-    if (factor == animated_factors.end() || !physical) return {};
-    return {moving(channel, fmt::format("materials.metallic_roughness.{}", factor->second), index)};
+    if (const char* const name = field_of_path<Material>(property))
+        return {moving(channel, fmt::format("materials.{}", name), index)};
+    const char* const name = field_of_path<MetallicRoughness>(property);
+    if (name == nullptr || !physical) return {};
+    return {moving(channel, fmt::format("materials.metallic_roughness.{}", name), index)};
 }
 
 /// Returns the channel for an animated property of one light.

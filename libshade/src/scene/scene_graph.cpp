@@ -720,26 +720,10 @@ void join(std::vector<T>& all, std::vector<T>&& more) {
                std::make_move_iterator(more.end()));
 }
 
-void shift(std::optional<Texture>& texture, std::size_t by) {
-    if (texture) texture->image += by;
-}
-
 void shift_images(Material& material, std::size_t by) {
-    shift(material.diffuse_texture, by);
-    shift(material.specular_texture, by);
-    shift(material.emission_texture, by);
-    shift(material.occlusion_texture, by);
-    shift(material.opacity_texture, by);
-    if (material.normal_map) material.normal_map->texture.image += by;
-    if (material.bump_map) material.bump_map->texture.image += by;
-    if (!material.metallic_roughness) return;
-    MetallicRoughness& model = *material.metallic_roughness;
-    for_each_field<MetallicRoughness>([&](const auto& field) {
-        auto& value = model.*field.member;
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<Texture>>)
-            shift(value, by);
-    });
-    if (model.clearcoat_normal_map) model.clearcoat_normal_map->texture.image += by;
+    for (const TextureSlotInfo& slot : texture_slots) {
+        if (Texture* const texture = find_texture(material, slot.slot)) texture->image += by;
+    }
 }
 
 void shift_node(Animation& animation, std::size_t by) {

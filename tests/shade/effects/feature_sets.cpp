@@ -19,13 +19,20 @@ FeatureField field(const char* name) {
             [](Features& f, unsigned value) { f.*Member = static_cast<Value>(value); }};
 }
 
+constexpr std::uint32_t second_bit(TextureSlot slot) {
+    return 1U << static_cast<unsigned>(slot);
+}
+
 /// A bit of Features::second_texcoords.
-template <unsigned Bit>
+template <TextureSlot Slot>
 FeatureField second(const char* name) {
-    return {name, 2, [](const Features& f) { return f.second_texcoords >> Bit & 1U; },
-            [](Features& f, unsigned value) {
-                f.second_texcoords = (f.second_texcoords & ~(1U << Bit)) | value << Bit;
-            }};
+    return {
+        name, 2,
+        [](const Features& f) { return (f.second_texcoords & second_bit(Slot)) != 0 ? 1U : 0U; },
+        [](Features& f, unsigned value) {
+            f.second_texcoords =
+                (f.second_texcoords & ~second_bit(Slot)) | value * second_bit(Slot);
+        }};
 }
 
 constexpr unsigned max_values = 6;
@@ -97,9 +104,9 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::transmission_texture>("transmission texture"),
         field<&F::volume>("volume"),
         field<&F::thickness_texture>("thickness texture"),
-        second<0>("diffuse texture at second coordinates"),
-        second<3>("occlusion texture at second coordinates"),
-        second<14>("thickness texture at second coordinates"),
+        second<TextureSlot::base_color>("diffuse texture at second coordinates"),
+        second<TextureSlot::occlusion>("occlusion texture at second coordinates"),
+        second<TextureSlot::thickness>("thickness texture at second coordinates"),
         field<&F::interpolation, 3>("interpolation"),
         field<&F::morphing>("morphing"),
         field<&F::skinning>("skinning"),
@@ -234,9 +241,12 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
         if (f.detail == NormalDetail::object_normal_map) m.normal_map->space = NormalSpace::object;
     }
     if (f.detail == NormalDetail::bump_map) m.bump_map = BumpMap{data("bump", 8, 0), 2.0F};
-    if (m.diffuse_texture) m.diffuse_texture->second_texcoords = (f.second_texcoords & 1U) != 0;
+    if (m.diffuse_texture)
+        m.diffuse_texture->second_texcoords =
+            (f.second_texcoords & second_bit(TextureSlot::base_color)) != 0;
     if (m.occlusion_texture)
-        m.occlusion_texture->second_texcoords = (f.second_texcoords >> 3U & 1U) != 0;
+        m.occlusion_texture->second_texcoords =
+            (f.second_texcoords & second_bit(TextureSlot::occlusion)) != 0;
     if (!f.metallic_roughness) return;
     MetallicRoughness& model = *m.metallic_roughness;
     if (f.specular_weight_texture) {
@@ -259,7 +269,8 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
     if (f.transmission_texture) model.transmission_texture = data("transmission", 18, 40);
     if (f.thickness_texture) {
         model.thickness_texture = data("thickness", 19, 40);
-        model.thickness_texture->second_texcoords = (f.second_texcoords >> 14U & 1U) != 0;
+        model.thickness_texture->second_texcoords =
+            (f.second_texcoords & second_bit(TextureSlot::thickness)) != 0;
     }
 }
 

@@ -80,9 +80,7 @@ TEST(MaterialNames, AreSortedAndAllCanBeDrawn) {
 GltfMaterial surface(float metallic, float roughness) {
     GltfMaterial material;
     material.name = "surface";
-    material.base_color = {0.8F, 0.5F, 0.2F, 1.0F};
-    material.metallic = metallic;
-    material.roughness = roughness;
+    material.metallic_roughness = {{0.8F, 0.5F, 0.2F}, metallic, roughness, {}};
     return material;
 }
 
@@ -105,9 +103,9 @@ TEST(PhongFromMetallicRoughness, RoughDielectricIsDiffuse) {
 
 TEST(PhongFromMetallicRoughness, HasTheReflectanceOfTheDielectric) {
     GltfMaterial dense = surface(0, 1);
-    dense.refractive_index = 3.0F;  // Reflects 1/4.
-    dense.specular = 0.5F;
-    dense.specular_color = {1.0F, 0.5F, 8.0F};
+    dense.metallic_roughness->refractive_index = 3.0F;  // Reflects 1/4.
+    dense.metallic_roughness->specular = 0.5F;
+    dense.metallic_roughness->specular_color = {1.0F, 0.5F, 8.0F};
     const Material phong = phong_from_metallic_roughness(dense, {});
     expect_color(phong.specular, glm::vec3(0.125F, 0.0625F, 0.5F) / 4.0F);
     expect_color(phong.ambient, {0.925F, 0.5625F, 0.7F});
@@ -183,7 +181,7 @@ TEST(PhongFromMetallicRoughness, KeepsSharedFields) {
     expect_color(phong.emission, {1, 2, 3});
     EXPECT_TRUE(phong.double_sided);
     EXPECT_TRUE(phong.unlit);
-    material.metallic = 1;  // Unlit shows the base color, even of a metal.
+    material.metallic_roughness->metallic = 1;  // Unlit shows the base color, even of a metal.
     expect_color(phong_from_metallic_roughness(material, {}).diffuse, {0.8F, 0.5F, 0.2F});
 }
 

@@ -200,8 +200,8 @@ TEST(SavedModel, HasTheMapsThatItIsDrawnWith) {
     ASSERT_EQ(workplace.run(line + "--normal-map " + map + " --normal-scale 0.5").exit_code, 0);
     Report report;
     const GltfView view = GltfDocument::read(workplace / "vase.glb", report).view();
-    ASSERT_TRUE(view.materials.front().normal_texture);
-    EXPECT_EQ(view.materials.front().normal_scale, 0.5F);
+    ASSERT_TRUE(view.materials.front().normal_map);
+    EXPECT_EQ(view.materials.front().normal_map->scale, 0.5F);
     // Maps that glTF cannot hold are refused, and nothing is written.
     std::filesystem::remove(workplace / "vase.glb");
     for (const std::string& words :

@@ -39,7 +39,7 @@ TEST(MaterialModels, ShininessAndRoughnessAreInverse) {
         material.shininess = shininess;
         set_model(material, ShadingModel::metallic_roughness);
         GltfMaterial same;
-        same.roughness = material.metallic_roughness->roughness;
+        same.metallic_roughness->roughness = material.metallic_roughness->roughness;
         EXPECT_NEAR(phong_from_metallic_roughness(same, {}).shininess, shininess,
                     1e-3F * shininess);
     }
@@ -87,11 +87,11 @@ TEST(MaterialModels, DefaultMaterialIsAddedIfItIsUsed) {
     EXPECT_TRUE(before.meshes[0]->material_ranges.empty()) << "the copy has what it had";
 }
 
-const MapSlot& slot_named(const std::string& name) {
-    for (const MapSlot& slot : map_slots()) {
-        if (slot.name == name) return slot;
+TextureSlot slot_named(const std::string& title) {
+    for (const TextureSlotInfo& info : texture_slots) {
+        if (map_title(info.slot) == title) return info.slot;
     }
-    throw std::runtime_error("no slot " + name);
+    throw std::runtime_error("no map " + title);
 }
 
 class MapSlots : public testing::Test {
@@ -107,8 +107,10 @@ class MapSlots : public testing::Test {
         return workplace_ / "data/scenes/bricks-normal.png";
     }
     /// A file of the kind that the slot accepts.
-    [[nodiscard]] std::filesystem::path file_for(const MapSlot& slot) const {
-        return slot.name == std::string("Normal map") ? normals() : colors();
+    [[nodiscard]] std::filesystem::path file_for(TextureSlot slot) const {
+        const bool has_normals =
+            slot == TextureSlot::normal || slot == TextureSlot::clearcoat_normal;
+        return has_normals ? normals() : colors();
     }
     Scene& scene() { return scene_; }
     Workplace& workplace() { return workplace_; }
@@ -121,13 +123,14 @@ class MapSlots : public testing::Test {
 TEST_F(MapSlots, CanBeSetAndCleared) {
     Material& material = scene().materials[0];
     material.metallic_roughness.emplace();
-    for (const MapSlot& slot : map_slots()) {
-        EXPECT_FALSE(map_name(scene(), 0, slot)) << slot.name;
-        set_map(scene(), 0, slot, file_for(slot));
-        EXPECT_EQ(map_name(scene(), 0, slot), file_for(slot).string()) << slot.name;
-        EXPECT_FALSE(map_name(scene(), 1, slot)) << slot.name << " of the other one";
-        slot.set(material, std::nullopt);
-        EXPECT_FALSE(map_name(scene(), 0, slot)) << slot.name;
+    for (const TextureSlotInfo& info : texture_slots) {
+        EXPECT_FALSE(map_name(scene(), 0, info.slot)) << info.name;
+        set_map(scene(), 0, info.slot, file_for(info.slot));
+        EXPECT_EQ(map_name(scene(), 0, info.slot), file_for(info.slot).string()) << info.name;
+        EXPECT_TRUE(is_map_used(material, info.slot) || info.slot == TextureSlot::specular);
+        EXPECT_FALSE(map_name(scene(), 1, info.slot)) << info.name << " of the other one";
+        remove_texture(material, info.slot);
+        EXPECT_FALSE(map_name(scene(), 0, info.slot)) << info.name;
     }
     EXPECT_EQ(scene().images.size(), 2U) << "one file is one image";
     EXPECT_NO_THROW(validate(scene()));
@@ -172,7 +175,7 @@ TEST_F(MapSlots, RejectMapsOfAnotherKind) {
 }
 
 TEST_F(MapSlots, KeepTheWrapMode) {
-    const MapSlot& slot = slot_named("Diffuse map");
+    const TextureSlot slot = slot_named("Diffuse map");
     set_map(scene(), 0, slot, colors());
     scene().materials[0].diffuse_texture->wrap_u = Wrap::clamp;
     set_map(scene(), 0, slot, heights());
@@ -182,7 +185,7 @@ TEST_F(MapSlots, KeepTheWrapMode) {
 
 TEST_F(MapSlots, RejectInvalidImages) {
     workplace().write("words.png", "no image");
-    const MapSlot& slot = slot_named("Diffuse map");
+    const TextureSlot slot = slot_named("Diffuse map");
     set_map(scene(), 0, slot, colors());
     EXPECT_THROW(set_map(scene(), 0, slot, workplace() / "words.png"), FileError);
     EXPECT_THROW(set_map(scene(), 0, slot, workplace() / "absent.png"), FileError);
@@ -199,12 +202,13 @@ TEST_F(MapSlots, DependOnTheMaterialModel) {
     metallic.metallic_roughness.emplace();
     Material unlit;
     unlit.unlit = true;
-    EXPECT_TRUE(slot_named("Specular map").is_used(phong));
-    EXPECT_FALSE(slot_named("Specular map").is_used(metallic));
-    EXPECT_TRUE(slot_named("Metallic-roughness map").is_used(metallic));
-    EXPECT_FALSE(slot_named("Metallic-roughness map").is_used(phong));
-    EXPECT_FALSE(slot_named("Normal map").is_used(unlit));
-    EXPECT_TRUE(slot_named("Diffuse map").is_used(unlit));
+    EXPECT_TRUE(is_map_used(phong, slot_named("Specular map")));
+    EXPECT_FALSE(is_map_used(metallic, slot_named("Specular map")));
+    EXPECT_TRUE(is_map_used(metallic, slot_named("Metallic-roughness map")));
+    EXPECT_FALSE(is_map_used(phong, slot_named("Metallic-roughness map")));
+    EXPECT_FALSE(is_map_used(metallic, slot_named("Clearcoat map"))) << "it is not there";
+    EXPECT_FALSE(is_map_used(unlit, slot_named("Normal map")));
+    EXPECT_TRUE(is_map_used(unlit, slot_named("Diffuse map")));
 }
 
 }  // namespace

@@ -431,59 +431,6 @@ void set_model(Material& material, ShadingModel model) {
 
 namespace {
 
-using MaybeTexture = std::optional<Texture>;
-
-/// Access to a slot that is a member of the material.
-template <MaybeTexture Material::*member>
-MaybeTexture get(const Material& material) {
-    return material.*member;
-}
-template <MaybeTexture Material::*member>
-void put(Material& material, const MaybeTexture& texture) {
-    material.*member = texture;
-}
-
-bool always(const Material&) {
-    return true;
-}
-bool is_phong(const Material& material) {
-    return !material.metallic_roughness && !material.unlit;
-}
-bool is_metallic(const Material& material) {
-    return material.metallic_roughness && !material.unlit;
-}
-bool is_lit(const Material& material) {
-    return !material.unlit;
-}
-
-MaybeTexture metallic_texture(const Material& material) {
-    return material.metallic_roughness ? material.metallic_roughness->texture : std::nullopt;
-}
-void set_metallic_texture(Material& material, const MaybeTexture& texture) {
-    if (material.metallic_roughness) material.metallic_roughness->texture = texture;
-}
-
-MaybeTexture normal_texture(const Material& material) {
-    return material.normal_map ? MaybeTexture(material.normal_map->texture) : std::nullopt;
-}
-void set_normal_texture(Material& material, const MaybeTexture& texture) {
-    if (!texture) return material.normal_map.reset();
-    if (!material.normal_map) material.normal_map.emplace();
-    material.normal_map->texture = *texture;
-    material.normal_map->flat.reset();  // The new image may use another code for zero.
-    material.bump_map.reset();
-}
-
-MaybeTexture bump_texture(const Material& material) {
-    return material.bump_map ? MaybeTexture(material.bump_map->texture) : std::nullopt;
-}
-void set_bump_texture(Material& material, const MaybeTexture& texture) {
-    if (!texture) return material.bump_map.reset();
-    if (!material.bump_map) material.bump_map.emplace();
-    material.bump_map->texture = *texture;
-    material.normal_map.reset();
-}
-
 /// The index of a file among the scene's images. Adds the file if it is new.
 std::size_t image_of(Scene& scene, const std::filesystem::path& file) {
     const auto is_it = [&](const ImageSource& image) {
@@ -498,59 +445,82 @@ std::size_t image_of(Scene& scene, const std::filesystem::path& file) {
 
 }  // namespace
 
-const std::vector<MapSlot>& map_slots() {
-    using M = Material;
-    static const std::vector<MapSlot> slots = {
-        {"Diffuse map", get<&M::diffuse_texture>, put<&M::diffuse_texture>, always},
-        {"Specular map", get<&M::specular_texture>, put<&M::specular_texture>, is_phong},
-        {"Metallic-roughness map", metallic_texture, set_metallic_texture, is_metallic},
-        {"Normal map", normal_texture, set_normal_texture, is_lit},
-        {"Bump map", bump_texture, set_bump_texture, is_lit},
-        {"Occlusion map", get<&M::occlusion_texture>, put<&M::occlusion_texture>, is_lit},
-        {"Emission map", get<&M::emission_texture>, put<&M::emission_texture>, is_lit},
-        {"Opacity map", get<&M::opacity_texture>, put<&M::opacity_texture>, always},
-    };
-    return slots;
+std::string map_title(TextureSlot slot) {
+    std::string title = slot_info(slot).effect;
+    for (const std::string_view kind : {" texture", " map"}) {
+        if (title.ends_with(kind)) title.resize(title.size() - kind.size());
+    }
+    return capitalized(title + " map");
 }
 
-std::optional<std::string> map_name(const Scene& scene, std::size_t material, const MapSlot& slot) {
-    const MaybeTexture texture = slot.texture(scene.materials[material]);
-    if (!texture) return std::nullopt;
+bool is_map_used(const Material& material, TextureSlot slot) {
+    const TextureSlotInfo& info = slot_info(slot);
+    if (slot == TextureSlot::base_color || slot == TextureSlot::opacity) return true;
+    if (material.unlit) return false;
+    if (slot == TextureSlot::specular) return !material.metallic_roughness;
+    if (!is_of_metallic_roughness(info)) return true;
+    const bool is_of_extension = slot != TextureSlot::metallic_roughness;
+    return material.metallic_roughness &&
+           (!is_of_extension || find_texture(material, slot) != nullptr);
+}
+
+std::optional<std::string> map_name(const Scene& scene, std::size_t material, TextureSlot slot) {
+    const Texture* const texture = find_texture(scene.materials[material], slot);
+    if (texture == nullptr) return std::nullopt;
     return scene.images[texture->image].name;
 }
 
 namespace {
 
 /// The kinds of maps that a slot accepts. Those of the other slots may be packed in many ways.
-std::vector<MapKind> accepted_kinds(const MapSlot& slot) {
-    if (slot.set == set_normal_texture) return {MapKind::normal, MapKind::object_normal};
-    if (slot.set == set_bump_texture) return {MapKind::height};
-    if (slot.set == put<&Material::diffuse_texture> || slot.set == put<&Material::emission_texture>)
-        return {MapKind::color};
-    return {};
+std::vector<MapKind> accepted_kinds(TextureSlot slot) {
+    switch (slot) {
+        case TextureSlot::normal:
+            return {MapKind::normal, MapKind::object_normal};
+        case TextureSlot::clearcoat_normal:
+            return {MapKind::normal};
+        case TextureSlot::bump:
+            return {MapKind::height};
+        case TextureSlot::base_color:
+        case TextureSlot::emission:
+            return {MapKind::color};
+        default:
+            return {};
+    }
 }
 
 }  // namespace
 
-void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
+void set_map(Scene& scene, std::size_t material, TextureSlot slot,
              const std::filesystem::path& file) {
+    const TextureSlotInfo& slot_of_map = slot_info(slot);
     const ImageInfo info = read_image_info(file);
-    if (slot.set == set_normal_texture && info.channels < 3) {
+    const std::string_view used = slot_of_map.channels;
+    if (slot_of_map.in_tangent_frame && info.channels < static_cast<int>(used.size())) {
         throw InvalidInput(fmt::format(
-            "{}: a normal map has 3 or 4 channels, not {}; a height map is a \"Bump map\"",
-            file.string(), info.channels));
+            "{}: a{} {} has 3 or 4 channels, not {}; a height map is a \"Bump map\"", file.string(),
+            slot == TextureSlot::anisotropy ? "n" : "", slot_of_map.effect, info.channels));
     }
     const std::vector<MapKind> accepted = accepted_kinds(slot);
     if (!accepted.empty()) check_kind(file, accepted, {});
-    Texture texture = slot.texture(scene.materials[material]).value_or(Texture{});
+    Material& changed = scene.materials[material];
+    const Texture* const before = find_texture(changed, slot);
+    Texture texture = before == nullptr ? Texture{} : *before;
     texture.image = image_of(scene, file);
-    slot.set(scene.materials[material], texture);
-    if (slot.set != set_normal_texture) return;
+    set_texture(changed, slot, texture);
+    if (slot == TextureSlot::bump) changed.normal_map.reset();
+    if (slot == TextureSlot::normal) changed.bump_map.reset();
+    if (slot != TextureSlot::normal && slot != TextureSlot::clearcoat_normal) return;
+    NormalMap* const map = slot == TextureSlot::normal ? &*changed.normal_map
+                           : changed.metallic_roughness
+                               ? &*changed.metallic_roughness->clearcoat_normal_map
+                               : nullptr;
+    if (map == nullptr) return;
+    map->flat.reset();  // The new image may use another code for zero.
     const MapDescription stated = read_description(info.metadata);
-    NormalMap& map = *scene.materials[material].normal_map;
-    map.green = stated.green.value_or(map.green);
+    map->green = stated.green.value_or(map->green);
     if (stated.kind) {
-        map.space =
+        map->space =
             *stated.kind == MapKind::object_normal ? NormalSpace::object : NormalSpace::tangent;
     }
 }
@@ -672,16 +642,17 @@ std::optional<Thumbnail> thumbnail_of(const PanelInput& input, std::size_t image
 /// Edits the files of the maps. If a file cannot be used, the state reports the error.
 void edit_maps(const PanelInput& input, std::size_t index) {
     ViewerState& state = input.state;
-    for (const MapSlot& slot : map_slots()) {
-        if (!slot.is_used(state.scene().materials[index])) continue;
-        const MaybeTexture texture = slot.texture(state.scene().materials[index]);
+    for (const TextureSlotInfo& info : texture_slots) {
+        const TextureSlot slot = info.slot;
+        if (!is_map_used(state.scene().materials[index], slot)) continue;
+        const Texture* const texture = find_texture(state.scene().materials[index], slot);
         const FileChoice choice =
-            file_field(slot.name, map_name(state.scene(), index, slot),
-                       texture ? thumbnail_of(input, texture->image) : std::nullopt);
+            file_field(map_title(slot).c_str(), map_name(state.scene(), index, slot),
+                       texture != nullptr ? thumbnail_of(input, texture->image) : std::nullopt);
         if (choice.file) {
             state.try_edit([&](Scene& scene) { set_map(scene, index, slot, *choice.file); });
         } else if (choice.is_cleared) {
-            state.edit([&](Scene& scene) { slot.set(scene.materials[index], std::nullopt); });
+            state.edit([&](Scene& scene) { remove_texture(scene.materials[index], slot); });
         }
     }
 }

@@ -120,25 +120,22 @@ ShadingModel model_of(const Material& material);
 /// its Phong values, which the file reader or an earlier change has set.
 void set_model(Material& material, ShadingModel model);
 
-/// An image of a material, such as its normal map. Images are decoded when a picture needs them.
-struct MapSlot {
-    const char* name;  ///< For example "Normal map".
-    std::optional<Texture> (*texture)(const Material& material);
-    /// Sets the texture, or removes it. A material has either a normal map or a bump map, so
-    /// setting one removes the other. The scale and strength of a map stay.
-    void (*set)(Material& material, const std::optional<Texture>& texture);
-    /// Returns whether the material's model uses this map.
-    bool (*is_used)(const Material& material);
-};
+// The images of a material, such as its normal map. Images are decoded when a picture needs them.
 
-const std::vector<MapSlot>& map_slots();
+/// For example "Normal map".
+std::string map_title(TextureSlot slot);
+
+/// Returns whether the panel shows this map: the material's model uses it, and a map of a glTF
+/// extension is there.
+bool is_map_used(const Material& material, TextureSlot slot);
 
 /// The name of the image, if there is one.
-std::optional<std::string> map_name(const Scene& scene, std::size_t material, const MapSlot& slot);
+std::optional<std::string> map_name(const Scene& scene, std::size_t material, TextureSlot slot);
 
-/// Sets a map to a file. The wrap modes stay; the default is repeat.
+/// Sets a map to a file. The wrap modes stay; the default is repeat. A material has either a normal
+/// map or a bump map, so setting one removes the other. The scale and strength of a map stay.
 /// \throws FileError if the file is not an image
-void set_map(Scene& scene, std::size_t material, const MapSlot& slot,
+void set_map(Scene& scene, std::size_t material, TextureSlot slot,
              const std::filesystem::path& file);
 
 }  // namespace relief::tools

@@ -22,6 +22,7 @@
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/material.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
@@ -38,16 +39,12 @@ struct GltfPrimitiveId {
     friend bool operator==(const GltfPrimitiveId&, const GltfPrimitiveId&) = default;
 };
 
-enum class TextureFilter { linear, nearest };
-
-/// A use of an image as a texture.
-struct GltfTexture {
-    std::size_t image = 0;  ///< Index into GltfView::images.
-    Wrap wrap_u = Wrap::repeat;
-    Wrap wrap_v = Wrap::repeat;
-    TextureFilter filter = TextureFilter::linear;
-    int texcoord_set = 0;
+/// The texture coordinates at which a texture is looked up.
+struct GltfTexcoords {
+    int set = 0;  ///< TEXCOORD_n.
     GltfTextureTransform transform;
+
+    friend bool operator==(const GltfTexcoords&, const GltfTexcoords&) = default;
 };
 
 /// An image in its encoded form: bytes from the document, or a file beside it.
@@ -61,76 +58,22 @@ struct GltfImage {
     std::string fault{};
 };
 
-/// The meaning of alpha.
-enum class AlphaMode {
-    opaque,  ///< Alpha is ignored.
-    mask,    ///< The surface exists where alpha is at least alpha_cutoff.
-    blend,   ///< Alpha blends the surface over its background; drawn farthest first.
-};
+/// A material as glTF defines it: factors have the values of the document, also those outside of
+/// their ranges, and Phong's factors have their defaults.
+struct GltfMaterial : Material {
+    GltfMaterial() { metallic_roughness.emplace(); }
 
-template <>
-inline constexpr auto enum_names<AlphaMode> = std::to_array<EnumName<AlphaMode>>(
-    {{"opaque", AlphaMode::opaque}, {"mask", AlphaMode::mask}, {"blend", AlphaMode::blend}});
-
-/// A material as glTF defines it; colors are linear.
-struct GltfMaterial {
-    std::string name;
-    glm::vec4 base_color{1.0F};
-    float metallic = 1.0F;
-    float roughness = 1.0F;
-    glm::vec3 emission{0.0F};  ///< emissiveFactor times KHR_materials_emissive_strength.
+    // Material::emission is the product.
     glm::vec3 emission_factor{0.0F};
-    float emission_strength = 1.0F;
-    std::optional<GltfTexture> base_color_texture;
-    std::optional<GltfTexture> metallic_roughness_texture;  ///< Green roughness, blue metallic.
-    std::optional<GltfTexture> normal_texture;
-    std::optional<GltfTexture> emission_texture;
-    std::optional<GltfTexture> occlusion_texture;  ///< Red: the share of ambient light.
-    float normal_scale = 1.0F;
-    float occlusion_strength = 1.0F;
-    AlphaMode alpha_mode = AlphaMode::opaque;
-    float alpha_cutoff = 0.5F;
-    bool double_sided = false;
-    bool unlit = false;  ///< KHR_materials_unlit
-    // KHR_materials_ior and KHR_materials_specular.
-    float refractive_index = 1.5F;
-    float specular = 1.0F;
-    glm::vec3 specular_color{1.0F};
-    std::optional<GltfTexture> specular_texture;        ///< Alpha.
-    std::optional<GltfTexture> specular_color_texture;  ///< sRGB color.
-    // KHR_materials_clearcoat.
-    float clearcoat = 0.0F;
-    float clearcoat_roughness = 0.0F;
-    float clearcoat_normal_scale = 1.0F;
-    std::optional<GltfTexture> clearcoat_texture;            ///< Red.
-    std::optional<GltfTexture> clearcoat_roughness_texture;  ///< Green.
-    std::optional<GltfTexture> clearcoat_normal_texture;
-    // KHR_materials_sheen.
-    glm::vec3 sheen_color{0.0F};
-    float sheen_roughness = 0.0F;
-    std::optional<GltfTexture> sheen_color_texture;  ///< sRGB color.
-    // KHR_materials_anisotropy.
-    float anisotropy = 0.0F;                        ///< The strength.
-    float anisotropy_rotation = 0.0F;               ///< Radians from the tangent to the bitangent.
-    std::optional<GltfTexture> anisotropy_texture;  ///< Direction in red and green, strength: blue.
-    // KHR_materials_iridescence; thicknesses in nanometers.
-    float iridescence = 0.0F;
-    float iridescence_index = 1.3F;
-    float iridescence_thickness_minimum = 100.0F;
-    float iridescence_thickness = 400.0F;                      ///< The maximum.
-    std::optional<GltfTexture> iridescence_texture;            ///< Red.
-    std::optional<GltfTexture> iridescence_thickness_texture;  ///< Green: from minimum to maximum.
-    // KHR_materials_transmission and KHR_materials_volume.
-    float transmission = 0.0F;
-    std::optional<GltfTexture> transmission_texture;  ///< Red.
-    float thickness = 0.0F;                           ///< In the space of the mesh.
-    std::optional<GltfTexture> thickness_texture;     ///< Green.
-    std::optional<float> attenuation_distance;        ///< In world space; infinite if absent.
-    glm::vec3 attenuation_color{1.0F};
+    float emission_strength = 1.0F;                             ///< KHR_materials_emissive_strength
+    std::array<GltfTexcoords, texture_slot_count> texcoords{};  ///< By TextureSlot.
     /// The extensions that change the appearance and are not among the members, sorted. Extensions
     /// whose values change nothing are left out.
-    std::vector<std::string> more_extensions{};
-    std::optional<GltfTexture> sheen_roughness_texture;  ///< Alpha; of KHR_materials_sheen.
+    std::vector<std::string> more_extensions;
+
+    [[nodiscard]] const GltfTexcoords& texcoords_of(TextureSlot slot) const {
+        return texcoords[static_cast<std::size_t>(slot)];
+    }
 };
 
 enum class LightType { directional, point, spot };
@@ -292,9 +235,6 @@ struct GltfLevel {
     /// The part of the screen, 0 to 1, below which the level replaces the one before.
     double max_coverage = 0.0;
 };
-
-/// The textures of a material.
-enum class GltfTextureSlot { base_color, metallic_roughness, normal, occlusion, emissive };
 
 /// The location of an image: in the document, or in a file next to it.
 enum class GltfImageStorage { embedded, external };
@@ -490,9 +430,10 @@ class GltfDocument {
     /// \param report   counts converted names, properties of the material that hide or transform
     ///                 the map, and primitives of the material without texture coordinates for it
     /// \throws FileError if the image cannot be read, is neither PNG nor JPEG, or has the name of
-    ///         another external image; InvalidInput if there is no such material, or if no
-    ///         primitive of the material has the texture coordinates of the map
-    void set_texture(std::size_t material, GltfTextureSlot slot, const std::filesystem::path& image,
+    ///         another external image; InvalidInput if there is no such material, if the texture
+    ///         belongs to an extension or not to glTF, or if no primitive of the material has the
+    ///         texture coordinates of the map
+    void set_texture(std::size_t material, TextureSlot slot, const std::filesystem::path& image,
                      GltfImageStorage storage, Report& report = IgnoredReport());
 
     /// Sets the factor of the x and y of a material's normal map.

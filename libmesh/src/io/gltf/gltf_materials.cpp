@@ -25,24 +25,20 @@ constexpr std::array source_extensions = {"KHR_texture_basisu", "EXT_texture_web
 
 /// The member of a material that holds a texture.
 struct SlotMember {
-    const char* parent;  ///< The object that has the member; null for the material itself.
-    const char* key;
+    std::string parent;  ///< The object that has the member; empty for the material itself.
+    std::string key;
 };
 
-SlotMember member_of(GltfTextureSlot slot) {
-    switch (slot) {
-        case GltfTextureSlot::base_color:
-            return {"pbrMetallicRoughness", "baseColorTexture"};
-        case GltfTextureSlot::metallic_roughness:
-            return {"pbrMetallicRoughness", "metallicRoughnessTexture"};
-        case GltfTextureSlot::normal:
-            return {nullptr, "normalTexture"};
-        case GltfTextureSlot::occlusion:
-            return {nullptr, "occlusionTexture"};
-        case GltfTextureSlot::emissive:
-            break;
+/// \throws InvalidInput if the texture does not belong to glTF without extensions
+SlotMember member_of(TextureSlot slot) {
+    const std::string path = slot_info(slot).gltf;
+    if (path.empty() || path.starts_with("extensions/")) {
+        fail_gltf("the {} texture cannot be set, because glTF without extensions does not have it",
+                  slot_info(slot).name);
     }
-    return {nullptr, "emissiveTexture"};
+    const std::size_t end = path.find('/');
+    if (end == std::string::npos) return {"", path};
+    return {path.substr(0, end), path.substr(end + 1)};
 }
 
 /// Returns the number of objects below `json` that use a texture: "baseColorTexture", those of
@@ -172,15 +168,15 @@ void require_texcoords(GltfContents& contents, std::size_t material, std::size_t
 }
 
 /// Reports properties that hide a new texture, or that change where it is.
-void report_slot(const Json& material, std::size_t index, GltfTextureSlot slot, const Json& info,
+void report_slot(const Json& material, std::size_t index, TextureSlot slot, const Json& info,
                  Report& report) {
     const auto add = [&](const std::string& what, const std::string& outcome) {
         report.add(what, "material", index, outcome);
     };
-    const bool is_color = slot == GltfTextureSlot::base_color;
+    const bool is_color = slot == TextureSlot::base_color;
     if (!is_color && find(material, "extensions", "KHR_materials_unlit") != nullptr)
         add("map in a material with KHR_materials_unlit", "is not visible");
-    if ((is_color || slot == GltfTextureSlot::metallic_roughness) &&
+    if ((is_color || slot == TextureSlot::metallic_roughness) &&
         find(material, "extensions", "KHR_materials_pbrSpecularGlossiness") != nullptr) {
         add("map in a material with KHR_materials_pbrSpecularGlossiness",
             "is ignored by renderers that know the extension");
@@ -208,7 +204,7 @@ std::size_t GltfDocument::add_material(const std::string& name) {
     return index;
 }
 
-void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
+void GltfDocument::set_texture(std::size_t material, TextureSlot slot,
                                const std::filesystem::path& image, GltfImageStorage storage,
                                Report& report) {
     GltfContents& contents = contents_->data;
@@ -218,11 +214,12 @@ void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
         fail_gltf("material {} does not exist, there are only {}", material, count);
     Json& json = root["materials"][material];
     const SlotMember member = member_of(slot);
-    const Json* const before =
-        member.parent == nullptr ? find(json, member.key) : find(json, member.parent, member.key);
+    const Json* const before = member.parent.empty()
+                                   ? find(json, member.key.c_str())
+                                   : find(json, member.parent.c_str(), member.key.c_str());
     require_texcoords(contents, material, before == nullptr ? 0 : texcoord_set_of(*before), report);
     const std::size_t new_image = image_entry(contents, image, storage, report);
-    Json& parent = member.parent == nullptr ? json : json[member.parent];
+    Json& parent = member.parent.empty() ? json : json[member.parent];
     Json& info = parent[member.key];
     if (const auto old = index_in(info, "index")) {
         Json& texture = root["textures"][*old];
@@ -238,7 +235,7 @@ void GltfDocument::set_texture(std::size_t material, GltfTextureSlot slot,
     }
     for (const char* extension : source_extensions)
         remove_unused_extension(root, extension);
-    if (slot == GltfTextureSlot::emissive) {
+    if (slot == TextureSlot::emission) {
         constexpr glm::vec3 black(0.0F);
         if (vector_in(json, "emissiveFactor", black) == black) {
             json["emissiveFactor"] = {1, 1, 1};

@@ -300,23 +300,24 @@ namespace {
 MtlMaterial translated(const GltfMaterial& material, const GltfView& view) {
     MtlMaterial result;
     result.name = material.name;
-    result.diffuse = glm::vec3(material.base_color);
-    result.opacity = material.base_color.a;
+    const MetallicRoughness& model = *material.metallic_roughness;
+    result.diffuse = model.base_color;
+    result.opacity = material.opacity;
     result.emission = material.emission;
-    const float alpha = std::max(material.roughness * material.roughness, 1e-3F);
+    const float alpha = std::max(model.roughness * model.roughness, 1e-3F);
     result.shininess = std::max(2.0F / (alpha * alpha) - 2.0F, 0.0F);
-    const auto path = [&](const std::optional<GltfTexture>& texture) {
+    const auto path = [&](TextureSlot slot) {
         std::optional<std::filesystem::path> file;
-        if (texture) {
+        if (const Texture* texture = find_texture(material, slot)) {
             const auto* found =
                 std::get_if<std::filesystem::path>(&view.images[texture->image].source);
             if (found != nullptr) file = *found;
         }
         return file;
     };
-    result.diffuse_map = path(material.base_color_texture);
-    result.emission_map = path(material.emission_texture);
-    result.normal_map = path(material.normal_texture);
+    result.diffuse_map = path(TextureSlot::base_color);
+    result.emission_map = path(TextureSlot::emission);
+    result.normal_map = path(TextureSlot::normal);
     return result;
 }
 

@@ -19,6 +19,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "geometry/direction.h"
@@ -142,28 +143,44 @@ std::optional<std::size_t> image_of(const Json& texture) {
     return std::nullopt;
 }
 
-std::optional<GltfTexture> texture_in(const Json& root, const Json& holder, const char* key) {
-    const Json* info = find(holder, key);
-    if (info == nullptr) return std::nullopt;
-    const Json& texture = root["textures"][size_in(*info, "index")];
+/// Returns the property of a path: "extensions/KHR_materials_ior/ior"; null if there is none.
+const Json* find_path(const Json& object, std::string_view path) {
+    const Json* found = &object;
+    while (found != nullptr && !path.empty()) {
+        const std::size_t length = std::min(path.find('/'), path.size());
+        const std::string key(path.substr(0, length));
+        found = found->is_object() ? find(*found, key.c_str()) : nullptr;
+        path.remove_prefix(std::min(length + 1, path.size()));
+    }
+    return found;
+}
+
+/// Returns the texture of a texture info, without its texture coordinates; none without an image.
+std::optional<Texture> texture_in(const Json& root, const Json& info) {
+    const Json& texture = root["textures"][size_in(info, "index")];
     const auto image = image_of(texture);
     if (!image) return std::nullopt;
-    GltfTexture result;
+    Texture result;
     result.image = *image;
-    result.texcoord_set = static_cast<int>(size_in(*info, "texCoord"));
-    if (const Json* transform = find(*info, "extensions", "KHR_texture_transform")) {
-        result.transform.offset = vector_in(*transform, "offset", glm::vec2(0.0F));
-        result.transform.rotation = float_in(*transform, "rotation", 0.0F);
-        result.transform.scale = vector_in(*transform, "scale", glm::vec2(1.0F));
-        result.texcoord_set = static_cast<int>(
-            size_in(*transform, "texCoord", static_cast<std::size_t>(result.texcoord_set)));
-    }
     if (const auto number = index_in(texture, "sampler")) {
         const Json& sampler = root["samplers"][*number];
         result.wrap_u = wrap_in(sampler, "wrapS");
         result.wrap_v = wrap_in(sampler, "wrapT");
         constexpr std::size_t nearest = 9728;
         if (size_in(sampler, "magFilter") == nearest) result.filter = TextureFilter::nearest;
+    }
+    return result;
+}
+
+GltfTexcoords texcoords_in(const Json& info) {
+    GltfTexcoords result;
+    result.set = static_cast<int>(size_in(info, "texCoord"));
+    if (const Json* transform = find(info, "extensions", "KHR_texture_transform")) {
+        result.transform.offset = vector_in(*transform, "offset", glm::vec2(0.0F));
+        result.transform.rotation = float_in(*transform, "rotation", 0.0F);
+        result.transform.scale = vector_in(*transform, "scale", glm::vec2(1.0F));
+        result.set =
+            static_cast<int>(size_in(*transform, "texCoord", static_cast<std::size_t>(result.set)));
     }
     return result;
 }
@@ -182,30 +199,22 @@ bool has_only(const Json& extension, const char* key, double value) {
 bool is_neutral(const std::string& name, const Json& extension) {
     if (!extension.is_object()) return false;
     // The factor without which the extension does nothing.
-    static constexpr std::array<std::pair<std::string_view, const char*>, 8> factors{{
-        {"KHR_materials_anisotropy", "anisotropyStrength"},
-        {"KHR_materials_clearcoat", "clearcoatFactor"},
+    static constexpr std::array<std::pair<std::string_view, const char*>, 2> factors{{
         {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"},
         {"KHR_materials_dispersion", "dispersion"},
-        {"KHR_materials_iridescence", "iridescenceFactor"},
-        {"KHR_materials_sheen", "sheenColorFactor"},
-        {"KHR_materials_transmission", "transmissionFactor"},
-        {"KHR_materials_volume", "thicknessFactor"},
     }};
     return std::any_of(factors.begin(), factors.end(), [&](const auto& factor) {
         return factor.first == name && has_only(extension, factor.second, 0.0);
     });
 }
 
-/// Returns true for extensions whose factors and textures are members of GltfMaterial.
-bool has_members(std::string_view name) {
-    static constexpr std::array names = {
-        "KHR_materials_unlit",      "KHR_materials_emissive_strength", "KHR_materials_ior",
-        "KHR_materials_specular",   "KHR_materials_clearcoat",         "KHR_materials_sheen",
-        "KHR_materials_anisotropy", "KHR_materials_iridescence",       "KHR_materials_transmission",
-        "KHR_materials_volume",
-    };
-    return std::find(names.begin(), names.end(), name) != names.end();
+/// Returns true for extensions whose factors are members of GltfMaterial.
+bool has_members(const std::string& name) {
+    bool has = name == "KHR_materials_unlit" || name == "KHR_materials_emissive_strength";
+    const std::string path = "extensions/" + name + "/";
+    for_each_field<MetallicRoughness>(
+        [&](const auto& field) { has |= std::string_view(field.gltf).starts_with(path); });
+    return has;
 }
 
 /// Returns the extensions that GltfMaterial does not have, without neutral ones.
@@ -220,79 +229,61 @@ std::vector<std::string> more_extensions_of(const Json& json) {
     return names;
 }
 
-/// Sets the members that extensions describe by factors and textures.
-void add_extensions(const Json& root, const Json& json, GltfMaterial& material) {
-    if (const Json* ior = find(json, "extensions", "KHR_materials_ior"))
-        material.refractive_index = float_in(*ior, "ior", 1.5F);
-    if (const Json* specular = find(json, "extensions", "KHR_materials_specular")) {
-        material.specular = float_in(*specular, "specularFactor", 1.0F);
-        material.specular_color = vector_in(*specular, "specularColorFactor", glm::vec3(1.0F));
-        material.specular_texture = texture_in(root, *specular, "specularTexture");
-        material.specular_color_texture = texture_in(root, *specular, "specularColorTexture");
+float value_in(const Json& json, float /*as*/) {
+    return json.get<float>();
+}
+bool value_in(const Json& json, bool /*as*/) {
+    return json.get<bool>();
+}
+glm::vec3 value_in(const Json& json, const glm::vec3& /*as*/) {
+    return {json[0].get<float>(), json[1].get<float>(), json[2].get<float>()};
+}
+
+/// Sets the fields that have a path in glTF and that the document states.
+template <typename Owner>
+void read_factors(const Json& json, Owner& owner) {
+    for_each_field<Owner>([&](const auto& field) {
+        auto& member = owner.*field.member;
+        using Value = std::decay_t<decltype(member)>;
+        constexpr bool is_factor = std::is_same_v<Value, float> || std::is_same_v<Value, bool> ||
+                                   std::is_same_v<Value, glm::vec3>;
+        if constexpr (is_factor || std::is_same_v<Value, std::optional<float>>) {
+            const Json* const found = *field.gltf == '\0' ? nullptr : find_path(json, field.gltf);
+            if (found == nullptr) return;
+            if constexpr (is_factor) {
+                member = value_in(*found, member);
+            } else {
+                member = value_in(*found, 0.0F);
+            }
+        }
+    });
+}
+
+void read_textures(const Json& root, const Json& json, GltfMaterial& material) {
+    for (std::size_t i = 0; i < texture_slot_count; ++i) {
+        const TextureSlotInfo& slot = texture_slots[i];
+        const Json* const info = *slot.gltf == '\0' ? nullptr : find_path(json, slot.gltf);
+        if (info == nullptr) continue;
+        const std::optional<Texture> texture = texture_in(root, *info);
+        if (!texture) continue;
+        set_texture(material, slot.slot, *texture);
+        material.texcoords[i] = texcoords_in(*info);
     }
-    if (const Json* coat = find(json, "extensions", "KHR_materials_clearcoat")) {
-        material.clearcoat = float_in(*coat, "clearcoatFactor", 0.0F);
-        material.clearcoat_roughness = float_in(*coat, "clearcoatRoughnessFactor", 0.0F);
-        material.clearcoat_texture = texture_in(root, *coat, "clearcoatTexture");
-        material.clearcoat_roughness_texture = texture_in(root, *coat, "clearcoatRoughnessTexture");
-        material.clearcoat_normal_texture = texture_in(root, *coat, "clearcoatNormalTexture");
-        if (const Json* normal = find(*coat, "clearcoatNormalTexture"))
-            material.clearcoat_normal_scale = float_in(*normal, "scale", 1.0F);
-    }
-    if (const Json* sheen = find(json, "extensions", "KHR_materials_sheen")) {
-        material.sheen_color = vector_in(*sheen, "sheenColorFactor", glm::vec3(0.0F));
-        material.sheen_roughness = float_in(*sheen, "sheenRoughnessFactor", 0.0F);
-        material.sheen_color_texture = texture_in(root, *sheen, "sheenColorTexture");
-        material.sheen_roughness_texture = texture_in(root, *sheen, "sheenRoughnessTexture");
-    }
-    if (const Json* anisotropy = find(json, "extensions", "KHR_materials_anisotropy")) {
-        material.anisotropy = float_in(*anisotropy, "anisotropyStrength", 0.0F);
-        material.anisotropy_rotation = float_in(*anisotropy, "anisotropyRotation", 0.0F);
-        material.anisotropy_texture = texture_in(root, *anisotropy, "anisotropyTexture");
-    }
-    if (const Json* film = find(json, "extensions", "KHR_materials_iridescence")) {
-        material.iridescence = float_in(*film, "iridescenceFactor", 0.0F);
-        material.iridescence_index = float_in(*film, "iridescenceIor", 1.3F);
-        material.iridescence_thickness_minimum =
-            float_in(*film, "iridescenceThicknessMinimum", 100.0F);
-        material.iridescence_thickness = float_in(*film, "iridescenceThicknessMaximum", 400.0F);
-        material.iridescence_texture = texture_in(root, *film, "iridescenceTexture");
-        material.iridescence_thickness_texture =
-            texture_in(root, *film, "iridescenceThicknessTexture");
-    }
-    if (const Json* transmission = find(json, "extensions", "KHR_materials_transmission")) {
-        material.transmission = float_in(*transmission, "transmissionFactor", 0.0F);
-        material.transmission_texture = texture_in(root, *transmission, "transmissionTexture");
-    }
-    if (const Json* volume = find(json, "extensions", "KHR_materials_volume")) {
-        material.thickness = float_in(*volume, "thicknessFactor", 0.0F);
-        material.thickness_texture = texture_in(root, *volume, "thicknessTexture");
-        if (find(*volume, "attenuationDistance") != nullptr)
-            material.attenuation_distance = float_in(*volume, "attenuationDistance", 0.0F);
-        material.attenuation_color = vector_in(*volume, "attenuationColor", glm::vec3(1.0F));
-    }
+    const auto read_scale = [&](std::optional<NormalMap>& map, TextureSlot slot) {
+        if (map) map->scale = float_in(*find_path(json, slot_info(slot).gltf), "scale", 1.0F);
+    };
+    read_scale(material.normal_map, TextureSlot::normal);
+    read_scale(material.metallic_roughness->clearcoat_normal_map, TextureSlot::clearcoat_normal);
 }
 
 GltfMaterial material_from(const Json& root, const Json& json) {
-    static const Json nothing = Json::object();
     GltfMaterial material;
     material.name = text_in(json, "name");
-    const Json* pbr_or_none = find(json, "pbrMetallicRoughness");
-    const Json& pbr = pbr_or_none == nullptr ? nothing : *pbr_or_none;
-    material.base_color = vector_in(pbr, "baseColorFactor", glm::vec4(1.0F));
-    material.metallic = float_in(pbr, "metallicFactor", 1.0F);
-    material.roughness = float_in(pbr, "roughnessFactor", 1.0F);
-    material.base_color_texture = texture_in(root, pbr, "baseColorTexture");
-    material.metallic_roughness_texture = texture_in(root, pbr, "metallicRoughnessTexture");
-    material.normal_texture = texture_in(root, json, "normalTexture");
-    if (const Json* normal = find(json, "normalTexture")) {
-        material.normal_scale = float_in(*normal, "scale", 1.0F);
-    }
-    material.occlusion_texture = texture_in(root, json, "occlusionTexture");
-    if (const Json* occlusion = find(json, "occlusionTexture")) {
-        material.occlusion_strength = float_in(*occlusion, "strength", 1.0F);
-    }
-    material.emission_texture = texture_in(root, json, "emissiveTexture");
+    read_factors<Material>(json, material);
+    read_factors(json, *material.metallic_roughness);
+    read_textures(root, json, material);
+    if (const Json* pbr = find(json, "pbrMetallicRoughness"))
+        material.opacity = vector_in(*pbr, "baseColorFactor", glm::vec4(1.0F)).a;
     material.emission_factor = vector_in(json, "emissiveFactor", glm::vec3(0.0F));
     if (const Json* strength = find(json, "extensions", "KHR_materials_emissive_strength")) {
         material.emission_strength = float_in(*strength, "emissiveStrength", 1.0F);
@@ -302,10 +293,7 @@ GltfMaterial material_from(const Json& root, const Json& json) {
     material.alpha_mode = mode == "MASK"    ? AlphaMode::mask
                           : mode == "BLEND" ? AlphaMode::blend
                                             : AlphaMode::opaque;
-    material.alpha_cutoff = float_in(json, "alphaCutoff", 0.5F);
-    material.double_sided = bool_in(json, "doubleSided");
     material.unlit = find(json, "extensions", "KHR_materials_unlit") != nullptr;
-    add_extensions(root, json, material);
     material.more_extensions = more_extensions_of(json);
     return material;
 }

@@ -31,27 +31,25 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
 /// Converts materials by the rules of GltfDocument::from_mesh().
 MapAppearance appearance_of(const std::vector<MtlMaterial>& materials, Report& report) {
     MapAppearance appearance;
-    const auto texture = [&](const MtlMaterial& material,
-                             const std::optional<std::filesystem::path>& file) {
-        std::optional<GltfTexture> result;
-        if (file) {
-            result.emplace();
-            result->image = appearance.images.size();
-            GltfImage image{file->filename().string(), *file};
-            if (!material.may_read(*file)) {
-                image.source = std::vector<std::byte>();
-                image.fault = file->string() + " lies outside of the model's folder";
-            }
-            appearance.images.push_back(std::move(image));
+    const auto add_texture = [&](GltfMaterial& converted, TextureSlot slot,
+                                 const MtlMaterial& material,
+                                 const std::optional<std::filesystem::path>& file) {
+        if (!file) return;
+        set_texture(converted, slot, {appearance.images.size()});
+        GltfImage image{file->filename().string(), *file};
+        if (!material.may_read(*file)) {
+            image.source = std::vector<std::byte>();
+            image.fault = file->string() + " lies outside of the model's folder";
         }
-        return result;
+        appearance.images.push_back(std::move(image));
     };
     for (const MtlMaterial& material : materials) {
         GltfMaterial converted;
         converted.name = material.name;
         // Some programs write the opacity where MTL expects transparency, so 0 means opaque.
         const float opacity = material.opacity > 0.0F ? std::min(material.opacity, 1.0F) : 1.0F;
-        converted.base_color = glm::vec4(glm::clamp(material.diffuse, 0.0F, 1.0F), opacity);
+        converted.metallic_roughness->base_color = glm::clamp(material.diffuse, 0.0F, 1.0F);
+        converted.opacity = opacity;
         const bool has_alpha_texture =
             material.opacity_map && material.opacity_map == material.diffuse_map;
         if (opacity < 1.0F || has_alpha_texture) converted.alpha_mode = AlphaMode::blend;
@@ -61,8 +59,8 @@ MapAppearance appearance_of(const std::vector<MtlMaterial>& materials, Report& r
                        "material", appearance.materials.size(),
                        "is not read (store the opacity in the alpha of map_Kd)");
         }
-        converted.base_color_texture = texture(material, material.diffuse_map);
-        converted.normal_texture = texture(material, material.normal_map);
+        add_texture(converted, TextureSlot::base_color, material, material.diffuse_map);
+        add_texture(converted, TextureSlot::normal, material, material.normal_map);
         appearance.materials.push_back(std::move(converted));
     }
     return appearance;

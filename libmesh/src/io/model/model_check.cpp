@@ -98,7 +98,7 @@ bool wants_tangents(const Mesh& mesh, const std::vector<GltfMaterial>& materials
     return std::any_of(mesh.material_ranges.begin(), mesh.material_ranges.end(),
                        [&](const MaterialRange& range) {
                            return range.material && *range.material < materials.size() &&
-                                  materials[*range.material].normal_texture;
+                                  materials[*range.material].normal_map;
                        });
 }
 

@@ -74,8 +74,8 @@ struct Features {
     bool transmission_texture = false;
     bool volume = false;  ///< KHR_materials_volume
     bool thickness_texture = false;
-    /// The textures that are looked up at the second texture coordinates; a bit for each, in the
-    /// order of the table in effects/features.h.
+    /// The textures that are looked up at the second texture coordinates: 1 << TextureSlot for
+    /// each.
     std::uint32_t second_texcoords = 0;
     Interpolation interpolation = Interpolation::per_pixel;
     // The deformation of the mesh, in the vertex stage.

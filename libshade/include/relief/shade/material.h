@@ -1,144 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Defines materials as plain data: Phong's model and glTF's metallic-roughness model.
+/// The light of a Material (relief/mesh/material.h) in Phong's model and glTF's metallic-roughness
+/// model.
 ///
 /// World space, linear colors. Images are named by their index in Scene::images and decoded only if
-/// the effect plan (effects.h) needs them. scene_fields.h has the range of every field.
-#pragma once
-
-#include <cstddef>
-#include <glm/glm.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "relief/export.h"
-#include "relief/mesh/gltf_document.h"
-#include "relief/mesh/normal_map.h"
-
-namespace RELIEF_API relief {
-
-/// An image as a texture.
-struct Texture {
-    std::size_t image = 0;  ///< Index into Scene::images.
-    Wrap wrap_u = Wrap::repeat;
-    Wrap wrap_v = Wrap::repeat;
-    TextureFilter filter = TextureFilter::linear;
-    /// It is looked up at Mesh::texcoords_2. Maps in the tangent frame (normal and bump maps,
-    /// anisotropy) ignore this.
-    bool second_texcoords = false;
-};
-
-/// The place where light is computed.
-enum class Interpolation {
-    per_pixel,  ///< At every pixel, with the interpolated normal (Phong shading).
-    gouraud,    ///< At the vertices, with interpolated colors. Phong materials only.
-    flat,       ///< At every pixel, with the normal of the triangle's plane.
-};
-
-enum class SpecularModel {
-    phong,                   ///< (reflect . view)^shininess
-    blinn_phong,             ///< (half . normal)^shininess
-    blinn_phong_normalized,  ///< blinn_phong times (shininess + 2) / 8.
-};
-
-/// The reflectance of a surface as a function of the angle.
-enum class FresnelModel {
-    schlick,     ///< From reflectivity to grazing_reflectivity; equal values: no Fresnel effect.
-    dielectric,  ///< Exact, unpolarized, from refractive_index; times reflectivity.
-    conductor,   ///< Exact, unpolarized, from conductor_index and conductor_absorption; times
-                 ///< reflectivity.
-};
-
-/// The source of the frame of a tangent-space map.
-enum class TangentFrame {
-    stored,       ///< The tangents of the mesh; MikkTSpace's if it has none.
-    derivatives,  ///< The derivatives of position and texture coordinates between pixels.
-};
-
-/// The space of a normal map's vectors.
-enum class NormalSpace { tangent, object };
-
-/// A normal map and its conventions (normal_map.h).
-struct NormalMap {
-    Texture texture;
-    float scale = 1.0F;  ///< Multiplies x and y before normalization; in tangent space only.
-    Green green = Green::up;
-    /// If absent, detect_flat_code decides from the image.
-    std::optional<FlatCode> flat = std::nullopt;
-    NormalSpace space = NormalSpace::tangent;
-};
-
-/// Heights that perturb the normal in the shader, by central differences over one texel, or over
-/// one pixel if it is larger.
-struct BumpMap {
-    Texture texture;         ///< Red is the height.
-    float strength = 16.0F;  ///< The height in texels of the value 1.0.
-};
-
-/// glTF's metallic-roughness model. In a Material it replaces Phong's ambient, diffuse, specular,
-/// shininess and reflectivity; Material::diffuse_texture and vertex colors multiply base_color.
-struct MetallicRoughness {
-    glm::vec3 base_color{1.0F};
-    float metallic = 1.0F;
-    float roughness = 1.0F;
-    std::optional<Texture> texture;  ///< Green multiplies roughness, blue metallic.
-    // The reflection of the dielectric share (KHR_materials_ior, KHR_materials_specular).
-    float refractive_index = 1.5F;                    ///< 0 counts as infinite.
-    float specular = 1.0F;                            ///< The weight of the reflection.
-    glm::vec3 specular_color{1.0F};                   ///< Tints the reflection at normal incidence.
-    std::optional<Texture> specular_texture{};        ///< Alpha multiplies specular.
-    std::optional<Texture> specular_color_texture{};  ///< sRGB color.
-    // A clear layer on top (KHR_materials_clearcoat), which only a normal map of its own bends.
-    float clearcoat = 0.0F;  ///< Its weight; 0: none.
-    float clearcoat_roughness = 0.0F;
-    std::optional<Texture> clearcoat_texture{};            ///< Red multiplies clearcoat.
-    std::optional<Texture> clearcoat_roughness_texture{};  ///< Green multiplies its roughness.
-    std::optional<NormalMap> clearcoat_normal_map{};       ///< In tangent space.
-    // Fibers on top of the surface, under the coat (KHR_materials_sheen).
-    glm::vec3 sheen_color{0.0F};  ///< Zero: none.
-    float sheen_roughness = 0.0F;
-    std::optional<Texture> sheen_color_texture{};  ///< sRGB color.
-    // Facets that are rougher along a direction in the tangent frame, as on brushed metal
-    // (KHR_materials_anisotropy).
-    float anisotropy = 0.0F;           ///< 0: the same roughness in all directions.
-    float anisotropy_rotation = 0.0F;  ///< Radians from the tangent to the bitangent.
-    /// The direction before the rotation, in red and green, where 0.5 is 0; the tangent if it has
-    /// no length. Blue multiplies anisotropy.
-    std::optional<Texture> anisotropy_texture{};
-    // A thin film, whose two surfaces interfere (KHR_materials_iridescence).
-    float iridescence = 0.0F;                                ///< Its weight; 0: none.
-    float iridescence_index = 1.3F;                          ///< The film's refractive index.
-    float iridescence_thickness = 400.0F;                    ///< In nanometers.
-    float iridescence_thickness_minimum = 100.0F;            ///< Where the thickness texture is 0.
-    std::optional<Texture> iridescence_texture{};            ///< Red multiplies iridescence.
-    std::optional<Texture> iridescence_thickness_texture{};  ///< Green: from minimum to thickness.
-    // What lies behind shows through the surface (KHR_materials_transmission), which may enclose a
-    // volume that refracts and absorbs light (KHR_materials_volume).
-    float transmission = 0.0F;  ///< The share of the light that passes instead of being scattered.
-    std::optional<Texture> transmission_texture{};  ///< Red multiplies transmission.
-    float thickness = 0.0F;  ///< Of the volume, in object space; 0: a thin sheet.
-    std::optional<Texture> thickness_texture{};  ///< Green multiplies thickness.
-    /// The distance in world space after which white light has attenuation_color; if absent, the
-    /// volume is clear.
-    std::optional<float> attenuation_distance = std::nullopt;
-    glm::vec3 attenuation_color{1.0F};
-    std::optional<Texture> sheen_roughness_texture{};  ///< Alpha multiplies sheen_roughness.
-};
-
-/// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
-/// min(((n - 1) / (n + 1))^2 specular_color, 1) specular, with n the refractive index. It is 0.04
-/// by default.
-glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
-
-/// Returns true if the light that bounces between facets is added to what they mirror. False for a
-/// dielectric of roughness 0.05 and less that mirrors up to 4.5% at normal incidence and has
-/// neither a coat nor anisotropy: the light adds less than 1% to what it mirrors, at grazing angles
-/// only.
-bool compensates_energy(const MetallicRoughness& model);
-
-/// A material. All vectors are in world space and of unit length: n (the normal, perturbed by a
+/// the effect plan (effects.h) needs them.
+///
+/// All vectors are in world space and of unit length: n (the normal, perturbed by a
 /// normal or bump map), v (to the eye), and for every light i: l (to the light),
 /// h = (l + v) / |l + v| and r = 2 (n.l) n - l. L is the light's irradiance at normal incidence
 /// over pi, and H that for highlights (scene.h). Products of colors are by channel.
@@ -251,56 +119,29 @@ bool compensates_energy(const MetallicRoughness& model);
 /// KHR_materials_anisotropy, KHR_materials_iridescence, KHR_materials_transmission and
 /// KHR_materials_volume, [Estevez and Kulla 2017] and [Belcour and Barla 2017]. The CPU
 /// implementation is reference.h.
-struct Material {
-    std::string name;
-    Interpolation interpolation = Interpolation::per_pixel;
-    glm::vec3 ambient{0.8F};  ///< The scattered share of ambient light.
-    glm::vec3 diffuse{0.8F};
-    glm::vec3 specular{0.0F};
-    glm::vec3 emission{0.0F};
-    float shininess = 32.0F;  ///< 0 to 1e6.
-    SpecularModel specular_model = SpecularModel::blinn_phong;
-    bool highlight_fresnel = false;  ///< Highlights become brighter at grazing angles.
-    std::optional<MetallicRoughness> metallic_roughness;
+#pragma once
 
-    glm::vec3 reflectivity{0.0F};  ///< At normal incidence; zero: no environment reflection.
-    glm::vec3 grazing_reflectivity{1.0F};  ///< Equal to reflectivity: no Fresnel effect.
-    FresnelModel fresnel = FresnelModel::schlick;
-    float refractive_index = 1.5F;         ///< The index of the inside relative to the outside.
-    glm::vec3 conductor_index{0.2F};       ///< The real part of a metal's index, by channel.
-    glm::vec3 conductor_absorption{3.0F};  ///< The imaginary part.
-    float reflection_roughness = 0.0F;     ///< 0: a mirror; else the blur of GGX.
-    /// The environment is looked up along the normal, not along the mirrored view: as if painted on
-    /// the surface.
-    bool reflection_by_normal = false;
-    /// The environment along the normal multiplies ambient, scattered and highlight light, like a
-    /// texture; without an environment, nothing does.
-    bool environment_tint = false;
-    float transmission = 0.0F;  ///< The transmitted share of the light that is not reflected.
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
-    std::optional<Texture> diffuse_texture;    ///< sRGB color; alpha is used unless opaque.
-    std::optional<Texture> specular_texture;   ///< sRGB color.
-    std::optional<Texture> emission_texture;   ///< sRGB color.
-    std::optional<Texture> occlusion_texture;  ///< Red: the visible share of the environment.
-    float occlusion_strength = 1.0F;           ///< Within [0,1].
-    std::optional<Texture> opacity_texture;    ///< Red.
-    std::optional<NormalMap> normal_map;
-    std::optional<BumpMap> bump_map;                    ///< Not together with a normal map.
-    TangentFrame tangent_frame = TangentFrame::stored;  ///< Of maps and of anisotropy.
-    /// Widens highlights by the variance of a minified normal map's normals within a pixel
-    /// [Toksvig 2005].
-    bool specular_antialiasing = false;
+#include "relief/export.h"
+#include "relief/mesh/material.h"
 
-    AlphaMode alpha_mode = AlphaMode::opaque;
-    float opacity = 1.0F;
-    float alpha_cutoff = 0.5F;
-    bool double_sided = false;  ///< Otherwise back faces are not drawn.
-    bool unlit = false;         ///< Shows the diffuse color without light.
+namespace RELIEF_API relief {
 
-    /// The extensions of its glTF material that change the appearance and are not drawn, for
-    /// reasons.
-    std::vector<std::string> undrawn_extensions{};
-};
+/// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
+/// min(((n - 1) / (n + 1))^2 specular_color, 1) specular, with n the refractive index. It is 0.04
+/// by default.
+glm::vec3 dielectric_reflectance(const MetallicRoughness& model);
+
+/// Returns true if the light that bounces between facets is added to what they mirror. False for a
+/// dielectric of roughness 0.05 and less that mirrors up to 4.5% at normal incidence and has
+/// neither a coat nor anisotropy: the light adds less than 1% to what it mirrors, at grazing angles
+/// only.
+bool compensates_energy(const MetallicRoughness& model);
 
 /// Returns the factor of specular_model: 1, or (shininess + 2) / 8.
 float specular_normalization(const Material& material);

@@ -137,9 +137,6 @@ struct ImageSource {
     bool is_required = false;
 };
 
-/// The maximum of a material's color components.
-inline constexpr float max_reflectance = 1e9F;
-
 /// A camera that looks along its own -z.
 struct Camera {
     glm::mat4 world_from_view{1.0F};  ///< Rotation and translation only.

@@ -119,9 +119,9 @@ struct TextureMeans {
     float roughness = 1.0F;
 };
 
-/// Converts metallic-roughness to Phong's model, without textures. With the base color b, metallic
-/// m, roughness r and alpha = r^2 as glTF defines them (r at least 0.045, so that alpha^2 is
-/// accurate in float):
+/// Converts a material with glTF's model to Phong's model, without textures. With the base color b,
+/// metallic m, roughness r and alpha = r^2 as glTF defines them (r at least 0.045, so that alpha^2
+/// is accurate in float):
 ///
 ///     F0           = mix(0.04, b, m)
 ///     shininess s  = 2 / alpha^2 - 2
@@ -143,7 +143,7 @@ struct TextureMeans {
 ///
 /// F0 includes the mean of the base color's texture; diffuse and ambient do not, since the texture
 /// itself multiplies them.
-Material phong_from_metallic_roughness(const GltfMaterial& material, const TextureMeans& means);
+Material phong_from_metallic_roughness(const Material& material, const TextureMeans& means);
 
 /// Converts MTL to Phong's model, without textures: illum 0 is unlit; 1 and Ns 0, which would cover
 /// the lit side, have no highlight; 3 to 9 reflect by Ks, 5 and 7 with Fresnel's effect. If d is

@@ -108,9 +108,11 @@ TEST_F(GltfFromMesh, PhongMaterialsAreTranslated) {
     file.mesh.material_ranges = {{0, 12, 0U}};
     const GltfMaterial result = written(file).view().materials.at(0);
     EXPECT_EQ(result.name, "glow");
-    EXPECT_EQ(result.base_color, glm::vec4(0.5F, 0.25F, 1.0F, 0.75F));  // glTF limits it to 1.
-    EXPECT_EQ(result.metallic, 0.0F);
-    EXPECT_FLOAT_EQ(result.roughness, 0.25F);  // (2 / 512)^(1/4).
+    EXPECT_EQ(result.metallic_roughness->base_color,
+              glm::vec3(0.5F, 0.25F, 1.0F));  // glTF limits it to 1.
+    EXPECT_EQ(result.opacity, 0.75F);
+    EXPECT_EQ(result.metallic_roughness->metallic, 0.0F);
+    EXPECT_FLOAT_EQ(result.metallic_roughness->roughness, 0.25F);  // (2 / 512)^(1/4).
     EXPECT_EQ(result.emission, glm::vec3(0, 4, 2));
     EXPECT_EQ(result.alpha_mode, AlphaMode::blend);
     // The conversion back gives the same values, as far as OBJ can hold them.
@@ -154,7 +156,7 @@ TEST_F(GltfFromMesh, ImagesAreEmbeddedOnceAsTheyAre) {
     ASSERT_EQ(view.images.size(), 1U);
     EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[0].source).size(),
               std::filesystem::file_size(jpeg));
-    EXPECT_EQ(view.materials[1].base_color_texture->image, 0U);
+    EXPECT_EQ(view.materials[1].diffuse_texture->image, 0U);
     EXPECT_EQ(view.materials[0].emission, glm::vec3(1.0F));
     std::ifstream stream(folder_ / "a.glb", std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
@@ -172,7 +174,7 @@ TEST_F(GltfFromMesh, NamesOfImagesInLatin1BecomeUtf8) {
     Report report;
     GltfDocument document = GltfDocument::from_mesh(file, report);
     EXPECT_EQ(report.count("name that is not UTF-8"), 1U);
-    document.set_texture(0, GltfTextureSlot::emissive, image, GltfImageStorage::embedded, report);
+    document.set_texture(0, TextureSlot::emission, image, GltfImageStorage::embedded, report);
     EXPECT_EQ(report.count("name that is not UTF-8"), 2U);
     EXPECT_EQ(document.view().images.at(1).name, "Stra\xC3\x9F");
     document.add_material("\xDF");
@@ -225,7 +227,7 @@ TEST_F(GltfFromMesh, WithAReportMissingImagesAreLeftOutAndNamed) {
     const GltfView view = GltfDocument::from_mesh(file, report).view();
     EXPECT_TRUE(view.images.empty());
     ASSERT_EQ(view.materials.size(), 2U);
-    EXPECT_FALSE(view.materials[1].base_color_texture);
+    EXPECT_FALSE(view.materials[1].diffuse_texture);
     EXPECT_EQ(view.materials[1].emission, glm::vec3(0.0F));
     ASSERT_EQ(report.findings().size(), 3U);
     EXPECT_EQ(to_string(report.findings()[0]),

@@ -165,8 +165,7 @@ TEST_F(GltfValidity, TexturesNeedTextureCoordinates) {
     Square square;
     const auto with_map = [&] {
         GltfDocument document = read(square);
-        document.set_texture(0, GltfTextureSlot::normal, image, GltfImageStorage::external,
-                             report_);
+        document.set_texture(0, TextureSlot::normal, image, GltfImageStorage::external, report_);
         return document;
     };
     EXPECT_THAT(written(with_map()), HasSubstr("bricks-normal.png"));

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <type_traits>
 
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
@@ -68,72 +69,76 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
                 "KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]})"))
                               .view();
     const GltfMaterial& plain = view.materials[0];
-    EXPECT_EQ(plain.base_color, glm::vec4(1.0F));
-    EXPECT_EQ(plain.metallic, 1.0F);
-    EXPECT_EQ(plain.roughness, 1.0F);
+    EXPECT_EQ(plain.metallic_roughness->base_color, glm::vec3(1.0F));
+    EXPECT_EQ(plain.opacity, 1.0F);
+    EXPECT_EQ(plain.metallic_roughness->metallic, 1.0F);
+    EXPECT_EQ(plain.metallic_roughness->roughness, 1.0F);
     EXPECT_EQ(plain.emission, glm::vec3(0.0F));
     EXPECT_EQ(plain.alpha_mode, AlphaMode::opaque);
-    EXPECT_FALSE(plain.base_color_texture || plain.normal_texture || plain.double_sided);
+    EXPECT_FALSE(plain.diffuse_texture || plain.normal_map || plain.double_sided);
     const GltfMaterial& full = view.materials[1];
+    const MetallicRoughness& factors = *full.metallic_roughness;
+    const MetallicRoughness& defaults = *plain.metallic_roughness;
     EXPECT_EQ(full.name, "m");
-    EXPECT_EQ(full.base_color, glm::vec4(0.1F, 0.2F, 0.3F, 0.4F));
-    EXPECT_EQ(full.metallic, 0.5F);
-    EXPECT_EQ(full.roughness, 0.25F);
+    EXPECT_EQ(factors.base_color, glm::vec3(0.1F, 0.2F, 0.3F));
+    EXPECT_EQ(full.opacity, 0.4F);
+    EXPECT_EQ(factors.metallic, 0.5F);
+    EXPECT_EQ(factors.roughness, 0.25F);
     EXPECT_EQ(full.emission, glm::vec3(4, 2, 0));
-    EXPECT_EQ(plain.refractive_index, 1.5F);
-    EXPECT_EQ(full.refractive_index, 1.25F);
-    EXPECT_EQ(full.specular, 0.5F);
-    EXPECT_EQ(full.specular_color, glm::vec3(1, 0.5F, 2));
+    EXPECT_EQ(defaults.refractive_index, 1.5F);
+    EXPECT_EQ(factors.refractive_index, 1.25F);
+    EXPECT_EQ(factors.specular, 0.5F);
+    EXPECT_EQ(factors.specular_color, glm::vec3(1, 0.5F, 2));
     EXPECT_TRUE(full.more_extensions.empty());
-    EXPECT_EQ(full.specular_texture->image, full.normal_texture->image);
-    EXPECT_EQ(full.specular_color_texture->image, full.occlusion_texture->image);
-    EXPECT_EQ(full.clearcoat_texture->image, full.occlusion_texture->image);
-    EXPECT_EQ(full.clearcoat_roughness_texture->image, full.metallic_roughness_texture->image);
-    EXPECT_EQ(full.clearcoat_normal_texture->image, full.metallic_roughness_texture->image);
-    EXPECT_EQ(full.clearcoat_normal_scale, 0.5F);
-    EXPECT_EQ(full.sheen_color_texture->image, full.normal_texture->image);
-    EXPECT_EQ(full.sheen_roughness_texture->image, full.occlusion_texture->image);
-    EXPECT_EQ(full.anisotropy_texture->image, full.normal_texture->image);
-    EXPECT_EQ(full.iridescence_texture->image, full.metallic_roughness_texture->image);
-    EXPECT_EQ(full.iridescence_thickness_texture->image, full.normal_texture->image);
-    EXPECT_FALSE(plain.specular_texture || plain.clearcoat_normal_texture);
-    EXPECT_EQ(plain.clearcoat, 0.0F);
-    EXPECT_EQ(full.clearcoat, 0.25F);
-    EXPECT_EQ(full.clearcoat_roughness, 0.125F);
-    EXPECT_EQ(full.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
-    EXPECT_EQ(full.sheen_roughness, 0.5F);
-    EXPECT_EQ(full.transmission, 0.5F);
-    EXPECT_EQ(full.transmission_texture->image, full.occlusion_texture->image);
-    EXPECT_EQ(full.thickness, 3.0F);
-    EXPECT_EQ(full.thickness_texture->image, full.metallic_roughness_texture->image);
-    EXPECT_EQ(full.attenuation_distance, 2.0F);
-    EXPECT_EQ(full.attenuation_color, glm::vec3(0.5F, 0.25F, 1));
-    EXPECT_EQ(plain.transmission, 0.0F);
-    EXPECT_FALSE(plain.attenuation_distance);
-    EXPECT_EQ(plain.anisotropy, 0.0F);
-    EXPECT_EQ(full.anisotropy, 0.75F);
-    EXPECT_EQ(full.anisotropy_rotation, -0.5F);
-    EXPECT_EQ(plain.iridescence, 0.0F);
-    EXPECT_EQ(full.iridescence, 0.5F);
-    EXPECT_EQ(full.iridescence_index, 1.5F);
-    EXPECT_EQ(full.iridescence_thickness, 250.0F);
-    EXPECT_EQ(full.iridescence_thickness_minimum, 50.0F);
-    EXPECT_EQ(full.normal_scale, 0.75F);
+    EXPECT_EQ(factors.specular_texture->image, full.normal_map->texture.image);
+    EXPECT_EQ(factors.specular_color_texture->image, full.occlusion_texture->image);
+    EXPECT_EQ(factors.clearcoat_texture->image, full.occlusion_texture->image);
+    EXPECT_EQ(factors.clearcoat_roughness_texture->image, factors.texture->image);
+    EXPECT_EQ(factors.clearcoat_normal_map->texture.image, factors.texture->image);
+    EXPECT_EQ(factors.clearcoat_normal_map->scale, 0.5F);
+    EXPECT_EQ(factors.sheen_color_texture->image, full.normal_map->texture.image);
+    EXPECT_EQ(factors.sheen_roughness_texture->image, full.occlusion_texture->image);
+    EXPECT_EQ(factors.anisotropy_texture->image, full.normal_map->texture.image);
+    EXPECT_EQ(factors.iridescence_texture->image, factors.texture->image);
+    EXPECT_EQ(factors.iridescence_thickness_texture->image, full.normal_map->texture.image);
+    EXPECT_FALSE(defaults.specular_texture || defaults.clearcoat_normal_map);
+    EXPECT_EQ(defaults.clearcoat, 0.0F);
+    EXPECT_EQ(factors.clearcoat, 0.25F);
+    EXPECT_EQ(factors.clearcoat_roughness, 0.125F);
+    EXPECT_EQ(factors.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
+    EXPECT_EQ(factors.sheen_roughness, 0.5F);
+    EXPECT_EQ(factors.transmission, 0.5F);
+    EXPECT_EQ(factors.transmission_texture->image, full.occlusion_texture->image);
+    EXPECT_EQ(factors.thickness, 3.0F);
+    EXPECT_EQ(factors.thickness_texture->image, factors.texture->image);
+    EXPECT_EQ(factors.attenuation_distance, 2.0F);
+    EXPECT_EQ(factors.attenuation_color, glm::vec3(0.5F, 0.25F, 1));
+    EXPECT_EQ(defaults.transmission, 0.0F);
+    EXPECT_FALSE(defaults.attenuation_distance);
+    EXPECT_EQ(defaults.anisotropy, 0.0F);
+    EXPECT_EQ(factors.anisotropy, 0.75F);
+    EXPECT_EQ(factors.anisotropy_rotation, -0.5F);
+    EXPECT_EQ(defaults.iridescence, 0.0F);
+    EXPECT_EQ(factors.iridescence, 0.5F);
+    EXPECT_EQ(factors.iridescence_index, 1.5F);
+    EXPECT_EQ(factors.iridescence_thickness, 250.0F);
+    EXPECT_EQ(factors.iridescence_thickness_minimum, 50.0F);
+    EXPECT_EQ(full.normal_map->scale, 0.75F);
     EXPECT_EQ(full.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(full.alpha_cutoff, 0.25F);
     EXPECT_TRUE(full.unlit && full.double_sided);
-    const GltfTexture& base = *full.base_color_texture;
+    const Texture& base = *full.diffuse_texture;
     EXPECT_EQ(base.image, 1U);
     EXPECT_EQ(base.wrap_u, Wrap::clamp);
     EXPECT_EQ(base.wrap_v, Wrap::mirror);
     EXPECT_EQ(base.filter, TextureFilter::nearest);
-    EXPECT_EQ(base.texcoord_set, 2);
-    EXPECT_EQ(base.transform, (GltfTextureTransform{{0.5F, 0.25F}, 1.5F, {2.0F, 3.0F}}));
-    EXPECT_EQ(full.normal_texture->transform, GltfTextureTransform{});
+    EXPECT_EQ(full.texcoords_of(TextureSlot::base_color),
+              (GltfTexcoords{2, {{0.5F, 0.25F}, 1.5F, {2.0F, 3.0F}}}));
+    EXPECT_EQ(full.texcoords_of(TextureSlot::normal), GltfTexcoords{});
     EXPECT_EQ(full.occlusion_texture->image, 1U);
     EXPECT_EQ(full.occlusion_strength, 0.5F);
-    EXPECT_EQ(full.normal_texture->wrap_u, Wrap::repeat);
-    EXPECT_EQ(full.metallic_roughness_texture->image, 1U);
+    EXPECT_EQ(full.normal_map->texture.wrap_u, Wrap::repeat);
+    EXPECT_EQ(factors.texture->image, 1U);
     EXPECT_FALSE(full.emission_texture);
     EXPECT_EQ(std::get<std::filesystem::path>(view.images[0].source), folder_ / "a.png");
     EXPECT_EQ(std::get<std::vector<std::byte>>(view.images[1].source).size(), 3U);
@@ -143,6 +148,82 @@ TEST_F(GltfViewTest, MaterialsHaveTheirValuesOrGltfsDefaults) {
     EXPECT_EQ(view.images[1].fault, "");
     EXPECT_EQ(view.images[2].fault,
               "images[2].uri '../b.png' leads out of the document's folder, so it is not read");
+}
+
+TEST_F(GltfViewTest, EveryFactorOfTheTableIsReadFromItsPath) {
+    json material = json::object();
+    float next = 0.0F;
+    for_each_field<MetallicRoughness>(
+        [&]<typename Value>(const SceneField<MetallicRoughness, Value>& field) {
+            if (*field.gltf == '\0') return;
+            json& value = material[json::json_pointer(std::string("/") + field.gltf)];
+            value = next += 0.03125F;
+            if constexpr (std::is_same_v<Value, glm::vec3>) value = {next, next, next};
+            if (std::string(field.gltf).ends_with("baseColorFactor")) value.push_back(1.0F);
+        });
+    const GltfMaterial read =
+        document({{"asset", {{"version", "2.0"}}}, {"materials", {material}}}).view().materials[0];
+    next = 0.0F;
+    for_each_field<MetallicRoughness>([&](const auto& field) {
+        if (*field.gltf == '\0') return;
+        next += 0.03125F;
+        const auto& value = (*read.metallic_roughness).*field.member;
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (requires { value == Value(next); }) {
+            EXPECT_EQ(value, Value(next)) << field.name;
+        } else {
+            ADD_FAILURE() << field.name << " is not a factor";
+        }
+    });
+    EXPECT_TRUE(read.more_extensions.empty());
+}
+
+TEST_F(GltfViewTest, EveryTextureOfTheTableIsReadFromItsPath) {
+    json root = {{"asset", {{"version", "2.0"}}}, {"materials", {json::object()}}};
+    for (const TextureSlotInfo& slot : texture_slots) {
+        const std::size_t number = root["textures"].size();
+        root["images"].push_back({{"uri", std::string(slot.sampler) + ".png"}});
+        root["textures"].push_back({{"source", number}});
+        if (*slot.gltf == '\0') continue;
+        root["materials"][0][json::json_pointer(std::string("/") + slot.gltf)] = {
+            {"index", number}, {"texCoord", number}};
+    }
+    GltfMaterial read = document(root).view().materials[0];
+    for (std::size_t i = 0; i < texture_slot_count; ++i) {
+        const TextureSlotInfo& slot = texture_slots[i];
+        const Texture* const texture = find_texture(read, slot.slot);
+        ASSERT_EQ(texture != nullptr, *slot.gltf != '\0') << slot.name;
+        if (texture == nullptr) continue;
+        EXPECT_EQ(texture->image, i) << slot.name;
+        EXPECT_EQ(read.texcoords_of(slot.slot).set, static_cast<int>(i)) << slot.name;
+    }
+}
+
+TEST(MaterialTextures, AreFoundSetAndRemovedBySlot) {
+    Material material;
+    for (const bool has_model : {false, true}) {
+        if (has_model) material.metallic_roughness.emplace();
+        for (const TextureSlotInfo& slot : texture_slots) {
+            EXPECT_EQ(find_texture(material, slot.slot), nullptr) << slot.name;
+            set_texture(material, slot.slot, {7});
+            const bool can_have_it = has_model || !is_of_metallic_roughness(slot);
+            ASSERT_EQ(find_texture(material, slot.slot) != nullptr, can_have_it) << slot.name;
+            if (can_have_it) {
+                EXPECT_EQ(find_texture(material, slot.slot)->image, 7U) << slot.name;
+            }
+            remove_texture(material, slot.slot);
+            EXPECT_EQ(find_texture(material, slot.slot), nullptr) << slot.name;
+        }
+    }
+}
+
+TEST(MaterialTextures, KeepTheOtherFieldsOfTheirMap) {
+    Material material;
+    material.normal_map = NormalMap{.texture = {1}, .scale = 0.5F, .green = Green::down};
+    set_texture(material, TextureSlot::normal, {2});
+    EXPECT_EQ(material.normal_map->texture.image, 2U);
+    EXPECT_EQ(material.normal_map->scale, 0.5F);
+    EXPECT_EQ(material.normal_map->green, Green::down);
 }
 
 TEST_F(GltfViewTest, TextureTransformsScaleThenTurnThenShift) {
