@@ -446,11 +446,11 @@ std::size_t image_of(Scene& scene, const std::filesystem::path& file) {
 }  // namespace
 
 std::string map_title(TextureSlot slot) {
-    std::string title = slot_info(slot).effect;
+    std::string_view title = slot_info(slot).effect;
     for (const std::string_view kind : {" texture", " map"}) {
-        if (title.ends_with(kind)) title.resize(title.size() - kind.size());
+        if (title.ends_with(kind)) title.remove_suffix(kind.size());
     }
-    return capitalized(title + " map");
+    return capitalized(fmt::format("{} map", title));
 }
 
 bool is_map_used(const Material& material, TextureSlot slot) {
