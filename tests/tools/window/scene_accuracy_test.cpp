@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "relief-view/variant_options.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/statistics.h"
 #include "tools/window/display.h"
