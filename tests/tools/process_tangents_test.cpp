@@ -54,6 +54,8 @@ class ProcessTangents : public testing::Test {
         const std::size_t lengths[] = {9, 9, 12, 6, 6, 9};
         const char* types[] = {"VEC3", "VEC3", "VEC4", "VEC2", "VEC2", "VEC3"};
         json root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
+        if (material.dump().find("KHR_texture_transform") != std::string::npos)
+            root["extensionsUsed"] = {"KHR_texture_transform"};
         root["scenes"] = json::parse(R"([{"nodes": [0]}])");
         root["nodes"] = json::parse(R"([{"mesh": 0}])");
         root["buffers"][0] = {{"uri", "model.bin"}, {"byteLength", 4 * numbers.size()}};

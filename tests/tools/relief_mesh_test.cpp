@@ -344,7 +344,7 @@ TEST(InfoCommand, DescribesARealScene) {
     EXPECT_EQ(info["images"], 4);
     EXPECT_EQ(info["primitives"][0]["attributes"], json({"normals", "texcoords", "tangents"}));
     EXPECT_THAT(info["materials"][0]["textures"].get<std::vector<std::string>>(),
-                ElementsAre("base color", "metallic-roughness", "normal", "emission"));
+                ElementsAre("base color", "metallic-roughness", "normal", "occlusion", "emission"));
 }
 
 TEST(InfoCommand, DescribesCompression) {

@@ -50,6 +50,7 @@ Mesh without_attributes(const Mesh& mesh) {
 }
 
 SurfaceDistance joined_distance(const std::vector<SurfaceDistance>& distances) {
+    if (distances.size() == 1) return distances.front();  // Without the rounding of a mean.
     SurfaceDistance all;
     for (const SurfaceDistance& one : distances) {
         add_distances(all.from_a, one.from_a);

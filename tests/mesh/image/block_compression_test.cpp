@@ -244,7 +244,7 @@ TEST(BlockEncoder, RefusesOtherChannels) {
     const Image image = make_image(4, 4, 2, 8, ColorSpace::data);
     EXPECT_EQ(message_of<InvalidInput>(
                   [&] { encode_blocks(image, BlockFormat::bc4, BlockQuality::fast); }),
-              "bc4 holds 1 channels, not 2");
+              "bc4 has 1 channels, not 2");
     EXPECT_EQ(message_of<InvalidInput>(
                   [&] { encode_blocks(image, BlockFormat::bc7, BlockQuality::fast); }),
               "bc7 has 3 or 4 channels, not 2");

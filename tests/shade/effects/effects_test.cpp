@@ -312,7 +312,7 @@ TEST(EffectForcing, RefusesChoicesOfTheScene) {
     for (const char* effect : {"unlit", "metallic-roughness", "Gouraud", "flat", "alpha blending",
                                "object-space normal map", "ACES tone mapping"}) {
         EXPECT_THAT(refusal(scene, {{effect, true}}),
-                    testing::ContainsRegex("choice|neutral|behind"))
+                    testing::ContainsRegex("choice|determines|neutral|behind"))
             << effect;
     }
 }
@@ -522,13 +522,13 @@ TEST(PlanView, ExplainsWhyAViewIsEmpty) {
                 HasSubstr("height cannot be shown: the default material has no bump map"));
     EXPECT_THAT(message(DebugView::normal_map), HasSubstr("has no normal map and no bump map"));
     EXPECT_THAT(message(DebugView::reflection),
-                HasSubstr("reflection: the default material reflects nothing"));
+                HasSubstr("reflection cannot be shown: the default material reflects nothing"));
     EXPECT_THAT(message(DebugView::diffuse), HasSubstr("diffuse cannot be shown"));
     EXPECT_THAT(message(DebugView::emission), HasSubstr("emission cannot be shown"));
     EXPECT_THAT(message(DebugView::nothing_to_show), HasSubstr("cannot be requested"));
     scene.meshes[1] = scene.meshes[0];
     EXPECT_THAT(message(DebugView::texcoords),
-                HasSubstr("texcoords: mesh 'plain' has no texture coordinates"));
+                HasSubstr("texcoords cannot be shown: mesh 'plain' has no texture coordinates"));
     EXPECT_THAT(message(DebugView::tangent), HasSubstr("no tangent frame"));
 }
 

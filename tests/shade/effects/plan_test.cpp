@@ -185,7 +185,7 @@ TEST(EffectPlan, DrawsThatAreAlikeShareTheirReasons) {
     EXPECT_NE(&*plan.draws[0].reasons, planned);
     EXPECT_EQ(&*plan.draws[0].reasons, &*plan.draws[1].reasons);
     EXPECT_NE(&*plan.draws[0].reasons, &*plan.draws[2].reasons);
-    EXPECT_EQ(reason(plan.draws[1].reasons, "diffuse").reason, "taken out");
+    EXPECT_EQ(reason(plan.draws[1].reasons, "diffuse").reason, "removed");
     EXPECT_EQ(plan.draws[1].instance, 1U);
 }
 

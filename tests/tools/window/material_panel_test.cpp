@@ -159,7 +159,7 @@ TEST_F(MapSlots, RejectMapsOfAnotherKind) {
     Material& material = scene().materials[0];
     set_map(scene(), 0, slot_named("Normal map"), normals());
     EXPECT_THAT([&] { set_map(scene(), 0, slot_named("Normal map"), colors()); },
-                ThrowsMessage<FileError>(HasSubstr("holds no normals: its texels are colors")));
+                ThrowsMessage<FileError>(HasSubstr("is not a normal map: its texels are colors")));
     EXPECT_EQ(map_name(scene(), 0, slot_named("Normal map")), normals().string());
     EXPECT_THAT([&] { set_map(scene(), 0, slot_named("Bump map"), normals()); },
                 ThrowsMessage<FileError>(HasSubstr("normal map")));
@@ -178,7 +178,8 @@ TEST_F(MapSlots, KeepTheWrapMode) {
     const TextureSlot slot = slot_named("Diffuse map");
     set_map(scene(), 0, slot, colors());
     scene().materials[0].diffuse_texture->wrap_u = Wrap::clamp;
-    set_map(scene(), 0, slot, heights());
+    std::filesystem::copy_file(colors(), workplace() / "other.png");
+    set_map(scene(), 0, slot, workplace() / "other.png");
     EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_u, Wrap::clamp);
     EXPECT_EQ(scene().materials[0].diffuse_texture->wrap_v, Wrap::repeat);
 }

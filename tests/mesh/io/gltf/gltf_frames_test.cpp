@@ -78,7 +78,7 @@ class GltfFrames : public testing::Test {
                               accessor(5, 5121, 6, "SCALAR"),
                               accessor(6, 5121, 4, "SCALAR")};
         root_["meshes"] = json::parse(R"([{"primitives": [{
-            "attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "JOINTS_0": 3, "_ID": 6},
+            "attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "_FOUR": 3, "_ID": 6},
             "indices": 5, "targets": [{"POSITION": 4}]}]}])");
         finish();
     }
@@ -165,7 +165,7 @@ TEST_F(GltfFrames, ASplitCarriesEveryAttributeInItsOwnType) {
         const float values[] = {x, y, z};
         return std::string(reinterpret_cast<const char*>(values), 12);
     };
-    check(primitive["attributes"]["JOINTS_0"], 5121, false,
+    check(primitive["attributes"]["_FOUR"], 5121, false,
           {"\1\2\3\4", "\5\6\7\10", "\11\12\13\14", "\15\16\17\20"});
     check(primitive["attributes"]["_ID"], 5121, false, {"\25", "\26", "\27", "\30"});
     check(primitive["attributes"]["TEXCOORD_0"], 5123, true,
@@ -178,7 +178,7 @@ TEST_F(GltfFrames, ASplitCarriesEveryAttributeInItsOwnType) {
     EXPECT_EQ(positions["name"], "corners");
     EXPECT_EQ(positions["max"], json({1, 1, 0}));
     // Everything else was replaced. The accessors are POSITION, NORMAL, TANGENT, TEXCOORD_0,
-    // JOINTS_0, _ID, the target and the indices.
+    // _FOUR, _ID, the target and the indices.
     EXPECT_EQ(written.root["accessors"].size(), 8U);
     EXPECT_EQ(written.root["bufferViews"].size(), 8U);
     EXPECT_EQ(test::unreferenced_bytes(out_), 6U * 3);  // The padding of _ID.
@@ -246,9 +246,9 @@ TEST_F(GltfFrames, RemovingTangentsRemovesTheirDisplacementsToo) {
     const json after = contents(out_).root["meshes"][0]["primitives"][0];
     EXPECT_FALSE(after["attributes"].contains("TANGENT"));
     EXPECT_FALSE(after["targets"][0].contains("TANGENT"));
-    // JOINTS_0 and the POSITION of the target shared the bytes of the accessors, and they are still
+    // _FOUR and the POSITION of the target shared the bytes of the accessors, and they are still
     // there.
-    EXPECT_TRUE(after["attributes"].contains("JOINTS_0"));
+    EXPECT_TRUE(after["attributes"].contains("_FOUR"));
     EXPECT_TRUE(after["targets"][0].contains("POSITION"));
 }
 
@@ -336,7 +336,7 @@ TEST_F(GltfFrames, PrimitiveTakesOnlyItsSharedVertices) {
     EXPECT_EQ(positions["min"], json({5, 5, 5}));
     EXPECT_EQ(written.root["accessors"].size(), 6U);
     // Two times three vertices of two vectors, and two times three indices with padding.
-    EXPECT_EQ(written.buffers[0].size, 2U * (3 * 24 + 8) - 2);
+    EXPECT_EQ(written.buffers[0].size, 2U * (3 * 24 + 8));
 }
 
 TEST_F(GltfFrames, UnknownExtensionsKeepAllAccessors) {

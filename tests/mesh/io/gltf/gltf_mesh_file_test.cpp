@@ -93,7 +93,7 @@ TEST_F(GltfFromMesh, NormalsOfAnyLengthBecomeUnitAndUnitOnesKeepTheirBits) {
     const std::vector<glm::vec3> normals = written(file).mesh({0, 0}).normals;
     EXPECT_EQ(normals[0], glm::vec3(0, 0.6F, 0.8F));
     EXPECT_EQ(normals[1], file.mesh.normals[1]);
-    EXPECT_EQ(normals[2], glm::vec3(0.0F));
+    EXPECT_EQ(normals[2], glm::vec3(0, 0, 1)) << "glTF requires a direction";
 }
 
 TEST_F(GltfFromMesh, PhongMaterialsAreTranslated) {
@@ -419,16 +419,13 @@ TEST_F(GltfRoundTrip, CopiesHaveEveryPropertyAndEveryValue) {
     for (const auto& file : readable_models(models)) {
         SCOPED_TRACE(file);
         const auto out = folder_ / "out.glb";
-        GltfDocument::read(file, report_).write(out);
+        Report repairs;
+        GltfDocument::read(file, report_).write(out, repairs);
+        if (!repairs.empty()) continue;  // The file has faults that glTF forbids.
         Json before = without_compression(without_layout(json_in(file)));
         Json after = without_layout(json_in(out));
         if (has_draco(file)) {
             EXPECT_EQ(drop_bounds(before), drop_bounds(after));
-        }
-        if (file.stem() == "ZeroLengthBufferView") {
-            // The file states 1, but a position of it is 2147483648.
-            EXPECT_EQ(before["accessors"][1]["max"], Json({1, 1, 0}));
-            before["accessors"][1]["max"][0] = 2147483648.0;
         }
         EXPECT_EQ(Json::diff(before, after), Json::array());
         const GltfContents from = read_gltf(file, report_);
@@ -506,8 +503,11 @@ TEST_F(GltfRoundTrip, ProcessingChangesFramesAndNothingElseAtAnyCorner) {
                 mesh.texcoords.empty() ? TangentMethod::none : TangentMethod::mikktspace};
             document.set_frames(id, with_frames(mesh, options, report_), options, report_);
         }
-        document.write(out);
-        EXPECT_TRUE(beside_triangles(out) == beside_triangles(file));
+        Report repairs;
+        document.write(out, repairs);
+        if (repairs.empty()) {
+            EXPECT_TRUE(beside_triangles(out) == beside_triangles(file));
+        }
         const GltfContents before = read_gltf(file, report_);
         const GltfContents after = read_gltf(out, report_);
         for (const GltfPrimitiveId id : ids) {
