@@ -107,9 +107,9 @@ double worst_error() {
             const long double exact =
                 std::atan2(static_cast<long double>(y), static_cast<long double>(x));
             const auto error = static_cast<double>(std::abs(upper_angle(y, x) - exact));
-            const double unit = static_cast<double>(std::numeric_limits<Real>::epsilon()) *
+            const double step = static_cast<double>(std::numeric_limits<Real>::epsilon()) *
                                 std::exp2(std::floor(std::log2(static_cast<double>(exact))));
-            if (exact > 0) worst = std::max(worst, error / unit);
+            if (exact > 0) worst = std::max(worst, error / step);
         }
     }
     return worst;
@@ -136,7 +136,7 @@ TEST(UpperAngle, IsAccurateForTinyAngles) {
 }
 
 // 2^-104: sums, products and quotients lose at most a few units of the last of 106 bits.
-constexpr double unit = 0x1p-104;
+constexpr double smallest_step = 0x1p-104;
 
 double distance(const DoubleDouble& a, const DoubleDouble& b) {
     const DoubleDouble difference = a - b;
@@ -159,10 +159,10 @@ TEST(DoubleDouble, MultipliesWithoutError) {
 
 TEST(DoubleDouble, DividesAndComputesRoots) {
     const DoubleDouble third = DoubleDouble(1.0) / 3.0;
-    EXPECT_LT(distance(third * 3.0, 1.0), unit);
+    EXPECT_LT(distance(third * 3.0, 1.0), smallest_step);
     EXPECT_NE(third.low, 0.0);
     const DoubleDouble root = sqrt(DoubleDouble(2.0));
-    EXPECT_LT(distance(root * root, 2.0), 4.0 * unit);
+    EXPECT_LT(distance(root * root, 2.0), 4.0 * smallest_step);
     EXPECT_EQ(sqrt(DoubleDouble(0.0)), DoubleDouble(0.0));
     EXPECT_TRUE(std::isnan(sqrt(DoubleDouble(-1.0)).high));
 }

@@ -436,7 +436,7 @@ TEST_F(GltfRoundTrip, CopiesHaveEveryPropertyAndEveryValue) {
             ++accessors;
         }
     }
-    EXPECT_EQ(accessors, 1179U);
+    EXPECT_EQ(accessors, 1113U);
 }
 
 /// Returns every attribute of a primitive at every corner of its triangles, except frames.
