@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen through the surface: the environment behind Phong's surfaces, and the picture of what
+// The light that passes through the surface: the environment behind Phong's surfaces, and the picture of what
 // is behind glTF's.
 
 //@part refracted implements refraction

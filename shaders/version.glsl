@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the versions of GLSL do not share: 330 core, and 300 es, which WebGL 2 has.
+// The differences between the versions of GLSL: 330 core, and 300 es, which WebGL 2 has.
 
 //@part es_precision
 // The highest precision for all numbers and lookups; 330 core has no other.

@@ -31,7 +31,7 @@ struct BumpCase {
     NormalMapFormat format;
 };
 
-/// Where a changed map has the texels of the original, and the normals that correspond.
+/// A change of a map: the texels of the original in it, and the normals that correspond.
 struct BumpChange {
     const char* name;
     /// Changes the case. Returns the texel of the original for each texel of the changed map.
@@ -96,7 +96,7 @@ glm::vec3 same_normal(const glm::vec3& normal) {
     return normal;
 }
 
-/// Of Kernel::forward, whose slopes are those half a texel farther on.
+/// Returns whether the kernel is Kernel::forward, whose slopes are those half a texel farther on.
 bool is_one_sided(const BumpCase& bump) {
     return bump.options.kernel == Kernel::forward;
 }

@@ -152,7 +152,7 @@ TEST(Manual, GroffReadsEveryPageWithoutAWarning) {
     EXPECT_THAT(page, HasSubstr("relief-bake bump data/*-height.png -o out/maps/"));
 }
 
-/// What bash offers for the last word of a line.
+/// Returns the completions that bash offers for the last word of a line.
 std::string bash_offers(const Workplace& workplace, const std::string& words) {
     workplace.write("offer.sh",
                     "source share/bash-completion/completions/$1\n"

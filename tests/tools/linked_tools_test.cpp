@@ -30,7 +30,7 @@ TEST(PlainWords, AreThoseThatAShellPassesOn) {
         EXPECT_EQ(plain_text(line), std::nullopt) << line;
 }
 
-/// What a line printed and left in out/.
+/// The output of a command line, and the files that it left in out/.
 struct Outcome {
     ProgramResult result;
     std::vector<std::string> files;

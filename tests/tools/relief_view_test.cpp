@@ -399,7 +399,7 @@ void write_textured_square(const Workplace& workplace, const json& image) {
     workplace.write("square.gltf", document.dump());
 }
 
-/// What the base color factor shows alone: 0.5, 0.25 and 1, sRGB-coded.
+/// The base color factor without a texture: 0.5, 0.25 and 1, sRGB-coded.
 constexpr Pixel untextured = {188, 137, 255, 255};
 
 TEST(ViewCommand, ImagesOfModelsThatCannotBeReadAreNamedAndDrawnWithout) {

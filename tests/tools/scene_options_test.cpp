@@ -364,7 +364,7 @@ TEST(SceneOptions, LightsOnTheCommandLineReplaceAllOthers) {
     EXPECT_THAT(lit.notes, IsEmpty());
 }
 
-/// Of sines and cosines in float.
+/// The tolerance for sines and cosines in float.
 constexpr double light_tolerance = 1e-5;
 
 template <typename Light>

@@ -12,7 +12,7 @@
 
 namespace relief::test {
 
-/// What is done otherwise than by the definition.
+/// The deviation from the definition.
 enum class Twist {
     none,
     area_weights,   ///< Triangles count by area, not by the angle of the corner.

@@ -32,7 +32,7 @@ std::string contents_of(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Where the child's standard streams and working directory point.
+/// The targets of the child's standard streams, and its working directory.
 class SpawnActions {
   public:
     SpawnActions() { posix_spawn_file_actions_init(&actions_); }

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t page_columns = 100;
 constexpr std::size_t text_column = 30;
 
-/// What the examples of a page need.
+/// The note on the files that the examples of a page need.
 constexpr const char* examples_note =
     "The samples data/ are in share/relief/data of the installation. Make the folder out/ first.";
 

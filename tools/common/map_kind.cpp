@@ -47,7 +47,7 @@ FileError wrong_kind(const MapInput& input, std::optional<MapKind> is, const std
                    fmt::format("{}; --assume {} reads it anyway", remedy, enum_name(wanted)));
 }
 
-/// What an image of no normals seems to be.
+/// The kind that an image without normals seems to have.
 struct JudgedKind {
     std::optional<MapKind> kind;
     const char* phrase;

@@ -76,7 +76,8 @@ struct PlannedDeformation {
     void add(const PlannedInterface& planned);
 };
 
-/// What deforms the vertices of a mesh, as buffer textures (vertex.glsl). All poses share it.
+/// The deformations of the vertices of a mesh, as buffer textures (vertex.glsl). All poses share
+/// them.
 struct GpuDeformation {
     /// \throws GpuError if memory runs out, or a texture would be larger than the driver allows
     GpuDeformation(const gl::Api& api, const Mesh& mesh, const GpuMesh& uploaded,

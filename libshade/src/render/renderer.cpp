@@ -276,7 +276,7 @@ struct RenderCache::Implementation {
 
 namespace {
 
-/// What the draws of a mesh with one material and the same effects share.
+/// The values and textures that the draws of a mesh with one material and the same effects share.
 struct Surface {
     DrawValues values;  ///< Without those of instances and cameras.
     std::array<BoundTexture, texture_slot_count> textures;  ///< By TextureSlot.

@@ -164,7 +164,7 @@ TEST_F(MapSlots, RejectMapsOfAnotherKind) {
     EXPECT_THAT([&] { set_map(scene(), 0, slot_named("Bump map"), normals()); },
                 ThrowsMessage<FileError>(HasSubstr("normal map")));
     EXPECT_FALSE(material.bump_map);
-    // What the file states about itself holds.
+    // The metadata of the file hold.
     const std::filesystem::path down = workplace() / "down.png";
     write_image(down, read_image(normals(), ImageUse::data),
                 write_description({.kind = MapKind::object_normal, .green = Green::down}, 8));

@@ -623,7 +623,7 @@ std::optional<KeyChannel> keys_from(const GltfContents& contents, const Json& sa
     return channel;
 }
 
-/// What a channel moves.
+/// The object that a channel moves.
 struct ChannelTarget {
     std::optional<std::size_t> node;
     std::optional<KeyChannel::Property> property;
