@@ -67,13 +67,14 @@ struct FaultyTriangle {
                      {"byteOffset", bytes.size()},
                      {"byteLength", values.size() * sizeof(Value)}};
         if (target != 0) view["target"] = target;
-        root["accessors"].push_back({{"bufferView", root["bufferViews"].size()},
-                                     {"componentType", component},
-                                     {"type", type},
-                                     {"count", values.size() / components}});
+        const json accessor = {{"bufferView", root["bufferViews"].size()},
+                               {"componentType", component},
+                               {"type", type},
+                               {"count", values.size() / components}};
+        root["accessors"].push_back(accessor);
         root["bufferViews"].push_back(view);
         bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
-        root["buffers"] = {{{"byteLength", bytes.size()}}};
+        root["buffers"][0]["byteLength"] = bytes.size();
     }
 
     /// Sets a float of an accessor.
