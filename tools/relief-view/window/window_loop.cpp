@@ -22,11 +22,11 @@
 #include <vector>
 
 #include "command_line.h"
-#include "light_options.h"
 #include "common/command.h"
 #include "common/text.h"
 #include "file_replacement.h"
 #include "files.h"
+#include "light_options.h"
 #include "view_command.h"
 #include "window/background_jobs.h"
 #include "window/capture.h"
