@@ -69,7 +69,8 @@ JudgedKind judged_kind(MapContent content) {
 
 }  // namespace
 
-AddedOption add_assume_option(CLI::App& app, AssumedKinds& assumed, std::vector<MapKind> kinds) {
+AddedOption add_assume_option(CLI::App& app, AssumedKinds& assumed,
+                              const std::vector<MapKind>& kinds) {
     Choices<MapKind> choices;
     for (const MapKind kind : kinds)
         choices.emplace_back(enum_name(kind), kind);

@@ -23,7 +23,8 @@ namespace relief::tools {
 using AssumedKinds = std::vector<MapKind>;
 
 /// Adds --assume KIND. \param kinds  those as which the command reads files
-AddedOption add_assume_option(CLI::App& app, AssumedKinds& assumed, std::vector<MapKind> kinds);
+AddedOption add_assume_option(CLI::App& app, AssumedKinds& assumed,
+                              const std::vector<MapKind>& kinds);
 
 /// A map that a command reads.
 struct MapInput {
