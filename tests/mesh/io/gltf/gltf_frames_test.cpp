@@ -452,8 +452,11 @@ void process_and_compare(const std::filesystem::path& file, const std::filesyste
         EXPECT_TRUE(same_bits(stored.normals, framed.mesh.normals)) << document.describe(id);
         EXPECT_TRUE(same_bits(stored.tangents, framed.mesh.tangents)) << document.describe(id);
     }
-    document.write(out);
-    EXPECT_TRUE(test::meaning_beside_meshes(out) == test::meaning_beside_meshes(file));
+    Report repairs;
+    document.write(out, repairs);
+    if (repairs.empty()) {
+        EXPECT_TRUE(test::meaning_beside_meshes(out) == test::meaning_beside_meshes(file));
+    }
     // Each accessor may need three bytes of padding, and each byte-sized element, too.
     const GltfContents written = read_gltf(out, report);
     std::size_t padding = 4 * array_in(written.root, "bufferViews").size();
