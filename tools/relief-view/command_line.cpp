@@ -66,7 +66,7 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
                       static_cast<float>(portable::exp(std::numbers::ln2 * stops)));
               })
         .group(group);
-    add_field(app, options.scene_fields, "--tone-mapping", "", &Scene::tone_mapping,
+    add_field(app, options.scene_fields, "--tone-mapping", &Scene::tone_mapping,
               "Choose the curve for light brighter than white; none clips it. Default: the curve "
               "in the scene file, else none.")
         .group(group);

@@ -61,7 +61,7 @@ void add_image_options(CLI::App& app, ViewOptions& options) {
               "Blur the visible environment: 1 as a mirror of roughness 1 shows it. Default: 0.")
         .group(environment_group);
     add_field(
-        app, options.environment_fields, "--environment-light", "", &Environment::lights,
+        app, options.environment_fields, "--environment-light", &Environment::lights,
         "Light surfaces with the environment. Default: on if a material is metallic-roughness.")
         .group(environment_group);
     add_switch(app, "--no-skybox", "Do not show the environment behind the model.", [&] {

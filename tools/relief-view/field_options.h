@@ -53,26 +53,31 @@ Range field_limits(Value Owner::*member) {
     return {static_cast<double>(range.min), static_cast<double>(range.max), ""};
 }
 
-/// Adds an option that sets a field: a word for an enumeration, on or off for a flag, a number, or
-/// a number that becomes a gray.
+/// Adds an option that sets a field by a word: of an enumeration, or on and off.
+template <typename Owner, typename Value>
+requires std::is_enum_v<Value> || std::is_same_v<Value, bool> AddedOption
+add_field(CLI::App& app, FieldChanges<Owner>& changes, const std::string& option,
+          Value Owner::*member, const std::string& description) {
+    Choices<Value> words;
+    if constexpr (std::is_same_v<Value, bool>)
+        words = {{"on", true}, {"off", false}};
+    else
+        words = enum_choices<Value>();
+    return add_choice<Value>(app, option, words, description,
+                             [&changes, member](Value value) { changes.set(member, value); });
+}
+
+/// Adds an option that sets a field by a number, which becomes a gray if the field is a color.
 template <typename Owner, typename Value>
 AddedOption add_field(CLI::App& app, FieldChanges<Owner>& changes, const std::string& option,
                       const std::string& value_name, Value Owner::*member,
                       const std::string& description) {
-    if constexpr (std::is_same_v<Value, bool>) {
-        return add_choice<bool>(app, option, {{"on", true}, {"off", false}}, description,
-                                [&changes, member](bool value) { changes.set(member, value); });
-    } else if constexpr (std::is_enum_v<Value>) {
-        return add_choice<Value>(app, option, enum_choices<Value>(), description,
-                                 [&changes, member](Value value) { changes.set(member, value); });
-    } else {
-        const Range range = field_limits(member);
-        return add_value(
-            app, option, value_name, description,
-            [&changes, member, range](const std::string& subject, const std::string& text) {
-                changes.set(member, Value(static_cast<float>(parse_number(subject, text, range))));
-            });
-    }
+    const Range range = field_limits(member);
+    return add_value(
+        app, option, value_name, description,
+        [&changes, member, range](const std::string& subject, const std::string& text) {
+            changes.set(member, Value(static_cast<float>(parse_number(subject, text, range))));
+        });
 }
 
 }  // namespace relief::tools

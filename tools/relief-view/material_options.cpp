@@ -43,11 +43,11 @@ void add_normal_options(CLI::App& app, ViewOptions& options) {
                "model's value, else 1.")
         .group(maps_group);
     add_field(
-        app, options.material_fields, "--tangent-frame", "", &Material::tangent_frame,
+        app, options.material_fields, "--tangent-frame", &Material::tangent_frame,
         "Choose the tangent frame of normal and bump maps: the mesh's tangents (MikkTSpace if it "
         "has none), or screen-space derivatives of the texture coordinates. Default: stored.")
         .group(maps_group);
-    add_field(app, options.material_fields, "--specular-antialiasing", "",
+    add_field(app, options.material_fields, "--specular-antialiasing",
               &Material::specular_antialiasing,
               "Widen highlights where a normal map has more detail than the pixels show, so that "
               "they do not flicker. Default: off.")
@@ -104,7 +104,7 @@ void add_shading_options(CLI::App& app, ViewOptions& options) {
                "Shade glTF materials with their metallic-roughness model, or convert them to the "
                "Phong model. Default: as_authored, unless an option needs the Phong model.")
         .group(materials_group);
-    add_field(app, options.material_fields, "--interpolation", "", &Material::interpolation,
+    add_field(app, options.material_fields, "--interpolation", &Material::interpolation,
               "Compute the lighting per pixel, per vertex (only with the Phong model), or with "
               "the face normals. Default: the value in the scene file, else per_pixel.")
         .group(materials_group);
@@ -125,7 +125,7 @@ void add_shading_options(CLI::App& app, ViewOptions& options) {
 
 void add_material_options(CLI::App& app, ViewOptions& options) {
     add_shading_options(app, options);
-    add_field(app, options.material_fields, "--specular", "", &Material::specular_model,
+    add_field(app, options.material_fields, "--specular", &Material::specular_model,
               "Choose the model of highlights. The normalized model preserves their energy for "
               "every shininess. Materials without a specular color get gray 0.25. Default: the "
               "model's value, else blinn_phong.")

@@ -30,7 +30,7 @@ void drop_tone(Features& f) {
 
 void drop_second_texcoords(Features& f) {
     std::uint32_t sampled = 0;
-    for_each_second_bit(f, [&](const SecondTexture&, std::uint32_t bit) { sampled |= bit; });
+    for_each_second_bit(f, [&](const TextureSlotInfo&, std::uint32_t bit) { sampled |= bit; });
     f.second_texcoords &= sampled;
 }
 

@@ -130,11 +130,8 @@ inline constexpr std::array<SlotEffect, texture_slot_count> slot_effects{{
     {&Features::thickness_texture, "there is no volume"},
 }};
 
-/// A texture that may be looked up at the second texture coordinates.
-using SecondTexture = TextureSlotInfo;
-
-/// Calls visit(texture, bit) for each of them that these features sample. Its bit of
-/// Features::second_texcoords is 1 << slot.
+/// Calls visit(texture, bit) for each texture that these features sample and that may be looked up
+/// at the second texture coordinates. Its bit of Features::second_texcoords is 1 << slot.
 template <typename Visit>
 void for_each_second_bit(const Features& f, const Visit& visit) {
     for (std::size_t i = 0; i < texture_slot_count; ++i) {
@@ -147,7 +144,7 @@ void for_each_second_bit(const Features& f, const Visit& visit) {
 /// Calls visit(texture, is_second) for each of them that these features sample.
 template <typename Visit>
 void for_each_sampled(const Features& f, const Visit& visit) {
-    for_each_second_bit(f, [&](const SecondTexture& texture, std::uint32_t bit) {
+    for_each_second_bit(f, [&](const TextureSlotInfo& texture, std::uint32_t bit) {
         visit(texture, (f.second_texcoords & bit) != 0);
     });
 }

@@ -37,7 +37,7 @@ void sort_and_unite(std::vector<std::string>& names) {
 
 /// Changes the lookups of the textures that use the second texture coordinates.
 std::string at_second_texcoords(std::string text, const Features& f) {
-    for_each_sampled(f, [&](const SecondTexture& texture, bool is_second) {
+    for_each_sampled(f, [&](const TextureSlotInfo& texture, bool is_second) {
         if (!is_second) return;
         const std::string lookup = fmt::format("texture({}, texcoord_surface", texture.sampler);
         const std::size_t place = text.find(lookup);

@@ -104,7 +104,8 @@ bool passes_normal(By f) {
 }
 bool passes_texcoord(By f) {
     bool is_looked_up = false;
-    for_each_sampled(f, [&](const SecondTexture&, bool is_second) { is_looked_up |= !is_second; });
+    for_each_sampled(f,
+                     [&](const TextureSlotInfo&, bool is_second) { is_looked_up |= !is_second; });
     return is_looked_up || f.detail != NormalDetail::none || has_derived_frame(f) ||
            f.clearcoat_normal_map || f.anisotropy_texture || f.view == DebugView::texcoords;
 }
