@@ -77,7 +77,7 @@ Image::Samples copied_samples(const py::array& array) {
     const auto packed = py::array_t<Scalar, py::array::c_style | py::array::forcecast>(array);
     const Scalar* const first = packed.data();
     const auto size = static_cast<std::size_t>(packed.size());
-    constexpr std::size_t step = std::size_t{1} << 24;
+    constexpr std::size_t step = std::size_t{1} << 20;
     std::vector<Scalar> samples;
     samples.reserve(size);
     for (std::size_t begin = 0; begin < size; begin += step) {

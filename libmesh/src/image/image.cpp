@@ -99,7 +99,7 @@ template <typename Sample>
 std::vector<Sample> zeros(std::size_t count) {
     std::vector<Sample> samples;
     reserve_to_fill(samples, count);
-    constexpr std::size_t step = std::size_t{1} << 24;  // Memory that is used first takes time.
+    constexpr std::size_t step = std::size_t{1} << 20;  // Memory that is used first takes time.
     for (std::size_t size = step; size < count; size += step) {
         check_cancelled();
         samples.resize(size);
