@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <utility>
 #include <variant>
 
 #include "relief/mesh/bake.h"
@@ -120,7 +121,7 @@ void set_error(PyObject* type, const Error& problem) {
 
 void translate(std::exception_ptr pointer) {
     try {
-        if (pointer) std::rethrow_exception(pointer);
+        if (pointer) std::rethrow_exception(std::move(pointer));
     } catch (const BakeMismatch& problem) {
         set_error(bake_mismatch, problem);
     } catch (const InvalidInput& problem) {
