@@ -56,13 +56,17 @@ glm::dvec2 hammersley(unsigned i, unsigned n) {
     return {(i + 0.5) / n, bits * 0x1p-32 + 0.5 / n};
 }
 
-glm::dvec3 ggx_facet(const glm::dvec2& point, double alpha) {
+FacetSample facet_sample(const glm::dvec2& point) {
+    const double angle = 2.0 * std::numbers::pi * point.y;
+    return {point.x, {portable::cos(angle), portable::sin(angle)}};
+}
+
+glm::dvec3 ggx_facet(const FacetSample& sample, double alpha) {
     // tan^2 of the angle to the normal within which this share of facets lies.
-    const double tan_squared = alpha * alpha * point.x / (1.0 - point.x);
+    const double tan_squared = alpha * alpha * sample.share / (1.0 - sample.share);
     const double cosine = 1.0 / std::sqrt(1.0 + tan_squared);
     const double sine = std::sqrt(tan_squared) * cosine;
-    const double angle = 2.0 * std::numbers::pi * point.y;
-    return {sine * portable::cos(angle), sine * portable::sin(angle), cosine};
+    return {sine * sample.azimuth.x, sine * sample.azimuth.y, cosine};
 }
 
 // Directional albedo
@@ -229,6 +233,11 @@ SheenAlbedo sheen_integrals(double roughness) {
     // grazing angles.
     constexpr int steps = 32;
     const double alpha = sheen_alpha(roughness);
+    std::array<glm::dvec2, steps> azimuths{};  // Cosine and sine of phi.
+    for (std::size_t k = 0; k < azimuths.size(); ++k) {
+        const double phi = std::numbers::pi * (static_cast<double>(k) + 0.5) / steps;
+        azimuths[k] = {portable::cos(phi), portable::sin(phi)};
+    }
     SheenAlbedo table{};
     for (std::size_t i = 0; i < table.size(); ++i) {
         const double root = static_cast<double>(i) / static_cast<double>(table.size() - 1);
@@ -240,10 +249,9 @@ SheenAlbedo sheen_integrals(double roughness) {
             const double n_l = root_l * root_l;
             const double across_l = std::sqrt((1.0 - n_l) * (1.0 + n_l));
             double distribution = 0.0;
-            for (int k = 0; k < steps; ++k) {
-                const double phi = std::numbers::pi * (k + 0.5) / steps;
-                const glm::dvec3 half(across_v + across_l * portable::cos(phi),
-                                      across_l * portable::sin(phi), n_v + n_l);
+            for (const glm::dvec2& azimuth : azimuths) {
+                const glm::dvec3 half(across_v + across_l * azimuth.x, across_l * azimuth.y,
+                                      n_v + n_l);
                 distribution += sheen_distribution(half.z / glm::length(half), alpha);
             }
             // d n.l = 2 root d root, and both halves of the circle are alike.

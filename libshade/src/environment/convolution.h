@@ -32,9 +32,21 @@ double ggx_visibility(double n_l, double n_v, double alpha);
 /// binary digits of i as a fraction, plus half of the last digit [Hammersley 1960].
 glm::dvec2 hammersley(unsigned i, unsigned n);
 
-/// Returns the facet normal for a point of the unit square; evenly spread points sample the density
-/// D n.h.
-glm::dvec3 ggx_facet(const glm::dvec2& point, double alpha);
+/// A point of the unit square, for facets of any alpha.
+struct FacetSample {
+    double share;        ///< The share of facets that are nearer to the normal.
+    glm::dvec2 azimuth;  ///< The cosine and the sine of the azimuth.
+};
+
+FacetSample facet_sample(const glm::dvec2& point);
+
+/// Returns the facet normal of a sample; evenly spread points sample the density D n.h.
+glm::dvec3 ggx_facet(const FacetSample& sample, double alpha);
+
+/// Returns the facet normal of a point.
+inline glm::dvec3 ggx_facet(const glm::dvec2& point, double alpha) {
+    return ggx_facet(facet_sample(point), alpha);
+}
 
 // Directional albedo
 

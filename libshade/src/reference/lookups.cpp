@@ -114,9 +114,18 @@ namespace {
 
 using std::numbers::pi;
 
-/// The number of sampled directions of a blurred lookup: the mean of a smooth environment has an
-/// error of about a thousandth.
-constexpr unsigned blur_samples = 1024;
+/// Returns the samples of a blurred lookup. They are so many that the mean of a smooth environment
+/// has an error of about a thousandth.
+const std::vector<FacetSample>& blur_samples() {
+    constexpr unsigned count = 1024;
+    static const std::vector<FacetSample> samples = [] {
+        std::vector<FacetSample> all;
+        for (unsigned i = 0; i < count; ++i)
+            all.push_back(facet_sample(hammersley(i, count)));
+        return all;
+    }();
+    return samples;
+}
 
 /// Returns a right-handed basis with this unit vector as its z axis.
 glm::dmat3 basis_about(const glm::dvec3& z) {
@@ -236,11 +245,12 @@ glm::dvec3 EnvironmentLookup::looked_up(const glm::dvec3& direction_world, Trace
 glm::dvec3 EnvironmentLookup::blurred(const glm::dvec3& direction_world, double roughness,
                                       Trace& trace) const {
     if (roughness <= 0.0) return looked_up(direction_world, trace);
+    if (!trace.needs_radiance()) return glm::dvec3(0.0);
     const glm::dmat3 world_from_local = basis_about(glm::normalize(direction_world));
     glm::dvec3 sum(0.0);
     double weights = 0.0;
-    for (unsigned i = 0; i < blur_samples; ++i) {
-        const glm::dvec3 h = ggx_facet(hammersley(i, blur_samples), roughness * roughness);
+    for (const FacetSample& sample : blur_samples()) {
+        const glm::dvec3 h = ggx_facet(sample, roughness * roughness);
         const glm::dvec3 light = 2.0 * h.z * h - glm::dvec3(0, 0, 1);
         if (light.z <= 0.0) continue;
         sum += radiance(world_from_local * light) * light.z;

@@ -45,6 +45,8 @@ using reference::Trace;
 
 /// The result of one ray.
 struct Sample {
+    explicit Sample(bool needs_radiance) : trace(needs_radiance) {}
+
     glm::dvec4 color{0.0};    ///< Alpha not multiplied in.
     std::vector<Hit> layers;  ///< The hits, nearest first, including transparent
                               ///< ones; without culled sides.
@@ -87,7 +89,11 @@ class Tracer {
     }
 
     /// \param x, y  in pixels from the upper left corner
-    [[nodiscard]] Sample trace(double x, double y) const;
+    [[nodiscard]] Sample trace(double x, double y) const { return traced(x, y, true); }
+
+    /// Returns the sample of a ray beside a pixel, without its radiance, to compare it with the
+    /// sample of the pixel.
+    [[nodiscard]] Sample trace_beside(double x, double y) const { return traced(x, y, false); }
 
     /// Tells whether the picture is continuous between two samples.
     [[nodiscard]] bool is_continuous(const Sample& a, const Sample& b) const;
@@ -97,6 +103,7 @@ class Tracer {
     [[nodiscard]] bool is_edge_on(const Sample& sample, double x, double y) const;
 
   private:
+    [[nodiscard]] Sample traced(double x, double y, bool needs_radiance) const;
     [[nodiscard]] const Camera& camera() const { return *prepared_.scene.camera; }
     [[nodiscard]] glm::dvec2 on_view_plane(double x, double y) const;
     /// Returns the direction of the ray, in the space of the camera.
@@ -167,10 +174,10 @@ bool Tracer::is_too_close(const Hit& front, const Hit& behind) const {
     return apart < 1e-6 && !is_same_surface(front, behind);
 }
 
-Sample Tracer::trace(double x, double y) const {
+Sample Tracer::traced(double x, double y, bool needs_radiance) const {
     const glm::dvec2 view_plane = on_view_plane(x, y);
     const std::vector<Hit> hits = visibility_.hits(view_plane.x, view_plane.y);
-    Sample sample;
+    Sample sample(needs_radiance);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         const std::size_t layers_before = sample.layers.size();
         const bool hides_the_rest = add(hits[i], sample);
@@ -261,7 +268,7 @@ bool is_minified(const Tracer& tracer, const Sample& center, double x, double y,
         for (const double down : {-apart, 0.0, apart}) {
             for (const double right : {-apart, 0.0, apart}) {
                 if (right == 0.0 && down == 0.0) continue;
-                const Sample beside = tracer.trace(x + right, y + down);
+                const Sample beside = tracer.trace_beside(x + right, y + down);
                 if (moves_fast(center, beside, std::hypot(right, down))) return true;
             }
         }
@@ -272,7 +279,7 @@ bool is_minified(const Tracer& tracer, const Sample& center, double x, double y,
 bool is_near_edge(const Tracer& tracer, const Sample& center, double x, double y, double margin) {
     if (!(margin > 0.0)) return false;
     for (const glm::dvec2& corner : {glm::dvec2(1, 1), {1, -1}, {-1, 1}, {-1, -1}}) {
-        const Sample beside = tracer.trace(x + margin * corner.x, y + margin * corner.y);
+        const Sample beside = tracer.trace_beside(x + margin * corner.x, y + margin * corner.y);
         if (!tracer.is_continuous(center, beside)) return true;
     }
     return tracer.is_edge_on(center, x, y) || is_minified(tracer, center, x, y, margin);
@@ -302,7 +309,8 @@ reference::PictureBehind picture_behind(const PreparedScene& prepared,
     parallel_for(edges.size(), width, [&](std::size_t begin, std::size_t end) {
         for (std::size_t pixel = begin; pixel < end; ++pixel) {
             const double x = static_cast<double>(pixel % width) + 0.5;
-            const double y = static_cast<double>(pixel / width) + 0.5;
+            const std::size_t row = pixel / width;
+            const double y = static_cast<double>(row) + 0.5;
             const Sample sample = tracer.trace(x, y);
             picture.texels[pixel] = {glm::dvec3(sample.color) * sample.color.a, sample.color.a};
             edges[pixel] = is_near_edge(tracer, sample, x, y, settings.edge_margin) ? 1 : 0;
@@ -336,7 +344,8 @@ Reference render_reference(const Scene& scene, const ReferenceSettings& settings
     parallel_for(result.hits.size(), width, [&](std::size_t begin, std::size_t end) {
         for (std::size_t pixel = begin; pixel < end; ++pixel) {
             const double x = static_cast<double>(pixel % width) + 0.5;
-            const double y = static_cast<double>(pixel / width) + 0.5;
+            const std::size_t row = pixel / width;
+            const double y = static_cast<double>(row) + 0.5;
             const Sample sample = tracer.trace(x, y);
             for (int i = 0; i < 4; ++i) {
                 radiance[4 * pixel + static_cast<std::size_t>(i)] =

@@ -55,6 +55,13 @@ namespace RELIEF_API reference {
 /// rounding may decide what is seen; places that lie far apart mean a texture that OpenGL averages.
 class Trace {
   public:
+    Trace() = default;
+    /// \param needs_radiance  false for a ray beside a pixel: it makes the same decisions and
+    ///                        lookups as any ray, but its radiance is not computed
+    explicit Trace(bool needs_radiance) : needs_radiance_(needs_radiance) {}
+
+    [[nodiscard]] bool needs_radiance() const { return needs_radiance_; }
+
     void decide(std::int64_t decision) {
         constexpr std::uint64_t fnv_prime = 0x100000001B3ULL;
         hash_ = (hash_ ^ static_cast<std::uint64_t>(decision)) * fnv_prime;
@@ -78,6 +85,7 @@ class Trace {
     std::uint64_t hash_ = 0xCBF29CE484222325ULL;
     std::vector<glm::dvec3> places_;
     bool is_doubtful_ = false;
+    bool needs_radiance_ = true;
 };
 
 /// An image as RGBA: gray as (g, g, g, 1), gray with alpha as (g, g, g, a), RGB as (r, g, b, 1).

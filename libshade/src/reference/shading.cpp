@@ -343,12 +343,17 @@ struct LightSums {
     glm::dvec3 highlights{0.0};  ///< sum H s k [n.l > 0]
 };
 
+/// Tells whether the surface faces the light, and the light's radiance is needed.
+bool adds_light(const Context& context, double n_dot_l) {
+    context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
+    return n_dot_l > 0.0 && context.trace.needs_radiance();
+}
+
 LightSums light_sums(const Context& context, const Surface& at) {
     LightSums sums;
     for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
-        context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
-        if (!(n_dot_l > 0.0)) continue;
+        if (!adds_light(context, n_dot_l)) continue;
         sums.scattered +=
             limited(context, light.irradiance * n_dot_l * glm::dvec3(context.material.diffuse));
         sums.highlights +=
@@ -554,6 +559,17 @@ double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface&
     return std::numbers::pi * distribution * visibility;
 }
 
+/// Records the phase of the film, which jumps where film and base have the same index.
+void decide_phase(const Context& context, const Microfacets& facets) {
+    if (facets.film == 0.0) return;
+    const double index =
+        static_cast<double>(context.material.metallic_roughness->iridescence_index);
+    for (int i = 0; i < 3; ++i) {
+        const double root = std::sqrt(std::min(facets.f0[i], 0.9999));
+        context.trace.decide((1.0 + root) / (1.0 - root) < index ? 1 : 0);
+    }
+}
+
 /// The light that facets mirror, and the light that scattering therefore lacks.
 struct Mirrored {
     glm::dvec3 mirrored;
@@ -564,13 +580,9 @@ struct Mirrored {
 /// \param share  of a surface that mirrors all light
 Mirrored with_film(const Context& context, const Microfacets& facets, double cosine, double share,
                    const Mirrored& plain) {
-    if (facets.film == 0.0) return plain;
+    if (facets.film == 0.0 || !context.trace.needs_radiance()) return plain;
     const double index =
         static_cast<double>(context.material.metallic_roughness->iridescence_index);
-    for (int i = 0; i < 3; ++i) {  // The phase jumps where film and base have the same index.
-        const double root = std::sqrt(std::min(facets.f0[i], 0.9999));
-        context.trace.decide((1.0 + root) / (1.0 - root) < index ? 1 : 0);
-    }
     const glm::dvec3 film = film_reflectance(facets.f0, cosine, index, facets.film_thickness);
     const double largest = std::min(std::max({film.r, film.g, film.b}), 1.0);
     return {glm::mix(plain.mirrored, share * film, facets.film),
@@ -602,11 +614,18 @@ Mirrored bounced(const Context& context, const Microfacets& facets, double n_dot
     return {share(once.mirrored, mean.mirrored), share(once.blocked, mean.blocked)};
 }
 
+/// Returns directional_albedo(), or if the radiance is not needed, that of a mirror.
+glm::dvec2 albedo_of(const Context& context, double n_dot_v, double roughness) {
+    return context.trace.needs_radiance() ? directional_albedo(n_dot_v, roughness)
+                                          : glm::dvec2(1.0, 0.0);
+}
+
 /// Returns A and B of the material's lobe. A lobe that is wider along one axis has those of the
 /// isotropic lobe with the mean width, from the angle at which as many facets are masked.
-glm::dvec2 lobe_albedo(const Microfacets& facets, const Surface& at, double n_dot_v) {
+glm::dvec2 lobe_albedo(const Context& context, const Microfacets& facets, double n_dot_v) {
+    const Surface& at = context.surface;
     const Anisotropy& a = facets.anisotropy;
-    if (a.strength == 0.0) return directional_albedo(n_dot_v, facets.roughness);
+    if (a.strength == 0.0) return albedo_of(context, n_dot_v, facets.roughness);
     const double alpha = facets.roughness * facets.roughness;
     const double along = glm::mix(alpha, 1.0, a.strength * a.strength);
     const double width_squared =
@@ -615,8 +634,8 @@ glm::dvec2 lobe_albedo(const Microfacets& facets, const Surface& at, double n_do
     const double t_dot_v = glm::dot(a.rough_axis, at.view_world);
     const double b_squared = std::max(1.0 - n_dot_v * n_dot_v - t_dot_v * t_dot_v, 0.0);
     const double stretched = (t_part * t_part + alpha * alpha * b_squared) / width_squared;
-    return directional_albedo(n_dot_v / std::sqrt(n_dot_v * n_dot_v + stretched),
-                              std::sqrt(std::sqrt(width_squared)));
+    return albedo_of(context, n_dot_v / std::sqrt(n_dot_v * n_dot_v + stretched),
+                     std::sqrt(std::sqrt(width_squared)));
 }
 
 /// Returns the factor of highlights that adds the light of further bounces [Turquin 2019].
@@ -624,7 +643,7 @@ glm::dvec3 highlight_gain(const Context& context, const Microfacets& facets) {
     if (!compensates_energy(*context.material.metallic_roughness)) return glm::dvec3(1.0);
     const Surface& at = context.surface;
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
-    const glm::dvec2 albedo = lobe_albedo(facets, at, n_dot_v);
+    const glm::dvec2 albedo = lobe_albedo(context, facets, n_dot_v);
     const glm::dvec3 f0 =
         glm::min(with_film(context, facets, n_dot_v, 1.0, {facets.f0, facets.f0}).mirrored, 1.0);
     return 1.0 + f0 * (1.0 / (albedo.x + albedo.y) - 1.0);
@@ -694,7 +713,7 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     glm::dvec3 light = ambient_of(context) * (facets.scattering + facing.mirrored);
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
-        const glm::dvec2 albedo = directional_albedo(n_dot_v, facets.roughness);
+        const glm::dvec2 albedo = albedo_of(context, n_dot_v, facets.roughness);
         const Mirrored once = with_film(context, facets, n_dot_v, albedo.x + albedo.y,
                                         {facets.f0 * albedo.x + facets.f90 * albedo.y,
                                          facets.blocking_f0 * albedo.x + facets.f90 * albedo.y});
@@ -747,8 +766,7 @@ glm::dvec3 received(const Context& context, const glm::dvec3& normal, Lobe lobe)
     glm::dvec3 sum(0.0);
     for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(normal, light.light_world);
-        context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
-        if (!(n_dot_l > 0.0)) continue;
+        if (!adds_light(context, n_dot_l)) continue;
         const glm::dvec3 half = half_vector(light.light_world, at);
         if (half != glm::dvec3(0.0)) sum += light.irradiance * lobe(n_dot_l, half);
     }
@@ -799,7 +817,7 @@ glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
         return n_dot_l * ggx_lobe(at.normal_world, half, at, n_dot_l, roughness);
     });
     // The weight is outside, so the coat's facets mirror all light in all bounces.
-    const glm::dvec2 albedo = directional_albedo(n_dot_v, roughness);
+    const glm::dvec2 albedo = albedo_of(context, n_dot_v, roughness);
     const double once = albedo.x + albedo.y;
     coat /= once;
     glm::dvec3 around = ambient_of(context);
@@ -815,13 +833,13 @@ glm::dvec3 metallic_roughness_radiance(const Context& context, const Hit& hit,
                                        const glm::dvec3& tint) {
     const Surface& at = context.surface;
     const Microfacets facets = microfacets_at(context, tint);
+    decide_phase(context, facets);
     glm::dvec3 radiance =
         occlusion(context) * indirect_light(context, facets) + passing_light(context, facets, hit);
     const glm::dvec3 gain = highlight_gain(context, facets);
     for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
-        context.trace.decide(n_dot_l > 0.0 ? 1 : 0);
-        if (!(n_dot_l > 0.0)) continue;
+        if (!adds_light(context, n_dot_l)) continue;
         radiance += light.irradiance * n_dot_l *
                     scattered_by(context, facets, light.light_world, n_dot_l, gain);
     }

@@ -14,6 +14,7 @@
 
 #include "environment/convolution.h"
 #include "reference/reference_parts.h"
+#include "shade/effects/feature_sets.h"
 #include "shade/reference/traced.h"
 #include "support/shapes.h"
 
@@ -1297,6 +1298,30 @@ TEST(MetallicRoughness, HasAsManyFacetsAsCoverTheSurfaceWithAnisotropy) {
     }
     EXPECT_NEAR(test::radiance_at(scene, 3, 1, 1).r, exact * gain_along_axes(along, alpha), 1e-5);
     EXPECT_GT(exact, 0.7);
+}
+
+/// Rays beside a pixel are compared with the ray of the pixel, which needs the radiance.
+TEST(RaysWithoutRadiance, MakeTheSameDecisionsAndLookups) {
+    const std::vector<Features>& sets = test::covering_features();
+    std::size_t films = 0;
+    for (std::size_t i = 0; i < sets.size(); i += 2) {
+        if (sets[i].transmission) continue;  // It looks up a picture, which is not here.
+        SCOPED_TRACE(describe(sets[i]));
+        const Scene scene = test::scene_calling_for(sets[i]).scene;
+        Report report;
+        const reference::PreparedScene prepared(scene, report);
+        const Material& material = prepared.material_of(0, 0);
+        if (sets[i].iridescence) ++films;
+        for (const glm::dvec3 corners : {glm::dvec3(1.0 / 3.0), {0.7, 0.2, 0.1}}) {
+            const reference::Hit hit{0, 0, 1.0, corners, true};
+            reference::Trace with(true), without(false);
+            const reference::Shaded shaded = shade(prepared, hit, material, with);
+            EXPECT_EQ(shade(prepared, hit, material, without).alpha, shaded.alpha);
+            EXPECT_TRUE(without.decided_like(with));
+            EXPECT_EQ(without.places(), with.places());
+        }
+    }
+    EXPECT_GE(films, 2U) << "the phase of a film is a decision";
 }
 
 }  // namespace
