@@ -29,11 +29,7 @@ using test::agreement_tolerance;
 using test::blurred_tolerance;
 using test::pixel;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr int reference_size = 48;  // The reference is several times slower when instrumented.
-#else
-constexpr int reference_size = 96;
-#endif
+constexpr int reference_size = 48;
 /// In codes, for 8-bit textures: llvmpipe decodes sRGB with a polynomial whose error is up to half
 /// a percent, which is half a code, and filters data with weights of 8 bits.
 constexpr double coarse_tolerance = 2.0;
