@@ -2,6 +2,8 @@
 #include "shade/effects/feature_sets.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <random>
 #include <set>
 
@@ -37,11 +39,15 @@ FeatureField second(const char* name) {
 
 constexpr unsigned max_values = 6;
 
+/// Bits of the values of all fields: value v of field i has the number i * max_values + v.
+using ValueBits = std::vector<std::uint64_t>;
+
 /// A set and an upper bound of the pairs that it adds. The bound is its last count, since the
 /// number of new pairs only decreases.
 struct Candidate {
     const Features* features;
-    std::vector<unsigned char> values;  ///< Values of each field.
+    std::vector<std::size_t> values;  ///< The number of the value of each field.
+    ValueBits bits;                   ///< The same values.
     std::size_t bound = static_cast<std::size_t>(-1);
 };
 
@@ -49,32 +55,46 @@ struct Candidate {
 class CoveredPairs {
   public:
     explicit CoveredPairs(std::size_t fields)
-        : fields_(fields), met_(fields * fields * max_values * max_values, 0) {}
-
-    [[nodiscard]] std::size_t fresh_in(const std::vector<unsigned char>& values) const {
-        std::size_t fresh = 0;
-        const unsigned char* const met = met_.data();
-        for (std::size_t i = 0; i < fields_; ++i) {
-            for (std::size_t j = i + 1; j < fields_; ++j)
-                fresh += met[place(i, j, values[i], values[j])] == 0 ? 1U : 0U;
-        }
-        return fresh;
+        : words_((fields * max_values + 63) / 64), met_(fields * max_values, ValueBits(words_, 0)) {
+        for (std::size_t value = 0; value < met_.size(); ++value)
+            set(met_[value], value);  // A value is no pair with itself.
     }
-    void add(const std::vector<unsigned char>& values) {
-        for (std::size_t i = 0; i < fields_; ++i) {
-            for (std::size_t j = i + 1; j < fields_; ++j)
-                met_[place(i, j, values[i], values[j])] = 1;
+
+    [[nodiscard]] Candidate candidate(const Features& features) const {
+        Candidate made{&features, {}, ValueBits(words_, 0)};
+        for (const FeatureField& field : feature_fields()) {
+            made.values.push_back(made.values.size() * max_values + field.get(features));
+            set(made.bits, made.values.back());
+        }
+        return made;
+    }
+
+    [[nodiscard]] std::size_t fresh_in(const Candidate& candidate) const {
+        std::size_t fresh = 0;  // Each pair is counted from both sides.
+        for (const std::size_t value : candidate.values) {
+            const std::uint64_t* const met = met_[value].data();
+            const std::uint64_t* const bits = candidate.bits.data();
+            for (std::size_t word = 0; word < words_; ++word) {
+                const std::uint64_t rest = bits[word] & ~met[word];
+                if (rest != 0) fresh += static_cast<std::size_t>(std::popcount(rest));
+            }
+        }
+        return fresh / 2;
+    }
+    void add(const Candidate& candidate) {
+        for (const std::size_t value : candidate.values) {
+            for (std::size_t word = 0; word < words_; ++word)
+                met_[value][word] |= candidate.bits[word];
         }
     }
 
   private:
-    [[nodiscard]] std::size_t place(std::size_t i, std::size_t j, std::size_t a,
-                                    std::size_t b) const {
-        return ((i * fields_ + j) * max_values + a) * max_values + b;
+    static void set(ValueBits& bits, std::size_t value) {
+        bits[value / 64] |= std::uint64_t{1} << (value % 64);
     }
 
-    std::size_t fields_;
-    std::vector<unsigned char> met_;
+    std::size_t words_;
+    std::vector<ValueBits> met_;  ///< Of each value, the values that it met.
 };
 
 }  // namespace
@@ -171,23 +191,19 @@ namespace {
 std::vector<Features> make_covering_features() {
     std::set<Features> canonical_sets;
     for_random_features(40000, [&](const Features& f) { canonical_sets.insert(canonical(f)); });
-    std::vector<Candidate> candidates;
-    for (const Features& f : canonical_sets) {
-        Candidate candidate{&f, {}};
-        for (const FeatureField& field : feature_fields())
-            candidate.values.push_back(static_cast<unsigned char>(field.get(f)));
-        candidates.push_back(std::move(candidate));
-    }
     CoveredPairs covered(feature_fields().size());
+    std::vector<Candidate> candidates;
+    for (const Features& f : canonical_sets)
+        candidates.push_back(covered.candidate(f));
     std::vector<Features> chosen;
     // Passes with a decreasing threshold. This is cheaper than the exact greedy choice and gives
     // almost as small a result.
     for (std::size_t bar = 400; bar > 0; bar = bar > 8 ? bar * 3 / 4 : bar - 1) {
         for (Candidate& candidate : candidates) {
             if (candidate.bound < bar) continue;
-            candidate.bound = covered.fresh_in(candidate.values);
+            candidate.bound = covered.fresh_in(candidate);
             if (candidate.bound < bar) continue;
-            covered.add(candidate.values);
+            covered.add(candidate);
             chosen.push_back(*candidate.features);
             candidate.bound = 0;
         }

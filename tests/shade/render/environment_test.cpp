@@ -18,7 +18,16 @@
 namespace relief {
 namespace {
 
-class Environments : public test::DrawTest {};
+class Environments : public test::DrawTest {
+  protected:
+    /// Draws a picture of 48 x 48 pixels. The cache keeps the maps of the environment.
+    [[nodiscard]] Image radiance_with(RenderCache& cache, const Scene& scene) const {
+        const FrameSettings settings{48, 48, 1, OutputCoding::linear};
+        Report report;
+        Renderer renderer(cache, context(), scene, plan_effects(scene, settings), settings, report);
+        return renderer.draw(*scene.camera).image;
+    }
+};
 
 Environment six_files(const std::filesystem::path& folder, const std::string& extension) {
     CubeFaces faces;
@@ -148,11 +157,12 @@ TEST_F(Environments, ConstantLightIsReflectedCompletelyByWhiteSurfaces) {
     white.metallic_roughness.emplace();
     Scene scene = test::scene_of(test::sphere(48, 24), white);
     scene.environment = computed(16, [](glm::dvec3) { return 1.0; });
+    RenderCache cache(context());
     for (const float metallic : {0.0F, 1.0F}) {
         for (const float roughness : {0.0F, 0.1F, 0.2F, 0.35F, 0.5F, 0.7F, 0.85F, 1.0F}) {
             scene.materials[0].metallic_roughness->metallic = metallic;
             scene.materials[0].metallic_roughness->roughness = roughness;
-            const Image picture = radiance(scene, 48, 48);
+            const Image picture = radiance_with(cache, scene);
             double darkest = 1.0;
             double brightest = 1.0;
             for (int y = 0; y < picture.height; ++y) {
@@ -175,8 +185,9 @@ TEST_F(Environments, OfEvenLightAreReflectedWhollyUnderCoatsAndByAnisotropicFace
     white.metallic_roughness = {glm::vec3(1.0F), 1.0F, 0.5F, {}};
     Scene scene = test::scene_of(test::sphere(48, 24), white);
     scene.environment = computed(16, [](glm::dvec3) { return 1.0; });
+    RenderCache cache(context());
     const auto expect_white = [&] {
-        const Image picture = radiance(scene, 48, 48);
+        const Image picture = radiance_with(cache, scene);
         for (int y = 0; y < picture.height; ++y) {
             for (int x = 0; x < picture.width; ++x) {
                 const glm::dvec4 color = test::pixel(picture, x, y);
