@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An effect that the plan left out changes no bit of the picture when it is forced on, alone or
-// with all others. Effect costs: the choice of effects to drop from given and from measured times.
+// with others. Effect costs: the choice of effects to drop from given and from measured times.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
