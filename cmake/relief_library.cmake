@@ -3,12 +3,13 @@ include(CMakePackageConfigHelpers)
 
 # Each component stands after those that it needs. The packages of CMake and of pkg-config, and the libraries that
 # have neither, are for programs that link an installed static component.
-set(RELIEF_ALL mesh topology files bake shade reference accuracy)
+set(RELIEF_ALL mesh topology atlas files bake shade reference accuracy)
 set(RELIEF_PACKAGES_mesh fmt TBB)
 set(RELIEF_PKG_CONFIG_mesh fmt tbb)
 set(RELIEF_NEEDED_BY_topology mesh)
 set(RELIEF_PACKAGES_topology OpenMesh)
 set(RELIEF_PKG_CONFIG_topology openmesh)
+set(RELIEF_NEEDED_BY_atlas mesh)
 set(RELIEF_NEEDED_BY_files mesh)
 set(RELIEF_PACKAGES_files tinyobjloader meshoptimizer)
 set(RELIEF_PKG_CONFIG_files tinyobjloader libdeflate libisal libturbojpeg libzstd draco)

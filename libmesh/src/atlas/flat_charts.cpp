@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "atlas/flat_charts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <queue>
+
+#include "parallel.h"
+#include "progress_stage.h"
+
+namespace relief {
+namespace {
+
+/// Triangles below this share of the whole area may be stretched: their corners are rounded.
+constexpr double min_area_share = 1e-6;
+/// A projection with at most this stretch is as good as a flattened chart.
+constexpr double isometric_stretch = 1.001;
+
+std::array<glm::dvec2, 3> corners_of(const ChartMesh& chart, std::size_t index,
+                                     std::span<const glm::dvec2> coordinates) {
+    const glm::uvec3& v = chart.vertices[index];
+    return {coordinates[v.x], coordinates[v.y], coordinates[v.z]};
+}
+
+double stretch_ratio(const Stretch& stretch) {
+    if (!(stretch.smallest > 0.0)) return std::numeric_limits<double>::infinity();
+    const double area = stretch.largest * stretch.smallest;
+    return std::max({stretch.largest / stretch.smallest, area, 1.0 / area});
+}
+
+/// Works on the parts of one chart of the segmentation.
+class ChartFlattener {
+  public:
+    ChartFlattener(const AtlasSurface& surface, ChartMembers& members, const FlatnessLimits& limits,
+                   double total_area)
+        : surface_(surface),
+          members_(members),
+          limits_(limits),
+          min_area_(min_area_share * total_area) {}
+
+    void flatten(std::vector<std::uint32_t> faces, std::vector<FlatChart>& result) {
+        std::vector<std::vector<std::uint32_t>> waiting;
+        waiting.push_back(std::move(faces));
+        flatten(std::move(waiting), result);
+    }
+
+    /// Divides a chart at a face before its parts are flattened.
+    void divide(const ChartMesh& chart, std::uint32_t face, std::vector<FlatChart>& result) {
+        std::vector<std::vector<std::uint32_t>> parts = bisected(chart, face);
+        std::reverse(parts.begin(), parts.end());
+        flatten(std::move(parts), result);
+    }
+
+  private:
+    /// \param waiting the parts, the first one last
+    void flatten(std::vector<std::vector<std::uint32_t>> waiting, std::vector<FlatChart>& result) {
+        while (!waiting.empty()) {
+            check_cancelled();
+            std::vector<std::uint32_t> part = std::move(waiting.back());
+            waiting.pop_back();
+            members_.assign(part);
+            FlatChart chart;
+            chart.mesh = chart_mesh(surface_, members_, std::move(part));
+            std::optional<std::uint32_t> problem = try_flatten(chart);
+            if (!problem) {
+                align_to_box(chart);
+                if (chart.mesh.faces.size() > 1) problem = end_of_long(chart);
+            }
+            if (!problem) {
+                for (const std::uint32_t face : chart.mesh.faces)
+                    chart.area += surface_.areas[face];
+                result.push_back(std::move(chart));
+                continue;
+            }
+            // In reverse, so that the first part is next.
+            std::vector<std::vector<std::uint32_t>> parts = bisected(chart.mesh, *problem);
+            for (auto each = parts.rbegin(); each != parts.rend(); ++each)
+                waiting.push_back(std::move(*each));
+        }
+    }
+
+    /// \return a face with a problem, as an index of the chart
+    std::optional<std::uint32_t> try_flatten(FlatChart& chart) const {
+        std::vector<glm::dvec2> projection = projected(surface_, chart.mesh);
+        if (chart.mesh.faces.size() == 1 ||
+            problem_of(chart.mesh, projection, isometric_stretch) == std::nullopt) {
+            chart.coordinates = std::move(projection);
+            return std::nullopt;
+        }
+        std::vector<glm::dvec2> flat = flattened(surface_, chart.mesh, projection);
+        const std::optional<std::uint32_t> problem =
+            problem_of(chart.mesh, flat, limits_.max_stretch);
+        if (!problem) {
+            chart.coordinates = std::move(flat);
+            return std::nullopt;
+        }
+        if (!problem_of(chart.mesh, projection, limits_.max_stretch)) {
+            chart.coordinates = std::move(projection);
+            return std::nullopt;
+        }
+        return problem;
+    }
+
+    [[nodiscard]] std::optional<std::uint32_t> problem_of(const ChartMesh& chart,
+                                                          std::span<const glm::dvec2> coordinates,
+                                                          double max_stretch) const {
+        double worst = max_stretch;
+        std::optional<std::uint32_t> result;
+        for (std::uint32_t i = 0; i < chart.faces.size(); ++i) {
+            const std::uint32_t face = chart.faces[i];
+            const double ratio =
+                stretch_ratio(stretch_of(surface_, face, corners_of(chart, i, coordinates)));
+            const bool counts = surface_.areas[face] >= min_area_ || std::isinf(ratio);
+            if (!counts || ratio <= worst) continue;
+            worst = ratio;
+            result = i;
+            if (std::isinf(ratio)) return result;
+        }
+        if (result) return result;
+        return overlap_in(chart, on_lattice(coordinates, limits_.lattice_scale));
+    }
+
+    /// The distances over centers of faces from one of them.
+    [[nodiscard]] std::vector<double> distances_from(const ChartMesh& chart,
+                                                     std::uint32_t start) const {
+        const auto center = [&](std::uint32_t index) {
+            const Corner corner = 3 * chart.faces[index];
+            return (surface_.position(corner) + surface_.position(corner + 1) +
+                    surface_.position(corner + 2)) /
+                   3.0;
+        };
+        using Entry = std::pair<double, std::uint32_t>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        std::vector<double> distance(chart.faces.size(), std::numeric_limits<double>::infinity());
+        distance[start] = 0.0;
+        queue.emplace(0.0, start);
+        while (!queue.empty()) {
+            const auto [length, index] = queue.top();
+            queue.pop();
+            if (length > distance[index]) continue;
+            const glm::dvec3 here = center(index);
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const Corner other = chart.opposite[3 * index + k];
+                if (other == no_corner) continue;
+                const std::uint32_t neighbor = other / 3;
+                const double next = length + glm::length(center(neighbor) - here);
+                if (next >= distance[neighbor]) continue;
+                distance[neighbor] = next;
+                queue.emplace(next, neighbor);
+            }
+        }
+        return distance;
+    }
+
+    /// Divides a chart between a face and the one that is farthest from it.
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> bisected(const ChartMesh& chart,
+                                                                   std::uint32_t face) const {
+        const std::vector<double> from_face = distances_from(chart, face);
+        // Another face, even if it is at the same place.
+        std::uint32_t far = face == 0 ? 1 : 0;
+        for (std::uint32_t i = 0; i < from_face.size(); ++i)
+            if (i != face && from_face[i] > from_face[far]) far = i;
+        const std::vector<double> from_far = distances_from(chart, far);
+        std::vector<std::uint8_t> side(chart.faces.size());
+        for (std::size_t i = 0; i < side.size(); ++i)
+            side[i] = from_face[i] < from_far[i] ? 1 : 0;
+        side[face] = 1;
+        side[far] = 0;
+        return components(chart, side);
+    }
+
+    static std::vector<std::vector<std::uint32_t>> components(
+        const ChartMesh& chart, const std::vector<std::uint8_t>& side) {
+        std::vector<std::vector<std::uint32_t>> parts;
+        std::vector<bool> is_visited(side.size(), false);
+        std::vector<std::uint32_t> stack;
+        for (std::uint32_t first = 0; first < side.size(); ++first) {
+            if (is_visited[first]) continue;
+            std::vector<std::uint32_t>& part = parts.emplace_back();
+            is_visited[first] = true;
+            stack.push_back(first);
+            while (!stack.empty()) {
+                const std::uint32_t index = stack.back();
+                stack.pop_back();
+                part.push_back(chart.faces[index]);
+                for (std::uint32_t k = 0; k < 3; ++k) {
+                    const Corner other = chart.opposite[3 * index + k];
+                    if (other == no_corner || is_visited[other / 3] ||
+                        side[other / 3] != side[index])
+                        continue;
+                    is_visited[other / 3] = true;
+                    stack.push_back(other / 3);
+                }
+            }
+            std::sort(part.begin(), part.end());
+        }
+        return parts;
+    }
+
+    /// Returns a face at the end of a chart that is too long.
+    [[nodiscard]] std::optional<std::uint32_t> end_of_long(const FlatChart& chart) const {
+        if (std::max(chart.size.x, chart.size.y) <= limits_.max_side) return std::nullopt;
+        const glm::length_t axis = chart.size.x >= chart.size.y ? 0 : 1;
+        std::uint32_t first = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::uint32_t i = 0; i < chart.mesh.faces.size(); ++i) {
+            const double x = chart.coordinates[chart.mesh.vertices[i].x][axis];
+            if (x >= least) continue;
+            least = x;
+            first = i;
+        }
+        return first;
+    }
+
+    const AtlasSurface& surface_;
+    ChartMembers& members_;
+    const FlatnessLimits& limits_;
+    double min_area_;
+};
+
+/// The faces of each chart, ascending; connected parts of a chart are charts of their own.
+std::vector<std::vector<std::uint32_t>> faces_by_chart(const Segmentation& segmentation) {
+    std::vector<std::vector<std::uint32_t>> result(segmentation.count);
+    for (std::uint32_t face = 0; face < segmentation.chart.size(); ++face)
+        result[segmentation.chart[face]].push_back(face);
+    return result;
+}
+
+}  // namespace
+
+std::vector<LatticePoint> on_lattice(std::span<const glm::dvec2> coordinates, double scale) {
+    glm::dvec2 low(std::numeric_limits<double>::infinity());
+    for (const glm::dvec2& each : coordinates)
+        low = glm::min(low, each);
+    std::vector<LatticePoint> result(coordinates.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const glm::dvec2 scaled = (coordinates[i] - low) * scale + 0.5;
+        result[i] = {static_cast<int>(std::min(scaled.x, 67108863.0)),
+                     static_cast<int>(std::min(scaled.y, 67108863.0))};
+    }
+    return result;
+}
+
+std::vector<FlatChart> flat_charts(const AtlasSurface& surface, const Segmentation& segmentation,
+                                   ChartMembers& members, const FlatnessLimits& limits) {
+    std::vector<std::vector<std::uint32_t>> faces = faces_by_chart(segmentation);
+    std::vector<std::vector<FlatChart>> parts(faces.size());
+    const double total = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
+    // The largest first, so that threads end at about the same time.
+    std::vector<std::uint32_t> order(faces.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return faces[a].size() > faces[b].size();
+    });
+    parallel_for(order.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            ChartFlattener flattener(surface, members, limits, total);
+            flattener.flatten(std::move(faces[order[i]]), parts[order[i]]);
+        }
+    });
+    std::vector<FlatChart> result;
+    for (std::uint32_t origin = 0; origin < parts.size(); ++origin) {
+        for (FlatChart& chart : parts[origin]) {
+            chart.origin = origin;
+            result.push_back(std::move(chart));
+        }
+    }
+    return result;
+}
+
+std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers& members,
+                                       const FlatChart& chart, std::uint32_t face,
+                                       const FlatnessLimits& limits) {
+    const double total = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
+    std::vector<FlatChart> parts;
+    ChartFlattener(surface, members, limits, total).divide(chart.mesh, face, parts);
+    for (FlatChart& part : parts)
+        part.origin = chart.origin;
+    return parts;
+}
+
+}  // namespace relief

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Flattens charts until none overlaps itself and none is stretched above a limit, and divides
+/// those for which that fails.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "atlas/charts.h"
+#include "atlas/flatten.h"
+#include "atlas/injectivity.h"
+
+namespace relief {
+
+/// A chart in the plane, in the unit of the surface; y points up.
+struct FlatChart {
+    ChartMesh mesh;
+    std::vector<glm::dvec2> coordinates;  ///< At least 0; the box begins at the origin.
+    glm::dvec2 size{0.0};
+    double area = 0.0;  ///< Of the surface.
+    /// The chart that contained the faces at the beginning.
+    std::uint32_t origin = 0;
+};
+
+/// What a chart must fulfil.
+struct FlatnessLimits {
+    /// The largest permitted ratio of a triangle's singular values, and of its areas.
+    double max_stretch = 4.0;
+    /// Lattice units of a unit of the surface.
+    double lattice_scale = 1.0;
+    /// Longer charts are divided, because the map would have to shrink for them.
+    double max_side = std::numeric_limits<double>::infinity();
+};
+
+/// Rotates a chart so that the area of its box is smallest, and shifts the box to the origin.
+void align_to_box(FlatChart& chart);
+
+/// Rounds coordinates to the lattice.
+std::vector<LatticePoint> on_lattice(std::span<const glm::dvec2> coordinates, double scale);
+
+/// \param members  of the charts of the segmentation, all with part 0
+/// \return in a fixed order. Each chart is injective on the lattice and within the limits
+std::vector<FlatChart> flat_charts(const AtlasSurface& surface, const Segmentation& segmentation,
+                                   ChartMembers& members, const FlatnessLimits& limits);
+
+/// Divides a chart of more than one face at `face`, an index of the chart.
+std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers& members,
+                                       const FlatChart& chart, std::uint32_t face,
+                                       const FlatnessLimits& limits);
+
+}  // namespace relief

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Flattens a chart: coordinates in the plane for its vertices, in the unit of the surface.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "atlas/surface.h"
+
+namespace relief {
+
+/// The faces of a chart with vertices of their own. A vertex where two fans of the chart meet is
+/// two vertices.
+struct ChartMesh {
+    std::vector<std::uint32_t> faces;      ///< Ascending.
+    std::vector<glm::uvec3> vertices;      ///< For each of `faces`, its vertices in the chart.
+    std::vector<std::uint32_t> positions;  ///< For each vertex, the surface's.
+    /// For each edge (3 * index in `faces` + i), that of its neighbor in the chart; or no_corner.
+    std::vector<Corner> opposite;
+};
+
+/// Numbers the parts of charts, so that a chart can ask which faces belong to it. Threads may use
+/// it for different charts at the same time.
+class ChartMembers {
+  public:
+    explicit ChartMembers(std::vector<std::uint32_t> chart)
+        : chart_(std::move(chart)), index_(chart_.size()), part_(chart_.size(), 0) {}
+
+    /// Makes `faces`, which belong to one chart, a part of it.
+    void assign(std::span<const std::uint32_t> faces) {
+        const std::uint32_t part = ++last_part_;
+        for (std::uint32_t i = 0; i < faces.size(); ++i) {
+            index_[faces[i]] = i;
+            part_[faces[i]] = part;
+        }
+    }
+    [[nodiscard]] bool are_together(std::uint32_t a, std::uint32_t b) const {
+        return chart_[a] == chart_[b] && part_[a] == part_[b];
+    }
+    /// Returns the index in the part that was assigned last.
+    [[nodiscard]] std::uint32_t index(std::uint32_t face) const { return index_[face]; }
+
+  private:
+    std::vector<std::uint32_t> chart_;
+    std::vector<std::uint32_t> index_;
+    std::vector<std::uint32_t> part_;
+    std::atomic<std::uint32_t> last_part_{0};  ///< Only whether numbers are equal matters.
+};
+
+/// \param faces  ascending, a part of `members`
+ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
+                     std::vector<std::uint32_t> faces);
+
+/// Projects a chart along the mean of its normals.
+std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& chart);
+
+/// Flattens a connected chart as rigidly as possible. \param start from projected()
+///
+/// Each iteration finds the rotations of the triangles, then the coordinates that fit them best;
+/// one factorization serves all. Source: [Liu et al. 2008].
+std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& chart,
+                                  std::vector<glm::dvec2> start);
+
+/// How a triangle is stretched by its coordinates.
+struct Stretch {
+    double largest = 0.0;   ///< Larger singular value of the map from the surface to the plane.
+    double smallest = 0.0;  ///< Smaller one; negative if the triangle is inverted.
+};
+Stretch stretch_of(const AtlasSurface& surface, std::uint32_t face,
+                   const std::array<glm::dvec2, 3>& coordinates);
+
+}  // namespace relief

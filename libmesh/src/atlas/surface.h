@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The surface that an atlas is made for: triangles joined across edges, in an order that depends
+/// on positions only.
+///
+/// Vertices with equal positions are one. They are sorted along a Morton curve; each triangle
+/// begins with its smallest vertex (its orientation is kept), and triangles are sorted by their
+/// vertices. All sums run in this order and all ties go to the smaller index, so that the atlas is
+/// the same for any order of triangles, of vertices and of the corners of a triangle.
+///
+/// Two triangles are neighbors if they run along an edge in opposite directions, and if no other
+/// triangle does. Where more triangles meet, pairs in opposite directions are joined, the flattest
+/// one first; all others are cut apart.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "geometry/corners.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+
+namespace relief {
+
+inline constexpr std::uint32_t no_face = std::numeric_limits<std::uint32_t>::max();
+
+/// Corner c of a face is 3 * face + i. The edge c runs from corner c to the next corner.
+struct AtlasSurface {
+    /// Shifted and scaled to a box whose largest side is 1.
+    std::vector<glm::dvec3> positions;
+    double unit = 1.0;  ///< The length in object space of 1 here.
+    std::vector<glm::uvec3> faces;
+    std::vector<glm::dvec3> normals;  ///< Unit normals of the faces.
+    std::vector<double> areas;
+    /// For each edge, the edge of its neighbor; or no_corner.
+    std::vector<Corner> opposite;
+    /// True for edges where charts may not continue, although the faces are joined.
+    std::vector<bool> is_border;
+
+    /// For each triangle of the mesh, its face; no_face if it is degenerate or not finite. Equal
+    /// triangles have one face.
+    std::vector<std::uint32_t> face_of_triangle;
+    /// For each triangle of the mesh, the corner that is the first one of its face.
+    std::vector<std::uint8_t> first_corner;
+
+    [[nodiscard]] const glm::dvec3& position(Corner corner) const {
+        return positions[faces[corner / 3][static_cast<glm::length_t>(corner % 3)]];
+    }
+    [[nodiscard]] double edge_length(Corner corner) const {
+        return glm::length(position(next_in_triangle(corner)) - position(corner));
+    }
+};
+
+/// The borders of charts that the caller asks for.
+struct AtlasConstraints {
+    bool at_materials = false;
+    bool at_seams = false;        ///< Where the texture coordinates of the mesh differ.
+    double min_hard_angle = 0.0;  ///< Radians between face normals; 0: none.
+};
+
+/// \param mesh  valid (mesh.h)
+/// \param report  counts triangles without area, non-finite and repeated ones, and edges where
+///         triangles are cut apart
+AtlasSurface atlas_surface(const Mesh& mesh, const AtlasConstraints& constraints, Report& report);
+
+}  // namespace relief

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relief/mesh/unwrap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "atlas/charts.h"
+#include "atlas/flat_charts.h"
+#include "atlas/injectivity.h"
+#include "atlas/packing.h"
+#include "atlas/surface.h"
+#include "progress_stage.h"
+
+namespace relief {
+namespace {
+
+/// Coordinates are multiples of 1 / lattice_size of the map.
+constexpr double lattice_size = 16777216.0;
+/// The share of the map that charts are expected to cover, before they are packed.
+constexpr double expected_use = 0.65;
+/// The length of a chart, in sides of the map, above which it is divided instead of shrinking all
+/// charts.
+constexpr double max_overlength = 1.25;
+constexpr double small_chart_texels = 64.0;
+constexpr double min_area_share = 1e-6;
+
+void check(const UnwrapOptions& options) {
+    const auto refuse = [](const std::string& what, double value, const std::string& range) {
+        throw InvalidInput(fmt::format("{} is {}, but must be {}", what, value, range));
+    };
+    for (const int side : {options.size.x, options.size.y})
+        if (side < 16 || side > 65536) refuse("the size of the map", side, "16 to 65536 texels");
+    if (options.padding < 0 || options.padding > 256)
+        refuse("the padding", options.padding, "0 to 256 texels");
+    if (!(options.max_stretch > 1.0)) refuse("the stretch limit", options.max_stretch, "above 1");
+    if (options.alignment < 1 || options.alignment > 64)
+        refuse("the alignment", options.alignment, "1 to 64 texels");
+    if (options.split_hard &&
+        !(*options.split_hard >= 0.0 && *options.split_hard <= std::numbers::pi))
+        refuse("the angle of hard edges", *options.split_hard, "0 to pi");
+    if (options.texels_per_unit &&
+        !(*options.texels_per_unit > 0.0 && std::isfinite(*options.texels_per_unit)))
+        refuse("the density", *options.texels_per_unit, "finite and above 0 texels per unit");
+}
+
+/// A chart on the lattice of the map; y points up.
+std::vector<LatticePoint> lattice_points(const FlatChart& chart, const Placement& placement,
+                                         double texels_per_unit, const glm::ivec2& size) {
+    const glm::dvec2 steps = lattice_size / glm::dvec2(size);
+    std::vector<LatticePoint> points;
+    points.reserve(chart.coordinates.size());
+    for (const glm::dvec2& each : chart.coordinates) {
+        const glm::dvec2 p = placed(each, placement, texels_per_unit) * steps + 0.5;
+        points.emplace_back(static_cast<int>(std::clamp(p.x, 0.0, lattice_size)),
+                            static_cast<int>(std::clamp(p.y, 0.0, lattice_size)));
+    }
+    // A single triangle may be so small or thin that its corners round to a line.
+    if (chart.mesh.faces.size() == 1 && orientation(points[0], points[1], points[2]) <= 0) {
+        const glm::uvec3& v = chart.mesh.vertices[0];
+        const LatticePoint first = points[v.x];
+        points[v.y] = first + LatticePoint(1, 0);
+        points[v.z] = first + LatticePoint(0, 1);
+    }
+    return points;
+}
+
+/// Charts in their places on the lattice.
+struct Atlas {
+    std::vector<FlatChart> charts;
+    std::vector<std::vector<LatticePoint>> points;
+    double texels_per_unit = 0.0;  ///< Of the surface.
+};
+
+/// Packs charts, and divides those that overlap themselves once they are rounded at their place,
+/// until there is none.
+Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
+                   ChartMembers& members, const FlatnessLimits& limits,
+                   const PackingOptions& options) {
+    Atlas atlas;
+    for (;;) {
+        const Packing packing = packed(charts, options);
+        atlas.points.clear();
+        std::vector<FlatChart> next;
+        bool is_sound = true;
+        for (std::size_t i = 0; i < charts.size(); ++i) {
+            atlas.points.push_back(lattice_points(charts[i], packing.placements[i],
+                                                  packing.texels_per_unit, options.size));
+            const auto problem = overlap_in(charts[i].mesh, atlas.points[i]);
+            if (!problem) {
+                next.push_back(charts[i]);
+                continue;
+            }
+            is_sound = false;
+            for (FlatChart& part : divided_further(surface, members, charts[i], *problem, limits))
+                next.push_back(std::move(part));
+        }
+        if (is_sound) {
+            atlas.charts = std::move(charts);
+            atlas.texels_per_unit = packing.texels_per_unit;
+            return atlas;
+        }
+        charts = std::move(next);
+    }
+}
+
+/// The value below which a share of the weights lies. \param values with weights, ascending
+double quantile(std::span<const std::pair<double, double>> values, double share) {
+    double sum = 0.0;
+    double total = 0.0;
+    for (const auto& [value, weight] : values)
+        total += weight;
+    for (const auto& [value, weight] : values) {
+        sum += weight;
+        if (sum >= share * total) return value;
+    }
+    return values.empty() ? 0.0 : values.back().first;
+}
+
+AtlasStats stats_of(const AtlasSurface& surface, const Atlas& atlas, const glm::ivec2& size) {
+    AtlasStats stats;
+    const glm::dvec2 texels = glm::dvec2(size) / lattice_size;
+    std::vector<std::pair<double, double>> densities;
+    std::vector<std::uint32_t> chart_of(surface.faces.size());
+    double map_area = 0.0;
+    double area = 0.0;
+    for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
+        const FlatChart& chart = atlas.charts[c];
+        double chart_texels = 0.0;
+        for (std::size_t i = 0; i < chart.mesh.faces.size(); ++i) {
+            const glm::uvec3& v = chart.mesh.vertices[i];
+            const std::uint32_t face = chart.mesh.faces[i];
+            chart_of[face] = c;
+            const auto point = [&](std::uint32_t vertex) {
+                return glm::dvec2(atlas.points[c][vertex]) * texels;
+            };
+            const Stretch stretch = stretch_of(surface, face, {point(v.x), point(v.y), point(v.z)});
+            const double weight = surface.areas[face];
+            chart_texels += weight * stretch.largest * stretch.smallest;
+            area += weight;
+            densities.emplace_back(std::sqrt(stretch.largest * stretch.smallest), weight);
+            stats.stretch += 0.5 * weight *
+                             (1.0 / (stretch.largest * stretch.largest) +
+                              1.0 / (stretch.smallest * stretch.smallest));
+            stats.mean_anisotropy += weight * (stretch.largest / stretch.smallest);
+        }
+        map_area += chart_texels;
+        if (chart_texels < small_chart_texels) ++stats.small_charts;
+    }
+    stats.charts = atlas.charts.size();
+    if (!(area > 0.0)) return stats;
+    for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
+        const FlatChart& chart = atlas.charts[c];
+        for (std::size_t i = 0; i < chart.mesh.faces.size(); ++i) {
+            const std::uint32_t face = chart.mesh.faces[i];
+            if (surface.areas[face] < min_area_share * area) continue;
+            const glm::uvec3& v = chart.mesh.vertices[i];
+            const auto point = [&](std::uint32_t vertex) {
+                return glm::dvec2(atlas.points[c][vertex]) * texels;
+            };
+            const Stretch stretch = stretch_of(surface, face, {point(v.x), point(v.y), point(v.z)});
+            stats.max_anisotropy =
+                std::max(stats.max_anisotropy, stretch.largest / stretch.smallest);
+        }
+    }
+    const double mean_density = std::sqrt(map_area / area);
+    std::sort(densities.begin(), densities.end());
+    stats.min_density = quantile(densities, 0.05) / mean_density;
+    stats.max_density = quantile(densities, 0.95) / mean_density;
+    stats.stretch = std::sqrt(stats.stretch / area) * mean_density;
+    stats.mean_anisotropy /= area;
+    stats.used = map_area / (static_cast<double>(size.x) * size.y);
+    stats.texels_per_unit = mean_density / surface.unit;
+    stats.area = area * surface.unit * surface.unit;
+    double seams = 0.0;
+    for (Corner edge = 0; edge < surface.opposite.size(); ++edge) {
+        const Corner other = surface.opposite[edge];
+        if (other == no_corner || (edge < other && chart_of[edge / 3] != chart_of[other / 3]))
+            seams += surface.edge_length(edge);
+    }
+    stats.relative_seam_length = seams / std::sqrt(area);
+    stats.seam_length = seams * surface.unit;
+    return stats;
+}
+
+/// Texture coordinates from lattice coordinates: v points down. The result is exact.
+glm::vec2 texcoord_of(const LatticePoint& point) {
+    return {static_cast<float>(point.x / lattice_size),
+            static_cast<float>((lattice_size - point.y) / lattice_size)};
+}
+
+void fill_corners(const AtlasSurface& surface, const Atlas& atlas, Unwrapped& result) {
+    struct Place {
+        std::uint32_t chart = 0, index = 0;
+    };
+    std::vector<Place> places(surface.faces.size());
+    for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
+        const std::vector<std::uint32_t>& faces = atlas.charts[c].mesh.faces;
+        for (std::uint32_t i = 0; i < faces.size(); ++i)
+            places[faces[i]] = {c, i};
+    }
+    for (std::size_t t = 0; t < surface.face_of_triangle.size(); ++t) {
+        const std::uint32_t face = surface.face_of_triangle[t];
+        if (face == no_face) continue;
+        const Place& place = places[face];
+        result.chart[t] = place.chart;
+        const glm::uvec3& v = atlas.charts[place.chart].mesh.vertices[place.index];
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            const std::uint32_t corner = (i + surface.first_corner[t]) % 3;
+            result.corner_texcoords[3 * t + corner] =
+                texcoord_of(atlas.points[place.chart][v[static_cast<glm::length_t>(i)]]);
+        }
+    }
+}
+
+}  // namespace
+
+Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report) {
+    check(options);
+    validate(mesh);
+    const ExecutionScope scope(options.execution);
+    const ProgressStage stage("unwrapping");
+    Unwrapped result;
+    result.corner_texcoords.assign(3 * mesh.triangles.size(), glm::vec2(0.0F));
+    result.chart.assign(mesh.triangles.size(), std::nullopt);
+    const AtlasSurface surface = atlas_surface(
+        mesh, {options.split_materials, options.keep_seams, options.split_hard.value_or(0.0)},
+        report);
+    if (surface.faces.empty()) return result;
+    Segmentation segmentation = divided(surface, ChartLimits{});
+    smooth_borders(surface, segmentation);
+
+    const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
+    const glm::dvec2 size(options.size);
+    // Triangles cannot be divided, so that the longest edge must fit into the map.
+    double longest = 0.0;
+    for (Corner edge = 0; edge < surface.opposite.size(); ++edge)
+        longest = std::max(longest, surface.edge_length(edge));
+    const double texels_per_unit = options.texels_per_unit
+                                       ? *options.texels_per_unit * surface.unit
+                                       : std::min(std::sqrt(expected_use * size.x * size.y / area),
+                                                  std::max(size.x, size.y) / longest);
+    FlatnessLimits limits;
+    limits.max_stretch = options.max_stretch;
+    limits.lattice_scale = texels_per_unit * lattice_size / std::max(size.x, size.y);
+    limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;
+    ChartMembers members(segmentation.chart);
+    std::vector<FlatChart> charts = flat_charts(surface, segmentation, members, limits);
+    PackingOptions packing{options.size, options.padding, options.alignment, std::nullopt};
+    if (options.texels_per_unit) packing.texels_per_unit = texels_per_unit;
+    const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, packing);
+    fill_corners(surface, atlas, result);
+    result.stats = stats_of(surface, atlas, options.size);
+    return result;
+}
+
+FramedMesh with_texcoords(const Mesh& mesh, const Unwrapped& unwrapped) {
+    if (unwrapped.corner_texcoords.size() != 3 * mesh.triangles.size())
+        throw InvalidInput(fmt::format("there are {} texture coordinates for {} triangles",
+                                       unwrapped.corner_texcoords.size(), mesh.triangles.size()));
+    std::vector<glm::vec3> values;
+    values.reserve(unwrapped.corner_texcoords.size());
+    for (const glm::vec2& each : unwrapped.corner_texcoords)
+        values.emplace_back(each, 0.0F);
+    const VertexSplit split =
+        split_where_corners_differ(mesh.positions.size(), mesh.triangles, values);
+    FramedMesh result;
+    result.mesh = carried(mesh, split);
+    result.source_vertex = split.source_vertex;
+    result.mesh.tangents.clear();
+    result.mesh.texcoords.assign(result.mesh.positions.size(), glm::vec2(0.0F));
+    for (std::size_t corner = 0; corner < unwrapped.corner_texcoords.size(); ++corner) {
+        const std::uint32_t vertex =
+            split.triangles[corner / 3][static_cast<glm::length_t>(corner % 3)];
+        result.mesh.texcoords[vertex] = unwrapped.corner_texcoords[corner];
+    }
+    return result;
+}
+
+}  // namespace relief

@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: Apache-2.0
+// Unwrapping. A checker of its own decides by pairs of triangles, in integers, that nothing
+// overlaps; every mesh has a result; the order of triangles, vertices and corners changes no bit.
+#include "relief/mesh/unwrap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hard_cases/mesh_changes.h"
+#include "hard_cases/random_meshes.h"
+#include "support/hard_meshes.h"
+#include "support/invariants.h"
+#include "support/shapes.h"
+
+namespace relief {
+namespace {
+
+using test::Dice;
+using test::mesh_from;
+using test::MeshVariant;
+using test::message_of;
+
+struct Point {
+    std::int64_t x, y;
+    friend bool operator==(const Point&, const Point&) = default;
+};
+using Corners = std::array<Point, 3>;
+
+/// Texture coordinates on the lattice, y up.
+Point point_of(const glm::vec2& texcoord) {
+    return {static_cast<std::int64_t>(texcoord.x * 0x1p24),
+            static_cast<std::int64_t>(0x1p24 - texcoord.y * 0x1p24)};
+}
+
+std::int64_t area_of(const Point& a, const Point& b, const Point& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// True if an edge of `a` has all of `b` on its outer side.
+bool separates(const Corners& a, const Corners& b) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto is_outside = [&](const Point& p) {
+            return area_of(a[i], a[(i + 1) % 3], p) <= 0;
+        };
+        if (std::all_of(b.begin(), b.end(), is_outside)) return true;
+    }
+    return false;
+}
+
+/// The triangles of an atlas that have a chart.
+struct Checked {
+    std::vector<Corners> corners;
+    std::vector<std::uint32_t> chart;
+    std::size_t without_chart = 0;
+};
+
+Checked triangles_of(const Unwrapped& unwrapped) {
+    Checked result;
+    for (std::size_t t = 0; t < unwrapped.chart.size(); ++t) {
+        if (!unwrapped.chart[t]) {
+            ++result.without_chart;
+            continue;
+        }
+        const glm::vec2* const uv = &unwrapped.corner_texcoords[3 * t];
+        result.corners.push_back({point_of(uv[0]), point_of(uv[1]), point_of(uv[2])});
+        result.chart.push_back(*unwrapped.chart[t]);
+    }
+    return result;
+}
+
+/// Returns the first violation of what unwrap() promises for every mesh, or an empty string.
+std::string broken_promise(const Unwrapped& unwrapped) {
+    for (const glm::vec2& uv : unwrapped.corner_texcoords) {
+        for (const float x : {uv.x, uv.y}) {
+            if (!(x >= 0.0F && x <= 1.0F)) return "a coordinate outside of [0,1]";
+            if (std::floor(x * 0x1p24) != x * 0x1p24) return "a coordinate off the lattice";
+        }
+    }
+    const Checked checked = triangles_of(unwrapped);
+    std::vector<std::size_t> order(checked.corners.size());
+    const auto low = [&](std::size_t i) {
+        const Corners& c = checked.corners[i];
+        return std::min({c[0].x, c[1].x, c[2].x});
+    };
+    const auto high = [&](std::size_t i) {
+        const Corners& c = checked.corners[i];
+        return std::max({c[0].x, c[1].x, c[2].x});
+    };
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        order[i] = i;
+        const Corners& c = checked.corners[i];
+        if (area_of(c[0], c[1], c[2]) <= 0) return "an inverted or flat triangle";
+    }
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return low(a) < low(b); });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Corners& a = checked.corners[order[i]];
+        for (std::size_t j = i + 1; j < order.size() && low(order[j]) < high(order[i]); ++j) {
+            const Corners& b = checked.corners[order[j]];
+            const auto is_corner = [&](const Point& p) {
+                return std::find(a.begin(), a.end(), p) != a.end();
+            };
+            // Repeated triangles have the same coordinates.
+            if (std::all_of(b.begin(), b.end(), is_corner)) continue;
+            if (!separates(a, b) && !separates(b, a)) return "triangles that overlap";
+        }
+    }
+    return "";
+}
+
+double distance(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+    const glm::dvec2 edge = b - a;
+    const double t = std::clamp(glm::dot(p - a, edge) / glm::dot(edge, edge), 0.0, 1.0);
+    return glm::length(p - a - t * edge);
+}
+
+/// The smallest distance between two charts, and between charts and the border of the map, texels.
+struct Distances {
+    double between = std::numeric_limits<double>::infinity();
+    double border = std::numeric_limits<double>::infinity();
+};
+
+Distances distances_of(const Unwrapped& unwrapped, const glm::dvec2& size) {
+    Distances result;
+    for (std::size_t s = 0; s < unwrapped.chart.size(); ++s) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec2 p = glm::dvec2(unwrapped.corner_texcoords[3 * s + i]) * size;
+            result.border = std::min({result.border, p.x, p.y, size.x - p.x, size.y - p.y});
+            for (std::size_t t = 0; t < unwrapped.chart.size(); ++t) {
+                if (unwrapped.chart[s] == unwrapped.chart[t]) continue;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto corner = [&](std::size_t j) {
+                        return glm::dvec2(unwrapped.corner_texcoords[3 * t + j % 3]) * size;
+                    };
+                    result.between =
+                        std::min(result.between, distance(p, corner(k), corner(k + 1)));
+                }
+            }
+        }
+    }
+    return result;
+}
+
+TEST(Unwrap, FlattensACubeWithoutStretch) {
+    const Mesh cube = test::uneven_cube();
+    Report report;
+    UnwrapOptions options;
+    options.size = {256, 256};
+    const Unwrapped unwrapped = unwrap(cube, options, report);
+    EXPECT_EQ(broken_promise(unwrapped), "");
+    EXPECT_TRUE(report.empty());
+    EXPECT_NEAR(unwrapped.stats.area, 24.0, 1e-9);
+    EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 0.05);
+    EXPECT_GT(unwrapped.stats.used, 0.4);
+    EXPECT_NEAR(unwrapped.stats.used, 24.0 * std::pow(unwrapped.stats.texels_per_unit / 256.0, 2),
+                1e-9);
+    const Distances distances = distances_of(unwrapped, {256.0, 256.0});
+    EXPECT_GE(distances.between, 4.0);
+    EXPECT_GE(distances.border, 2.0);
+}
+
+TEST(Unwrap, MapsAPlaneToOneRectangle) {
+    const Unwrapped unwrapped = unwrap(test::flat_grid(20));
+    EXPECT_EQ(broken_promise(unwrapped), "");
+    EXPECT_EQ(unwrapped.stats.charts, 1U);
+    EXPECT_NEAR(unwrapped.stats.seam_length, 80.0, 1e-9) << "its boundary";
+    EXPECT_NEAR(unwrapped.stats.relative_seam_length, 4.0, 1e-9);
+    EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 1e-6);
+    EXPECT_NEAR(unwrapped.stats.max_anisotropy, 1.0, 1e-4) << "rounding to the lattice";
+    EXPECT_GT(unwrapped.stats.used, 0.97);
+}
+
+// The longest triangles of the sphere are as dense as the others.
+TEST(Unwrap, KeepsTheDensityOfASphere) {
+    Mesh sphere = make_sphere(64, 32);
+    sphere.texcoords.clear();
+    const Unwrapped unwrapped = unwrap(sphere);
+    EXPECT_EQ(broken_promise(unwrapped), "");
+    EXPECT_LE(unwrapped.stats.charts, 16U);
+    EXPECT_EQ(unwrapped.stats.small_charts, 0U);
+    EXPECT_GT(unwrapped.stats.min_density, 0.9);
+    EXPECT_LT(unwrapped.stats.max_density, 1.1);
+    EXPECT_LT(unwrapped.stats.stretch, 1.005);
+    EXPECT_LT(unwrapped.stats.max_anisotropy, 4.0);
+    EXPECT_GT(unwrapped.stats.used, 0.5);
+}
+
+// The right angles of a texture must not become left ones: bakers and tangent spaces depend on it.
+TEST(Unwrap, MirrorsNoChart) {
+    Mesh torus = make_torus(0.4F, 48, 24);
+    const FramedMesh framed = with_texcoords(torus, unwrap(torus));
+    const Mesh with = test::with_tangents(framed.mesh);
+    for (const glm::vec4& tangent : with.tangents)
+        EXPECT_EQ(tangent.w, 1.0F);
+}
+
+TEST(Unwrap, KeepsPaddingAndBlocks) {
+    const Mesh cube = test::uneven_cube();
+    for (const int padding : {0, 1, 7, 24}) {
+        UnwrapOptions options;
+        options.size = {256, 200};
+        options.padding = padding;
+        const Unwrapped unwrapped = unwrap(cube, options);
+        EXPECT_EQ(broken_promise(unwrapped), "") << padding;
+        const Distances distances = distances_of(unwrapped, {256.0, 200.0});
+        EXPECT_GE(distances.between, padding);
+        EXPECT_GE(distances.border, 0.5 * padding);
+    }
+    UnwrapOptions options;
+    options.size = {256, 256};
+    options.padding = 0;
+    options.alignment = 16;
+    const Unwrapped unwrapped = unwrap(cube, options);
+    // The blocks of the corners; between them, an edge may pass through other blocks.
+    std::map<std::pair<int, int>, std::set<std::uint32_t>> charts;
+    for (std::size_t corner = 0; corner < unwrapped.corner_texcoords.size(); ++corner) {
+        const glm::ivec2 block(unwrapped.corner_texcoords[corner] * 16.0F);
+        charts[{block.x, block.y}].insert(*unwrapped.chart[corner / 3]);
+    }
+    for (const auto& [block, inside] : charts)
+        EXPECT_EQ(inside.size(), 1U);
+}
+
+TEST(Unwrap, HasTheRequestedDensity) {
+    UnwrapOptions options;
+    options.texels_per_unit = 20.0;
+    const Unwrapped unwrapped = unwrap(test::uneven_cube(), options);
+    EXPECT_EQ(broken_promise(unwrapped), "");
+    EXPECT_NEAR(unwrapped.stats.texels_per_unit, 20.0, 0.1);
+    options.texels_per_unit = 2000.0;
+    EXPECT_EQ(message_of<InvalidInput>([&] { unwrap(test::uneven_cube(), options); }),
+              "the charts do not fit into the map at the requested density");
+}
+
+// Two triangles of a plane have one chart unless something must stay between them.
+TEST(Unwrap, DividesChartsWhereThatIsRequested) {
+    Mesh folded = test::ramp(1.0F, 1.0F);
+    folded.texcoords.clear();
+    UnwrapOptions options;
+    options.size = {2048, 1024};  // A square map would divide the long chart.
+    EXPECT_EQ(unwrap(folded, options).stats.charts, 1U);
+    options.split_hard = 50.0 * std::numbers::pi / 180.0;
+    EXPECT_EQ(unwrap(folded, options).stats.charts, 1U) << "the angle is 45 degrees";
+    options.split_hard = 40.0 * std::numbers::pi / 180.0;
+    EXPECT_EQ(unwrap(folded, options).stats.charts, 2U);
+
+    Mesh square = test::square();
+    square.material_ranges = {{0, 1, 0U}, {1, 1, 1U}};
+    EXPECT_EQ(unwrap(square).stats.charts, 1U);
+    options = {};
+    options.split_materials = true;
+    EXPECT_EQ(unwrap(square, options).stats.charts, 2U);
+
+    const Mesh sphere = make_sphere(24, 12);
+    options = {};
+    options.keep_seams = true;
+    const Unwrapped kept = unwrap(sphere, options);
+    EXPECT_EQ(broken_promise(kept), "");
+    // Along the seam of the sphere, all vertices have two places in the map.
+    const FramedMesh framed = with_texcoords(sphere, kept);
+    for (std::size_t v = 0; v < framed.source_vertex.size(); ++v)
+        EXPECT_EQ(framed.mesh.positions[v], sphere.positions[framed.source_vertex[v]]);
+}
+
+TEST(Unwrap, RefusesOptionsOutOfRange) {
+    const Mesh square = test::square();
+    const auto message = [&](const UnwrapOptions& options) {
+        return message_of<InvalidInput>([&] { unwrap(square, options); });
+    };
+    UnwrapOptions options;
+    options.size = {2048, 8};
+    EXPECT_EQ(message(options), "the size of the map is 8, but must be 16 to 65536 texels");
+    options = {};
+    options.padding = -1;
+    EXPECT_EQ(message(options), "the padding is -1, but must be 0 to 256 texels");
+    options = {};
+    options.max_stretch = 1.0;
+    EXPECT_EQ(message(options), "the stretch limit is 1, but must be above 1");
+    options = {};
+    options.size = {16, 16};
+    options.padding = 16;
+    EXPECT_EQ(message(options), "the padding leaves no room in the map");
+    Unwrapped other;
+    EXPECT_EQ(message_of<InvalidInput>([&] { with_texcoords(square, other); }),
+              "there are 0 texture coordinates for 2 triangles");
+}
+
+TEST(Unwrap, HasAResultForEveryMesh) {
+    std::vector<test::NamedMesh> meshes = test::hard_meshes();
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        meshes.push_back({"random " + std::to_string(seed), test::random_mesh(seed)});
+        meshes.push_back({"hostile " + std::to_string(seed), test::hostile_mesh(seed)});
+    }
+    meshes.push_back({"empty", {}});
+    UnwrapOptions options;
+    options.size = {512, 512};
+    options.padding = 1;
+    for (const auto& [name, mesh] : meshes) {
+        Report report;
+        const Unwrapped unwrapped = unwrap(mesh, options, report);
+        EXPECT_EQ(broken_promise(unwrapped), "") << name;
+        EXPECT_EQ(triangles_of(unwrapped).without_chart,
+                  report.count("triangle without area") +
+                      report.count("triangle with a non-finite corner"))
+            << name;
+        const FramedMesh framed = with_texcoords(mesh, unwrapped);
+        ASSERT_EQ(framed.mesh.triangles.size(), mesh.triangles.size()) << name;
+        for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
+            const std::uint32_t vertex = test::vertex_at(framed.mesh, corner);
+            EXPECT_EQ(framed.source_vertex[vertex], test::vertex_at(mesh, corner)) << name;
+            EXPECT_EQ(framed.mesh.texcoords[vertex], unwrapped.corner_texcoords[corner]) << name;
+        }
+    }
+}
+
+/// A strip of `count` quadrilaterals that is joined to itself after half a twist.
+Mesh moebius(std::uint32_t count) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double turn = 2.0 * std::numbers::pi * i / count;
+        for (const double side : {-0.3, 0.3}) {
+            const double radius = 1.0 + side * std::cos(0.5 * turn);
+            mesh.positions.emplace_back(radius * std::cos(turn), radius * std::sin(turn),
+                                        side * std::sin(0.5 * turn));
+        }
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const bool is_last = i + 1 == count;
+        const std::uint32_t a = 2 * i;
+        const std::uint32_t b = is_last ? 1 : a + 2;
+        const std::uint32_t c = is_last ? 0 : a + 3;
+        mesh.triangles.emplace_back(a, b, c);
+        mesh.triangles.emplace_back(a, c, a + 1);
+    }
+    return mesh;
+}
+
+/// Triangles that share one edge, around which they are evenly distributed.
+Mesh book(std::uint32_t pages) {
+    Mesh mesh = mesh_from({{0, 0, 0}, {0, 0, 1}}, {});
+    for (std::uint32_t i = 0; i < pages; ++i) {
+        const double turn = 2.0 * std::numbers::pi * i / pages;
+        mesh.positions.emplace_back(std::cos(turn), std::sin(turn), 0.5);
+        if (i % 2 == 0)
+            mesh.triangles.emplace_back(0, 1, i + 2);
+        else
+            mesh.triangles.emplace_back(1, 0, i + 2);
+    }
+    return mesh;
+}
+
+/// Separate triangles of 1 x `height`.
+Mesh slivers(std::uint32_t count, float height) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto y = static_cast<float>(i);
+        const std::uint32_t first = 3 * i;
+        mesh.positions.insert(mesh.positions.end(),
+                              {{0.0F, y, 0.0F}, {1.0F, y, 0.0F}, {0.5F, y + height, 0.0F}});
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return mesh;
+}
+
+TEST(Unwrap, MasksHardTopology) {
+    UnwrapOptions options;
+    options.padding = 1;
+    const Unwrapped strip = unwrap(moebius(200), options);
+    EXPECT_EQ(broken_promise(strip), "");
+    EXPECT_LE(strip.stats.charts, 8U);
+    EXPECT_EQ(broken_promise(unwrap(test::fan(2000), options)), "");
+    Report report;
+    EXPECT_EQ(broken_promise(unwrap(book(500), options, report)), "");
+    EXPECT_EQ(report.count("edge of more than two triangles, or of two in one direction"), 1U);
+    const Unwrapped thin = unwrap(slivers(2000, 1e-4F), options);
+    EXPECT_EQ(broken_promise(thin), "");
+    EXPECT_EQ(thin.stats.charts, 2000U);
+}
+
+// A surface that covers itself twice is divided, and so is one whose flat image would overlap.
+TEST(Unwrap, DividesASpiralStaircase) {
+    Mesh mesh;
+    constexpr std::uint32_t steps = 200;
+    for (std::uint32_t i = 0; i <= steps; ++i) {
+        const double turn = 6.0 * std::numbers::pi * i / steps;
+        for (const double radius : {0.5, 1.0})
+            mesh.positions.emplace_back(radius * std::cos(turn), radius * std::sin(turn),
+                                        0.002 * i);
+    }
+    for (std::uint32_t i = 0; i < steps; ++i) {
+        mesh.triangles.emplace_back(2 * i, 2 * i + 1, 2 * i + 3);
+        mesh.triangles.emplace_back(2 * i, 2 * i + 3, 2 * i + 2);
+    }
+    const Unwrapped unwrapped = unwrap(mesh);
+    EXPECT_EQ(broken_promise(unwrapped), "");
+    EXPECT_GE(unwrapped.stats.charts, 3U) << "three turns above each other";
+    EXPECT_LE(unwrapped.stats.charts, 12U);
+}
+
+class UnwrapChanges : public testing::TestWithParam<test::MeshChange> {};
+
+TEST_P(UnwrapChanges, ChangeNoCoordinate) {
+    UnwrapOptions options;
+    options.size = {256, 256};
+    options.padding = 1;
+    Dice dice(47);
+    for (std::uint32_t seed = 0; seed < 25; ++seed) {
+        const Mesh mesh = test::random_mesh(seed);
+        MeshVariant variant(mesh);
+        GetParam().apply(variant, dice);
+        const Unwrapped before = unwrap(mesh, options);
+        const Unwrapped after = unwrap(variant.mesh, options);
+        for (std::size_t corner = 0; corner < variant.original.size(); ++corner) {
+            const std::uint32_t original = variant.original[corner];
+            if (original == MeshVariant::added) continue;
+            ASSERT_EQ(after.corner_texcoords[corner], before.corner_texcoords[original])
+                << "mesh " << seed << ", corner " << corner;
+        }
+        EXPECT_EQ(after.stats.charts, before.stats.charts);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Unwrap, UnwrapChanges, testing::ValuesIn(test::mesh_changes),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(Unwrap, DoesNotDependOnThreads) {
+    const Mesh torus = make_torus(0.4F, 48, 24);
+    UnwrapOptions options;
+    options.execution.threads = 1;
+    const Unwrapped one = unwrap(torus, options);
+    options.execution.threads = 7;
+    const Unwrapped many = unwrap(torus, options);
+    EXPECT_TRUE(test::same_bits(one.corner_texcoords, many.corner_texcoords));
+}
+
+TEST(Unwrap, CanBeCancelled) {
+    Progress progress;
+    progress.cancel();
+    UnwrapOptions options;
+    options.execution.progress = &progress;
+    EXPECT_THROW(unwrap(test::flat_grid(100), options), Cancelled);
+}
+
+}  // namespace
+}  // namespace relief
