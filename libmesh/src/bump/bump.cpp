@@ -318,15 +318,15 @@ class RowMaker {
     std::unique_ptr<RowMaker<Sample, double>> in_double_;
 };
 
-/// Rows of heights as floats, extended by one sample at each end by the wrap rule. Three rows are
-/// kept, so that each is converted once.
+/// Rows of heights as floats. Integers are converted; three rows are kept, so that each is
+/// converted once.
 template <typename Sample>
-class PaddedRows {
+class FloatRows {
   public:
-    PaddedRows(const HeightRows& heights, Wrap wrap);
+    explicit FloatRows(const HeightRows& heights) : heights_(heights) {}
 
-    /// Returns the rows above, at and below a row (after wrapping), from the column before the
-    /// first one. They are valid until the next call.
+    /// Returns the rows above, at and below a row (after wrapping). They are valid until the next
+    /// call.
     std::array<const float*, 3> around(int row, Wrap wrap);
 
   private:
@@ -334,51 +334,38 @@ class PaddedRows {
         int row = -1;
         std::vector<float> samples;
     };
-    Slot& load(int row, const std::array<int, 3>& needed);
+    const float* load(int row, const std::array<int, 3>& needed);
 
     const HeightRows& heights_;
-    Wrap wrap_;
     std::array<Slot, 3> slots_;
 };
 
 template <typename Sample>
-PaddedRows<Sample>::PaddedRows(const HeightRows& heights, Wrap wrap)
-    : heights_(heights), wrap_(wrap) {
-    for (Slot& slot : slots_)
-        slot.samples.resize(static_cast<std::size_t>(heights.width) + 2);
+const float* FloatRows<Sample>::load(int row, const std::array<int, 3>& needed) {
+    const auto* const samples = static_cast<const Sample*>(heights_.row(row));
+    if constexpr (std::is_same_v<Sample, float>) {
+        return samples;
+    } else {
+        const auto has_row = [row](const Slot& slot) { return slot.row == row; };
+        const auto loaded = std::find_if(slots_.begin(), slots_.end(), has_row);
+        if (loaded != slots_.end()) return loaded->samples.data();
+        // A slot that holds none of the needed rows; one exists, because no slot holds `row`.
+        Slot& slot = *std::find_if(slots_.begin(), slots_.end(), [&](const Slot& candidate) {
+            return std::find(needed.begin(), needed.end(), candidate.row) == needed.end();
+        });
+        slot.samples.assign(samples, samples + heights_.width);
+        slot.row = row;
+        return slot.samples.data();
+    }
 }
 
 template <typename Sample>
-typename PaddedRows<Sample>::Slot& PaddedRows<Sample>::load(int row,
-                                                            const std::array<int, 3>& needed) {
-    const auto has_row = [row](const Slot& slot) { return slot.row == row; };
-    const auto loaded = std::find_if(slots_.begin(), slots_.end(), has_row);
-    if (loaded != slots_.end()) return *loaded;
-    // A slot that holds none of the needed rows; one exists, because no slot holds `row`.
-    Slot& slot = *std::find_if(slots_.begin(), slots_.end(), [&](const Slot& candidate) {
-        return std::find(needed.begin(), needed.end(), candidate.row) == needed.end();
-    });
-    const auto* samples = static_cast<const Sample*>(heights_.row(row));
-    const auto width = static_cast<std::size_t>(heights_.width);
-    float* const to = slot.samples.data() + 1;
-    if constexpr (std::is_same_v<Sample, float>)
-        std::copy_n(samples, width, to);
-    else
-        std::transform(samples, samples + width, to,
-                       [](Sample sample) { return static_cast<float>(sample); });
-    slot.samples.front() = to[place_within(-1, heights_.width, wrap_)];
-    slot.samples.back() = to[place_within(heights_.width, heights_.width, wrap_)];
-    slot.row = row;
-    return slot;
-}
-
-template <typename Sample>
-std::array<const float*, 3> PaddedRows<Sample>::around(int row, Wrap wrap) {
+std::array<const float*, 3> FloatRows<Sample>::around(int row, Wrap wrap) {
     const std::array<int, 3> needed = {place_within(row - 1, heights_.height, wrap), row,
                                        place_within(row + 1, heights_.height, wrap)};
     std::array<const float*, 3> rows{};
     for (std::size_t i = 0; i < 3; ++i)
-        rows[i] = load(needed[i], needed).samples.data();
+        rows[i] = load(needed[i], needed);
     return rows;
 }
 
@@ -395,35 +382,48 @@ class DirectRowMaker {
           weights_(weights),
           target_(target),
           general_(general),
-          rows_(heights, wrap.x) {}
+          rows_(heights) {}
 
     bool make_row(int row) {
         const bool at_border = row == 0 || row == heights_.height - 1;
         if (wrap_.y == Wrap::clamp && at_border) return general_.make_row(row);
-        const auto rows = rows_.around(row, wrap_.y);
-        const bool finite = all_pieces(heights_.width, [&](int first, int count) {
-            return make_piece({rows[0] + first, rows[1] + first, rows[2] + first}, row, first,
-                              count);
-        });
+        const bool finite =
+            !encode_row(row) || all_pieces(heights_.width, [&](int first, int count) {
+                return general_.make_in_double(row, first, count);
+            });
         if (!finite || wrap_.x != Wrap::clamp) return finite;
         general_.begin_row(row);
         return general_.make_piece(0, 1) && general_.make_piece(heights_.width - 1, 1);
     }
 
   private:
-    bool make_piece(const std::array<const float*, 3>& rows, int row, int first, int count) {
-        // If rows are contiguous, this is the row after the one below.
-        const auto* const below = static_cast<const Sample*>(
-            heights_.row(place_within(row + 1, heights_.height, wrap_.y)));
-        const Sample* const next = below + heights_.width + first;
+    /// Distance of heights that are prefetched, in texels.
+    static constexpr int heights_ahead = 512;
+
+    /// Returns whether a slope is too steep for float.
+    bool encode_row(int row) {
+        Rows3x3 rows{.rows = rows_.around(row, wrap_.y)};
+        const int before = place_within(-1, heights_.width, wrap_.x);
+        const int after = place_within(heights_.width, heights_.width, wrap_.x);
+        for (std::size_t i = 0; i < 3; ++i) {
+            rows.left[i] = rows.rows[i][before];
+            rows.right[i] = rows.rows[i][after];
+        }
+        // Floats of the row below are read for the first time. Integers of that row were converted,
+        // and the row after it follows if rows are contiguous.
+        const int below = place_within(row + 1, heights_.height, wrap_.y);
+        rows.next = static_cast<const Sample*>(heights_.row(below)) +
+                    (std::is_same_v<Sample, float> ? heights_ahead : heights_.width);
+        rows.next_size = sizeof(Sample);
         bool too_steep = false;
-        at_codes(target_, row, first, [&]<typename Code>(Code* codes) {
+        at_codes(target_, row, 0, [&]<typename Code>(Code* codes) {
             if constexpr (!std::is_same_v<Code, float>) {
-                too_steep = codes_3x3(vectors_, rows, weights_, static_cast<std::size_t>(count),
-                                      target_.format, codes, next, sizeof(Sample));
+                too_steep =
+                    codes_3x3(vectors_, rows, weights_, static_cast<std::size_t>(heights_.width),
+                              target_.format, codes);
             }
         });
-        return !too_steep || general_.make_in_double(row, first, count);
+        return too_steep;
     }
 
     VectorTarget vectors_;
@@ -432,7 +432,7 @@ class DirectRowMaker {
     Weights3x3 weights_;
     const BumpTarget& target_;
     RowMaker<Sample, float>& general_;
-    PaddedRows<Sample> rows_;
+    FloatRows<Sample> rows_;
 };
 
 template <typename Maker>

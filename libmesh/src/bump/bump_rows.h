@@ -110,8 +110,7 @@ template <typename Real>
 void store_normals(VectorTarget target, const Real* right, const Real* up, std::size_t count,
                    float* normals);
 
-/// Stores the normals of at most `columns_at_once` texels as codes or scaled floats. Sample is the
-/// type of format.bits.
+/// Stores normals as codes or scaled floats. Sample is the type of format.bits.
 template <typename Sample, typename Real>
 void store_codes(VectorTarget target, const Real* right, const Real* up, std::size_t count,
                  const NormalMapFormat& format, Sample* codes);
@@ -130,15 +129,21 @@ struct Weights3x3 {
     float right_scale, up_scale;
 };
 
-/// Computes codes of at most `columns_at_once` texels directly from heights, in float. The order of
-/// the sums differs from combine_rows(), with fewer operations.
+/// The heights around a row of codes.
+struct Rows3x3 {
+    std::array<const float*, 3> rows{};    ///< Above, at and below it.
+    std::array<float, 3> left{}, right{};  ///< One column beyond the borders.
+    /// Heights to prefetch, `next_size` bytes per texel; they need not be valid.
+    const void* next = nullptr;
+    std::size_t next_size = 0;
+};
+
+/// Computes a row of codes directly from heights, in float. The order of the sums differs from
+/// combine_rows(), with fewer operations.
 ///
-/// \param rows  the column before the first one
-/// \param next  heights to prefetch, `next_size` bytes per texel; they need not be valid
-/// \return whether a slope is too steep for float (any_too_steep()), which makes the codes invalid
+/// \return whether a slope is too steep for float (any_too_steep()), which makes the row invalid
 template <typename Code>
-bool codes_3x3(VectorTarget target, const std::array<const float*, 3>& rows,
-               const Weights3x3& weights, std::size_t count, const NormalMapFormat& format,
-               Code* codes, const void* next, std::size_t next_size);
+bool codes_3x3(VectorTarget target, const Rows3x3& rows, const Weights3x3& weights,
+               std::size_t width, const NormalMapFormat& format, Code* codes);
 
 }  // namespace relief

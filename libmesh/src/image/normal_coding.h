@@ -30,24 +30,23 @@ struct NormalCoding {
     }
 
     // The cast truncates, which gives the nearest code after adding one half. There are no
-    // branches, so that loops are vectorized. Loops also encode values that are replaced
-    // afterwards: std::max() turns NaN into a number, because a cast of NaN is undefined.
-    RELIEF_INLINE static Code from_half_steps(Real steps) {
-        // Zero lies between two codes, so only the sum can be rounded.
-        return static_cast<Code>(static_cast<std::int32_t>(
-            std::max(Real(0), largest / 2 + steps + static_cast<Real>(0.5))));
+    // branches, and codes are not narrowed, so that loops are vectorized. Loops also encode values
+    // that are replaced afterwards: std::max() turns NaN into a number, because a cast of NaN is
+    // undefined.
+    RELIEF_INLINE static std::int32_t from_half_steps(Real steps) {
+        // Zero lies between two codes, at largest / 2, so only the sum can be rounded.
+        return static_cast<std::int32_t>(std::max(Real(0), middle + steps));
     }
-    RELIEF_INLINE static Code from_middle_steps(Real steps) {
-        return static_cast<Code>(
-            static_cast<std::int32_t>(middle) +
-            static_cast<std::int32_t>(
-                std::max(-middle, steps + std::copysign(static_cast<Real>(0.5), steps))));
+    RELIEF_INLINE static std::int32_t from_middle_steps(Real steps) {
+        return static_cast<std::int32_t>(middle) +
+               static_cast<std::int32_t>(
+                   std::max(-middle, steps + std::copysign(static_cast<Real>(0.5), steps)));
     }
     RELIEF_INLINE static Code to_half(Real component) {
-        return from_half_steps(largest / 2 * component);
+        return static_cast<Code>(from_half_steps(largest / 2 * component));
     }
     RELIEF_INLINE static Code to_middle(Real component) {
-        return from_middle_steps((middle - 1) * component);
+        return static_cast<Code>(from_middle_steps((middle - 1) * component));
     }
 
     [[nodiscard]] Code encoded(Real component) const {
