@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heights to 16-bit normal maps, interleaved with a naive loop, with OpenCV if it is installed, and
-// with a triad over memory: `relief-bump-bench [SIDE [ROUNDS]]` prints a table in Markdown. All
-// methods write into allocated memory.
+// Heights to 16-bit normal maps in existing memory, in tables in Markdown:
+//
+//   relief-bump-bench [SIDE [ROUNDS]]   all kernels, with a triad over memory
+//   relief-bump-bench peers [ROUNDS]    sobel3 on one thread relative to plain loops, to OpenCV if
+//   it
+//                                       is installed, and to copying memory, by instruction set
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
+#include <ctime>
 #include <functional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench_support.h"
+#include "mesh/plain_bump_loops.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"
@@ -23,31 +31,6 @@
 
 namespace relief::bench {
 namespace {
-
-/// A naive method: Sobel in float without border texels, green up.
-void plain_loop(const Image& heights, float strength, Image& map) {
-    const auto width = static_cast<std::size_t>(heights.width);
-    const float* const in = heights.as<float>().data();
-    std::uint16_t* const out = map.as<std::uint16_t>().data();
-    const float scale = strength / 8.0F;
-    for (std::size_t row = 1; row + 1 < static_cast<std::size_t>(heights.height); ++row) {
-        const float* const a = in + (row - 1) * width;
-        const float* const h = a + width;
-        const float* const b = h + width;
-        std::uint16_t* const to = out + row * width * 3;
-        for (std::size_t i = 1; i + 1 < width; ++i) {
-            const float right =
-                (a[i + 1] + 2.0F * h[i + 1] + b[i + 1] - a[i - 1] - 2.0F * h[i - 1] - b[i - 1]) *
-                scale;
-            const float up =
-                (a[i - 1] + 2.0F * a[i] + a[i + 1] - b[i - 1] - 2.0F * b[i] - b[i + 1]) * scale;
-            const float length = 1.0F / std::sqrt(right * right + up * up + 1.0F);
-            to[3 * i] = static_cast<std::uint16_t>(32768.5F - 32767.0F * right * length);
-            to[3 * i + 1] = static_cast<std::uint16_t>(32768.5F - 32767.0F * up * length);
-            to[3 * i + 2] = static_cast<std::uint16_t>(32768.5F + 32767.0F * length);
-        }
-    }
-}
 
 struct Fields {
     Image floats, codes;
@@ -86,48 +69,38 @@ BumpOptions options_of(Kernel kernel, double strength,
 }
 
 #ifdef RELIEF_HAS_OPENCV
-/// Computes two Sobel images, then normalizes and encodes the rows in a parallel loop of OpenCV.
-void opencv_sobel(const Image& heights, Image& map, int threads) {
+/// Computes two Sobel images, then encodes the rows in a parallel loop of OpenCV. The borders are
+/// reflected, because OpenCV's filters cannot repeat them.
+///
+/// \param right, down  memory that calls reuse
+void opencv_sobel(VectorTarget target, const Image& heights, Image& map, int threads,
+                  cv::Mat& right, cv::Mat& down) {
     cv::setNumThreads(threads);
     const cv::Mat in(heights.height, heights.width, CV_32F,
                      const_cast<float*>(heights.as<float>().data()));
-    cv::Mat right;
-    cv::Mat down;
     cv::Sobel(in, right, CV_32F, 1, 0, 3, 1.0 / 8.0, 0.0, cv::BORDER_REFLECT);
     cv::Sobel(in, down, CV_32F, 0, 1, 3, 1.0 / 8.0, 0.0, cv::BORDER_REFLECT);
     std::uint16_t* const out = map.as<std::uint16_t>().data();
     cv::parallel_for_(cv::Range(0, in.rows), [&](const cv::Range& rows) {
         for (int row = rows.start; row < rows.end; ++row) {
-            const float* const x = right.ptr<float>(row);
-            const float* const y = down.ptr<float>(row);
-            std::uint16_t* const to = out + static_cast<std::ptrdiff_t>(row) * in.cols * 3;
-            for (int i = 0; i < in.cols; ++i) {
-                const float length = 1.0F / std::sqrt(x[i] * x[i] + y[i] * y[i] + 1.0F);
-                to[3 * i] = static_cast<std::uint16_t>(32768.5F - 32767.0F * x[i] * length);
-                to[3 * i + 1] = static_cast<std::uint16_t>(32768.5F + 32767.0F * y[i] * length);
-                to[3 * i + 2] = static_cast<std::uint16_t>(32768.5F + 32767.0F * length);
-            }
+            plain_codes_of_slopes(target, right.ptr<float>(row), down.ptr<float>(row),
+                                  static_cast<std::size_t>(in.cols),
+                                  out + static_cast<std::ptrdiff_t>(row) * in.cols * 3);
         }
     });
-}
-
-/// The same work by OpenCV, if it was found at build time. The images must outlive the result.
-std::vector<Contender> bump_peers(const Image& heights, Image& map) {
-    return {{"OpenCV, Sobel, float in", [&] { opencv_sobel(heights, map, 1); }},
-            {"OpenCV, Sobel, float in, 2 threads", [&] { opencv_sobel(heights, map, 2); }}};
-}
-#else
-std::vector<Contender> bump_peers(const Image&, Image&) {
-    return {};
 }
 #endif
 
 std::vector<Contender> contenders(const Fields& in, Triad& triad, Image& map) {
+    const VectorTarget target = best_vector_target();
     std::vector<Contender> all;
-    all.push_back({"plain loop, sobel3, float in",
-                   [&in, &map] { plain_loop(in.floats, 1.0F, map); },
-                   {},
-                   bytes_a_texel(in.floats)});
+    for (const std::size_t size : plain_block_sizes) {
+        all.push_back(
+            {fmt::format("plain loop in blocks of {}, sobel3, float in", size),
+             [&in, &map, target, size] { plain_sobel_codes(target, size, in.floats, 1.0F, map); },
+             {},
+             bytes_a_texel(in.floats)});
+    }
     for (const unsigned threads : {1U, 2U}) {
         all.push_back(
             ours(in.floats, "sobel3, float in", options_of(Kernel::sobel3, 1.0), threads, map));
@@ -143,15 +116,115 @@ std::vector<Contender> contenders(const Fields& in, Triad& triad, Image& map) {
             ours(in.floats, fmt::format("{}, float in", name), options_of(kernel, 1.0), 1, map));
     all.push_back(ours(in.floats, "sobel3, float in, in double",
                        options_of(Kernel::sobel3, 1.0, Arithmetic::float64), 1, map));
-    for (Contender& peer : bump_peers(in.floats, map)) {
-        peer.bytes = bytes_a_texel(in.floats);
-        all.push_back(std::move(peer));
+#ifdef RELIEF_HAS_OPENCV
+    for (const int threads : {1, 2}) {
+        all.push_back({fmt::format("OpenCV, Sobel, float in{}", threads == 1 ? "" : ", 2 threads"),
+                       [&in, &map, target, threads, right = cv::Mat(), down = cv::Mat()]() mutable {
+                           opencv_sobel(target, in.floats, map, threads, right, down);
+                       },
+                       {},
+                       bytes_a_texel(in.floats)});
     }
+#endif
     all.push_back({"triad", [&triad] { triad.run(); }});
     return all;
 }
 
+/// Reads and writes as much memory as a conversion of float heights, as fast as the C library can.
+void copy_as_much(const Image& heights, Image& map) {
+    auto* const to = reinterpret_cast<char*>(map.as<std::uint16_t>().data());
+    const std::size_t bytes = heights.as<float>().size() * sizeof(float);
+    std::memcpy(to, heights.as<float>().data(), bytes);
+    std::memset(to + bytes, 0, bytes / 2);
+}
+
+/// The library and its peers on one thread, with the instruction set of a target.
+std::vector<Contender> peers(VectorTarget target, const Fields& in, Image& map) {
+    std::vector<Contender> all;
+    all.push_back(ours(in.floats, "sobel3", options_of(Kernel::sobel3, 1.0), 1, map));
+    for (const std::size_t size : plain_block_sizes) {
+        all.push_back({fmt::format("plain loop, blocks of {}", size), [&in, &map, target, size] {
+                           plain_sobel_codes(target, size, in.floats, 1.0F, map);
+                       }});
+    }
+    all.push_back({"copying memory", [&in, &map] { copy_as_much(in.floats, map); }});
+#ifdef RELIEF_HAS_OPENCV
+    all.push_back(
+        {"OpenCV, Sobel", [&in, &map, target, right = cv::Mat(), down = cv::Mat()]() mutable {
+             opencv_sobel(target, in.floats, map, 1, right, down);
+         }});
+#endif
+    return all;
+}
+
+/// \throws std::runtime_error if a plain loop gives other codes than the library
+void check_equal_codes(const std::vector<Contender>& all, Image& map) {
+    all[0].run();
+    const Image expected = map;
+    for (std::size_t i = 1; i <= std::size(plain_block_sizes); ++i) {
+        std::ranges::fill(map.as<std::uint16_t>(), std::uint16_t{0});
+        all[i].run();
+        if (map.samples != expected.samples)
+            throw std::runtime_error(all[i].name + " has other codes than relief");
+    }
+}
+
+/// Stores processor times, which other processes disturb less than wall-clock times.
+void measure_processor_time(std::vector<Contender>& all, std::size_t rounds) {
+    interleave(all.size(), {rounds, 2}, [&](std::size_t i, bool counted) {
+        const std::clock_t start = std::clock();
+        all[i].run();
+        const auto ticks = static_cast<double>(std::clock() - start);
+        if (counted) all[i].nanoseconds.push_back(1e9 * ticks / CLOCKS_PER_SEC);
+    });
+}
+
+/// Prints one row: the speed, and the median over rounds of each peer's time relative to relief's.
+void compare_with_peers(VectorTarget target, int side, std::size_t rounds) {
+    setenv("RELIEF_VECTOR_BITS", std::to_string(static_cast<int>(target)).c_str(), 1);
+    const Fields in = fields(side);
+    Image map = make_image(side, side, 3, 16, ColorSpace::data);
+    std::vector<Contender> all = peers(target, in, map);
+    check_equal_codes(all, map);
+    measure_processor_time(all, rounds);
+    const double texels = static_cast<double>(side) * side;
+    fmt::print("| {} x {}, {} bits | {:.0f} |", side, side, static_cast<int>(target),
+               1e3 * texels / time_statistics(all[0].nanoseconds).median);
+    for (std::size_t i = 1; i < all.size(); ++i) {
+        std::vector<double> ratios = all[i].nanoseconds;
+        for (std::size_t round = 0; round < ratios.size(); ++round)
+            ratios[round] /= all[0].nanoseconds[round];
+        const TimeStatistics ratio = time_statistics(ratios);
+        fmt::print(" {:.2f} ({:.2f} to {:.2f}) |", ratio.median, ratio.p10, ratio.p90);
+    }
+    fmt::print("\n");
+}
+
+int run_peers(std::size_t rounds) {
+    const VectorTarget best = best_vector_target();
+    fmt::print("Processor time on one thread; medians of {} interleaved rounds (10 to 90 %)\n\n",
+               rounds);
+    fmt::print("| texels, registers | relief, MPixel/s |");
+    const Fields any = fields(64);
+    Image map = make_image(64, 64, 3, 16, ColorSpace::data);
+    const std::vector<Contender> all = peers(best, any, map);
+    for (std::size_t i = 1; i < all.size(); ++i)
+        fmt::print(" time of {} / relief |", all[i].name);
+    fmt::print("\n|---|---|");
+    for (std::size_t i = 1; i < all.size(); ++i)
+        fmt::print("---|");
+    fmt::print("\n");
+    for (const VectorTarget target : {VectorTarget::wide, VectorTarget::widest}) {
+        if (target > best) continue;
+        for (const int side : {1024, 2048, 4096})
+            compare_with_peers(target, side, rounds);
+    }
+    return 0;
+}
+
 int run(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]) == "peers")
+        return run_peers(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 31);
     const int side = argc > 1 ? std::atoi(argv[1]) : 4096;
     const std::size_t rounds = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 15;
     const Fields in = fields(side);
@@ -162,7 +235,7 @@ int run(int argc, char** argv) {
 
     const double bandwidth = Triad::bytes / time_statistics(all.back().nanoseconds).median;
     const double texels = static_cast<double>(side) * side;
-    fmt::print("{0} x {0} texels; median of {1} rounds in turns; triad {2:.1f} GB/s\n\n", side,
+    fmt::print("{0} x {0} texels; median of {1} interleaved rounds; triad {2:.1f} GB/s\n\n", side,
                rounds, bandwidth);
     fmt::print("| who | MPixel/s | p10 to p90 | of the triad |\n|---|---|---|---|\n");
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
