@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -62,16 +63,24 @@ struct CollapseInput {
     /// The minimum cosine of the angle between the normal of a triangle that changes and the
     /// nearest normal of the input's triangles at each of its vertices. 0 if absent or negative.
     std::optional<double> min_normal_cosine;
+
+    [[nodiscard]] glm::dvec3 point(std::uint32_t vertex) const {
+        return (glm::dvec3(positions[vertex]) - center) * scale;
+    }
+    [[nodiscard]] std::span<const float> attributes_at(std::uint32_t wedge) const {
+        const std::size_t count = attribute_weights.size();
+        return std::span(attributes).subspan(wedge * count, count);
+    }
 };
 
 /// The result of collapse_edges().
 struct Collapsed {
-    std::vector<std::uint32_t>
-        remaining;                   ///< The triangles of the topology that remain, ascending.
+    /// The triangles of the topology that remain, ascending.
+    std::vector<std::uint32_t> remaining;
+    std::size_t triangles = 0;       ///< Their number.
     std::vector<glm::uvec3> wedges;  ///< The wedges at the corners of each of these.
     /// New positions of wedges; those at one vertex have the same.
     std::vector<std::pair<std::uint32_t, glm::vec3>> moved;
-    std::size_t triangles = 0;  ///< Their number.
     std::size_t collapses = 0;
     std::size_t passes = 0;
     /// The number of triangles that were examined, a measure of the work.
