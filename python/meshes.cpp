@@ -12,6 +12,7 @@
 
 #include "arrays.h"
 #include "mesh_type.h"
+#include "relief/mesh/curvature.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"

@@ -12,6 +12,7 @@
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_graph.h"
 
 namespace relief::python {
 namespace {

@@ -27,6 +27,7 @@
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_graph.h"
 #include "shade/typical_scenes.h"
 
 namespace relief::bench {

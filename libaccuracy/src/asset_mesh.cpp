@@ -14,6 +14,7 @@
 
 #include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
+#include "relief/mesh/fitted_normals.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"

@@ -10,6 +10,7 @@
 
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/execution.h"
+#include "relief/mesh/fitted_normals.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"

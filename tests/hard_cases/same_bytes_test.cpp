@@ -17,6 +17,7 @@
 #include "hard_cases/mesh_case.h"
 #include "mesh/bake/bake_support.h"
 #include "relief/mesh/bump.h"
+#include "relief/mesh/curvature.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"

@@ -11,7 +11,6 @@
 
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh.h"
-#include "relief/shade/scene.h"
 #include "support/labels.h"
 #include "tools/workplace.h"
 

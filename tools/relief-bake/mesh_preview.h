@@ -16,8 +16,8 @@
 #include "relief/mesh/bake.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/shade/image_source.h"
 #include "relief/shade/renderer.h"
-#include "relief/shade/scene.h"
 
 namespace relief::tools {
 

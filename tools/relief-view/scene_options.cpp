@@ -23,6 +23,7 @@
 #include "relief/shade/reference.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_graph.h"
 #include "window/orbit_camera.h"
 
 namespace relief::tools {

@@ -15,6 +15,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_fields.h"
+#include "relief/shade/scene_graph.h"
 #include "view_options.h"
 
 namespace relief::tools {

@@ -17,8 +17,8 @@
 #include "bake/texel_frame.h"
 #include "geometry/direction.h"
 #include "image/normal_coding.h"
+#include "relief/mesh/curvature.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 
 namespace relief {

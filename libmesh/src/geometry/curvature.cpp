@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the curvature of each vertex separately, from the ring of its triangles in the order of
 // their vertices.
-#include "relief/mesh/normals.h"
+#include "relief/mesh/curvature.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 // normal, and fits again. Object space, lengths in units of the neighborhood. Source: [Cazals and
 // Pouget 2005]; unlike there, the polynomial passes through the vertex itself, and near vertices
 // have larger weights. Tests: tests/accuracy/ground_truth_test.cpp.
-#include "relief/mesh/normals.h"
+#include "relief/mesh/fitted_normals.h"
 
 #include <algorithm>
 #include <array>

@@ -13,7 +13,9 @@
 
 #include "portable_math.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/scene.h"
+#include "relief/shade/environment.h"
+#include "relief/shade/lights.h"
+#include "relief/shade/shared.h"
 
 namespace relief {
 

@@ -14,6 +14,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 #include "scene/scene_parts.h"
 
 namespace relief {

@@ -2,7 +2,7 @@
 // Scene graphs: key frames, poses of nodes and of what hangs on them, and the union of two graphs.
 // World space, radians, seconds. Angles grow in double, so that a rotation is as smooth after a day
 // as at the start. Source of key frames: glTF 2.0, section 3.11 and appendix C.
-#include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 
 #include <fmt/format.h>
 
@@ -689,15 +689,6 @@ bool clips_exclude_each_other(const SceneGraph& graph) {
         }
     }
     return false;
-}
-
-glm::mat3 orbit_axes(double azimuth, double elevation) {
-    const glm::dvec2 azimuth_sincos(portable::sin(azimuth), portable::cos(azimuth));
-    const glm::dvec2 elevation_sincos(portable::sin(elevation), portable::cos(elevation));
-    const glm::dvec3 back(azimuth_sincos.x * elevation_sincos.y, elevation_sincos.x,
-                          azimuth_sincos.y * elevation_sincos.y);
-    const glm::dvec3 right(azimuth_sincos.y, 0.0, -azimuth_sincos.x);
-    return {glm::vec3(right), glm::vec3(glm::cross(back, right)), glm::vec3(back)};
 }
 
 glm::mat4 looking_along(const glm::vec3& position, const glm::vec3& direction) {

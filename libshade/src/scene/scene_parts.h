@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Declares parts of scene graphs (scene.h) that files, validation, poses and framing share,
+/// Declares parts of scene graphs (scene_graph.h) that files, validation, poses and framing share,
 /// and parts of load_scene_graph (scene_file.h), one function for each kind of file. World space,
 /// radians, seconds.
 #pragma once
@@ -23,6 +23,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_graph.h"
 
 namespace RELIEF_API relief {
 

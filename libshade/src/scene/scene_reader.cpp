@@ -14,6 +14,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 #include "scene/json_fields.h"
 #include "scene/scene_parts.h"
 

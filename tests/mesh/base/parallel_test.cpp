@@ -26,6 +26,7 @@
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bump_file.h"
 #include "relief/mesh/compare.h"
+#include "relief/mesh/curvature.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mean curvature against surfaces in closed form, and vertices without curvature.
-#include "relief/mesh/normals.h"
+#include "relief/mesh/curvature.h"
 
 #include <gtest/gtest.h>
 

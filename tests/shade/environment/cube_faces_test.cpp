@@ -12,7 +12,8 @@
 #include "environment/environment_images.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
-#include "relief/shade/scene.h"
+#include "relief/shade/environment.h"
+#include "relief/shade/shared.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -11,6 +11,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
 

@@ -15,6 +15,7 @@
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_fields.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_graph.h"
 #include "support/shared_data.h"
 
 namespace relief {

@@ -17,6 +17,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
+#include "relief/shade/scene_graph.h"
 #include "scene/scene_parts.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses by hand: chains of nodes, key frames, orbits, turntables, and invalid input.
+#include "relief/shade/scene_graph.h"
 #include "relief/shade/scene.h"
 
 #include <gmock/gmock.h>

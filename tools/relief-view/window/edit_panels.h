@@ -14,6 +14,7 @@
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 #include "window/orbit_camera.h"
 #include "window/playback.h"
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 
 namespace relief::tools {
 

@@ -71,7 +71,7 @@ struct BakeLayers {
     /// interpolated normal; those below the plane of their triangle are ignored. Back faces occlude
     /// too.
     std::optional<OcclusionOptions> occlusion{};
-    /// Mean curvature in one over the unit of the meshes; convex is positive (normals.h).
+    /// Mean curvature in one over the unit of the meshes; convex is positive (curvature.h).
     bool curvature = false;
     /// Positions, transformed by `position_from_mesh`.
     bool positions = false;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Computes normals of vertices, corners and triangles from positions, infers hard edges from
-/// normals, and computes the curvature at vertices.
+/// Computes normals of vertices, corners and triangles from positions, and infers hard edges from
+/// normals. fitted_normals.h has reference normals.
 ///
 /// docs/normals.md has the error and time of each weighting.
-/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp, curvature_test.cpp,
-/// tests/accuracy/ground_truth_test.cpp.
+/// Tests: tests/mesh/geometry/normals_test.cpp, corner_normals_test.cpp.
 #pragma once
 
 #include <array>
@@ -165,43 +164,6 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
 std::vector<glm::vec3> triangle_normals(StridedSpan<const glm::vec3> positions,
                                         TriangleSpan triangles, Report& report = IgnoredReport());
 
-/// Reference normals at corners, one for each smooth fan (a vertex, or one side of a hard edge at
-/// it).
-struct FittedNormals {
-    std::vector<std::uint32_t> corners;  ///< 3 * triangle + (0, 1 or 2), ascending.
-    std::vector<glm::dvec3> normals;     ///< The normals at these corners; unit, object space.
-    std::size_t examined_fans = 0;       ///< Number of examined fans.
-    std::size_t fans = 0;                ///< Number of fans of the mesh.
-    /// The uncertainty of the reference in degrees: the RMS angle between it and a fit of lower
-    /// degree, over all corners. Smaller errors are not significant.
-    double reference_degrees = 0.0;
-};
-
-struct FitOptions {
-    HardEdges hard_edges;         ///< The fitted surfaces end at hard edges.
-    std::size_t max_fans = 8192;  ///< Maximum number of examined fans, which are evenly spread.
-    /// Fans whose two fits differ by more than this many degrees are omitted, because no smooth
-    /// surface fits (noise, an unmarked hard edge, triangles as large as the shape).
-    double max_fit_difference = 2.0;
-    /// Fans with a triangle that deviates by more than this many degrees from the fit are omitted
-    /// too.
-    double max_fit_angle = 45.0;
-};
-
-/// Fits a polynomial of degree 4 to each vertex and its three rings of neighbors, and returns its
-/// normals [Cazals and Pouget 2005]. The second fit has degree 3 and two rings.
-///
-/// \param mesh  positions and triangles; vertices at equal positions count as one
-/// \return no normal for fans with too few neighbors, or whose two fits differ too much
-/// \throws InvalidInput if the mesh is not valid
-///
-/// On a smooth surface the error decreases with the fourth power of the triangle size, that of
-/// averaged normals at best with the second power. The fit assumes that the surface passes through
-/// the vertices and is smooth between hard edges. It is not a valid reference for meshes whose
-/// vertices do not lie on the intended surface, such as control cages of subdivision surfaces and
-/// strongly decimated models. Computed in double precision; the same for any number of threads.
-FittedNormals fitted_normals(const Mesh& mesh, const FitOptions& options);
-
 /// The hard edges that the normals of a mesh imply.
 struct InferredCreases {
     std::size_t edges = 0;  ///< Number of edges between two triangles with area.
@@ -219,25 +181,5 @@ struct InferredCreases {
 ///         less than half a degree as equal
 /// \throws InvalidInput if the mesh is not valid or has no normals
 InferredCreases inferred_creases(const Mesh& mesh);
-
-/// Computes the mean curvature at every vertex: the mean of the two principal curvatures, positive
-/// for convex surfaces. A sphere of radius r has 1/r, a cylinder 1/(2r).
-///
-/// \param positions  in any unit; vertices at equal positions count as one
-/// \param triangles  vertex indices; counter-clockwise seen from outside
-/// \param report  counts triangles without area, which are ignored; vertices on open, non-manifold
-///         or inconsistently wound edges, which get the mean of their regular neighbors, or 0 if
-///         there is none; and vertices whose triangles give no finite value, which get 0
-/// \return in one over the unit of the positions; 0 for vertices without a triangle
-/// \throws InvalidInput if a triangle names a vertex that does not exist
-///
-/// The value is half of the cotangent Laplacian of the positions, divided by the mixed area of the
-/// vertex, along the angle-weighted normal [Meyer et al. 2003]. At a hard edge it is proportional
-/// to the dihedral angle divided by the width of the adjacent triangles, so it grows with finer
-/// triangulation. Computed in double precision; the same bits for any order of triangles and number
-/// of threads. A million triangles take about 0.1 s on two threads.
-std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
-                                   std::span<const glm::uvec3> triangles,
-                                   Report& report = IgnoredReport());
 
 }  // namespace relief

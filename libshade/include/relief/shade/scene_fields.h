@@ -15,6 +15,7 @@
 #include "relief/mesh/fields.h"
 #include "relief/mesh/material.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 
 namespace RELIEF_API relief {
 

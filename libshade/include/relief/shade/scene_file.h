@@ -22,6 +22,7 @@
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 
 namespace RELIEF_API relief {
 
