@@ -25,6 +25,7 @@
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
+namespace {
 
 /// The options of accuracy. Absent: chosen from the map itself.
 struct BumpAccuracyRequest {
@@ -59,14 +60,6 @@ struct BumpRequest {
     AssumedKinds assumed;
 };
 
-/// The library's options, except for those that are chosen from the map.
-/// \throws UsageError if options contradict each other
-BumpOptions bump_options_of(const BumpRequest& request);
-
-/// The content and the format of the output file.
-/// \throws UsageError if the file cannot store them, or options contradict each other
-BumpFileFormat file_format_of(const BumpRequest& request, const std::filesystem::path& output);
-
 /// The choices that were made from the map, and the measured errors.
 struct BumpAccuracy {
     std::optional<KernelChoice> choice;        ///< With --kernel auto.
@@ -87,14 +80,70 @@ struct BumpConversion {
     Findings findings;
 };
 
-/// Converts a file. The stages are "read", "look" and "choose" if something is chosen from the map,
-/// "convert" and "write".
-/// \throws FileError, UsageError
-BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& stages);
+void check(const BumpAccuracyRequest& request, bool slope_moments, bool half) {
+    if (request.max_error_kind && !request.has_limit())
+        throw UsageError("--max-error-kind: has no effect without --max-error",
+                         "give --max-error DEG");
+    if (!request.needs_experiment()) return;
+    const std::string option = request.max_error         ? "--max-error"
+                               : request.max_added_error ? "--max-added-error"
+                                                         : "--compare";
+    if (request.compare && request.has_limit())
+        throw UsageError("--compare, " + option + ": contradict each other");
+    if (slope_moments)
+        throw UsageError(option + ", --slope-moments: errors are measured only for normals");
+    if (half) throw UsageError(option + ", --half: errors of half floats are not measured");
+}
+
+/// Returns the library's options, except for those that are chosen from the map.
+/// \throws UsageError if options contradict each other
+BumpOptions bump_options_of(const BumpRequest& request) {
+    if (request.strength && request.height)
+        throw UsageError("--strength, --height: both set the depth of the map");
+    if (request.height && !request.texel)
+        throw UsageError("--height: needs the size of a texel in the same unit",
+                         "give --texel-size, or --strength instead");
+    if (request.texel && !request.height)
+        throw UsageError("--texel-size: has no effect without --height", "give --height");
+    if (request.gaussian_radius && request.accuracy.kernel != Kernel::gaussian)
+        throw UsageError("--kernel-radius: has no effect without --kernel gaussian");
+    check(request.accuracy, request.slope_moments, request.output.half);
+    BumpOptions bump;
+    bump.strength = request.height ? *request.height : request.strength.value_or(bump.strength);
+    if (request.invert) bump.strength = -bump.strength;
+    bump.texel = request.texel.value_or(bump.texel);
+    bump.gaussian_radius = request.gaussian_radius.value_or(bump.gaussian_radius);
+    return bump;
+}
+
+/// Returns the content and the format of the output file.
+/// \throws UsageError if the file cannot store them, or options contradict each other
+BumpFileFormat file_format_of(const BumpRequest& request, const std::filesystem::path& output) {
+    BumpFileFormat format;
+    format.write = write_options_of(request.output, output);
+    format.xy_only = request.xy_only;
+    format.alpha = request.alpha;
+    if (!request.slope_moments) {
+        format.normals = format_of(request.output, output);
+        return format;
+    }
+    const auto refuse = [](bool is_given, const char* option) {
+        if (is_given)
+            throw UsageError(fmt::format("{}, --slope-moments: contradict each other", option));
+    };
+    refuse(request.xy_only, "--xy");
+    refuse(request.alpha != MapAlpha::none, "--alpha");
+    refuse(request.output.flat.has_value(), "--zero-code");
+    refuse(request.output.dither.has_value(), "--dither");
+    refuse(request.output.bits.value_or(32) != 32, "--bits");
+    MapOutputOptions floats = request.output;
+    floats.bits = 32;
+    format.content = BumpContent::slope_moments;
+    format.normals = format_of(floats, output);
+    return format;
+}
 
 // The conversion.
-
-namespace {
 
 /// "gaussian 4", or the plain name of the kernel.
 std::string kernel_name(const BumpMethod& method) {
@@ -354,8 +403,9 @@ void convert_and_write(const HeightMapFile& map, const Job& job, Stages& stages,
     conversion.findings.add("", report, map.info().width);
 }
 
-}  // namespace
-
+/// Converts a file. The stages are "read", "look" and "choose" if something is chosen from the map,
+/// "convert" and "write".
+/// \throws FileError, UsageError
 BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& stages) {
     BumpConversion conversion;
     conversion.bump = bump_options_of(request);
@@ -376,8 +426,6 @@ BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& 
 }
 
 // The summary.
-
-namespace {
 
 /// "gaussian of radius 2", or the plain name.
 std::string kernel_text(const BumpOptions& bump) {
@@ -611,7 +659,6 @@ std::string line_of(const Job& job, const BumpConversion& conversion, const Stag
 }
 
 // The options.
-// The options.
 
 /// Parses "W" or "WxH".
 glm::dvec2 parse_texel(const std::string& subject, const std::string& text) {
@@ -733,21 +780,6 @@ void add_content_options(CLI::App& app, BumpRequest& request) {
         .group(group);
 }
 
-void check(const BumpAccuracyRequest& request, bool slope_moments, bool half) {
-    if (request.max_error_kind && !request.has_limit())
-        throw UsageError("--max-error-kind: has no effect without --max-error",
-                         "give --max-error DEG");
-    if (!request.needs_experiment()) return;
-    const std::string option = request.max_error         ? "--max-error"
-                               : request.max_added_error ? "--max-added-error"
-                                                         : "--compare";
-    if (request.compare && request.has_limit())
-        throw UsageError("--compare, " + option + ": contradict each other");
-    if (slope_moments)
-        throw UsageError(option + ", --slope-moments: errors are measured only for normals");
-    if (half) throw UsageError(option + ", --half: errors of half floats are not measured");
-}
-
 /// The map of --write-into must be what glTF prescribes.
 void check_write_into(const BumpRequest& request, const WriteIntoOptions& write_into,
                       const Job& job) {
@@ -818,50 +850,6 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& give
 }
 
 }  // namespace
-
-BumpOptions bump_options_of(const BumpRequest& request) {
-    if (request.strength && request.height)
-        throw UsageError("--strength, --height: both set the depth of the map");
-    if (request.height && !request.texel)
-        throw UsageError("--height: needs the size of a texel in the same unit",
-                         "give --texel-size, or --strength instead");
-    if (request.texel && !request.height)
-        throw UsageError("--texel-size: has no effect without --height", "give --height");
-    if (request.gaussian_radius && request.accuracy.kernel != Kernel::gaussian)
-        throw UsageError("--kernel-radius: has no effect without --kernel gaussian");
-    check(request.accuracy, request.slope_moments, request.output.half);
-    BumpOptions bump;
-    bump.strength = request.height ? *request.height : request.strength.value_or(bump.strength);
-    if (request.invert) bump.strength = -bump.strength;
-    bump.texel = request.texel.value_or(bump.texel);
-    bump.gaussian_radius = request.gaussian_radius.value_or(bump.gaussian_radius);
-    return bump;
-}
-
-BumpFileFormat file_format_of(const BumpRequest& request, const std::filesystem::path& output) {
-    BumpFileFormat format;
-    format.write = write_options_of(request.output, output);
-    format.xy_only = request.xy_only;
-    format.alpha = request.alpha;
-    if (!request.slope_moments) {
-        format.normals = format_of(request.output, output);
-        return format;
-    }
-    const auto refuse = [](bool is_given, const char* option) {
-        if (is_given)
-            throw UsageError(fmt::format("{}, --slope-moments: contradict each other", option));
-    };
-    refuse(request.xy_only, "--xy");
-    refuse(request.alpha != MapAlpha::none, "--alpha");
-    refuse(request.output.flat.has_value(), "--zero-code");
-    refuse(request.output.dither.has_value(), "--dither");
-    refuse(request.output.bits.value_or(32) != 32, "--bits");
-    MapOutputOptions floats = request.output;
-    floats.bits = 32;
-    format.content = BumpContent::slope_moments;
-    format.normals = format_of(floats, output);
-    return format;
-}
 
 Command add_bump_command(CLI::App& tool) {
     struct Options {
