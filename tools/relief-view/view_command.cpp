@@ -26,7 +26,7 @@
 #include "saved_files.h"
 #include "scene_options.h"
 #include "view_options.h"
-#include "window/viewer_state.h"
+#include "window/shortcuts.h"
 
 namespace relief::tools {
 

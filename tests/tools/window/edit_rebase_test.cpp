@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edits of a scene that is read again, possibly with changes.
-#include "window/viewer_state.h"
+#include "window/edit_rebase.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

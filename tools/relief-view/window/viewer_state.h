@@ -10,118 +10,22 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/scene_graph.h"
 #include "scene_options.h"
 #include "window/background_jobs.h"
 #include "window/edit_panels.h"
+#include "window/edit_rebase.h"
 #include "window/orbit_camera.h"
 #include "window/playback.h"
+#include "window/shortcuts.h"
 
 namespace relief::tools {
-
-// Keyboard shortcuts and mouse gestures: one table, which the window, its help (F1) and
-// --list-bindings use.
-
-enum class Action {
-    fit,
-    front,
-    back,
-    left,
-    right,
-    top,
-    bottom,
-    narrow_fov,
-    widen_fov,
-    orthographic,
-    brighter,
-    darker,
-    turntable,
-    play,
-    step_back,
-    step_forward,
-    zoom_in,
-    zoom_out,
-    orbit_left,
-    orbit_right,
-    orbit_up,
-    orbit_down,
-    next_view,
-    previous_view,
-    picture_view,
-    wireframe,
-    vertex_frames,
-    grid,
-    health_markers,
-    light_markers,
-    compare,
-    swap_sides,
-    show_difference,
-    undo,
-    redo,
-    copy_camera,
-    paste_camera,
-    save_picture,
-    save_scene,
-    save_model,
-    open,
-    next_file,
-    previous_file,
-    panels,
-    theme,
-    larger_ui,
-    smaller_ui,
-    reset_ui_scale,
-    help,
-    quit,
-};
-
-struct Shortcut {
-    Action action;
-    std::string_view key;  ///< For example "F", "Ctrl+C", "Left".
-    std::string_view description;
-};
-
-/// All shortcuts. Some actions have two.
-const std::vector<Shortcut>& shortcuts();
-
-/// A mouse gesture, for example "Shift+drag", and its description.
-struct Gesture {
-    std::string_view input;
-    std::string_view description;
-};
-const std::vector<Gesture>& gestures();
-
-/// Both lists, one entry per line.
-std::string shortcuts_text();
-
-// Edit rebase: edits of the panels are applied to a scene that was read again, because a file
-// changed or another map was dropped. Each value that differs between the scene as read and the
-// edited scene is an edit. Other values follow the file. The fields are those of
-// relief/shade/scene_fields.h.
-
-/// The result of a rebase.
-struct RebasedEdits {
-    std::size_t kept = 0;           ///< Number of values that were applied to the fresh scene.
-    std::vector<std::string> lost;  ///< Messages about lost edits.
-};
-
-/// Materials are matched by name, or by index if they have no name and their number is unchanged.
-/// Lights of a kind are matched by index if their number is unchanged. Added lights stay added.
-/// Removed lights stay removed if the file's lights are unchanged. A texture, normal map or bump
-/// map that was added or removed stays so, unless the file has changed it too.
-///
-/// \param read  the scene as it was read
-/// \param edited  the same scene with edits
-/// \param fresh  the scene as it is read now; receives the edits
-RebasedEdits rebase_edits(const Scene& read, const Scene& edited, Scene& fresh);
-
-// The state.
 
 /// The limits of the exposure that keys and the slider set: 8 stops.
 inline constexpr float min_exposure = 1.0F / 256.0F;

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The user interface of the window with Dear ImGui: panels, the picture behind them, keys, mouse
+/// gestures and dropped files. Tests: tests/tools/window/window_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <vector>
+
+#include "relief/shade/renderer.h"
+#include "window/panels.h"
+#include "window/shortcuts.h"
+#include "window/window_system.h"
+
+namespace relief::tools {
+
+/// The rectangle of the view, in the units of the user interface.
+struct ViewPlace {
+    glm::vec2 min{0.0F};
+    glm::vec2 max{0.0F};
+};
+
+class UserInterface {
+  public:
+    explicit UserInterface(const WindowSystem& system);
+    ~UserInterface();
+    UserInterface(const UserInterface&) = delete;
+    UserInterface& operator=(const UserInterface&) = delete;
+
+    /// Events since the last frame that the window handles.
+    struct Events {
+        std::vector<Action> actions;  ///< In the order of the key presses.
+        std::vector<std::filesystem::path> dropped;
+        PanelRequests panels;
+        bool has_input = false;  ///< A key, the mouse or a drop. Dear ImGui then needs more frames.
+    };
+
+    /// Draws one frame with panels and picture, and applies mouse gestures to the state.
+    Events draw(const PanelInput& input, const PictureExchange::Shown& picture);
+
+    void show_help() { is_help_open_ = !is_help_open_; }
+    [[nodiscard]] bool is_help_open() const { return is_help_open_; }
+
+    /// Returns whether a text field has the keyboard focus.
+    [[nodiscard]] static bool is_typing();
+    /// The pointer position in pixels, if the pointer is inside the window.
+    [[nodiscard]] static std::optional<glm::ivec2> pointer();
+
+    /// Sets the scale for the next frame.
+    void set_scale(const UiScale& scale) { wanted_scale_ = scale; }
+    /// Sets the theme for the next frame.
+    void set_theme(bool is_light) { wants_light_theme_ = is_light; }
+    void open_dialog(const std::filesystem::path& folder) { dialog_.open(folder); }
+    [[nodiscard]] const UiScale& scale() const { return scale_; }
+
+    // GLFW callbacks. Several events may arrive between two frames.
+    void on_key(int key, int modifiers, bool is_held);
+    void on_button(int button, bool is_down, int modifiers);
+    void on_move(const glm::vec2& place);
+    void on_wheel(const glm::vec2& steps, bool has_shift);
+    void on_drop(const std::filesystem::path& file) { dropped_.push_back(file); }
+    void on_input() { has_input_ = true; }
+
+  private:
+    enum class Drag { none, orbit, pan, zoom, lights, environment, aim, line };
+
+    /// A mouse gesture on the picture, in pixels.
+    struct Move {
+        Drag drag = Drag::none;  ///< none: wheel; aim: double click.
+        glm::vec2 pixels{0.0F};
+        float steps = 0.0F;
+        glm::vec2 place{0.0F};
+    };
+
+    void apply_scale();
+    [[nodiscard]] bool is_on_picture() const;
+    [[nodiscard]] bool is_second_click();
+    [[nodiscard]] glm::vec2 on_view(const glm::vec2& place, const ViewerState& state) const;
+    void apply(const Move& move, ViewerState& state) const;
+    [[nodiscard]] bool is_on_line() const;
+    void draw_view(const PanelInput& input, const PictureExchange::Shown& picture,
+                   const ViewPlace& place);
+
+    const WindowSystem& system_;
+    std::vector<std::filesystem::path> dropped_;
+    bool has_input_ = false;
+    bool has_release_ = false;  ///< Of a mouse button, since the last frame.
+    std::vector<Action> pressed_;
+    std::vector<Move> moves_;
+    Drag drag_ = Drag::none;
+    glm::vec2 pointer_{0.0F};   ///< In window units.
+    glm::vec2 clicked_{-1e6F};  ///< Position of the last click.
+    double clicked_at_ = -1e9;
+    bool is_help_open_ = false;
+    UiScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< Not set yet.
+    UiScale wanted_scale_;
+    bool has_light_theme_ = false;
+    bool wants_light_theme_ = false;
+    FileDialog dialog_;
+    std::optional<float> line_;  ///< The x of the line between two pictures, in interface units.
+    float left_ = 0.0F;          ///< Left edge of the picture, in interface units.
+    float bottom_ = 0.0F;        ///< Height of the area below the picture.
+};
+
+}  // namespace relief::tools
