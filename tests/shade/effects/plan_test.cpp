@@ -344,6 +344,28 @@ TEST(EffectPlan, AveragedSamplesNeedAFinishingPass) {
     EXPECT_EQ(plan.draws[0].features.output, OutputCoding::linear);
 }
 
+TEST(EffectPlan, FollowsPosesUnlessTheirEffectsAreForced) {
+    Scene scene = lit_scene(gray());
+    scene.instances[0].pose.emplace().joint_matrices.assign(1, glm::mat4(1.0F));
+    const FrameSettings settings{.samples = 1};
+    FramePlan plan = plan_effects(scene, settings);
+    const FramePlan at_rest = plan;
+    FramePlan without = force_effects(scene, settings, plan, {{}, {{"skinning", false}}});
+    FramePlan with = force_effects(scene, settings, plan, {{}, {{"skinning", true}}});
+    scene.instances[0].pose->joint_matrices[0][3].x = 1.0F;
+    for (FramePlan* each : {&plan, &without, &with})
+        plan_pose(scene, *each);
+    EXPECT_TRUE(plan.draws[0].features.skinning);
+    EXPECT_EQ(plan.draws[0].features, plan_effects(scene, settings).draws[0].features);
+    EXPECT_EQ(reason(plan.draws[0].reasons, "skinning").reason, "joints move the vertices");
+    EXPECT_FALSE(without.draws[0].features.skinning);
+    scene.instances[0].pose->joint_matrices[0] = glm::mat4(1.0F);
+    for (FramePlan* each : {&plan, &with})
+        plan_pose(scene, *each);
+    EXPECT_EQ(plan.draws[0].features, at_rest.draws[0].features);
+    EXPECT_TRUE(with.draws[0].features.skinning);
+}
+
 TEST(FeaturesOf, AgreeWithThePlan) {
     const Scene scene = lit_scene(gray());
     EXPECT_EQ(features_of(scene, scene.materials[0], scene.meshes[0]), features(scene));
