@@ -13,6 +13,7 @@
 #include "relief/shade/reference.h"
 #include "relief/shade/renderer.h"
 #include "shade/render/draw_support.h"
+#include "support/shapes.h"
 
 namespace relief::test {
 
@@ -69,6 +70,25 @@ inline void expect_agreement(const Context& context, const Scene& scene, int siz
     const Worst worst = furthest(drawn, expected, reference.edges);
     EXPECT_LE(worst.codes, tolerance) << "at " << worst.x << ", " << worst.y << effects_of(scene);
     EXPECT_GT(worst.compared, size * size / 4) << "edges nearly everywhere";
+}
+
+/// The width and height of compared pictures.
+inline constexpr int reference_size = 48;
+
+class AgainstReference : public DrawTest {
+  protected:
+    void expect_agreement(const Scene& scene, double tolerance = agreement_tolerance) const {
+        test::expect_agreement(context(), scene, reference_size, tolerance);
+    }
+};
+
+/// A sphere under three lights, rotated so that neither poles nor seam are in front.
+inline Scene lit_sphere() {
+    Scene scene = scene_of(sphere(32, 24), Material{});
+    scene.ambient = {0.1F, 0.15F, 0.2F};
+    scene.directional_lights = {{{-1, -2, -3}, {0.6F, 0.5F, 0.4F}}};
+    scene.point_lights = {{{-2, 1, 2}, {0.9F, 1.2F, 1.5F}}};
+    return scene;
 }
 
 }  // namespace relief::test

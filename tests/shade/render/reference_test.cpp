@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL's picture against the CPU reference: every effect alone, random combinations, and real
-// models, to within one code of 255 away from edges.
+// OpenGL's picture against the CPU reference: every effect alone, shadows, blurred environments and
+// random combinations, to within one code of 255 away from edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,47 +8,28 @@
 #include <cstdlib>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 #include <string>
 
 #include "relief/shade/effects.h"
 #include "relief/shade/reference.h"
-#include "relief/shade/scene_file.h"
 #include "shade/effects/feature_sets.h"
 #include "shade/render/draw_support.h"
 #include "shade/render/random_scene.h"
 #include "shade/render/reference_agreement.h"
 #include "support/labels.h"
 #include "support/shapes.h"
-#include "support/shared_data.h"
 
 namespace relief {
 namespace {
 
-using test::agreement_tolerance;
+using test::AgainstReference;
 using test::blurred_tolerance;
+using test::lit_sphere;
 using test::pixel;
 
-constexpr int reference_size = 48;
 /// In codes, for 8-bit textures: llvmpipe decodes sRGB with a polynomial whose error is up to half
 /// a percent, which is half a code, and filters data with weights of 8 bits.
 constexpr double coarse_tolerance = 2.0;
-
-class AgainstReference : public test::DrawTest {
-  protected:
-    void expect_agreement(const Scene& scene, double tolerance = agreement_tolerance) const {
-        test::expect_agreement(context(), scene, reference_size, tolerance);
-    }
-};
-
-/// A sphere under three lights, rotated so that neither poles nor seam are in front.
-Scene lit_sphere() {
-    Scene scene = test::scene_of(test::sphere(32, 24), Material{});
-    scene.ambient = {0.1F, 0.15F, 0.2F};
-    scene.directional_lights = {{{-1, -2, -3}, {0.6F, 0.5F, 0.4F}}};
-    scene.point_lights = {{{-2, 1, 2}, {0.9F, 1.2F, 1.5F}}};
-    return scene;
-}
 
 /// An optional part of a scene.
 struct AddedThing {
@@ -859,142 +840,6 @@ TEST_F(AgainstReference, AgreesForOrthographicCameras) {
     }
 }
 
-/// Materials that show the deformed position, normal and tangent.
-std::vector<AddedThing> shown_deformations() {
-    return {
-        {"nothing else", [](Scene&, test::Dice&) {}},
-        {"Gouraud highlights",
-         [](Scene& s, test::Dice&) {
-             s.materials[0].specular = glm::vec3(0.5F);
-             s.materials[0].interpolation = Interpolation::gouraud;
-         }},
-        {"normal map",
-         [](Scene& s, test::Dice&) {
-             s.materials[0].normal_map = NormalMap{
-                 image(s, test::constant_image({0.7F, 0.4F, 0.9F, 1.0F}, 3, 16, ColorSpace::data))};
-         }},
-        {"flat", [](Scene& s, test::Dice&) { s.materials[0].interpolation = Interpolation::flat; }},
-        {"unlit", [](Scene& s, test::Dice&) { s.materials[0].unlit = true; }},
-        {"blending",
-         [](Scene& s, test::Dice&) {
-             s.materials[0].alpha_mode = AlphaMode::blend;
-             s.materials[0].opacity = 0.6F;
-             s.materials[0].double_sided = true;
-         }},
-        {"a second pose of the mesh",
-         [](Scene& s, test::Dice&) {
-             s.instances.push_back(s.instances[0]);
-             s.instances[1].world_from_object[3].x += 0.7F;
-             s.instances[1].pose->weights = {-0.4F, 0.0F};
-             s.instances[1].pose->joint_matrices.clear();
-         }},
-        {"mirrored instance",
-         [](Scene& s, test::Dice&) { s.instances[0].world_from_object[0].x = -1.2F; }},
-    };
-}
-
-TEST_F(AgainstReference, AgreesForDeformedMeshes) {
-    test::Dice dice(1);
-    for (const AddedThing& material : shown_deformations()) {
-        for (unsigned set = 1; set < 8; ++set) {
-            Features f;
-            f.morphing = (set & 1) != 0;
-            f.skinning = (set & 2) != 0;
-            f.deformed_facets = (set & 4) != 0;
-            if (!f.morphing && !f.skinning) continue;
-            SCOPED_TRACE(testing::Message() << material.name << ", set " << set);
-            Scene scene = lit_sphere();
-            if (f.deformed_facets) scene.meshes[0] = test::faceted(scene.meshes[0]);
-            scene.instances[0].pose = test::pose_calling_for(scene.meshes[0], f);
-            material.add(scene, dice);
-            const Features planned = plan_effects(scene, {}).draws[0].features;
-            EXPECT_EQ(planned.morphing, f.morphing);
-            EXPECT_EQ(planned.skinning, f.skinning);
-            expect_agreement(scene);
-        }
-    }
-}
-
-TEST_F(AgainstReference, AgreesForSkinsWithHundredsOfJointsAndEightPerVertex) {
-    Scene scene = lit_sphere();
-    MeshPose& pose = scene.instances[0].pose.emplace();
-    test::Dice dice(3);
-    constexpr unsigned count = 400;
-    for (unsigned i = 0; i < count; ++i) {
-        const float angle = 6.0F * static_cast<float>(i) / count;
-        glm::mat4 matrix(1.0F);
-        matrix[3] = {0.1F * std::sin(angle), 0.1F * std::cos(2.0F * angle), 0.0F, 1.0F};
-        matrix[1][0] = 0.2F * std::sin(3.0F * angle);
-        pose.joint_matrices.push_back(matrix);
-    }
-    GltfDeformation& deformation = pose.deformation.edit();
-    deformation.joints.resize(2);
-    for (const glm::vec3& p : scene.meshes[0]->positions) {
-        const auto first = static_cast<unsigned>((p.y + 1.0F) * 0.49F * (count - 8));
-        deformation.joints[0].joints.emplace_back(first, first + 1, first + 2, first + 3);
-        deformation.joints[1].joints.emplace_back(first + 4, first + 5, first + 6, first + 7);
-        deformation.joints[0].weights.emplace_back(0.3F, 0.7F, 1.0F, 0.9F);
-        deformation.joints[1].weights.emplace_back(0.6F, 0.4F, 0.2F, 0.1F);
-    }
-    expect_agreement(scene);
-}
-
-TEST_F(AgainstReference, AgreesForDegenerateSkins) {
-    const std::vector<std::pair<const char*, glm::mat4>> matrices = {
-        {"mirroring", glm::mat4(glm::vec4(-1, 0, 0, 0), glm::vec4(0, 1, 0, 0),
-                                glm::vec4(0, 0, 1, 0), glm::vec4(0, 0, 0, 1))},
-        {"flattening", glm::mat4(glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0.0F),
-                                 glm::vec4(0, 0, 0, 1))},
-        {"a line",
-         glm::mat4(glm::vec4(0.0F), glm::vec4(0, 1, 0, 0), glm::vec4(0.0F), glm::vec4(0, 0, 0, 1))},
-        {"not finite", glm::mat4(std::numeric_limits<float>::quiet_NaN())},
-        {"tiny", glm::mat4(glm::vec4(1e-6F, 0, 0, 0), glm::vec4(0, 1e-6F, 0, 0),
-                           glm::vec4(0, 0, 1e-6F, 0), glm::vec4(0, 0, 0, 1))},
-    };
-    for (const auto& [name, matrix] : matrices) {
-        SCOPED_TRACE(name);
-        Scene scene = lit_sphere();
-        scene.materials[0].double_sided = true;
-        Features f;
-        f.skinning = true;
-        scene.instances[0].pose = test::pose_calling_for(scene.meshes[0], f);
-        MeshPose& pose = *scene.instances[0].pose;
-        pose.joint_matrices = {matrix, glm::mat4(1.0F)};
-        // Vertices without weights follow the first joint.
-        GltfJoints& joints = pose.deformation.edit().joints[0];
-        joints.weights.assign(joints.weights.size(), {0.0F, 1.0F, 0.0F, 0.0F});
-        for (std::size_t i = 0; i < joints.weights.size() / 4; ++i)
-            joints.weights[i] = glm::vec4(0.0F);
-        if (std::string(name) == "tiny") {  // A large mesh.
-            for (glm::vec3& position : scene.meshes[0].edit().positions)
-                position *= 1e6F;
-            pose.joint_matrices[1] = matrix;
-        }
-        expect_agreement(scene);
-    }
-}
-
-TEST_F(AgainstReference, AgreesForModelsThatAreSkinnedAndMorphed) {
-    for (const char* name :
-         {"Fox/glTF-Binary/Fox.glb", "CesiumMan/glTF-Binary/CesiumMan.glb",
-          "RiggedFigure/glTF-Binary/RiggedFigure.glb", "SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
-          "AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb"}) {
-        SCOPED_TRACE(name);
-        RELIEF_NEEDS_SHARED(file, std::string("data/models/gltf/") + name);
-        SceneGraph graph = load_scene_graph(file, {});
-        pose(graph, 0.3 * duration(graph));
-        Scene& scene = graph.scene;
-        for (Material& material : scene.materials)
-            material.diffuse_texture.reset();  // Its minification is not the subject.
-        scene.directional_lights = {{{-1, -2, -3}, {0.6F, 0.5F, 0.4F}}};
-        scene.ambient = {0.1F, 0.15F, 0.2F};
-        scene.camera = framed(scene, 0.6F, 0.3F, 0.6F, 1.0F);
-        const Features planned = plan_effects(scene, {}).draws[0].features;
-        EXPECT_TRUE(planned.morphing || planned.skinning);
-        expect_agreement(scene);
-    }
-}
-
 constexpr std::uint64_t few_scenes = 10;
 
 TEST_F(AgainstReference, AgreesInRandomScenes) {
@@ -1008,93 +853,20 @@ TEST_F(AgainstReference, AgreesInRandomScenes) {
 /// cases, which can run at the same time.
 class ManyRandomScenes : public AgainstReference, public testing::WithParamInterface<int> {};
 
-constexpr int parts = 10;
+constexpr int case_count = 10;
 
 TEST_LABELS(slow);
 TEST_P(ManyRandomScenes, AgreeWithTheReference) {
     const char* asked = std::getenv("RELIEF_RANDOM_SCENES");
     const std::uint64_t count = asked == nullptr ? 300 : std::strtoull(asked, nullptr, 10);
     for (std::uint64_t seed = few_scenes + static_cast<std::uint64_t>(GetParam()); seed < count;
-         seed += parts) {
+         seed += case_count) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         expect_agreement(test::random_scene(seed));
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Parts, ManyRandomScenes, testing::Range(0, parts));
-
-struct Model {
-    const char* file;
-    bool normal_map;
-    std::size_t textures;  ///< The number of distinct images that the plan uploads, and of tables.
-};
-
-class RealModels : public test::DrawTest, public ::testing::WithParamInterface<Model> {};
-
-/// The bounding box of the covered pixels as shares of the picture, and their number.
-struct Coverage {
-    double share = 0.0;
-    int left = 1000000, right = -1, top = 1000000, bottom = -1;
-};
-
-Coverage coverage(const Image& image) {
-    Coverage result;
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            if (test::pixel(image, x, y).a == 0.0) continue;
-            result.share += 1.0 / (image.width * image.height);
-            result.left = std::min(result.left, x);
-            result.right = std::max(result.right, x);
-            result.top = std::min(result.top, y);
-            result.bottom = std::max(result.bottom, y);
-        }
-    }
-    return result;
-}
-
-TEST_P(RealModels, AreFramedAndShadedAsTheirFilesState) {
-    RELIEF_NEEDS_SHARED(file, std::string("data/models/") + GetParam().file);
-    Report report;
-    Scene scene = load_scene(file, report);
-    scene.directional_lights = {{{-0.5F, -1.0F, -0.8F}, glm::vec3(0.8F)}};
-    scene.ambient = glm::vec3(0.1F);
-    scene.camera = framed(world_bounds(scene), 0.5F, 0.3F, 0.6F, 1.0F);
-    Renderer renderer(context(), scene, {160, 160, 1, OutputCoding::srgb}, report);
-    const Frame frame = renderer.draw(*scene.camera);
-    bool normal_map = false;
-    for (const DrawPlan& draw : renderer.plan().draws)
-        normal_map |= draw.features.detail == NormalDetail::normal_map;
-    EXPECT_EQ(normal_map, GetParam().normal_map);
-    EXPECT_EQ(frame.textures, GetParam().textures);
-
-    const Coverage covered = coverage(frame.image);
-    EXPECT_GT(covered.share, 0.05);
-    EXPECT_GT(covered.left, 0);
-    EXPECT_GT(covered.top, 0);
-    EXPECT_LT(covered.right, 159);
-    EXPECT_LT(covered.bottom, 159);
-    double brightest = 0.0;
-    for (int y = 0; y < 160; ++y) {
-        for (int x = 0; x < 160; ++x)
-            brightest = std::max(brightest, test::pixel(frame.image, x, y).g);
-    }
-    EXPECT_GT(brightest, 60.0);
-}
-
-std::string model_name(const ::testing::TestParamInfo<Model>& model) {
-    return std::filesystem::path(model.param.file).stem().string();
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Of, RealModels,
-    ::testing::Values(Model{"gltf/WaterBottle/glTF/WaterBottle.gltf", true, 5},
-                      Model{"gltf/BoomBox/glTF/BoomBox.gltf", true, 5},
-                      Model{"gltf/Avocado/glTF/Avocado.gltf", true, 4},
-                      Model{"gltf/NegativeScaleTest/glTF-Binary/NegativeScaleTest.glb", false, 3},
-                      Model{"obj/spot/spot_triangulated.obj", false, 0},
-                      Model{"obj/scorpion.obj", false, 0}, Model{"obj/fuze/fuze.obj", false, 1},
-                      Model{"ply/lego.ply", false, 0}),
-    model_name);
+INSTANTIATE_TEST_SUITE_P(Parts, ManyRandomScenes, testing::Range(0, case_count));
 
 }  // namespace
 }  // namespace relief
