@@ -52,7 +52,7 @@ struct ViewDirection {
     float elevation = 0;
 };
 
-/// The direction that shows most of a mesh: the default view (scene.h) unless another of
+/// The direction that shows most of a mesh: the default view (camera.h) unless another of
 /// fifteen, by quarter turns and from above or below, shows a quarter more of it. Occlusion is
 /// ignored.
 ViewDirection best_view(const Mesh& mesh);

@@ -7,8 +7,8 @@
 /// Lookups are those that OpenGL 3.3 (section 3.8) defines at full resolution, straight from the
 /// images: bilinear between texel centers or nearest, with all three wrap modes. Colors are decoded
 /// from sRGB before they are filtered; (0,0) is the upper left corner, v grows downwards. A
-/// coordinate that is not finite looks up NaN. The environment's images are laid out as scene.h
-/// says; faces as in environment/environment_images.h.
+/// coordinate that is not finite looks up NaN. The environment's images are laid out as
+/// environment.h says; faces as in environment/environment_images.h.
 ///
 /// Hits have exact positions in view space: the eye is at the origin and looks along -z. The rules
 /// of bake/embree_scene.h make the result the same on every processor. The preparation computes

@@ -122,7 +122,7 @@ glm::dvec3 film_reflectance(const glm::dvec3& f0, double cosine, double index, d
 
 namespace {
 
-/// The light of one source at a point, as scene.h defines it: irradiance over pi at normal
+/// The light of one source at a point, as lights.h defines it: irradiance over pi at normal
 /// incidence. A light that touches the point sends nothing; a close one no more than max_light.
 struct Incoming {
     glm::dvec3 light_world;  ///< Unit, to the light.

@@ -15,7 +15,7 @@ using test::half_turn;
 
 const BoundingSphere lit_sphere{{1.0F, 2.0F, 3.0F}, 2.0F};
 
-/// The irradiance of a surface in the center of the sphere that faces the light (scene.h). The
+/// The irradiance of a surface in the center of the sphere that faces the light (lights.h). The
 /// cone of a spotlight contains the center.
 glm::vec3 irradiance_at_center(const AnyLight& light) {
     if (const auto* directional = std::get_if<DirectionalLight>(&light))

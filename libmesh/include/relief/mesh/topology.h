@@ -2,7 +2,8 @@
 /// \file
 /// Changes the number of triangles of a mesh: decimation and subdivision; and measures the distance
 /// between surfaces. Part of the library relief::topology.
-/// Tests: tests/mesh/topology/decimate_test.cpp, surface_distance_test.cpp, subdivide_test.cpp.
+/// Tests: tests/mesh/topology/decimate_test.cpp, decimate_hard_cases_test.cpp,
+/// surface_distance_test.cpp, subdivide_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 /// All vectors are in world space and of unit length: n (the normal, perturbed by a
 /// normal or bump map), v (to the eye), and for every light i: l (to the light),
 /// h = (l + v) / |l + v| and r = 2 (n.l) n - l. L is the light's irradiance at normal incidence
-/// over pi, and H that for highlights (scene.h). Products of colors are by channel.
+/// over pi, and H that for highlights (lights.h). Products of colors are by channel.
 ///
 /// Phong's model:
 ///

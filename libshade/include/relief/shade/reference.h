@@ -60,7 +60,7 @@ struct Reference {
 ///         resolution, bilinearly or nearest, without minification, and without
 ///         Material::specular_antialiasing. The same bits for any number of threads
 /// \throws InvalidInput if the scene or the settings are not valid or there is no camera; FileError
-///         if an image of the environment, or one that is required (scene.h), cannot be read
+///         if an image of the environment, or one that is required (image_source.h), cannot be read
 Reference render_reference(const Scene& scene, const ReferenceSettings& settings,
                            Report& report = IgnoredReport());
 

@@ -165,8 +165,8 @@ class Renderer {
     ///         materials with a missing emission texture emit nothing. plan() is then the plan
     ///         without them
     /// \throws InvalidInput if the scene or the settings are not valid, FileError if an image of
-    ///         the environment, or one that is required (scene.h), cannot be read, GpuError if
-    ///         OpenGL refuses something; errors of shaders name the file and line
+    ///         the environment, or one that is required (image_source.h), cannot be read, GpuError
+    ///         if OpenGL refuses something; errors of shaders name the file and line
     Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
              Report& report = IgnoredReport());
 
@@ -184,14 +184,14 @@ class Renderer {
 
     [[nodiscard]] const FramePlan& plan() const;
 
-    /// Updates instances, their poses, and lights from the same scene at another time (scene.h);
-    /// all else stays unchanged. plan() then follows the poses. Only meshes that are other objects
-    /// are uploaded. \throws InvalidInput if the number of instances or lights differs, or
-    /// something is not valid
+    /// Updates instances, their poses, and lights from the same scene at another time
+    /// (scene_graph.h); all else stays unchanged. plan() then follows the poses. Only meshes that
+    /// are other objects are uploaded. \throws InvalidInput if the number of instances or lights
+    /// differs, or something is not valid
     void move(const Scene& scene);
 
     /// Draws the scene as the camera sees it. \throws InvalidInput if the camera is not valid
-    /// (scene.h); GpuError
+    /// (camera.h); GpuError
     Frame draw(const Camera& camera);
 
     /// Draws without reading the picture back.

@@ -134,7 +134,7 @@ struct TextureMeans {
 /// - Exponent and factor give the highlight GGX's own peak. Blinn-Phong's facet distribution
 ///   D = (s + 2) / (2 pi) (n.h)^s is GGX's 1 / (pi alpha^2) at n.h = 1; a microfacet surface shows
 ///   F D G / (4 n.v) of a light's irradiance, and Phong's term, which has no n.v, stands for G =
-///   n.v: F0 (s + 2) / (8 pi) (n.h)^s. The pi is in the light (scene.h). [Blinn 1977],
+///   n.v: F0 (s + 2) / (8 pi) (n.h)^s. The pi is in the light (lights.h). [Blinn 1977],
 ///   [Walter et al. 2007] (GGX), [Karis 2013] (s from alpha), [Hoffman 2013] (normalization).
 /// - `mirror` is the share of GGX's facets within 3 degrees of the normal (the integral of
 ///   D (n.h) over that cone). Only these facets reflect a sharp environment; the others blur it,
