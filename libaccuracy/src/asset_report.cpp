@@ -78,9 +78,6 @@ bool is_cheaper(const Candidate& a, const Candidate& b) {
            std::tie(b.cost, b.bytes, b.natural, b.error);
 }
 
-/// Times within this factor count as equal, because measured times are hardly more exact.
-constexpr double equal_cost_factor = 1.1;
-
 const Candidate* knee_of(const std::vector<Candidate>& all, double floor) {
     const auto product = [&](const Candidate& one) {
         const double error = std::hypot(one.error, floor);
@@ -94,7 +91,7 @@ const Candidate* knee_of(const std::vector<Candidate>& all, double floor) {
     if (best == nullptr || best->cost == 0.0) return best;
     const Candidate* taken = best;
     for (const Candidate& one : all) {
-        if (one.bytes < taken->bytes && product(one) <= equal_cost_factor * product(*best))
+        if (one.bytes < taken->bytes && product(one) <= equal_time_ratio * product(*best))
             taken = &one;
     }
     return taken;

@@ -146,7 +146,7 @@ BakeComparison compare_bakes(const Baker& baker, const BakeMapOptions& map,
         std::vector<MeasuredBake> measured = by_format(samplings[i], formats, timed[i].measurement);
         for (std::size_t f = 0; f < formats.size(); ++f) {
             measured[f].seconds = time_statistics(timed[i].seconds[f]).median;
-            costs.push_back({measured[f].error.rms, measured[f].seconds});
+            costs.push_back({measured[f].error.rms, measured[f].seconds, timed[i].seconds[f]});
             result.measured.push_back(std::move(measured[f]));
         }
     }

@@ -8,9 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
+#include <set>
 #include <span>
+#include <tuple>
 
 #include "portable_math.h"
 
@@ -38,35 +39,56 @@ double curve_error(const ErrorStats& error) {
     return error.undefined > 0 || error.count == 0 ? undefined_error : error.rms;
 }
 
-std::vector<bool> pareto_optimal(std::span<const MethodCost> prices) {
+RatioInterval median_interval(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const auto count = static_cast<double>(values.size());
+    // The number of values below the median has a binomial distribution, here as a normal one.
+    const double outside = std::floor((count + 1.0 - 1.96 * std::sqrt(count)) / 2.0);
+    const auto first = static_cast<std::size_t>(std::max(outside - 1.0, 0.0));
+    return {quantile(values, 0.5), values[first], values[values.size() - 1 - first]};
+}
+
+namespace {
+
+/// Returns whether a method is faster than another one, and not tied.
+bool is_faster(const MethodCost& one, const MethodCost& other) {
+    if (one.rounds.empty() || one.rounds.size() != other.rounds.size())
+        return one.time < other.time;
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < one.rounds.size(); ++i)
+        ratios.push_back(one.rounds[i] / other.rounds[i]);
+    return median_interval(std::move(ratios)).high < 1.0 / equal_time_ratio;
+}
+
+}  // namespace
+
+std::vector<bool> pareto_optimal(std::span<const MethodCost> costs) {
     std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < prices.size(); ++i) {
-        if (!std::isnan(prices[i].error) && !std::isnan(prices[i].time)) order.push_back(i);
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+        if (!std::isnan(costs[i].error) && !std::isnan(costs[i].time)) order.push_back(i);
     }
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return prices[a].time != prices[b].time ? prices[a].time < prices[b].time
-                                                : prices[a].error < prices[b].error;
+        return std::tie(costs[a].error, costs[a].time) < std::tie(costs[b].error, costs[b].time);
     });
-    std::vector<bool> result(prices.size(), false);
-    MethodCost last{std::numeric_limits<double>::infinity(),
-                    0.0};  // The slowest Pareto-optimal one so far.
-    bool is_first = true;
-    for (const std::size_t i : order) {
-        const MethodCost& price = prices[i];
-        const bool is_equal = !is_first && price.error == last.error && price.time == last.time;
-        if (!is_first && !is_equal && price.error >= last.error) continue;
-        result[i] = true;
-        last = price;
-        is_first = false;
+    std::vector<bool> result(costs.size(), false);
+    for (auto one = order.begin(); one != order.end(); ++one) {
+        result[*one] = std::all_of(order.begin(), one, [&](std::size_t other) {
+            const bool is_tied =
+                costs[*one].error == costs[other].error && !is_faster(costs[other], costs[*one]);
+            return !result[other] || is_tied || is_faster(costs[*one], costs[other]);
+        });
     }
     return result;
 }
 
 void mark_pareto_optimal(Experiment& experiment) {
-    std::vector<MethodCost> prices;
-    for (const Measurement& one : experiment.measurements)
-        prices.push_back({curve_error(one.error), median_seconds(one)});
-    const std::vector<bool> marks = pareto_optimal(prices);
+    std::vector<MethodCost> costs;
+    for (const Measurement& one : experiment.measurements) {
+        const auto& timing = one.cost.one_thread ? one.cost.one_thread : one.cost.all_threads;
+        costs.push_back({curve_error(one.error), median_seconds(one),
+                         timing ? timing->rounds : std::vector<double>()});
+    }
+    const std::vector<bool> marks = pareto_optimal(costs);
     for (std::size_t i = 0; i < marks.size(); ++i)
         experiment.measurements[i].is_pareto_optimal = marks[i];
 }
@@ -115,15 +137,10 @@ double FigureChange::growth() const {
     return after / before - 1.0;
 }
 
-const FigureChange& ErrorChange::worst() const {
+const FigureChange& MethodChange::worst() const {
     return *std::max_element(
         figures.begin(), figures.end(),
         [](const FigureChange& a, const FigureChange& b) { return a.growth() < b.growth(); });
-}
-
-double MemoryChange::growth() const {
-    if (before == 0) return after > 0 ? std::numeric_limits<double>::infinity() : 0.0;
-    return static_cast<double>(after) / static_cast<double>(before) - 1.0;
 }
 
 namespace {
@@ -145,7 +162,7 @@ bool is_same_position(double a, double b) {
     return std::abs(a - b) <= relative_rounding * std::max(std::abs(a), std::abs(b));
 }
 
-void add_if_changed(ErrorChange& change, const std::string& figure, double before, double after) {
+void add_if_changed(MethodChange& change, const std::string& figure, double before, double after) {
     if (differs(before, after)) change.figures.push_back({figure, before, after});
 }
 
@@ -176,9 +193,9 @@ std::string position_name(const CurvePoint& point) {
     return fmt::format("at {:.4g}", point.x);
 }
 
-ErrorChange change_of(const Experiment& experiment, const Chart& chart, const Curve& before,
-                      const Curve& after) {
-    ErrorChange change{experiment.id, chart.id, before.method, {}};
+MethodChange change_of(const Experiment& experiment, const Chart& chart, const Curve& before,
+                       const Curve& after) {
+    MethodChange change{experiment.id, chart.id, before.method, {}};
     for (const CurvePoint& point : before.points) {
         if (const CurvePoint* same = find_point(after, point.x))
             add_if_changed(change, position_name(point), point.error, same->error);
@@ -187,9 +204,9 @@ ErrorChange change_of(const Experiment& experiment, const Chart& chart, const Cu
 }
 
 /// The difference of the errors of one method; may have no figures.
-ErrorChange change_of(const Experiment& experiment, const Measurement& before,
-                      const Measurement& after) {
-    ErrorChange change{experiment.id, "", before.method, {}};
+MethodChange change_of(const Experiment& experiment, const Measurement& before,
+                       const Measurement& after) {
+    MethodChange change{experiment.id, "", before.method, {}};
     const ErrorStats& old_error = before.error;
     const ErrorStats& new_error = after.error;
     add_if_changed(change, "rms", old_error.rms, new_error.rms);
@@ -202,13 +219,13 @@ ErrorChange change_of(const Experiment& experiment, const Measurement& before,
 }
 
 /// The curves of both experiments that differ, with the points that differ.
-std::vector<ErrorChange> curve_changes(const Experiment& before, const Experiment& after) {
-    std::vector<ErrorChange> changes;
+std::vector<MethodChange> curve_changes(const Experiment& before, const Experiment& after) {
+    std::vector<MethodChange> changes;
     for (const Chart& chart : before.charts) {
         for (const Curve& curve : chart.curves) {
             const Curve* same = same_curve(after, chart, curve);
             if (same == nullptr) continue;
-            ErrorChange change = change_of(before, chart, curve, *same);
+            MethodChange change = change_of(before, chart, curve, *same);
             if (!change.figures.empty()) changes.push_back(std::move(change));
         }
     }
@@ -257,102 +274,39 @@ bool has_same_input(const Experiment& a, const Experiment& b) {
     return a.input == b.input && a.items == b.items && a.error_unit == b.error_unit;
 }
 
-/// The rounds of one method in both runs.
-struct TimedPair {
-    std::string experiment;
-    std::string method;
-    bool on_all_threads = false;
-    std::vector<double> before;  ///< Seconds; not empty.
-    std::vector<double> after;
+/// With fewer methods there is no interval of 95 %.
+constexpr std::size_t min_methods = 6;
+
+/// Adds the ratio of the fastest rounds of a method that is timed in both runs.
+void add_ratio(std::vector<double>& ratios, const std::optional<Timing>& before,
+               const std::optional<Timing>& after) {
+    if (!before || !after || before->rounds.empty() || after->rounds.empty()) return;
+    const double was = *std::min_element(before->rounds.begin(), before->rounds.end());
+    const double is = *std::min_element(after->rounds.begin(), after->rounds.end());
+    if (was > 0.0 && is > 0.0) ratios.push_back(is / was);
+}
+
+/// The measurements of a method in both runs.
+struct MethodPair {
+    Subject subject;
+    const Measurement& before;
+    const Measurement& after;
 };
 
-double fastest(const std::vector<double>& rounds) {
-    return *std::min_element(rounds.begin(), rounds.end());
-}
-
-void add_pair(std::vector<TimedPair>& pairs, const std::string& experiment,
-              const std::string& method, bool on_all_threads, const std::optional<Timing>& before,
-              const std::optional<Timing>& after) {
-    if (!before || !after || before->rounds.empty() || after->rounds.empty()) return;
-    if (!(fastest(before->rounds) > 0.0) || !(fastest(after->rounds) > 0.0)) return;
-    pairs.push_back({experiment, method, on_all_threads, before->rounds, after->rounds});
-}
-
-/// With fewer methods the interquartile range of their ratios is unknown.
-constexpr std::size_t min_methods = 8;
-/// The multiple of the interquartile range that is attributed to noise. In 231 comparisons of equal
-/// runs of 78 methods, on two processors with 3 to 40 busy processes, 6 is the smallest whole
-/// number without a false alarm.
-constexpr double noise_ranges = 12.0;
-/// Smaller changes are never reported: the position of code and data in memory can change a time as
-/// much.
-constexpr double min_resolution = 1.10;
-
-double ratio_of(const TimedPair& pair) {
-    return fastest(pair.after) / fastest(pair.before);
-}
-
-/// The ratio of the median round to the fastest round.
-double relative_median(const std::vector<double>& rounds) {
-    return time_statistics(rounds).median / fastest(rounds);
-}
-
-TimeVerdict verdict_of(double ratio, double resolution, const std::optional<double>& max_ratio) {
-    if (ratio > resolution) return TimeVerdict::slower;
-    if (ratio < 1.0 / resolution) return TimeVerdict::faster;
-    return max_ratio && resolution > *max_ratio ? TimeVerdict::cannot_tell : TimeVerdict::unchanged;
-}
-
-/// The factor that is attributed to noise, from the scatter of the ratios of all methods.
-double noise_factor(const CommonChange& common) {
-    if (!common.is_judged) return std::numeric_limits<double>::infinity();
-    return 1.0 + noise_ranges * (common.upper_quartile / common.lower_quartile - 1.0);
-}
-
-/// The change that these methods share. All are timed on one thread, or all on all threads.
-CommonChange common_change(std::span<const TimedPair> pairs, bool same_machine,
-                           const std::optional<double>& max_ratio) {
-    CommonChange common;
-    common.methods = pairs.size();
-    if (pairs.empty()) return common;
-    std::vector<double> ratios;
-    for (const TimedPair& pair : pairs)
-        ratios.push_back(ratio_of(pair));
-    std::sort(ratios.begin(), ratios.end());
-    common.ratio = quantile(ratios, 0.5);
-    common.lower_quartile = quantile(ratios, 0.25);
-    common.upper_quartile = quantile(ratios, 0.75);
-    common.is_judged = pairs.size() >= min_methods;
-    common.resolution = std::max(min_resolution, noise_factor(common));
-    if (same_machine && common.is_judged)
-        common.verdict = verdict_of(common.ratio, common.resolution, max_ratio);
-    return common;
-}
-
-/// The smaller change of the two ratios, or 1 if one is slower and the other faster.
-double counted_ratio(double measured, double relative, bool same_machine) {
-    if (!same_machine) return relative;
-    if (measured > 1.0 && relative > 1.0) return std::min(measured, relative);
-    if (measured < 1.0 && relative < 1.0) return std::max(measured, relative);
-    return 1.0;
-}
-
-TimeChange judged_time(const TimedPair& pair, const CommonChange& common, bool same_machine,
-                       const std::optional<double>& max_ratio) {
-    TimeChange change;
-    change.experiment = pair.experiment;
-    change.method = pair.method;
-    change.on_all_threads = pair.on_all_threads;
-    change.before = fastest(pair.before);
-    change.after = fastest(pair.after);
-    change.ratio = ratio_of(pair);
-    change.relative = change.ratio / common.ratio;
-    change.counted = counted_ratio(change.ratio, change.relative, same_machine);
-    change.resolution = std::max(
-        min_resolution,
-        noise_factor(common) * std::max(relative_median(pair.before), relative_median(pair.after)));
-    change.verdict = verdict_of(change.counted, change.resolution, max_ratio);
-    return change;
+void add_times(ReportComparison& result, std::span<const MethodPair> pairs,
+               std::optional<Subject> subject) {
+    for (const bool on_all_threads : {false, true}) {
+        std::vector<double> ratios;
+        for (const MethodPair& pair : pairs) {
+            if (subject && pair.subject != *subject) continue;
+            const auto time = on_all_threads ? &Cost::all_threads : &Cost::one_thread;
+            add_ratio(ratios, pair.before.cost.*time, pair.after.cost.*time);
+        }
+        if (ratios.size() < min_methods) continue;
+        const std::size_t methods = ratios.size();
+        result.times.push_back(
+            {subject, on_all_threads, methods, median_interval(std::move(ratios))});
+    }
 }
 
 /// Smaller differences come from memory pages and from the timing of threads.
@@ -365,29 +319,20 @@ void add_memory(ReportComparison& result, const std::string& experiment, const M
     ++result.with_memory;
     const auto before = static_cast<double>(*was.cost.peak_bytes);
     const auto after = static_cast<double>(*is.cost.peak_bytes);
-    const double more = std::max(before, after);
-    const double less = std::min(before, after);
+    const auto [less, more] = std::minmax(before, after);
     if (more - less < min_memory_bytes || more < min_memory_ratio * less) return;
-    result.memory.push_back({experiment, was.method, *was.cost.peak_bytes, *is.cost.peak_bytes});
-}
-
-/// The pairs that are timed on one thread, or those on all threads.
-std::vector<TimedPair> of_kind(const std::vector<TimedPair>& pairs, bool on_all_threads) {
-    std::vector<TimedPair> chosen;
-    std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(chosen),
-                 [&](const TimedPair& one) { return one.on_all_threads == on_all_threads; });
-    return chosen;
+    result.memory.push_back({experiment, "", was.method, {{"memory", before, after}}});
 }
 
 }  // namespace
 
 ReportComparison compare_reports(const std::vector<Experiment>& before,
-                                 const std::vector<Experiment>& after, bool same_machine,
-                                 const std::optional<double>& max_ratio) {
+                                 const std::vector<Experiment>& after) {
     ReportComparison result;
     result.gone = missing_from(after, before);
     result.added = missing_from(before, after);
-    std::vector<TimedPair> pairs;
+    std::vector<MethodPair> pairs;
+    std::set<Subject> subjects;
     for (const Experiment& old_one : before) {
         const Experiment* new_one = find_by(&Experiment::id, old_one.id, after);
         if (new_one == nullptr) continue;
@@ -395,32 +340,28 @@ ReportComparison compare_reports(const std::vector<Experiment>& before,
             result.other_input.push_back(old_one.id);
             continue;
         }
+        subjects.insert(old_one.subject);
         for (const Measurement& was : old_one.measurements) {
             const Measurement* is =
                 find_by(&Measurement::method, was.method, new_one->measurements);
             if (is == nullptr) continue;
             ++result.methods;
-            ErrorChange change = change_of(old_one, was, *is);
+            MethodChange change = change_of(old_one, was, *is);
             if (!change.figures.empty()) result.errors.push_back(std::move(change));
             add_memory(result, old_one.id, was, *is);
-            add_pair(pairs, old_one.id, was.method, false, was.cost.one_thread,
-                     is->cost.one_thread);
-            add_pair(pairs, old_one.id, was.method, true, was.cost.all_threads,
-                     is->cost.all_threads);
+            pairs.push_back({old_one.subject, was, *is});
         }
-        for (ErrorChange& change : curve_changes(old_one, *new_one))
+        for (MethodChange& change : curve_changes(old_one, *new_one))
             result.errors.push_back(std::move(change));
         for (std::string& name : curves_missing_from(*new_one, old_one))
             result.gone.push_back(std::move(name));
         for (std::string& name : curves_missing_from(old_one, *new_one))
             result.added.push_back(std::move(name));
     }
-    for (const bool on_all_threads : {false, true}) {
-        const std::vector<TimedPair> kind = of_kind(pairs, on_all_threads);
-        CommonChange& common = on_all_threads ? result.all_threads : result.one_thread;
-        common = common_change(kind, same_machine, max_ratio);
-        for (const TimedPair& pair : kind)
-            result.times.push_back(judged_time(pair, common, same_machine, max_ratio));
+    add_times(result, pairs, std::nullopt);
+    if (subjects.size() > 1) {
+        for (const Subject subject : subjects)
+            add_times(result, pairs, subject);
     }
     return result;
 }

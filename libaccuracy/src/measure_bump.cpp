@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "parallel.h"
 #include "relief/accuracy/experiment.h"
@@ -128,12 +127,13 @@ void take_reference(const BumpReference& reference, Trial& trial) {
     }
 }
 
-void mark_pareto_optimal(std::vector<BumpMeasurement>& all) {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    std::vector<MethodCost> prices;
-    for (const BumpMeasurement& one : all)
-        prices.push_back({one.error.rms, one.seconds.count > 0 ? one.seconds.median : unknown});
-    const std::vector<bool> marks = pareto_optimal(prices);
+/// \param times  the rounds of each method
+void mark_pareto_optimal(const std::vector<std::vector<double>>& times,
+                         std::vector<BumpMeasurement>& all) {
+    std::vector<MethodCost> costs;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        costs.push_back({all[i].error.rms, all[i].seconds.median, times[i]});
+    const std::vector<bool> marks = pareto_optimal(costs);
     for (std::size_t i = 0; i < all.size(); ++i)
         all[i].is_pareto_optimal = marks[i];
 }
@@ -182,6 +182,7 @@ void take_times(std::span<const BumpMethod> methods, const Trial& trial,
         one.seconds = time_statistics(times[i]);
         if (one.seconds.median > 0.0) one.megapixels_per_second = texels / one.seconds.median / 1e6;
     }
+    mark_pareto_optimal(times, experiment.measurements);
 }
 
 /// Runs all methods on a trial with a ground truth.
@@ -199,7 +200,6 @@ void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
         experiment.measurements[i].error = error_stats(std::move(angles));
     }
     if (options.repeats.counted > 0) take_times(methods, trial, options, experiment);
-    mark_pareto_optimal(experiment.measurements);
 }
 
 double error_of(const BumpMeasurement& measurement, ErrorKind kind) {

@@ -248,12 +248,11 @@ std::string table_number(double value) {
     return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
 }
 
-/// Returns half of the range from the 10th to the 90th percentile, relative to the median: "±3 %".
+/// Returns the range from the 10th to the 90th percentile: "11.9–12.8 ms".
 std::string time_statistics(const std::optional<Timing>& timing) {
     if (!timing) return "";
     const TimeStatistics spread = timing->spread();
-    if (!(spread.median > 0.0)) return "";
-    return fmt::format("±{:.0f} %", 50.0 * (spread.p90 - spread.p10) / spread.median);
+    return range_text(spread.p10, spread.p90);
 }
 
 std::string median_of(const std::optional<Timing>& timing) {

@@ -116,9 +116,9 @@ void finish_report(const ExperimentOptions& options, AccuracyReport report, bool
     } else if (!options.general.quiet) {
         if (!options.no_times)
             print_text(
-                "* efficient: no other method is both faster and at least as accurate\n"
-                "± half of the range from the 10th to the 90th percentile of the rounds, in "
-                "percent of the median\n");
+                "* efficient: faster than all efficient methods that are more accurate; times "
+                "within 10 % are tied\n"
+                "times: median, and range from the 10th to the 90th percentile of the rounds\n");
         print_entry("written", written);
     }
 }

@@ -6,6 +6,7 @@
 /// Tests: tests/accuracy/experiment_test.cpp, tests/accuracy/compare_reports_test.cpp.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -192,20 +193,42 @@ struct CostChoice {
     bool memory = true;
 };
 
+/// Measured times within this factor of each other are ties: the position of code and data in
+/// memory can change a time as much.
+inline constexpr double equal_time_ratio = 1.1;
+
+/// The median of ratios and its 95 % confidence interval.
+struct RatioInterval {
+    double median = 1.0;
+    double low = 1.0;
+    double high = 1.0;
+};
+
+/// Computes the confidence interval of a median from order statistics, without assumptions on the
+/// distribution. For fewer than 6 values it is their whole range.
+/// \param values  not empty
+RatioInterval median_interval(std::vector<double> values);
+
 /// The error and time of a method, in any unit; smaller is better. NaN means unknown.
 struct MethodCost {
     double error = 0.0;
     double time = 0.0;
+    /// The time of each round, interleaved with those of the other methods. Empty: `time` is exact.
+    std::vector<double> rounds{};
 };
 
 /// Finds the Pareto-optimal methods.
 ///
-/// \return for each method, true if no other is better in one value and at least as good in the
-///         other. Equal methods have equal results. A method with NaN is never Pareto-optimal and
-///         does not affect the others
-std::vector<bool> pareto_optimal(std::span<const MethodCost> prices);
+/// Measured times are compared by the ratios of their rounds, because what slows one method down
+/// for a moment slows down the next one, too. A method is faster if the interval of these ratios
+/// lies beyond equal_time_ratio; else the times are tied.
+///
+/// \return for each method, true if it is faster than each Pareto-optimal method that is more
+///         accurate, and not slower than those with the same error. A method with NaN is never
+///         Pareto-optimal and does not affect the others
+std::vector<bool> pareto_optimal(std::span<const MethodCost> costs);
 
-/// Marks the measurements that are Pareto-optimal by RMS error and time on one thread, or on all
+/// Marks the measurements that are pareto_optimal() by RMS error and time on one thread, or on all
 /// threads if only that was measured. Without times none is marked. Measurements with undefined
 /// results are never marked.
 void mark_pareto_optimal(Experiment& experiment);
@@ -244,64 +267,30 @@ std::string format_seconds(double seconds);
 std::vector<Experiment> run_experiments(std::span<const Subject> subjects,
                                         const RunOptions& options);
 
-// Comparison of two runs of the same experiments: times, errors and memory.
-//
-// *Errors* are the same in each run, so every difference beyond rounding is a change.
-//
-// *Times* are not. They are judged by the ratios of the two runs, one for each method:
-// - The time of a method is its fastest round, because other programs only add time.
-// - The ratio of a method is its new time divided by its old time.
-// - The common ratio is the median of the ratios of all methods. It contains the machine.
-// - The resolution of all methods is 1 + 12 times the interquartile range of these ratios,
-//   relative to their lower quartile. That of one method is this number multiplied by its median
-//   round divided by its fastest round. Both are at least 1.1.
-// - A method is slower or faster if its ratio is beyond the resolution, both as measured and
-//   divided by the common ratio; the smaller of the two changes is reported. Between different
-//   machines only the divided ratio is judged.
-// - All methods together are slower or faster if the common ratio is beyond their resolution.
-//
-// If a bound is given and the resolution is coarser than the bound, the verdict is cannot_tell,
-// because the times do not prove that the bound is kept. With fewer than 8 methods the
-// interquartile range is unknown, so no time is judged. If more than a quarter of the methods
-// change by another ratio than the others, the range contains the change, and the resolution is
-// coarse. A load that lasts for one whole run and is absent from the other looks like a change of
-// all methods.
+// Comparison of two runs of the same experiments.
 
-enum class TimeVerdict {
-    unchanged,  ///< No change beyond the resolution.
-    slower,
-    faster,
-    cannot_tell,  ///< No change is seen, but one beyond the bound would not be seen either.
-};
+/// Times of two runs within this factor of each other are ties: equal runs differ by as much,
+/// because other programs slow down one of them.
+inline constexpr double equal_run_ratio = 1.15;
 
-/// The change of one method's time. Ratios are new by old: more than 1 is slower.
-struct TimeChange {
-    std::string experiment;
-    std::string method;
+/// The times of a new run relative to an old one. The time of a method is its fastest round,
+/// because other programs only add time.
+struct TimeRatio {
+    std::optional<Subject> subject{};  ///< Absent: all methods.
     bool on_all_threads = false;
-    double before = 0.0;      ///< Fastest round, in seconds.
-    double after = 0.0;       ///< The same of the new run.
-    double ratio = 1.0;       ///< As measured.
-    double relative = 1.0;    ///< Divided by the median ratio of all methods.
-    double counted = 1.0;     ///< The ratio that is judged.
-    double resolution = 1.0;  ///< Ratios from 1 / this to this may be chance.
-    TimeVerdict verdict = TimeVerdict::unchanged;
+    std::size_t methods = 0;  ///< At least 6.
+    RatioInterval ratio{};    ///< Of the new time to the old time, over the methods.
+
+    /// The whole interval is beyond a ratio, and beyond a tie.
+    [[nodiscard]] bool is_slower(double limit = equal_run_ratio) const {
+        return ratio.low > std::max(limit, equal_run_ratio);
+    }
+    [[nodiscard]] bool is_faster() const { return ratio.high < 1.0 / equal_run_ratio; }
 };
 
-/// The ratios of all methods, on one thread or on all threads.
-struct CommonChange {
-    std::size_t methods = 0;
-    double ratio = 1.0;           ///< Median.
-    double lower_quartile = 1.0;  ///< A quarter of the ratios is below this.
-    double upper_quartile = 1.0;  ///< A quarter of the ratios is above this.
-    double resolution = 1.0;      ///< Ratios from 1 / this to this may be chance.
-    bool is_judged = false;       ///< There are at least 8 methods.
-    TimeVerdict verdict = TimeVerdict::unchanged;
-};
-
-/// One statistic of an error. NaN means that there is no usable result.
+/// One figure. NaN means that there is no usable result.
 struct FigureChange {
-    std::string figure;  ///< "rms", "mean", "p99", "max", "undefined"; for curves "at X".
+    std::string figure;  ///< "rms", "mean", "p99", "max", "undefined"; for curves "at X"; "memory".
     double before = 0.0;
     double after = 0.0;
 
@@ -310,8 +299,8 @@ struct FigureChange {
     [[nodiscard]] double growth() const;
 };
 
-/// The change of the error of one method, or of one of its curves.
-struct ErrorChange {
+/// The figures of one method, or of one of its curves, that differ.
+struct MethodChange {
     std::string experiment;
     std::string chart;  ///< Empty for the measurement itself.
     std::string method;
@@ -321,26 +310,15 @@ struct ErrorChange {
     [[nodiscard]] const FigureChange& worst() const;
 };
 
-/// The change of the peak memory of a method, if it is at least a tenth and a megabyte. Smaller
-/// changes result from page granularity and the timing of threads.
-struct MemoryChange {
-    std::string experiment;
-    std::string method;
-    std::uint64_t before = 0;  ///< In bytes.
-    std::uint64_t after = 0;
-
-    /// after / before - 1.
-    [[nodiscard]] double growth() const;
-};
-
 struct ReportComparison {
-    std::size_t methods = 0;      ///< Number of methods that occur in both reports.
-    std::size_t with_memory = 0;  ///< Number of these methods with known memory in both.
-    std::vector<MemoryChange> memory;
-    std::vector<TimeChange> times;
-    CommonChange one_thread;
-    CommonChange all_threads;
-    std::vector<ErrorChange> errors;
+    std::size_t methods = 0;       ///< Number of methods that occur in both reports.
+    std::size_t with_memory = 0;   ///< Number of these methods with known memory in both.
+    std::vector<TimeRatio> times;  ///< Of all methods, and of each subject if there are several.
+    /// Errors are the same in each run. A difference counts if it exceeds rounding.
+    std::vector<MethodChange> errors;
+    /// Peak memory in bytes. A difference counts if it is at least a tenth and a megabyte; smaller
+    /// ones result from page granularity and the timing of threads.
+    std::vector<MethodChange> memory;
     /// Only in the old report: "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD", " at X" for a
     /// point of a curve.
     std::vector<std::string> gone;
@@ -349,12 +327,7 @@ struct ReportComparison {
 };
 
 /// Compares two reports.
-///
-/// \param same_machine  true if measured times may be compared directly
-/// \param max_ratio  the maximum acceptable time ratio of a method; if the resolution is coarser,
-///         verdicts are cannot_tell. Absent: there is none
 ReportComparison compare_reports(const std::vector<Experiment>& before,
-                                 const std::vector<Experiment>& after, bool same_machine,
-                                 const std::optional<double>& max_ratio = {});
+                                 const std::vector<Experiment>& after);
 
 }  // namespace relief
