@@ -268,8 +268,9 @@ std::string page_svg(const Plot& plot) {
 std::string legend_html(const Legend& legend) {
     std::string chips;
     for (const LegendEntry& entry : legend.entries) {
-        chips += fmt::format(R"(<label class="chip"><input type="checkbox" checked value="{}">)",
-                             html_escaped(entry.name));
+        chips +=
+            fmt::format(R"(<label class="chip"><input type="checkbox" checked data-members="{}">)",
+                        fmt::join(entry.members, " "));
         if (entry.look)
             chips += fmt::format(
                 R"(<svg class="swatch" viewBox="-7 -7 14 14" width="14" height="14" aria-hidden="true">{}</svg>)",
@@ -377,7 +378,7 @@ std::string fit(const ordered_json& curve, std::size_t index, const Axis& x, con
     const double begin = known.front().x;
     const double end = known.back().x;
     return fmt::format(
-        "<line class=\"fit curve {}\" data-curve=\"{}\" x1=\"{}\" y1=\"{}\" x2=\"{}\" "
+        "<line class=\"fit curve {}\" data-index=\"{}\" x1=\"{}\" y1=\"{}\" x2=\"{}\" "
         "y2=\"{}\"/>\n",
         hue(index), index, px(x.place(begin)), px(fitted(begin)), px(x.place(end)),
         px(fitted(end)));
@@ -396,13 +397,13 @@ std::string drawn_curve(const ordered_json& curve, std::size_t index, const Axis
                                 px(y.place(point.error)));
         is_down = is_on_axis(point);
     }
-    std::string drawn = fmt::format(R"(<path class="line curve {}" data-curve="{}" d="{}"/>)",
+    std::string drawn = fmt::format(R"(<path class="line curve {}" data-index="{}" d="{}"/>)",
                                     hue(index), index, path);
     const Value breaks_at = number_at(curve, "/breaks_at");
     for (std::size_t i = 0; i < points.size(); ++i) {
         drawn +=
             fmt::format(
-                "\n<g class=\"point curve{}\" data-curve=\"{}\" transform=\"translate({},{})\">",
+                "\n<g class=\"point curve{}\" data-index=\"{}\" transform=\"translate({},{})\">",
                 points.size() > 24 ? " dense" : "", index, px(x.place(points[i].x)),
                 px(y.place(points[i].error))) +
             (tips.empty() ? "" : tooltip(tips[i])) +
@@ -453,8 +454,8 @@ std::string names_at_ends(const ordered_json& curves, const Axis& x, const Axis&
     std::string drawn;
     for (const End& end : ends) {
         drawn += fmt::format(
-            "<path class=\"leader curve {0}\" data-curve=\"{1}\" d=\"M{2},{3}L{4},{5}\"/>"
-            "<text class=\"end-name curve\" data-curve=\"{1}\" x=\"{6}\" y=\"{5}\" dy=\"0.34em\" "
+            "<path class=\"leader curve {0}\" data-index=\"{1}\" d=\"M{2},{3}L{4},{5}\"/>"
+            "<text class=\"end-name curve\" data-index=\"{1}\" x=\"{6}\" y=\"{5}\" dy=\"0.34em\" "
             "aria-hidden=\"true\">{7}</text>\n",
             hue(end.index), end.index, px(x.place(end.at.x) + 6.0), px(end.y), px(area.right + 4.0),
             px(end.level), px(area.right + 8.0),
@@ -507,7 +508,7 @@ Plot curves_plot(const ordered_json& chart, const std::vector<std::string>& tips
         next += count;
         const std::string method = curves[i].value("method", "");
         const std::string remark = curve_words(curves[i]);
-        plot.legends[0].entries.push_back({method, Look{i, i}, remark});
+        plot.legends[0].entries.push_back({method, Look{i, i}, remark, {i}});
         words.push_back(remark.empty() ? method : method + ", " + remark);
     }
     if (room > 0.0) plot.body += names_at_ends(curves, x, y, area);

@@ -3,9 +3,8 @@
 /// Draws the plots of a report as SVG: the error of each method against its cost, and error curves;
 /// and their parts: marks, axes, ticks and legends. Lengths are pixels.
 ///
-/// Colors are CSS classes of page/plot.css. On the page, a plot of costs has a group for each axis
-/// choice, and points have their positions for all choices as attributes; the script shows, hides
-/// and moves them. A picture for a document shows only the first choice.
+/// Colors are CSS classes of page/plot.css. On the page, methods and curves have their index as
+/// data-index, by which the script shows and hides them.
 /// Tests: tests/tools/accuracy_page/plots_test.cpp, and report_page_test.py in a browser.
 #pragma once
 
@@ -19,7 +18,7 @@
 
 namespace relief::tools {
 
-/// Returns the <figure> of an experiment's methods for the page, with switches and a legend.
+/// Returns the <figure> of an experiment's methods for the page, with a legend.
 /// \param tips  the text of each method's tooltip: a title, then lines of "name: value"
 std::string scatter_figure(const nlohmann::ordered_json& experiment,
                            const std::vector<std::string>& tips);
@@ -111,6 +110,7 @@ struct LegendEntry {
     std::string name{};
     std::optional<Look> look{};
     std::string remark{};
+    std::vector<std::size_t> members{};  ///< The indices of its methods or curves.
 };
 
 /// The entries of one choice.

@@ -91,18 +91,6 @@ std::string html_escaped(std::string_view text) {
     return escaped;
 }
 
-std::string script_escaped(std::string_view json) {
-    std::string escaped;
-    escaped.reserve(json.size());
-    for (const char letter : json) {
-        if (letter == '<')
-            escaped += "\\u003c";
-        else
-            escaped += letter;
-    }
-    return escaped;
-}
-
 std::string data_uri(std::string_view bytes, std::string_view type) {
     return fmt::format("data:{};base64,{}", type, base64(bytes));
 }
@@ -238,7 +226,7 @@ std::string caption_text(const ordered_json& measurements, const std::string& co
         has_values(measurements, "/cost/all_threads/median"))
         words +=
             "Times are medians, with the range from the 10th to the 90th percentile; ◆ marks "
-            "efficient methods: no other method is both faster and more accurate. ";
+            "efficient methods: faster than all efficient ones that are more accurate. ";
     if (has_values(measurements, "/cost/stored_bytes"))
         words += "Stored is the size of one result (a vertex's frame, a texel). ";
     return words + html_escaped(common_note);
@@ -287,8 +275,8 @@ std::string method_cell(const ordered_json& measurement, bool has_note) {
     std::string cell = html_escaped(measurement.value("method", ""));
     if (measurement.value("efficient", false))
         cell +=
-            R"( <span class="efficient" title="efficient: no other method is both faster and more )"
-            R"(accurate"><span aria-hidden="true">◆</span><span class="unseen">efficient</span></span>)";
+            R"( <span class="efficient" title="efficient: faster than all efficient methods that are )"
+            R"(more accurate"><span aria-hidden="true">◆</span><span class="unseen">efficient</span></span>)";
     const std::string note = measurement.value("note", "");
     if (has_note && !note.empty())
         cell += fmt::format(R"( <small class="note">{}</small>)", html_escaped(note));
@@ -346,20 +334,27 @@ std::vector<std::string> point_tips(const ordered_json& chart) {
     return tips;
 }
 
+/// Returns a cell with its number, by which the script sorts.
+std::string table_cell(const ordered_json& measurement, const HtmlColumn& column) {
+    const std::optional<double> value = number_at(measurement, column.path);
+    return fmt::format("<td{}>{}</td>", value ? fmt::format(" data-value=\"{}\"", *value) : "",
+                       column.cell(measurement));
+}
+
 /// A row per method with errors, times and memory. Columns without values are omitted.
 std::string measurements_table(const ordered_json& experiment) {
     const ordered_json& measurements = experiment.at("measurements");
     const std::vector<HtmlColumn> columns = columns_of(measurements);
     const std::string common = common_note(measurements);
-    std::string head = R"(<th scope="col" data-path="/method">method</th>)";
+    std::string head = R"(<th scope="col">method</th>)";
     for (const HtmlColumn& one : columns)
-        head += fmt::format(R"(<th scope="col" data-path="{}">{}</th>)", one.path, one.head);
+        head += fmt::format(R"(<th scope="col">{}</th>)", one.head);
     std::string rows;
     for (std::size_t i = 0; i < measurements.size(); ++i) {
         rows += fmt::format(R"(<tr data-index="{}"><th scope="row">{}</th>)", i,
                             method_cell(measurements[i], common.empty()));
         for (const HtmlColumn& one : columns)
-            rows += "<td>" + one.cell(measurements[i]) + "</td>";
+            rows += table_cell(measurements[i], one);
         rows += "</tr>\n";
     }
     return fmt::format(
@@ -376,7 +371,7 @@ std::string chart_table(const ordered_json& chart) {
         head += fmt::format(R"(<th scope="col">{}</th>)", html_escaped(curve.value("method", "")));
     std::string rows;
     for (const double x : all_x(chart)) {
-        rows += fmt::format(R"(<tr data-x="{}"><th scope="row">{}</th>)", x, number_text(x));
+        rows += fmt::format(R"(<tr><th scope="row">{}</th>)", number_text(x));
         for (const ordered_json& curve : chart.at("curves"))
             rows += "<td>" + curve_cell(curve, x) + "</td>";
         rows += "</tr>\n";
@@ -479,7 +474,7 @@ std::string charts_html(const ordered_json& experiment) {
         const std::string title = text_of(chart, "title");
         html += fmt::format(
             "<figure class=\"chart\">\n<figcaption><h4>{}</h4></figcaption>\n{}"
-            "<details open><summary>Numbers of this chart</summary>\n{}</details></figure>\n",
+            "<details><summary>Numbers of this chart</summary>\n{}</details></figure>\n",
             title, chart_plot(chart, point_tips(chart)), scrolled(title, chart_table(chart)));
     }
     return html;
@@ -511,8 +506,8 @@ std::string pairs_html(const ordered_json& experiment, const std::filesystem::pa
     std::string html;
     for (const ordered_json& pair : experiment.value("pictures", ordered_json::array())) {
         html += fmt::format(
-            "<figure class=\"pair\">\n<div class=\"sides\">{}{}</div>\n"
-            "<figcaption>{}</figcaption></figure>\n",
+            "<figure class=\"pair\">\n<div class=\"sides\">{}{}</div>\n<figcaption>{}"
+            "<label><input type=\"checkbox\"> difference × 8</label></figcaption></figure>\n",
             side(pair, "before", pair.value("before_label", "before"), folder),
             side(pair, "after", pair.value("after_label", "after"), folder),
             text_of(pair, "title"));
@@ -533,14 +528,11 @@ std::string findings_html(const ordered_json& experiment) {
     return html;
 }
 
-std::string experiment_html(const ordered_json& experiment, std::size_t index,
-                            const std::filesystem::path& folder) {
+std::string experiment_html(const ordered_json& experiment, const std::filesystem::path& folder) {
     const std::string finding = text_of(experiment, "finding");
     std::string html = fmt::format(
-        "<article class=\"experiment\" id=\"{}\" data-experiment=\"{}\">\n<h3>{}</h3>\n"
-        "<p class=\"question\">{}</p>\n",
-        text_of(experiment, "id"), index, text_of(experiment, "title"),
-        text_of(experiment, "question"));
+        "<article class=\"experiment\" id=\"{}\">\n<h3>{}</h3>\n<p class=\"question\">{}</p>\n",
+        text_of(experiment, "id"), text_of(experiment, "title"), text_of(experiment, "question"));
     if (!finding.empty()) html += fmt::format("<p class=\"finding\">{}</p>\n", finding);
     html += fmt::format(
                 "<details class=\"body\" open><summary>Plots and numbers <small>{}</small>"
@@ -626,7 +618,7 @@ std::string experiments_html(const ordered_json& report, const std::filesystem::
             "<h2 id=\"heading-{0}\">{1}</h2>\n",
             html_escaped(subject.name), html_escaped(capitalized(subject.name)));
         for (const std::size_t i : subject.experiments)
-            html += experiment_html(report.at("experiments")[i], i, folder);
+            html += experiment_html(report.at("experiments")[i], folder);
         html += "</section>\n";
     }
     return html;
@@ -685,8 +677,6 @@ MethodTable method_table(const ordered_json& experiment) {
 }
 
 std::string report_html(const ordered_json& report, const std::filesystem::path& folder) {
-    // Invalid UTF-8 in names is replaced, as in the JSON report itself.
-    const std::string data = report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
     return filled(report_part("page.html"),
                   {{"style", fmt::format("{}{}", report_part("plot.css"), report_part("page.css"))},
                    {"script", std::string(report_part("page.js"))},
@@ -694,8 +684,7 @@ std::string report_html(const ordered_json& report, const std::filesystem::path&
                    {"machine", machine_html(report)},
                    {"contents", contents_html(report)},
                    {"summary", summary_html(report)},
-                   {"experiments", experiments_html(report, folder)},
-                   {"data", script_escaped(data)}});
+                   {"experiments", experiments_html(report, folder)}});
 }
 
 Command add_page_command(CLI::App& tool) {

@@ -3,8 +3,7 @@
 /// A report as one HTML page with all numbers, pictures, style and script, which loads nothing.
 ///
 /// Tables, text, plots and pictures are HTML and SVG. The script (page/page.js) adds tooltips,
-/// sorting and filters, so that the page can be read and printed without it. The page contains the
-/// JSON report.
+/// sorting and filters, so that the page can be read and printed without it.
 /// Tests: tests/tools/accuracy_page/report_html_test.cpp, and report_page_test.py in a browser.
 #pragma once
 
@@ -21,9 +20,6 @@ namespace relief::tools {
 
 /// Returns text for elements and quoted attributes, with entities for & < > " '.
 std::string html_escaped(std::string_view text);
-
-/// Returns JSON for a <script> element, with \u003c for <, so that it contains no tags.
-std::string script_escaped(std::string_view json);
 
 /// "data:image/png;base64,..."
 std::string data_uri(std::string_view bytes, std::string_view type);
