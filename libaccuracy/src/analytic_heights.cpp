@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "experiment_parts.h"
 #include "parallel.h"
 #include "portable_math.h"
 #include "relief/mesh/report.h"
@@ -111,24 +112,57 @@ CodedHeights coded_heights(const Image& heights, int bits) {
     return coded;
 }
 
+std::vector<glm::dvec3> directions_of(const Image& normals) {
+    const std::span<const float> n = normals.as<float>();
+    std::vector<glm::dvec3> directions(n.size() / 3);
+    for (std::size_t i = 0; i < directions.size(); ++i)
+        directions[i] = {n[3 * i], n[3 * i + 1], n[3 * i + 2]};
+    return directions;
+}
+
+Image angles_of(const Image& normals, std::span<const glm::dvec3> ground_truth) {
+    if (normals.channels != 3 || normals.bits() != 32 ||
+        normals.sample_count() != 3 * ground_truth.size()) {
+        throw InvalidInput(fmt::format("a map of {} x {} texels of {} channels has no {} normals",
+                                       normals.width, normals.height, normals.channels,
+                                       ground_truth.size()));
+    }
+    Image angles = make_image(normals.width, normals.height, 1, 32, ColorSpace::data);
+    const std::span<const float> n = normals.as<float>();
+    const std::span<float> degrees = angles.as<float>();
+    parallel_for(degrees.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec3 actual(n[3 * i], n[3 * i + 1], n[3 * i + 2]);
+            degrees[i] = static_cast<float>(degrees_between(actual, ground_truth[i]));
+        }
+    });
+    return angles;
+}
+
+std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3> ground_truth,
+                                int margin) {
+    const Image angles = angles_of(normals, ground_truth);
+    const std::span<const float> all = angles.as<float>();
+    std::vector<float> counted;
+    for (int y = margin; y < angles.height - margin; ++y) {
+        const auto row = static_cast<std::ptrdiff_t>(y) * angles.width;
+        counted.insert(counted.end(), all.begin() + row + margin,
+                       all.begin() + row + angles.width - margin);
+    }
+    return counted;
+}
+
+ErrorStats map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth, int margin) {
+    return error_stats(inner_angles(normals, ground_truth, margin));
+}
+
 ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, int margin) {
-    if (normals.width != reference.heights.width || normals.height != reference.heights.height ||
-        normals.channels != 3) {
+    if (normals.width != reference.heights.width || normals.height != reference.heights.height) {
         throw InvalidInput(fmt::format("normals of {} x {} texels and a ground truth of {} x {}",
                                        normals.width, normals.height, reference.heights.width,
                                        reference.heights.height));
     }
-    const std::span<const float> samples = normals.as<float>();
-    std::vector<glm::vec3> found;
-    std::vector<glm::dvec3> expected;
-    for (int row = margin; row < normals.height - margin; ++row) {
-        for (int column = margin; column < normals.width - margin; ++column) {
-            const std::size_t texel = texel_at(normals.width, column, row);
-            found.emplace_back(samples[3 * texel], samples[3 * texel + 1], samples[3 * texel + 2]);
-            expected.push_back(reference.normals[texel]);
-        }
-    }
-    return direction_error(found, expected);
+    return map_errors(normals, reference.normals, margin);
 }
 
 namespace {
@@ -410,16 +444,12 @@ std::span<const FieldRecipe> evaluation_fields() {
 }
 
 ErrorStats field_error(const Image& normals, const BumpField& field) {
-    const std::span<const float> samples = normals.as<float>();
-    if (normals.channels != 3 || samples.size() != 3 * field.normals.size())
-        throw InvalidInput("normals of another size than the field");
-    std::vector<glm::vec3> found(field.normals.size());
-    std::vector<unsigned char> counts(found.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        found[i] = {samples[3 * i], samples[3 * i + 1], samples[3 * i + 2]};
-        counts[i] = std::isnan(field.normals[i].x) ? 0 : 1;
+    const std::vector<float> all = inner_angles(normals, field.normals, 0);
+    std::vector<float> degrees;
+    for (std::size_t texel = 0; texel < all.size(); ++texel) {
+        if (!std::isnan(field.normals[texel].x)) degrees.push_back(all[texel]);
     }
-    return direction_error(found, field.normals, counts);
+    return error_stats(std::move(degrees));
 }
 
 }  // namespace relief

@@ -97,12 +97,13 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
                                                      result.texels, size.x, size.y);
     experiment.item = "texel";
     experiment.items = static_cast<double>(result.texels);
-    std::vector<AssetMethod> measured;
+    std::vector<Method> measured;
     for (const BumpMeasurement& one : result.measurements) {
-        measured.push_back({described(one.method), command_of(one.method, bump, options)});
-        measured.back().measured.error = known_error(one.error);
-        measured.back().measured.work = work_of(one.method, sample, bump);
-        measured.back().natural_cost = nominal_cost(one.method);
+        Method& method = measured.emplace_back(described(one.method));
+        method.error = known_error(one.error);
+        method.work = work_of(one.method, sample, bump);
+        method.command = command_of(one.method, bump, options);
+        method.nominal_cost = nominal_cost(one.method);
     }
     finish(asset, std::move(measured), {.reference = "the map itself"}, options);
     return asset;
@@ -118,15 +119,6 @@ AssetExperiment measure_asset_heights(const Image& height, const BumpOptions& bu
 
 namespace {
 
-void add_angles(const Image& actual, const Image& expected, std::vector<float>& degrees) {
-    const std::span<const float> a = actual.as<float>();
-    const std::span<const float> b = expected.as<float>();
-    for (std::size_t i = 0; i < a.size(); i += 3) {
-        degrees.push_back(static_cast<float>(
-            degrees_between({a[i], a[i + 1], a[i + 2]}, {b[i], b[i + 1], b[i + 2]})));
-    }
-}
-
 /// The RMS angle that rounding to integer codes of `bits` bits adds to a normal, in degrees:
 /// uniformly distributed errors of up to half a code on two axes. 0 for floats.
 double rounding_degrees(int bits) {
@@ -136,15 +128,14 @@ double rounding_degrees(int bits) {
 }
 
 /// The file itself: without other options, `relief-bake convert` keeps every code.
-AssetMethod as_it_is(const NormalMapStorage& file, std::size_t texels,
-                     const AssetOptions& options) {
-    AssetMethod method;
-    method.measured.name = "as it is";
-    method.measured.choices = {
+Method as_it_is(const NormalMapStorage& file, std::size_t texels, const AssetOptions& options) {
+    Method method;
+    method.name = "as it is";
+    method.choices = {
         {"layout", "as it is"}, {"bits", fmt::format("{} bit", file.bits)}, {"rounding", "none"}};
-    method.measured.stored_bytes = file.channels * file.bits / 8.0;
-    method.measured.error = known_error(error_stats(std::vector<float>(texels, 0.0F)));
-    method.measured.note = "Every code is kept; there is no work to time.";
+    method.stored_bytes = file.channels * file.bits / 8.0;
+    method.error = known_error(error_stats(std::vector<float>(texels, 0.0F)));
+    method.note = "Every code is kept; there is no work to time.";
     method.command = fmt::format("relief-bake convert {} OUT{}", options.arguments, file.extension);
     return method;
 }
@@ -170,18 +161,20 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
     experiment.input = fmt::format("{} x {} texels", normals.width, normals.height);
     if (parts.size() > 1) experiment.input += fmt::format(", {:.0f} of them", experiment.items);
     experiment.item = "texel";
-    std::vector<AssetMethod> methods = {
+    std::vector<Method> methods = {
         as_it_is(file, static_cast<std::size_t>(experiment.items), options)};
     for (const NormalCode& code : normal_codes()) {
-        AssetMethod method;
-        method.measured.name = code.name;
-        method.measured.choices = code.choices;
-        method.measured.stored_bytes = code.bytes;
+        Method method;
+        method.name = code.name;
+        method.choices = code.choices;
+        method.stored_bytes = code.bytes;
         std::vector<float> degrees;
-        for (const Image& part : parts)
-            add_angles(code.stored(part), part, degrees);
-        method.measured.error = known_error(error_stats(std::move(degrees)));
-        method.measured.work = [&parts, code] {
+        for (const Image& part : parts) {
+            const std::vector<float> more = inner_angles(code.stored(part), directions_of(part), 0);
+            degrees.insert(degrees.end(), more.begin(), more.end());
+        }
+        method.error = known_error(error_stats(std::move(degrees)));
+        method.work = [&parts, code] {
             for (const Image& part : parts)
                 static_cast<void>(code.stored(part));
         };
@@ -205,18 +198,18 @@ std::string samples_name(const BakeSampling& way) {
                               : fmt::format("{}", way.samples);
 }
 
-AssetMethod method_of(const BakeSampling& way, const NormalMapFormat& format, int size,
-                      const AssetOptions& options) {
+Method method_of(const BakeSampling& way, const NormalMapFormat& format, int size,
+                 const AssetOptions& options) {
     const bool is_dithered = format.dither != Dither::none;
     const std::string depth = fmt::format("{} bit", format.bits);
-    AssetMethod method;
-    method.measured.name = fmt::format("{} {}, {}{}", samples_name(way),
-                                       samples_name(way) == "1" ? "sample" : "samples", depth,
-                                       is_dithered ? ", dithered" : "");
-    method.measured.choices = {{"samples", samples_name(way)},
-                               {"depth", depth},
-                               {"dither", is_dithered ? "blue-noise" : "none"}};
-    method.measured.stored_bytes = 3.0 * format.bits / 8.0;
+    Method method;
+    method.name = fmt::format("{} {}, {}{}", samples_name(way),
+                              samples_name(way) == "1" ? "sample" : "samples", depth,
+                              is_dithered ? ", dithered" : "");
+    method.choices = {{"samples", samples_name(way)},
+                      {"depth", depth},
+                      {"dither", is_dithered ? "blue-noise" : "none"}};
+    method.stored_bytes = 3.0 * format.bits / 8.0;
     method.command = fmt::format(
         "relief-bake mesh {} OUT.{} --size {} --samples {}{}{}{}", options.arguments,
         format.bits == 32 ? "exr" : "png", size, way.sample_degrees ? "auto" : samples_name(way),
@@ -252,11 +245,11 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
                     baker.low().triangles.size());
     experiment.item = "texel";
     experiment.items = static_cast<double>(reference.texels());
-    std::vector<AssetMethod> methods;
+    std::vector<Method> methods;
     for (std::size_t way = 0; way < ways.size(); ++way) {
         for (std::size_t f = 0; f < formats.size(); ++f) {
             methods.push_back(method_of(ways[way], formats[f], size, options));
-            methods.back().measured.error = known_error(results[way].measurement.errors[f]);
+            methods.back().error = known_error(results[way].measurement.errors[f]);
             if (options.run.is_timed) methods.back().known_time = Timing{results[way].seconds[f]};
         }
     }

@@ -153,27 +153,24 @@ std::vector<glm::vec3> with_creases(const NormalMethod& method, const Mesh& mesh
         .normals;
 }
 
-std::vector<AssetMethod> methods_on(const Mesh& mesh, const CreaseRule& creases,
-                                    const CornerGroundTruth& ground_truth,
-                                    const AssetOptions& options) {
-    std::vector<AssetMethod> methods;
+std::vector<Method> methods_on(const Mesh& mesh, const CreaseRule& creases,
+                               const CornerGroundTruth& ground_truth, const AssetOptions& options) {
+    std::vector<Method> methods;
     // Only double: relief-mesh has no option for another arithmetic.
     for (const NormalMethod& method : normal_methods(std::array{Arithmetic::float64})) {
         const auto normals = [method, &mesh, &creases] {
             return creases.has_any() ? with_creases(method, mesh, creases) : method.normals(mesh);
         };
-        AssetMethod asset;
-        asset.measured = {.name = std::string(method.weighting),
-                          .choices = {{"weighting", std::string(method.weighting)}},
-                          .error =
-                              [=, &mesh, &creases, &ground_truth] {
-                                  return errors_of(normals(), creases.has_any(), mesh,
-                                                   ground_truth);
-                              },
-                          .work = [normals] { normals(); }};
-        asset.command = fmt::format("relief-mesh process {} -o OUT.glb --normals {}{}",
-                                    options.arguments, method.weighting, creases.option);
-        methods.push_back(std::move(asset));
+        methods.push_back(
+            {.name = method.weighting,
+             .choices = {{"weighting", method.weighting}},
+             .error =
+                 [=, &mesh, &creases, &ground_truth] {
+                     return errors_of(normals(), creases.has_any(), mesh, ground_truth);
+                 },
+             .work = [normals] { normals(); },
+             .command = fmt::format("relief-mesh process {} -o OUT.glb --normals {}{}",
+                                    options.arguments, method.weighting, creases.option)});
     }
     return methods;
 }
@@ -225,17 +222,15 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
     experiment.input = fmt::format("{} triangles{}", mesh.triangles.size(), whole);
     experiment.item = "triangle";
     experiment.items = static_cast<double>(mesh.triangles.size());
-    std::vector<AssetMethod> methods = methods_on(mesh, creases, ground_truth, options);
+    std::vector<Method> methods = methods_on(mesh, creases, ground_truth, options);
     if (!is_file && !mesh.normals.empty()) {
-        methods.push_back(
-            {{.name = "the file's own",
-              .choices = {{"weighting", "file"}},
-              .error = known_error(errors_of(mesh.normals, false, mesh, ground_truth)),
-              .note = "The stored normals; there is no work to time."},
-             {}});
+        methods.push_back({.name = "the file's own",
+                           .choices = {{"weighting", "file"}},
+                           .error = known_error(errors_of(mesh.normals, false, mesh, ground_truth)),
+                           .note = "The stored normals; there is no work to time."});
     }
     if (!ground_truth.is_enough) {
-        for (AssetMethod& method : methods)
+        for (Method& method : methods)
             method.command.clear();
     }
     experiment.reference_error = ground_truth.expected_error;
@@ -323,15 +318,13 @@ std::vector<Basis> bases_of(const Mesh& mesh, const std::vector<glm::vec4>& stor
     return bases;
 }
 
-AssetMethod method_of(const Basis& basis, std::vector<float> degrees) {
-    AssetMethod method;
-    method.measured = {.name = basis.name,
-                       .choices = {{"basis", basis.name}},
-                       .error = known_error(error_stats(std::move(degrees))),
-                       .work = basis.work,
-                       .note = basis.work ? "" : "There is no work to time."};
-    method.command = basis.command;
-    return method;
+Method method_of(const Basis& basis, std::vector<float> degrees) {
+    return {.name = basis.name,
+            .choices = {{"basis", basis.name}},
+            .error = known_error(error_stats(std::move(degrees))),
+            .work = basis.work,
+            .note = basis.work ? "" : "There is no work to time.",
+            .command = basis.command};
 }
 
 void describe(Experiment& experiment, const Mesh& mesh, const SamplePoints& points,
@@ -357,7 +350,7 @@ AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases
         "It shows the effect of averaging on the frame, not the basis in which a normal map was "
         "baked: use that basis regardless of its error here.";
     describe(experiment, mesh, points, whole);
-    std::vector<AssetMethod> methods;
+    std::vector<Method> methods;
     for (const Basis& basis : bases) {
         if (basis.shader == ShaderBasis::derived) continue;  // It is the ground truth.
         std::vector<float> degrees;
@@ -396,7 +389,7 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
         "write maps. A map that was baked in another basis is exact in that basis instead.";
     describe(experiment, mesh, points, whole);
     const Basis& convention = bases.front();
-    std::vector<AssetMethod> methods;
+    std::vector<Method> methods;
     for (const Basis& basis : bases) {
         std::vector<float> degrees;
         for (const Sample& sample : points.samples) {
@@ -457,10 +450,10 @@ AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
     experiment.input = fmt::format("{} frames", frames->normals.size());
     experiment.item = "frame";
     experiment.items = static_cast<double>(frames->normals.size());
-    std::vector<AssetMethod> methods;
+    std::vector<Method> methods;
     for (const FrameCode& code : all_frame_codes()) {
-        AssetMethod method{code.method(frames)};
-        method.measured.work = [frames, code] {
+        Method method = code.method(frames);
+        method.work = [frames, code] {
             Report report;
             encode_frames(frames->float_normals, frames->float_tangents, code.encoding,
                           code.rounding, report);

@@ -235,20 +235,19 @@ void set_finding(AssetExperiment& asset) {
     if (!asset.command().empty()) asset.experiment.finding += " To do it: " + asset.command();
 }
 
-void finish(AssetExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
+void finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule& rule,
             const AssetOptions& options) {
     const ProgressStage stage("measuring");
-    PreparedExperiment prepared{.report = std::move(asset.experiment), .costs = options.costs};
     std::vector<unsigned char> choosable;
     std::vector<double> nominal_costs;
-    for (AssetMethod& method : methods) {
-        method.measured.id = method_id(prepared.methods.size());
-        prepared.methods.push_back(std::move(method.measured));
+    for (const Method& method : methods) {
         choosable.push_back(method.command.empty() ? 0 : 1);
-        nominal_costs.push_back(method.natural_cost);
-        asset.commands.push_back(std::move(method.command));
+        nominal_costs.push_back(method.nominal_cost);
+        asset.commands.push_back(method.command);
     }
-    asset.experiment = measured(std::move(prepared), options.run);
+    asset.experiment = measured(
+        {.report = std::move(asset.experiment), .methods = methods, .costs = options.costs},
+        options.run);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         Measurement& one = asset.experiment.measurements[i];
         if (methods[i].known_time) one.cost.all_threads = methods[i].known_time;

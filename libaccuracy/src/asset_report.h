@@ -21,14 +21,6 @@ inline constexpr double invisible_degrees = 0.01;
 /// The error of a method that is known already, as a function.
 std::function<MethodError()> known_error(const ErrorStats& error);
 
-/// A method with the command that applies it.
-struct AssetMethod {
-    ExperimentMethod measured;
-    std::string command{};
-    std::optional<Timing> known_time{};  ///< On all threads, if it was measured elsewhere.
-    double natural_cost = 0.0;           ///< RecommendationRule::nominal_costs.
-};
-
 /// The rule that selects the recommended method.
 struct AssetRule {
     CostKind cost = CostKind::time;
@@ -42,7 +34,7 @@ AssetExperiment asset_experiment(Subject subject, const std::string& topic,
 
 /// Measures the methods, recommends one of those that have a command, and makes that the finding.
 /// Experiment::reference_error must be set before.
-void finish(AssetExperiment& asset, std::vector<AssetMethod> methods, const AssetRule& rule,
+void finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule& rule,
             const AssetOptions& options);
 
 /// Makes the recommendation and its command the finding.

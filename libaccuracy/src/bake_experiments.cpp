@@ -244,8 +244,8 @@ void add_renderings(const BumpyBake& bake, std::span<const BakedMap> maps, Exper
     }
 }
 
-/// The ways to bake of an experiment, each in some formats, and their results. The id of a method
-/// is the index of its way times the number of formats, plus the index of its format.
+/// The ways to bake of an experiment, each in some formats, and their results. The index of a
+/// method is the index of its way times the number of formats, plus the index of its format.
 class BakedWays {
   public:
     BakedWays(std::shared_ptr<const BumpyBake> bake, std::vector<BakeSampling> ways,
@@ -264,8 +264,8 @@ class BakedWays {
     [[nodiscard]] std::size_t format_of(std::size_t method) const {
         return method % formats_.size();
     }
-    [[nodiscard]] MethodId method(std::size_t way, std::size_t format) const {
-        return method_id(way * formats_.size() + format);
+    [[nodiscard]] std::size_t method(std::size_t way, std::size_t format) const {
+        return way * formats_.size() + format;
     }
 
     /// The errors of a way in all formats; the rays are cast once.
@@ -318,8 +318,7 @@ PreparedExperiment on_ways(const std::shared_ptr<BakedWays>& baked) {
         const std::string way = name_of(baked->ways()[baked->way_of(i)]);
         const int bits = baked->formats()[baked->format_of(i)].bits;
         prepared.methods.push_back(
-            {.id = method_id(i),
-             .name = fmt::format("{}, {}", way, depth_name(bits)),
+            {.name = fmt::format("{}, {}", way, depth_name(bits)),
              .choices = {{"rays", way}, {"depth", depth_name(bits)}},
              .error =
                  [baked, i] {
@@ -328,9 +327,9 @@ PreparedExperiment on_ways(const std::shared_ptr<BakedWays>& baked) {
                          baked->result(at).errors[baked->format_of(i)],
                          fmt::format("{:.2f} rays per texel.", baked->rays_per_texel(at)));
                  },
+             .round = [baked, i] { return baked->seconds_of_round(i); },
              .stored_bytes = 3.0 * bits / 8.0});
     }
-    prepared.round = [baked](MethodId id) { return baked->seconds_of_round(index_of(id)); };
     return prepared;
 }
 
@@ -381,7 +380,7 @@ void finish_samples(BakedWays& baked, Experiment& report) {
         return baked.result(way).errors[format].rms;
     };
     const std::size_t last = ways.size() - 1;
-    const Cost& last_cost = measurement_of(report, baked.method(last, in_floats)).cost;
+    const Cost& last_cost = measurement_at(report, baked.method(last, in_floats)).cost;
     report.finding = fmt::format(
         "Without rounding, {} per texel has an error of {:.3f} degrees (RMS), {} {:.3f} and {} "
         "{:.4f}. Rounding alone has an error of {:.3f} degrees in 8 bits and {:.4f} in 16 bits; "

@@ -107,7 +107,7 @@ WaveMap surface_at(int side) {
     return map;
 }
 
-ExperimentMethod described(const BumpMethod& method) {
+Method described(const BumpMethod& method) {
     const std::string kernel = name_of(method.kernel, method.gaussian_radius);
     const std::string bits = fmt::format("{} bit", method.bits);
     return {.name = fmt::format("{}, {}, {}{}", kernel, enum_name(method.arithmetic), bits,
@@ -196,18 +196,17 @@ Experiment square_map(int side) {
 }
 
 /// "gaussian 4, float64 has the smallest error, 0.32 degrees RMS (sobel3: 0.99). ..."
-/// \param methods  those of the measurements, in both arithmetics
-std::string bump_finding(const Experiment& experiment, const std::vector<BumpMethod>& methods) {
+/// \param experiment  its first choice is the kernel
+std::string bump_finding(const Experiment& experiment) {
     const Measurement& best = *most_accurate(experiment);
     std::string text =
         fmt::format("{} has the smallest error, {:.2g} degrees RMS", best.method, best.error.rms);
     const auto& all = experiment.measurements;
-    const auto kernel_of = [&](const Measurement& one) { return methods[index_of(one.id)].kernel; };
-    const auto usual = std::find_if(all.begin(), all.end(), [&](const Measurement& one) {
-        return kernel_of(one) == Kernel::sobel3;
-    });
-    if (kernel_of(best) != Kernel::sobel3)
-        text += fmt::format(" (sobel3: {:.2g})", usual->error.rms);
+    const auto is_usual = [](const Measurement& one) {
+        return one.choices.front().second == enum_name(Kernel::sobel3);
+    };
+    const auto usual = std::find_if(all.begin(), all.end(), is_usual);
+    if (!is_usual(best)) text += fmt::format(" (sobel3: {:.2g})", usual->error.rms);
     return text + ". " + arithmetic_finding(experiment, "kernels");
 }
 
@@ -246,8 +245,7 @@ PreparedExperiment on_wave(int bits, bool is_quick) {
         const NamedKernel kernel{name_of(methods[i].kernel, methods[i].gaussian_radius),
                                  methods[i].kernel, methods[i].gaussian_radius};
         prepared.methods.push_back(
-            {.id = method_id(i),
-             .name = fmt::format("{}, {}", kernel.name, enum_name(arithmetic)),
+            {.name = fmt::format("{}, {}", kernel.name, enum_name(arithmetic)),
              .choices = {{"kernel", kernel.name}, {"arithmetic", enum_name(arithmetic)}},
              .error = [wave, kernel, arithmetic] { return wave_errors(*wave, kernel, arithmetic); },
              .work =
@@ -256,8 +254,8 @@ PreparedExperiment on_wave(int bits, bool is_quick) {
                      normals_from_height(wave->heights, chosen, report);
                  }});
     }
-    prepared.finish = [methods, bits, is_quick](Experiment& report) {
-        report.finding = bump_finding(report, methods);
+    prepared.finish = [bits, is_quick](Experiment& report) {
+        report.finding = bump_finding(report);
         report.charts = {wavelength_chart(bits, side, is_quick)};
     };
     return prepared;
@@ -302,8 +300,7 @@ PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
         const std::string kernel = name_of(method.kernel, method.gaussian_radius);
         const char* const arithmetic = enum_name(method.arithmetic);
         prepared.methods.push_back(
-            {.id = method_id(i),
-             .name = fmt::format("{}, {}{}", kernel, arithmetic,
+            {.name = fmt::format("{}, {}{}", kernel, arithmetic,
                                  method.destaircased ? ", steps smoothed away" : ""),
              .choices = {{"kernel", kernel},
                          {"arithmetic", arithmetic},
@@ -311,10 +308,10 @@ PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
              .error = [field, method] { return conversion_error(*field, method); },
              .work = [field, method] { converted(*field, method); }});
     }
-    prepared.finish = [field, methods](Experiment& report) {
+    prepared.finish = [field](Experiment& report) {
         const KernelChoice choice = choose_kernel(field->heights, field->options);
         report.finding =
-            fmt::format("{} On this map --kernel auto selects {}.", bump_finding(report, methods),
+            fmt::format("{} On this map --kernel auto selects {}.", bump_finding(report),
                         name_of(choice.kernel, choice.gaussian_radius));
     };
     return prepared;

@@ -195,8 +195,7 @@ PreparedExperiment decimation_of(AnalyticSurface surface, int cells, DecimationE
     const std::vector<DecimationMethod> methods = decimation_methods();
     for (std::size_t i = 0; i < methods.size(); ++i) {
         prepared.methods.push_back(
-            {.id = method_id(i),
-             .name = methods[i].name,
+            {.name = methods[i].name,
              .choices = {{"options", methods[i].options}},
              .error =
                  [input, kind, method = methods[i]] {
@@ -230,7 +229,7 @@ PreparedExperiment decimation_of_large_mesh(bool is_quick) {
     prepared.report.question = "How much time and memory does the decimation of a large mesh cost?";
     prepared.costs.memory = true;
     // Two options are enough to see what attributes cost.
-    std::erase_if(prepared.methods, [](const ExperimentMethod& method) {
+    std::erase_if(prepared.methods, [](const Method& method) {
         return method.name != "positions" && method.name != "default";
     });
     return prepared;

@@ -100,8 +100,8 @@ Chart loss_chart(const GlDevice& device, int size, const char* id, const char* t
 
 std::string energy_finding(const Experiment& experiment) {
     using enum EnergyMethod;
-    const Measurement& one = measurement_of(experiment, method_id(one_bounce));
-    const Measurement& all = measurement_of(experiment, method_id(all_bounces));
+    const Measurement& one = measurement_at(experiment, one_bounce);
+    const Measurement& all = measurement_at(experiment, all_bounces);
     return fmt::format(
                "At roughness 1, a white metal loses {:.0f}% of the light (RMS, at most {:.0f}%) if "
                "only the first bounce counts, and {:.2g}% with all bounces.",
@@ -137,14 +137,14 @@ PreparedExperiment energy_experiment(const PlanOptions& options) {
     PreparedExperiment prepared{.report = std::move(experiment)};
     for (std::size_t i = 0; i < energy_choices.size(); ++i) {
         const EnergyChoice& choice = energy_choices.at(i);
-        prepared.methods.push_back({.id = method_id(i),
-                                    .name = choice.name,
-                                    .choices = {{"bounces", choice.bounces}},
-                                    .error = [renderer, i] { return renderer(i).losses(); },
-                                    .note = rendering_note(*device)});
+        prepared.methods.push_back(
+            {.name = choice.name,
+             .choices = {{"bounces", choice.bounces}},
+             .error = [renderer, i] { return renderer(i).losses(); },
+             .round = [renderer, i] { return renderer(i).seconds_of_a_frame(); },
+             .note = rendering_note(*device)});
     }
-    time_frames_by(prepared, *device,
-                   [renderer](MethodId id) { return renderer(index_of(id)).seconds_of_a_frame(); });
+    set_frame_costs(prepared, *device);
     prepared.finish = [device, chart_size = options.is_quick ? 64 : 160](Experiment& report) {
         report.charts = {
             loss_chart(*device, chart_size, "roughness", "Lost light by roughness",

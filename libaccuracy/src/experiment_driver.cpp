@@ -14,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -32,15 +31,13 @@ namespace {
 bool begin(PreparedExperiment& prepared, const RunOptions& options) {
     const std::size_t all = prepared.methods.size();
     if (options.selects_method) {
-        std::erase_if(prepared.methods, [&](const ExperimentMethod& method) {
-            return !options.selects_method(method.name);
-        });
+        std::erase_if(prepared.methods,
+                      [&](const Method& method) { return !options.selects_method(method.name); });
     }
-    for (const ExperimentMethod& method : prepared.methods) {
+    for (const Method& method : prepared.methods) {
         check_cancelled();
         const MethodError error = method.error();
-        prepared.report.measurements.push_back({.id = method.id,
-                                                .method = method.name,
+        prepared.report.measurements.push_back({.method = method.name,
                                                 .choices = method.choices,
                                                 .error = nan_if_empty(error.stats),
                                                 .cost = {.stored_bytes = method.stored_bytes},
@@ -57,17 +54,18 @@ void add_rounds(PreparedExperiment& prepared, const Repeats& repeats,
     std::vector<std::size_t> timed;
     std::vector<std::size_t> repeats_of_work;
     for (std::size_t i = 0; i < prepared.methods.size(); ++i) {
-        const std::function<void()>& work = prepared.methods[i].work;
-        if (!prepared.round && !work) continue;
+        const Method& method = prepared.methods[i];
+        if (!method.round && !method.work) continue;
         timed.push_back(i);
-        if (prepared.round) continue;
+        repeats_of_work.push_back(1);
+        if (method.round) continue;
         check_cancelled();
-        work();  // The first run fills caches and is slower.
-        repeats_of_work.push_back(repeats_per_round(work));
+        method.work();  // The first run fills caches and is slower.
+        repeats_of_work.back() = repeats_per_round(method.work);
     }
     const auto seconds_of_round = [&](std::size_t thing) {
-        const ExperimentMethod& method = prepared.methods[timed[thing]];
-        if (prepared.round) return prepared.round(method.id);
+        const Method& method = prepared.methods[timed[thing]];
+        if (method.round) return method.round();
         const std::size_t count = repeats_of_work[thing];
         const double seconds = clock([&] {
             for (std::size_t repeat = 0; repeat < count; ++repeat)
@@ -160,13 +158,6 @@ Experiment measured(PreparedExperiment prepared, const RunOptions& options) {
     const bool is_whole = begin(prepared, options);
     if (options.is_timed) add_times(prepared, options.repeats, options.threads);
     return end(prepared, is_whole, options);
-}
-
-const Measurement& measurement_of(const Experiment& experiment, MethodId method) {
-    for (const Measurement& one : experiment.measurements) {
-        if (one.id == method) return one;
-    }
-    throw std::out_of_range("the experiment has no such method");
 }
 
 const Measurement* most_accurate(const Experiment& experiment) {

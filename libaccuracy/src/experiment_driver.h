@@ -23,17 +23,6 @@ namespace relief {
 
 class GlDevice;  // rendered_methods.h
 
-/// The id for a value of an experiment's own enumeration, or for an index.
-template <typename Value>
-constexpr MethodId method_id(Value value) {
-    return static_cast<MethodId>(value);
-}
-
-/// The index of a method in its experiment's list.
-constexpr std::size_t index_of(MethodId id) {
-    return static_cast<std::size_t>(id);
-}
-
 /// The error of a method.
 struct MethodError {
     MethodError(const ErrorStats& statistics, std::string text = {})
@@ -44,28 +33,31 @@ struct MethodError {
 };
 
 /// A method of an experiment. Its functions own or share their input.
-struct ExperimentMethod {
-    MethodId id{};
+struct Method {
     std::string name{};
-    std::vector<std::pair<std::string, std::string>> choices{};
+    Choices choices{};
     /// Computes the error against the ground truth. The driver calls it once.
     std::function<MethodError()> error{};
-    /// Does the whole job once and frees its result, for times and memory. Empty: the method has
-    /// no time of its own, or PreparedExperiment::round measures it.
+    /// Does the whole job once and frees its result, for times and memory. A round repeats it if it
+    /// is shorter than 4 milliseconds. Empty: the method has no time of its own.
     std::function<void()> work{};
+    /// Runs one round and returns its time, instead of `work`.
+    std::function<double()> round{};
     double stored_bytes = 0.0;
     std::string note{};  ///< Before that of the error.
+
+    // For recommendations on a user's files only:
+    std::string command{};               ///< Applies the method; empty: no tool does.
+    std::optional<Timing> known_time{};  ///< On all threads, if it was measured elsewhere.
+    double nominal_cost = 0.0;           ///< RecommendationRule::nominal_costs.
 };
 
 /// An experiment whose input exists.
 struct PreparedExperiment {
     /// Describes the experiment. The driver adds the subject, the title and the measurements.
     Experiment report{};
-    std::vector<ExperimentMethod> methods{};
+    std::vector<Method> methods{};
     CostChoice costs{};
-    /// Runs one round of a method and returns its time. Empty: a round runs the work of the
-    /// method, several times if it is shorter than 4 milliseconds.
-    std::function<double(MethodId method)> round{};
     /// If true, one thread means all threads on one processor, because threads of an OpenGL driver
     /// ignore the limit of parallel loops.
     bool limits_processors = false;
@@ -150,8 +142,12 @@ std::vector<PlannedExperiment> shading_plan(const PlanOptions& options);
 /// results of a method are wrong.
 std::vector<PlannedExperiment> stability_plan(const PlanOptions& options);
 
-/// The measurement of a method. \throws std::out_of_range if it was left out
-const Measurement& measurement_of(const Experiment& experiment, MethodId method);
+/// The measurement of a method by its place in the experiment's list: an index, or a value of an
+/// enumeration. \throws std::out_of_range if there is none
+template <typename Index>
+const Measurement& measurement_at(const Experiment& experiment, Index index) {
+    return experiment.measurements.at(static_cast<std::size_t>(index));
+}
 
 /// The measurement with the least RMS error among those without undefined results, or nullptr.
 const Measurement* most_accurate(const Experiment& experiment);

@@ -64,7 +64,7 @@ struct NormalMethod {
     std::function<std::vector<glm::vec3>(const Mesh&)> normals;
 
     [[nodiscard]] std::string name() const;  ///< "max, float64"
-    [[nodiscard]] std::vector<std::pair<std::string, std::string>> choices() const;
+    [[nodiscard]] Choices choices() const;
 };
 
 /// All eight weightings, each in the given arithmetics.
@@ -122,7 +122,7 @@ WaveMap surface_at(int side);
 
 /// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel, but
 /// without functions.
-ExperimentMethod described(const BumpMethod& method);
+Method described(const BumpMethod& method);
 
 // Baking: a sphere with bumps in closed form is baked onto a coarse sphere with several numbers of
 // rays per texel and several bit depths.
@@ -283,6 +283,9 @@ std::vector<glm::vec4> textbook_tangents(const Mesh& mesh);
 Image textbook_sobel_normals(const Image& height, float strength);
 
 // Errors of normal maps (angles per texel) and of images (FLIP and PSNR) against a ground truth.
+
+/// The normals of three float channels, row by row.
+std::vector<glm::dvec3> directions_of(const Image& normals);
 
 /// Computes the angle between each texel and the ground truth, in degrees.
 ///

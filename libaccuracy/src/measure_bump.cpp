@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parallel.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
@@ -61,38 +61,6 @@ std::vector<Image> smoothed_heights(const Trial& trial) {
     return smooth;
 }
 
-std::vector<glm::dvec3> vectors_of(const Image& normals) {
-    const std::span<const float> n = normals.as<float>();
-    std::vector<glm::dvec3> vectors(n.size() / 3);
-    for (std::size_t i = 0; i < vectors.size(); ++i)
-        vectors[i] = {n[3 * i], n[3 * i + 1], n[3 * i + 2]};
-    return vectors;
-}
-
-/// Adds the angles between the stored normals and the ground truth, without those of the margin.
-void add_angles(const Image& map, const NormalMapFormat& format,
-                const std::vector<glm::dvec3>& ground_truth, int margin,
-                std::vector<float>& angles) {
-    Report ignored;
-    const std::vector<glm::dvec3> found =
-        vectors_of(decode_normal_map(map, format.green, format.flat, ignored));
-    const std::size_t first = angles.size();
-    const int width = map.width - 2 * margin;
-    const int height = map.height - 2 * margin;
-    angles.resize(first + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y) {
-            for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
-                const std::size_t texel =
-                    (y + static_cast<std::size_t>(margin)) * static_cast<std::size_t>(map.width) +
-                    x + static_cast<std::size_t>(margin);
-                angles[first + y * static_cast<std::size_t>(width) + x] =
-                    static_cast<float>(degrees_between(found[texel], ground_truth[texel]));
-            }
-        }
-    });
-}
-
 BumpReference reference_for(const BumpSample& sample, const BumpExperimentOptions& options,
                             const KernelChoice& plain) {
     KernelChoice best = plain;
@@ -123,7 +91,7 @@ void take_reference(const BumpReference& reference, Trial& trial) {
     for (const Image& part : heights) {
         Report ignored;
         trial.ground_truth.push_back(
-            vectors_of(normals_from_height(part, options_of(method, trial.bump), ignored)));
+            directions_of(normals_from_height(part, options_of(method, trial.bump), ignored)));
     }
 }
 
@@ -193,9 +161,14 @@ void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
     for (std::size_t i = 0; i < methods.size(); ++i) {
         convert_parts(trial, methods[i], options.format, maps);
         std::vector<float> angles;
-        for (std::size_t part = 0; part < maps.size(); ++part)
-            add_angles(maps[part], format_of(methods[i], options.format), trial.ground_truth[part],
-                       trial.margin, angles);
+        for (std::size_t part = 0; part < maps.size(); ++part) {
+            const NormalMapFormat format = format_of(methods[i], options.format);
+            Report ignored;
+            const std::vector<float> more =
+                inner_angles(decode_normal_map(maps[part], format.green, format.flat, ignored),
+                             trial.ground_truth[part], trial.margin);
+            angles.insert(angles.end(), more.begin(), more.end());
+        }
         experiment.measurements[i].method = methods[i];
         experiment.measurements[i].error = error_stats(std::move(angles));
     }

@@ -40,7 +40,7 @@ std::string NormalMethod::name() const {
     return weighting + ", " + enum_name(arithmetic);
 }
 
-std::vector<std::pair<std::string, std::string>> NormalMethod::choices() const {
+Choices NormalMethod::choices() const {
     return {{"weighting", weighting}, {"arithmetic", enum_name(arithmetic)}};
 }
 
@@ -165,12 +165,10 @@ Chart cells_chart(const Case& one, bool is_quick) {
 }
 
 /// "max has the smallest error, 0.453 degrees RMS; area has the largest, 1.28. ..."
-/// \param methods  those of the measurements, in both arithmetics
-std::string normals_finding(const Experiment& experiment, std::span<const NormalMethod> methods) {
+/// \param experiment  its first choice is the weighting
+std::string normals_finding(const Experiment& experiment) {
     const auto& all = experiment.measurements;
-    const auto weighting_of = [&](const Measurement& one) {
-        return methods[index_of(one.id)].weighting;
-    };
+    const auto weighting_of = [](const Measurement& one) { return one.choices.front().second; };
     const Measurement& best = *most_accurate(experiment);
     const auto by_rms = [](const Measurement& a, const Measurement& b) {
         return a.error.rms < b.error.rms;
@@ -199,8 +197,7 @@ PreparedExperiment on_mesh(AnalyticMesh mesh, const std::string& input) {
     for (std::size_t i = 0; i < methods.size(); ++i) {
         const auto& normals = methods[i].normals;
         prepared.methods.push_back(
-            {.id = method_id(i),
-             .name = methods[i].name(),
+            {.name = methods[i].name(),
              .choices = methods[i].choices(),
              .error =
                  [ground_truth, normals] {
@@ -208,9 +205,7 @@ PreparedExperiment on_mesh(AnalyticMesh mesh, const std::string& input) {
                  },
              .work = [ground_truth, normals] { normals(ground_truth->mesh); }});
     }
-    prepared.finish = [methods](Experiment& report) {
-        report.finding = normals_finding(report, methods);
-    };
+    prepared.finish = [](Experiment& report) { report.finding = normals_finding(report); };
     return prepared;
 }
 
@@ -254,7 +249,7 @@ Chart neighbors_chart(const Experiment& experiment, const std::vector<NormalMeth
         curve.method = methods[i].name();
         for (int valence = 3; valence <= 9; ++valence) {
             const ErrorStats errors = valence == usual_valence
-                                          ? measurement_of(experiment, method_id(i)).error
+                                          ? measurement_at(experiment, i).error
                                           : fan_errors(methods[i], valence, fans);
             curve.points.push_back({static_cast<double>(valence), curve_error(errors)});
         }
@@ -279,8 +274,7 @@ PreparedExperiment on_fans(bool is_quick) {
         .item = "fan",
         .items = static_cast<double>(fans)};
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        prepared.methods.push_back({.id = method_id(i),
-                                    .name = methods[i].name(),
+        prepared.methods.push_back({.name = methods[i].name(),
                                     .choices = methods[i].choices(),
                                     .error = [method = methods[i], fans] {
                                         return fan_errors(method, usual_valence, fans);
@@ -291,7 +285,7 @@ PreparedExperiment on_fans(bool is_quick) {
         const Measurement& best = *most_accurate(report);
         report.finding =
             fmt::format("With {} neighbors {} has the smallest error, {:.3g} degrees RMS.",
-                        usual_valence, methods[index_of(best.id)].weighting, best.error.rms);
+                        usual_valence, best.choices.front().second, best.error.rms);
     };
     return prepared;
 }

@@ -260,7 +260,7 @@ Chart roughness_chart(const GlDevice& device, const Balls& balls, bool is_quick)
 
 std::string glossy_finding(const Experiment& experiment, double roughness) {
     const auto of = [&](GlossyMethod method) -> const Measurement& {
-        return measurement_of(experiment, method_id(method));
+        return measurement_at(experiment, method);
     };
     const Measurement& levels_6 = of(GlossyMethod::levels_6);
     const Measurement& levels_5 = of(GlossyMethod::levels_5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders methods side by side, so that their rounds can be interleaved; and computes errors of
-// normal maps (angles per texel) and of images (FLIP and PSNR) against a ground truth.
+// images (FLIP and PSNR) against a ground truth.
 #include "rendered_methods.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,6 @@
 #include <string>
 
 #include "experiment_parts.h"
-#include "parallel.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
@@ -58,11 +57,9 @@ std::string rendering_note(const GlDevice& device) {
             : "");
 }
 
-void time_frames_by(PreparedExperiment& prepared, const GlDevice& device,
-                    std::function<double(MethodId)> round) {
+void set_frame_costs(PreparedExperiment& prepared, const GlDevice& device) {
     prepared.costs.one_thread = device.context().is_software();
     prepared.limits_processors = true;
-    prepared.round = std::move(round);
 }
 
 GlDevice::GlDevice(Backend backend) {
@@ -92,6 +89,10 @@ struct Rendering {
         return *renderers[method];
     }
 
+    double seconds_of_round(std::size_t method) {
+        return seconds_of_frames(renderer(method), *renderings.methods[method].scene.camera);
+    }
+
     /// Renders the image of a method and compares it with the ground truth.
     ErrorStats error_of(std::size_t method) {
         Image picture = drawn(renderer(method), renderings.methods[method]);
@@ -117,17 +118,14 @@ PreparedExperiment prepare_rendering(
     prepared.report = std::move(report);
     for (std::size_t i = 0; i < count; ++i) {
         const RenderedMethod& method = state->renderings.methods[i];
-        prepared.methods.push_back({.id = method_id(i),
-                                    .name = method.name,
+        prepared.methods.push_back({.name = method.name,
                                     .choices = method.choices,
                                     .error = [state, i] { return state->error_of(i); },
+                                    .round = [state, i] { return state->seconds_of_round(i); },
                                     .stored_bytes = method.stored_bytes,
                                     .note = note_of(method, *state->device)});
     }
-    time_frames_by(prepared, *state->device, [state](MethodId id) {
-        const std::size_t i = index_of(id);
-        return seconds_of_frames(state->renderer(i), *state->renderings.methods[i].scene.camera);
-    });
+    set_frame_costs(prepared, *state->device);
     if (finish) {
         prepared.finish = [state, finish = std::move(finish)](Experiment& finished) {
             finish(finished, state->renderings);
@@ -246,42 +244,6 @@ Chart torus_chart(const Experiment& experiment, std::span<const std::string> met
         chart.curves.push_back(std::move(curve));
     }
     return chart;
-}
-
-Image angles_of(const Image& normals, std::span<const glm::dvec3> ground_truth) {
-    if (normals.channels != 3 || normals.bits() != 32 ||
-        normals.sample_count() != 3 * ground_truth.size()) {
-        throw InvalidInput(fmt::format("a map of {} x {} texels of {} channels has no {} normals",
-                                       normals.width, normals.height, normals.channels,
-                                       ground_truth.size()));
-    }
-    Image angles = make_image(normals.width, normals.height, 1, 32, ColorSpace::data);
-    const std::span<const float> n = normals.as<float>();
-    const std::span<float> degrees = angles.as<float>();
-    parallel_for(degrees.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const glm::dvec3 actual(n[3 * i], n[3 * i + 1], n[3 * i + 2]);
-            degrees[i] = static_cast<float>(degrees_between(actual, ground_truth[i]));
-        }
-    });
-    return angles;
-}
-
-std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3> ground_truth,
-                                int margin) {
-    const Image angles = angles_of(normals, ground_truth);
-    const std::span<const float> all = angles.as<float>();
-    std::vector<float> counted;
-    for (int y = margin; y < angles.height - margin; ++y) {
-        const auto row = static_cast<std::ptrdiff_t>(y) * angles.width;
-        counted.insert(counted.end(), all.begin() + row + margin,
-                       all.begin() + row + angles.width - margin);
-    }
-    return counted;
-}
-
-ErrorStats map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth, int margin) {
-    return error_stats(inner_angles(normals, ground_truth, margin));
 }
 
 namespace {

@@ -40,7 +40,7 @@ class GlDevice {
 /// One way to render the scene.
 struct RenderedMethod {
     std::string name;
-    std::vector<std::pair<std::string, std::string>> choices;
+    Choices choices;
     Scene scene;
     int samples = 1;  ///< Per pixel: 1, or 4 with OpenGL's multisampling.
     /// Rendered pixels along each side of an output pixel; they are averaged afterwards.
@@ -62,7 +62,7 @@ struct Renderings {
     std::vector<RenderedImage> images;
 };
 
-/// Prepares an experiment that renders. The ids of its methods are their indices.
+/// Prepares an experiment that renders.
 ///
 /// \param report  describes the experiment
 /// \param ground_truth  three float channels, linear light; it determines the size of the images
@@ -83,10 +83,8 @@ double seconds_of_frames(Renderer& renderer, const Camera& camera);
 /// Returns the note on the renderer and its times that every rendered method has.
 std::string rendering_note(const GlDevice& device);
 
-/// Sets how frames are timed, as prepare_rendering() does.
-/// \param round  draws a few frames of a method and returns the seconds of one
-void time_frames_by(PreparedExperiment& prepared, const GlDevice& device,
-                    std::function<double(MethodId)> round);
+/// Sets which costs of frames are measured, as prepare_rendering() does.
+void set_frame_costs(PreparedExperiment& prepared, const GlDevice& device);
 
 /// An experiment without methods, whose finding says why OpenGL is not available.
 PreparedExperiment not_rendered(Experiment report, const GlDevice& device);

@@ -179,7 +179,7 @@ Chart chart_of(const GlDevice& device, int size) {
 std::string highlight_finding(const Experiment& experiment) {
     using enum HighlightMethod;
     const auto of = [&](HighlightMethod method) -> const Measurement& {
-        return measurement_of(experiment, method_id(method));
+        return measurement_at(experiment, method);
     };
     return fmt::format(
                "Both lack the long tails of GGX highlights: Blinn-Phong has a FLIP error of {:.3f} "
@@ -332,7 +332,7 @@ Chart distance_chart(const GlDevice& device, const Image& map, int size, int ray
 std::string aliasing_finding(const Experiment& experiment, double shown) {
     using enum AliasingMethod;
     const auto of = [&](AliasingMethod method) -> const Measurement& {
-        return measurement_of(experiment, method_id(method));
+        return measurement_at(experiment, method);
     };
     return fmt::format(
                "At {} texels along a pixel, averaged normals alone have a FLIP error of {:.3f} "
@@ -396,8 +396,7 @@ enum class EdgeMethod { one_sample, msaa, four_pixels, four_pixels_msaa, sixteen
 std::vector<RenderedMethod> edge_methods() {
     const Scene scene = cube_and_ring();
     const auto choices_of = [](const char* way, const char* samples) {
-        return std::vector<std::pair<std::string, std::string>>{{"averaged", way},
-                                                                {"samples a pixel", samples}};
+        return Choices{{"averaged", way}, {"samples a pixel", samples}};
     };
     return {{"1 sample", choices_of("nothing", "1"), scene, 1, 1},
             {"MSAA, 4 samples", choices_of("coverage", "4"), scene, 4, 1},
@@ -409,7 +408,7 @@ std::vector<RenderedMethod> edge_methods() {
 std::string edge_finding(const Experiment& experiment) {
     using enum EdgeMethod;
     const auto of = [&](EdgeMethod method) -> const Measurement& {
-        return measurement_of(experiment, method_id(method));
+        return measurement_at(experiment, method);
     };
     return fmt::format(
                "4x multisampling reduces the FLIP error from {:.4f} (RMS) to {:.4f}; rendering 4 "

@@ -31,7 +31,7 @@ PreparedExperiment energy_experiment(const PlanOptions& options);
 /// One way to compute a formula. It knows its inputs, and writes one result per input.
 struct FormulaMethod {
     std::string name;
-    std::vector<std::pair<std::string, std::string>> choices;
+    Choices choices;
     std::function<void(std::span<float> results)> compute;
 };
 

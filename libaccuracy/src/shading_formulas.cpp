@@ -46,8 +46,7 @@ PreparedExperiment formula_experiment(Experiment report, std::shared_ptr<const v
     prepared.costs = {.all_threads = false, .memory = false};
     for (std::size_t i = 0; i < state->methods.size(); ++i) {
         prepared.methods.push_back(
-            {.id = method_id(i),
-             .name = state->methods[i].name,
+            {.name = state->methods[i].name,
              .choices = state->methods[i].choices,
              .error = [state, i] { return formula_error(state->methods[i], state->ground_truth); },
              .work = [state, i] { state->methods[i].compute(state->results); }});
@@ -259,7 +258,7 @@ Experiment described(const Boundary& boundary, std::size_t angles) {
 }
 
 std::string figures(const Experiment& experiment, FresnelMethod method) {
-    const ErrorStats& error = measurement_of(experiment, method_id(method)).error;
+    const ErrorStats& error = measurement_at(experiment, method).error;
     return fmt::format("{:.2g} (RMS; at most {:.2g})", error.rms, error.max);
 }
 
@@ -447,7 +446,7 @@ PreparedExperiment unit_normal_experiment(const PlanOptions&) {
         std::move(experiment), samples, unit_normal_methods(*samples), samples->exact_radiances());
     prepared.finish = [samples, degrees](Experiment& report) {
         const auto error = [&](UnitNormalMethod method) {
-            return measurement_of(report, method_id(method)).error;
+            return measurement_at(report, method).error;
         };
         report.charts = {chart_by_turn()};
         report.finding = fmt::format(

@@ -87,7 +87,7 @@ namespace {
 template <typename Input, typename Result>
 struct SweptMethod {
     std::string name;
-    std::vector<std::pair<std::string, std::string>> choices;
+    Choices choices;
     std::function<Result(const Input&)> compute;
     bool is_textbook = false;  ///< Code without guards, measured for contrast.
 };
@@ -120,8 +120,7 @@ PreparedExperiment swept_experiment(Experiment report,
     prepared.report.error_unit = "degrees";
     prepared.costs = {.all_threads = false, .memory = false};
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        ExperimentMethod& method = prepared.methods.emplace_back();
-        method.id = method_id(i);
+        Method& method = prepared.methods.emplace_back();
         method.name = methods[i].name;
         method.choices = methods[i].choices;
         method.choices.emplace_back("guarded", methods[i].is_textbook ? "no" : "yes");

@@ -328,7 +328,7 @@ std::size_t index_of(std::span<const NormalCode> codes, NormalCodeId id) {
 /// "8 bits with zero at 128 have an error of 0.18 degrees RMS if they are read so, but of 0.37 ..."
 std::string error_by_decoder(const Experiment& experiment, std::span<const NormalCode> codes) {
     const auto rms_of = [&](NormalCodeId id) {
-        return measurement_of(experiment, method_id(index_of(codes, id))).error.rms;
+        return measurement_at(experiment, index_of(codes, id)).error.rms;
     };
     return fmt::format(
         " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are decoded that "
@@ -400,8 +400,7 @@ PreparedExperiment normal_reading_experiment(bool is_quick) {
     for (const NormalCode& code : codes) {
         // The error encodes the normals, and the work decodes them.
         const auto stored = std::make_shared<Image>();
-        prepared.methods.push_back({.id = method_id(prepared.methods.size()),
-                                    .name = code.name,
+        prepared.methods.push_back({.name = code.name,
                                     .choices = code.choices,
                                     .error =
                                         [input, code, stored] {
@@ -441,8 +440,7 @@ PreparedExperiment normal_writing_experiment() {
     const std::vector<NormalCode> codes = normal_codes();
     for (const NormalCode& code : codes) {
         prepared.methods.push_back(
-            {.id = method_id(prepared.methods.size()),
-             .name = code.name,
+            {.name = code.name,
              .choices = code.choices,
              .error = [input,
                        code] { return map_errors(code.stored(input->normals), input->surface); },
@@ -540,7 +538,7 @@ std::string FrameCode::rounding_name() const {
     return rounding == FrameRounding::nearest ? "nearest" : "best";
 }
 
-ExperimentMethod FrameCode::method(std::shared_ptr<const SampleFrames> frames) const {
+Method FrameCode::method(std::shared_ptr<const SampleFrames> frames) const {
     return {
         .name = fmt::format("{}, {}", name_of(encoding), rounding_name()),
         .choices = {{"encoding", std::string(name_of(encoding))}, {"rounding", rounding_name()}},
@@ -616,7 +614,6 @@ PreparedExperiment on_even_frames(std::shared_ptr<const SampleFrames> frames) {
         .items = static_cast<double>(frames->normals.size())};
     for (const FrameCode& code : all_frame_codes()) {
         prepared.methods.push_back(code.method(frames));
-        prepared.methods.back().id = method_id(prepared.methods.size() - 1);
     }
     return prepared;
 }
@@ -672,7 +669,7 @@ namespace {
 /// One way to compress the normals of a map for a GPU.
 struct Compression {
     std::string name;
-    std::vector<std::pair<std::string, std::string>> choices;
+    Choices choices;
     double bytes = 0.0;                         ///< Per texel.
     std::function<void(const Image&)> encode;   ///< The work: normals to bytes.
     std::function<Image(const Image&)> stored;  ///< Normals that a GPU reads.
@@ -823,8 +820,7 @@ PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
     if (is_filtered) methods.pop_back();
     for (const Compression& method : methods) {
         prepared.methods.push_back(
-            {.id = method_id(prepared.methods.size()),
-             .name = method.name,
+            {.name = method.name,
              .choices = method.choices,
              .error =
                  [waves, method, is_filtered] {

@@ -32,7 +32,7 @@ enum class NormalCodeId {
 /// One way to encode and decode the normals of a map.
 struct NormalCode {
     std::string name;  ///< "xyz 8 bit, blue-noise"
-    std::vector<std::pair<std::string, std::string>> choices;
+    Choices choices;
     double bytes = 0.0;  ///< Per texel, in an existing texture format.
     /// Takes three float channels with unit normals. Dithering depends on the position of a texel.
     std::function<Image(const Image& normals)> encode;
@@ -102,7 +102,7 @@ struct FrameCode {
 
     [[nodiscard]] std::string rounding_name() const;
     /// The method without work to time.
-    [[nodiscard]] ExperimentMethod method(std::shared_ptr<const SampleFrames> frames) const;
+    [[nodiscard]] Method method(std::shared_ptr<const SampleFrames> frames) const;
 };
 
 /// Every encoding with both rounding modes.

@@ -90,10 +90,10 @@ std::string frames_finding(const Experiment& experiment) {
     constexpr std::size_t middle = 1;
     constexpr std::size_t fine = 2;
     const auto stored = [&](std::size_t slices) -> const Measurement& {
-        return measurement_of(experiment, method_id(slices));
+        return measurement_at(experiment, slices);
     };
     const auto derived = [&](std::size_t slices) -> const Measurement& {
-        return measurement_of(experiment, method_id(rendered_slices.size() + slices));
+        return measurement_at(experiment, rendered_slices.size() + slices);
     };
     return fmt::format(
                "With {} triangles the images have a FLIP error of {:.3f} (RMS) with stored frames "
@@ -150,7 +150,7 @@ std::vector<TangentFrameMethod> compared_tangent_methods() {
     return methods;
 }
 
-std::vector<std::pair<std::string, std::string>> choices_of(const TangentFrameMethod& method) {
+Choices choices_of(const TangentFrameMethod& method) {
     const std::string frames = method.name.substr(0, method.name.find(','));
     switch (method.basis) {
         case ShaderBasis::made_unit:
@@ -167,12 +167,11 @@ double stored_bytes_of(const TangentFrameMethod& method) {
     return method.tangents ? 28.0 : 12.0;
 }
 
-/// The id of the exact frames, which are listed before compared_tangent_methods().
+/// The place of the exact frames, which are listed before compared_tangent_methods().
 constexpr std::size_t exact_frames_index = 0;
 
-ExperimentMethod exact_frames(const std::shared_ptr<const TexturedMesh>& ground_truth) {
-    return {.id = method_id(exact_frames_index),
-            .name = "surface's own",
+Method exact_frames(const std::shared_ptr<const TexturedMesh>& ground_truth) {
+    return {.name = "surface's own",
             .choices = {{"frames", "surface's own"}, {"shader", "as interpolated"}},
             .error =
                 [ground_truth] {
@@ -185,11 +184,10 @@ ExperimentMethod exact_frames(const std::shared_ptr<const TexturedMesh>& ground_
                 "that of interpolation."};
 }
 
-std::vector<ExperimentMethod> methods_on(const std::shared_ptr<const TexturedMesh>& ground_truth) {
-    std::vector<ExperimentMethod> all = {exact_frames(ground_truth)};
+std::vector<Method> methods_on(const std::shared_ptr<const TexturedMesh>& ground_truth) {
+    std::vector<Method> all = {exact_frames(ground_truth)};
     for (const TangentFrameMethod& method : compared_tangent_methods()) {
-        ExperimentMethod& one = all.emplace_back();
-        one.id = method_id(all.size() - 1);
+        Method& one = all.emplace_back();
         one.name = method.name;
         one.choices = choices_of(method);
         one.error = [ground_truth, method] {
@@ -266,7 +264,7 @@ std::string tangents_finding(const Experiment& experiment) {
     const Measurement* derived = nullptr;
     const std::vector<TangentFrameMethod> methods = compared_tangent_methods();
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        const Measurement& one = measurement_of(experiment, method_id(exact_frames_index + 1 + i));
+        const Measurement& one = measurement_at(experiment, exact_frames_index + 1 + i);
         if (methods[i].basis == ShaderBasis::derived) derived = &one;
         if (methods[i].basis != ShaderBasis::as_interpolated) continue;
         if (best == nullptr || one.error.rms < best->error.rms) best = &one;
@@ -274,8 +272,8 @@ std::string tangents_finding(const Experiment& experiment) {
     return fmt::format(
         "Of the stored frames, {} has the smallest error, {:.3g} degrees RMS (the exact frames of "
         "the surface: {:.3g}); frames derived in the shader have an error of {:.3g}.",
-        best->method, best->error.rms,
-        measurement_of(experiment, method_id(exact_frames_index)).error.rms, derived->error.rms);
+        best->method, best->error.rms, measurement_at(experiment, exact_frames_index).error.rms,
+        derived->error.rms);
 }
 
 Experiment described(const TexturedMesh& ground_truth) {
@@ -352,8 +350,7 @@ PreparedExperiment mismatches(bool is_quick) {
     for (const TangentFrameMethod& baker : compared_tangent_methods()) {
         for (const TangentFrameMethod& reader : compared_tangent_methods()) {
             prepared.methods.push_back(
-                {.id = method_id(prepared.methods.size()),
-                 .name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
+                {.name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
                  .choices = {{"baked in", baker.name}, {"read in", reader.name}},
                  .error = [ground_truth, baker, reader] {
                      return mismatch_errors(*ground_truth, baker, reader);

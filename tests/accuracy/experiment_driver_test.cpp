@@ -23,10 +23,8 @@ namespace {
 using testing::ElementsAre;
 using testing::SizeIs;
 
-ExperimentMethod method_of(MethodId id, const std::string& name, double rms,
-                           std::function<void()> work) {
-    ExperimentMethod method;
-    method.id = id;
+Method method_of(const std::string& name, double rms, std::function<void()> work) {
+    Method method;
     method.name = name;
     method.choices = {{"kind", name}};
     method.error = [rms] {
@@ -60,14 +58,13 @@ TEST(Measured, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
     std::size_t first = 0;
     std::size_t last = 0;
     PreparedExperiment prepared{.costs = one_thread_alone};
-    prepared.methods = {method_of(method_id(Fruit::apple), "first", 1.0, [&] { ++first; }),
-                        method_of(method_id(Fruit::none), "none", 0.5, {}),
-                        method_of(method_id(Fruit::pear), "last", 2.0, [&] { ++last; })};
+    prepared.methods = {method_of("first", 1.0, [&] { ++first; }), method_of("none", 0.5, {}),
+                        method_of("last", 2.0, [&] { ++last; })};
     const Experiment experiment = measured(prepared, rounds(3));
     ASSERT_EQ(experiment.measurements.size(), 3U);
     EXPECT_GT(first, 0U);
     EXPECT_GT(last, 0U);
-    const auto of = [&](Fruit fruit) { return measurement_of(experiment, method_id(fruit)); };
+    const auto of = [&](Fruit fruit) { return measurement_at(experiment, fruit); };
     EXPECT_EQ(of(Fruit::apple).cost.one_thread.value().rounds.size(), 3U);
     EXPECT_FALSE(of(Fruit::none).cost.one_thread);
     EXPECT_TRUE(of(Fruit::pear).cost.one_thread);
@@ -83,7 +80,7 @@ TEST(Measured, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
 
 TEST(Measured, RunsNoRepetitionsWithoutTiming) {
     PreparedExperiment prepared;
-    prepared.methods = {method_of({}, "one", 1.0, [] { FAIL(); })};
+    prepared.methods = {method_of("one", 1.0, [] { FAIL(); })};
     const Experiment experiment = measured(prepared, untimed());
     EXPECT_EQ(experiment.measurements[0].cost, Cost{.stored_bytes = 4.0});
     EXPECT_FALSE(experiment.measurements[0].is_pareto_optimal);
@@ -100,8 +97,7 @@ TEST(Measured, InterleavesAndCountsTheRequestedRounds) {
         };
     };
     PreparedExperiment prepared{.costs = one_thread_alone};
-    prepared.methods = {method_of(method_id(0), "a", 1.0, slow('a')),
-                        method_of(method_id(1), "b", 1.0, slow('b'))};
+    prepared.methods = {method_of("a", 1.0, slow('a')), method_of("b", 1.0, slow('b'))};
     const Experiment experiment = measured(prepared, rounds(3, 1));
     EXPECT_THAT(experiment.measurements[0].cost.one_thread.value().rounds, SizeIs(3));
     // Allow for the difference of two clocks.
@@ -113,7 +109,7 @@ TEST(Measured, InterleavesAndCountsTheRequestedRounds) {
 TEST(Measured, RepeatsShortWorkWithinARound) {
     std::size_t calls = 0;
     PreparedExperiment prepared{.costs = one_thread_alone};
-    prepared.methods = {method_of({}, "short", 1.0, [&] { ++calls; })};
+    prepared.methods = {method_of("short", 1.0, [&] { ++calls; })};
     const Experiment experiment = measured(prepared, rounds(2, 1));
     EXPECT_GT(calls, 2U + 3U * 10U);                              // More than ten per round.
     EXPECT_LT(median_seconds(experiment.measurements[0]), 1e-3);  // The time of one call.
@@ -122,7 +118,7 @@ TEST(Measured, RepeatsShortWorkWithinARound) {
 TEST(Measured, OneThreadHasTheTimeOfTheProcessor) {
     PreparedExperiment prepared{.costs = {.memory = false}};
     prepared.methods = {method_of(
-        {}, "waiting", 1.0, [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); })};
+        "waiting", 1.0, [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); })};
     const Cost cost = measured(prepared, rounds(3, 1)).measurements[0].cost;
     EXPECT_LT(cost.one_thread.value().spread().p10, 10e-3);
     EXPECT_GT(cost.one_thread.value().spread().p10, 0.0);
@@ -131,7 +127,7 @@ TEST(Measured, OneThreadHasTheTimeOfTheProcessor) {
 
 TEST(Measured, AddsTheNoteOfTheErrorAndFinishes) {
     PreparedExperiment prepared;
-    prepared.methods = {method_of({}, "one", 1.0, {})};
+    prepared.methods = {method_of("one", 1.0, {})};
     prepared.methods[0].error = [] { return MethodError({}, "A note."); };
     prepared.finish = [](Experiment& report) {
         report.finding = report.measurements.front().note + " And a finding.";
@@ -139,9 +135,8 @@ TEST(Measured, AddsTheNoteOfTheErrorAndFinishes) {
     EXPECT_EQ(measured(prepared, untimed()).finding, "A note. And a finding.");
 }
 
-TEST(MeasurementOf, RefusesMethodsThatWereLeftOut) {
-    EXPECT_THROW(static_cast<void>(measurement_of(Experiment{}, method_id(Fruit::pear))),
-                 std::out_of_range);
+TEST(MeasurementAt, RefusesMethodsThatWereLeftOut) {
+    EXPECT_THROW(static_cast<void>(measurement_at(Experiment{}, Fruit::pear)), std::out_of_range);
 }
 
 TEST(Truest, HasTheSmallestDefinedError) {
@@ -184,10 +179,11 @@ PlannedExperiment planned(const std::string& id, std::size_t methods,
                           const std::function<double()>& seconds) {
     return {id, Subject::bump, "Title of " + id, [methods, seconds] {
                 PreparedExperiment prepared{.costs = one_thread_alone};
-                for (std::size_t i = 0; i < methods; ++i)
-                    prepared.methods.push_back(method_of(
-                        method_id(i), std::string(1, static_cast<char>('a' + i)), 1.0, {}));
-                prepared.round = [seconds](MethodId) { return seconds(); };
+                for (std::size_t i = 0; i < methods; ++i) {
+                    prepared.methods.push_back(
+                        method_of(std::string(1, static_cast<char>('a' + i)), 1.0, {}));
+                    prepared.methods.back().round = seconds;
+                }
                 return prepared;
             }};
 }
@@ -232,8 +228,7 @@ TEST(RunPlanned, SkipsExcludedMethods) {
     taken.prepare = [&] {
         PreparedExperiment prepared{.costs = one_thread_alone};
         for (const char name : {'a', 'b'}) {
-            ExperimentMethod method = method_of(method_id(name - 'a'), std::string(1, name), 1.0,
-                                                [&calls, name] { calls += name; });
+            Method method = method_of(std::string(1, name), 1.0, [&calls, name] { calls += name; });
             method.error = [&calls, name] {
                 calls += static_cast<char>(name - 'a' + 'A');
                 return ErrorStats{};
@@ -252,7 +247,6 @@ TEST(RunPlanned, SkipsExcludedMethods) {
     ASSERT_THAT(found, SizeIs(1));
     ASSERT_THAT(found[0].measurements, SizeIs(1));
     EXPECT_EQ(found[0].measurements[0].method, "b");
-    EXPECT_EQ(found[0].measurements[0].id, method_id(1));
     EXPECT_TRUE(found[0].measurements[0].cost.one_thread);
     EXPECT_EQ(calls.substr(0, 2), "Bb");
     EXPECT_EQ(calls.find_first_not_of("Bb"), std::string::npos) << "neither a nor the finding";
@@ -306,7 +300,7 @@ TEST(Passes, PrepareComputeErrorsAndFinishOnce) {
     plan.prepare = [&] {
         calls += "prepare ";
         PreparedExperiment prepared{.costs = {.memory = false}};
-        prepared.methods = {method_of({}, "one", 1.0, [] {})};
+        prepared.methods = {method_of("one", 1.0, [] {})};
         prepared.methods[0].error = [&] {
             calls += "error ";
             return ErrorStats{};

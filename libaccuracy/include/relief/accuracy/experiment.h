@@ -65,16 +65,13 @@ struct Cost {
     friend bool operator==(const Cost&, const Cost&) = default;
 };
 
-/// Identifies a method within its experiment: a value of the experiment's own enumeration, or the
-/// index of the method in the experiment's list. Reports do not contain it.
-enum class MethodId : std::uint32_t {};
+/// The options of a method and their values: {"weighting", "max"}, {"arithmetic", "float64"}.
+using Choices = std::vector<std::pair<std::string, std::string>>;
 
 /// One method on the experiment's input.
 struct Measurement {
-    MethodId id{};
     std::string method{};  ///< Unique in its experiment, and the same in every run: "max, float64".
-    /// The options of the method and their values: {"weighting", "max"}, {"arithmetic", "float64"}.
-    std::vector<std::pair<std::string, std::string>> choices{};
+    Choices choices{};
     ErrorStats error{};  ///< NaN if there is no defined error (nan_if_empty()).
     Cost cost{};
     /// Both parts of the error, if the reference has an error (Experiment::reference_error).
