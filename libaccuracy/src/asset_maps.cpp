@@ -44,6 +44,20 @@ std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample
     };
 }
 
+/// The expected error of a map is given as a range if its upper end is beyond this ratio, as by
+/// KernelChoice::is_range().
+constexpr double min_range = 1.5;
+
+std::string unknown_loss(const AssetOptions& options) {
+    return fmt::format("the unknown loss of the file's {} compression", options.lossy_compression);
+}
+
+std::string lossy_note(const AssetOptions& options) {
+    return fmt::format(
+        "The file has lost an unknown amount by {} compression, which is not in these errors.",
+        options.lossy_compression);
+}
+
 std::string command_of(const BumpMethod& method, const BumpOptions& bump,
                        const AssetOptions& options) {
     std::string command =
@@ -88,10 +102,20 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
     const BumpExperiment result = measure_bump(sample, methods, how);
     Experiment& experiment = asset.experiment;
     experiment.question = "Which kernel is most accurate on this map, and what does it cost?";
-    experiment.ground_truth =
-        fmt::format("The most accurate conversion that is known for this map: {}. {}.",
-                    result.reference.description, choice.reason);
-    experiment.reference_error = result.reference.reference_degrees;
+    const BumpReference& reference = result.reference;
+    const bool is_lossy = !options.lossy_compression.empty();
+    if (is_lossy) {
+        experiment.ground_truth =
+            "The conversion by the kernel that is selected for this map, in float64. " +
+            lossy_note(options);
+    } else {
+        experiment.ground_truth =
+            fmt::format("The most accurate conversion that is known for this map: {}. {}.",
+                        reference.description, choice.reason);
+        experiment.reference_error = reference.reference_degrees;
+        if (reference.upper_degrees > min_range * reference.reference_degrees)
+            experiment.reference_error_upper = reference.upper_degrees;
+    }
     experiment.input = result.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
                                        : fmt::format("{} texels in nine parts of {} x {}",
                                                      result.texels, size.x, size.y);
@@ -105,7 +129,10 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
         method.command = command_of(one.method, bump, options);
         method.nominal_cost = nominal_cost(one.method);
     }
-    finish(asset, std::move(measured), {.reference = "the map itself"}, options);
+    finish(asset, std::move(measured),
+           {.reference = is_lossy ? unknown_loss(options) : "the map itself",
+            .is_reference_unknown = is_lossy},
+           options);
     return asset;
 }
 
@@ -152,12 +179,13 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
     Experiment& experiment = asset.experiment;
     for (const Image& part : parts)
         experiment.items += static_cast<double>(part.width) * part.height;
+    const bool is_lossy = !options.lossy_compression.empty();
     experiment.question = "In how few bits can these normals be stored?";
     experiment.ground_truth = fmt::format(
-        "The normals as stored in the file, in {} bits. The error of the file is unknown, except "
-        "for its rounding to these bits.",
-        file.bits);
-    if (file.bits < 32) experiment.reference_error = rounding_degrees(file.bits);
+        "The normals as stored in the file, in {} bits. {}", file.bits,
+        is_lossy ? lossy_note(options)
+                 : "The error of the file is unknown, except for its rounding to these bits.");
+    if (file.bits < 32 && !is_lossy) experiment.reference_error = rounding_degrees(file.bits);
     experiment.input = fmt::format("{} x {} texels", normals.width, normals.height);
     if (parts.size() > 1) experiment.input += fmt::format(", {:.0f} of them", experiment.items);
     experiment.item = "texel";
@@ -185,7 +213,9 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
         methods.push_back(std::move(method));
     }
     finish(asset, std::move(methods),
-           {CostKind::bytes, invisible_degrees, "the rounding of the file itself"}, options);
+           {CostKind::bytes, invisible_degrees,
+            is_lossy ? unknown_loss(options) : "the rounding of the file itself", is_lossy},
+           options);
     return asset;
 }
 

@@ -43,9 +43,12 @@ std::vector<Candidate> candidates_of(const Experiment& experiment, const Recomme
         if (!rule.choosable.empty() && rule.choosable[i] == 0) continue;
         if (one.error.undefined > 0 || one.error.count == 0 || !std::isfinite(one.error.rms))
             continue;
-        all.push_back({i, one.error.rms, std::hypot(reference, one.error.*(rule.request.figure)),
-                       nominal_cost(one, rule.cost), one.cost.stored_bytes,
-                       rule.nominal_costs.empty() ? 0.0 : rule.nominal_costs[i]});
+        const double bounded = std::hypot(reference, one.error.*(rule.request.figure));
+        all.push_back(
+            {i, one.error.rms,
+             rule.is_reference_unknown ? std::numeric_limits<double>::infinity() : bounded,
+             nominal_cost(one, rule.cost), one.cost.stored_bytes,
+             rule.nominal_costs.empty() ? 0.0 : rule.nominal_costs[i]});
         is_measured = is_measured || std::isfinite(all.back().cost);
     }
     if (is_measured) {
@@ -130,6 +133,31 @@ const Candidate* next_more_accurate(const std::vector<Candidate>& all, const Can
     return next;
 }
 
+/// The name of a statistic after its unit.
+std::string figure_name(double ErrorStats::*figure) {
+    return figure == &ErrorStats::p99   ? "(99 %)"
+           : figure == &ErrorStats::max ? "(maximum)"
+                                        : "(RMS)";
+}
+
+/// An expected error and its upper end, if it is a range.
+struct ErrorRange {
+    double low = 0.0;
+    std::optional<double> high{};
+};
+
+ErrorRange with_added(const ErrorRange& reference, double added) {
+    ErrorRange sum{std::hypot(reference.low, added)};
+    if (reference.high) sum.high = std::hypot(*reference.high, added);
+    return sum;
+}
+
+/// "1.35", "1.35 to 8.5"
+std::string range_text(const ErrorRange& range) {
+    return range.high ? fmt::format("{:.3g} to {:.3g}", range.low, *range.high)
+                      : fmt::format("{:.3g}", range.low);
+}
+
 std::string cost_text(double cost, CostKind kind) {
     return kind == CostKind::bytes ? fmt::format("{:g} bytes", cost) : format_seconds(cost);
 }
@@ -140,11 +168,17 @@ std::string recommendation_text(const Experiment& experiment, const Recommendati
     const std::string& unit = experiment.error_unit;
     std::string text = all[taken.index].method + ": ";
     if (experiment.reference_error) {
-        text += fmt::format("{:.3g} {} RMS expected ({} {:.3g}, this method adds {:.3g})",
-                            std::hypot(*experiment.reference_error, taken.error), unit,
-                            rule.reference, *experiment.reference_error, taken.error);
+        const ErrorRange reference{*experiment.reference_error, experiment.reference_error_upper};
+        text += fmt::format("{} {} RMS expected ({} {}, this method adds {:.3g})",
+                            range_text(with_added(reference, taken.error)), unit, rule.reference,
+                            range_text(reference), taken.error);
     } else {
         text += fmt::format("{:.3g} {} RMS", taken.error, unit);
+        if (rule.is_reference_unknown) text += fmt::format(", and {}", rule.reference);
+    }
+    if (rule.request.max_error && rule.request.figure != &ErrorStats::rms) {
+        text +=
+            fmt::format(", {:.3g} {} {}", taken.bounded, unit, figure_name(rule.request.figure));
     }
     if (taken.cost > 0.0) text += " at " + cost_text(taken.cost, rule.cost);
     if (next == nullptr) return text + "; no other method is more accurate";
@@ -171,10 +205,16 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
     if (request.max_error) {
         const Candidate* least = first_of(
             all, [](const Candidate& a, const Candidate& b) { return a.bounded < b.bounded; });
+        if (rule.is_reference_unknown) {
+            return fmt::format("no method is known to be within {:g} {} {}, because of {}",
+                               *request.max_error, experiment.error_unit,
+                               figure_name(request.figure), rule.reference);
+        }
         if (!(least->bounded <= *request.max_error)) {
-            std::string text = fmt::format(
-                "no method is within {:g} {}: the smallest error is {:.3g}, with {}",
-                *request.max_error, experiment.error_unit, least->bounded, name(*least));
+            std::string text =
+                fmt::format("no method is within {:g} {} {}: the smallest error is {:.3g}, with {}",
+                            *request.max_error, experiment.error_unit, figure_name(request.figure),
+                            least->bounded, name(*least));
             if (experiment.reference_error && *experiment.reference_error > 0.0)
                 text += fmt::format(" ({} {:.3g})", rule.reference, *experiment.reference_error);
             return text;
@@ -184,9 +224,9 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
         const std::vector<Candidate> accurate_enough = kept_of(all, error_alone, rule.cost);
         const Candidate* cheapest = first_of(accurate_enough, is_cheaper);
         return fmt::format(
-            "no method is within {:g} {} and {}: the fastest with that error takes {}, with {}",
-            *request.max_error, experiment.error_unit, format_seconds(*request.max_seconds),
-            format_seconds(cheapest->cost), name(*cheapest));
+            "no method is within {:g} {} {} and {}: the fastest with that error takes {}, with {}",
+            *request.max_error, experiment.error_unit, figure_name(request.figure),
+            format_seconds(*request.max_seconds), format_seconds(cheapest->cost), name(*cheapest));
     }
     const Candidate* cheapest = first_of(all, is_cheaper);
     return fmt::format("no method is within {}: the fastest takes {}, with {}",
@@ -257,7 +297,7 @@ void finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule
     mark_pareto_optimal(asset.experiment);
     asset.recommendation =
         recommended(asset.experiment, {options.request, rule.cost, rule.negligible_error, choosable,
-                                       nominal_costs, rule.reference});
+                                       nominal_costs, rule.reference, rule.is_reference_unknown});
     set_finding(asset);
 }
 

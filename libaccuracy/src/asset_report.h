@@ -24,8 +24,9 @@ std::function<MethodError()> known_error(const ErrorStats& error);
 /// The rule that selects the recommended method.
 struct AssetRule {
     CostKind cost = CostKind::time;
-    double negligible_error = 0.0;  ///< Degrees; RecommendationRule::negligible_error.
-    std::string reference{};        ///< Names the source of Experiment::reference_error.
+    double negligible_error = 0.0;      ///< Degrees; RecommendationRule::negligible_error.
+    std::string reference{};            ///< Names the source of Experiment::reference_error.
+    bool is_reference_unknown = false;  ///< RecommendationRule::is_reference_unknown.
 };
 
 /// Begins an experiment on a file: id "own/FILE/TOPIC", title "TITLE of FILE", unit degrees.

@@ -2,6 +2,7 @@
 // Experiments on height maps, normal maps and bakes with a known ground truth.
 #include "relief/accuracy/asset.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -86,8 +87,24 @@ TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     EXPECT_LT(most_accurate(own.experiment)->error.rms, 0.5);
     EXPECT_EQ(own.recommendation.method, std::nullopt);
     EXPECT_THAT(own.recommendation.description,
-                HasSubstr("no method is within 0.5 degrees: the smallest error "));
+                HasSubstr("no method is within 0.5 degrees (RMS): the smallest error "));
     EXPECT_THAT(own.recommendation.description, HasSubstr(" (the map itself "));
+}
+
+TEST(AssetHeights, HaveTheRangeOfTheBumpExperiment) {
+    const BumpField field = noisy_waves();
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map());
+    BumpExperimentOptions how;
+    how.bump = field.options;
+    how.repeats = {0, 0};
+    const BumpMethod method;
+    const BumpReference reference =
+        measure_bump(sample_of(field.heights), std::span(&method, 1), how).reference;
+    ASSERT_GT(reference.upper_degrees, 1.5 * reference.reference_degrees) << "noise hides detail";
+    EXPECT_EQ(own.experiment.reference_error_upper, reference.upper_degrees);
+    EXPECT_THAT(own.recommendation.description,
+                HasSubstr(fmt::format("(the map itself {:.3g} to {:.3g}, this method adds ",
+                                      reference.reference_degrees, reference.upper_degrees)));
 }
 
 TEST(AssetHeights, WithoutTimesAreHeldToABoundByTheFewestBytes) {
@@ -179,6 +196,23 @@ TEST(AssetHeights, AreTimedIfRequested) {
 Image normals_of(const BumpField& field) {
     Report report;
     return normals_from_height(field.heights, field.options, report);
+}
+
+TEST(AssetMaps, WithLossyCompressionHaveAnUnknownError) {
+    AssetOptions options = untimed_map();
+    options.lossy_compression = "JPEG";
+    const BumpField field = waves(FieldCoding::bits8);
+    const AssetExperiment heights = measure_asset_heights(field.heights, field.options, options);
+    const AssetExperiment normals =
+        measure_asset_normals(normals_of(waves(FieldCoding::float32)), {.bits = 8}, options);
+    for (const AssetExperiment& own : {heights, normals}) {
+        EXPECT_FALSE(own.experiment.reference_error);
+        EXPECT_FALSE(own.experiment.measurements.front().expected);
+        EXPECT_THAT(own.experiment.ground_truth,
+                    HasSubstr("The file has lost an unknown amount by JPEG compression"));
+        EXPECT_THAT(own.recommendation.description,
+                    HasSubstr(", and the unknown loss of the file's JPEG compression"));
+    }
 }
 
 TEST(AssetNormalMaps, AreComparedWithTheFile) {

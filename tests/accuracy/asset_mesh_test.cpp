@@ -250,7 +250,8 @@ TEST(AssetMesh, IsTimedAndRecommendedByTime) {
     const AssetExperiment own = measure_asset_mesh(ground_truth.mesh, {}, options).front();
     EXPECT_THAT(found(own, "max").cost.one_thread.value().rounds, SizeIs(3));
     EXPECT_EQ(own.recommendation.method, std::nullopt);
-    EXPECT_THAT(own.recommendation.description, HasSubstr("no method is within 1e-06 degrees"));
+    EXPECT_THAT(own.recommendation.description,
+                HasSubstr("no method is within 1e-06 degrees (RMS)"));
 }
 
 TEST(AssetMesh, CanBeCancelled) {

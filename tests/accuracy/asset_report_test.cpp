@@ -99,7 +99,7 @@ TEST(Recommended, KeepsWithinAnError) {
     const Recommendation none = recommended(usual(), rule);
     EXPECT_EQ(none.method, std::nullopt);
     EXPECT_EQ(none.description,
-              "no method is within 0.01 degrees: the smallest error is 0.12, with best");
+              "no method is within 0.01 degrees (maximum): the smallest error is 0.12, with best");
 }
 
 TEST(Recommended, KeepsWithinATime) {
@@ -113,10 +113,10 @@ TEST(Recommended, KeepsWithinATime) {
               "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
     rule.request.max_seconds = 0.1;
     rule.request.max_error = 0.045;
-    EXPECT_EQ(
-        recommended(usual(), rule).description,
-        "no method is within 0.045 degrees and 100 ms: the fastest with that error takes 123 ms, "
-        "with best");
+    EXPECT_EQ(recommended(usual(), rule).description,
+              "no method is within 0.045 degrees (RMS) and 100 ms: the fastest with that error "
+              "takes 123 ms, "
+              "with best");
 }
 
 TEST(Recommended, ExcludesUnusableMethods) {
@@ -164,13 +164,50 @@ TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
     rule.request.max_error = 0.125;
     found = recommended(experiment, rule);
     EXPECT_EQ(found.method, std::nullopt);
-    EXPECT_EQ(
-        found.description,
-        "no method is within 0.125 degrees: the smallest error is 0.126, with best (the map itself "
-        "0.12)");
+    EXPECT_EQ(found.description,
+              "no method is within 0.125 degrees (RMS): the smallest error is 0.126, with best "
+              "(the map itself "
+              "0.12)");
     // As an invisible error, it reduces the value of the accurate methods.
     experiment.reference_error = 2.0;
     EXPECT_EQ(recommended(experiment, {}).method, 0U);
+}
+
+TEST(Recommended, NamesTheStatisticAndTheRangeOfAnError) {
+    Experiment experiment = usual();
+    experiment.reference_error = 0.12;
+    experiment.reference_error_upper = 1.2;
+    RecommendationRule rule;
+    rule.reference = "the map itself";
+    EXPECT_THAT(
+        recommended(experiment, rule).description,
+        HasSubstr("good: 0.13 to 1.2 degrees RMS expected (the map itself 0.12 to 1.2, this "
+                  "method adds 0.05) at "));
+    rule.request.figure = &ErrorStats::max;
+    for (Measurement& one : experiment.measurements)
+        one.error.max = 10.0 * one.error.rms;
+    rule.request.max_error = 0.6;
+    EXPECT_THAT(recommended(experiment, rule).description,
+                HasSubstr("this method adds 0.05), 0.514 degrees (maximum) at "));
+    rule.request.max_error = 0.1;
+    EXPECT_THAT(recommended(experiment, rule).description,
+                HasSubstr("no method is within 0.1 degrees (maximum): the smallest error is "));
+}
+
+TEST(Recommended, KeepsNoLimitIfTheReferenceIsUnknown) {
+    RecommendationRule rule;
+    rule.reference = "the unknown loss of the file's JPEG compression";
+    rule.is_reference_unknown = true;
+    EXPECT_THAT(recommended(usual(), rule).description,
+                HasSubstr("good: 0.05 degrees RMS, and the unknown loss of the file's JPEG "
+                          "compression at "));
+    rule.request.max_error = 90.0;
+    const Recommendation bounded = recommended(usual(), rule);
+    EXPECT_EQ(bounded.method, std::nullopt);
+    EXPECT_EQ(
+        bounded.description,
+        "no method is known to be within 90 degrees (RMS), because of the unknown loss of the "
+        "file's JPEG compression");
 }
 
 TEST(Recommended, WithoutTimesMinimizesBytesThenWork) {

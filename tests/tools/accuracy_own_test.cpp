@@ -102,6 +102,26 @@ TEST(AccuracyOwn, NeedsHighAndLowForAPair) {
 }
 
 TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, JpegFilesHaveAnUnknownError) {
+    const Workplace workplace;
+    workplace.write_bricks("bricks.png");
+    const Image heights = read_image(workplace / "bricks.png", ImageUse::data);
+    Image coarse = make_image(heights.width, heights.height, 1, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < coarse.sample_count(); ++i)
+        coarse.as<std::uint8_t>()[i] =
+            static_cast<std::uint8_t>(heights.as<std::uint16_t>()[i] / 257U);
+    write_image(workplace / "bricks.jpg", coarse);
+    const std::string line = "relief-accuracy own bricks.jpg --quick --no-times";
+    const ProgramResult result = workplace.run(line);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("and the unknown loss of the file's JPEG compression"));
+    EXPECT_THAT(result.out, Not(HasSubstr("expected")));
+    const ProgramResult bounded = workplace.run(line + " --max-error 90");
+    EXPECT_EQ(bounded.exit_code, 1);
+    EXPECT_THAT(bounded.out, HasSubstr("no method is known to be within 90 degrees (RMS)"));
+}
+
+TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
@@ -109,7 +129,8 @@ TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     EXPECT_EQ(workplace.run(line + "90").exit_code, 0);
     const ProgramResult strict = workplace.run(line + "0");
     EXPECT_EQ(strict.exit_code, 1);
-    EXPECT_THAT(strict.out, HasSubstr("no method is within 0 degrees: the smallest error is "));
+    EXPECT_THAT(strict.out,
+                HasSubstr("no method is within 0 degrees (RMS): the smallest error is "));
 }
 
 TEST_LABELS(not_sanitized);
@@ -135,7 +156,7 @@ TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
     const ProgramResult bounded = workplace.run(line + "0.5");
     EXPECT_EQ(bounded.exit_code, 1);
     const auto finding = json::parse(bounded.out)["experiments"][0]["finding"].get<std::string>();
-    EXPECT_THAT(finding, HasSubstr("no method is within 0.5 degrees"));
+    EXPECT_THAT(finding, HasSubstr("no method is within 0.5 degrees (RMS)"));
     EXPECT_THAT(finding, HasSubstr("(the map itself "));
 }
 

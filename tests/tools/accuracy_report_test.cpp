@@ -57,6 +57,7 @@ TEST(AccuracyJson, ReadsBackAsTheSame) {
         EXPECT_EQ(is.measurements[i].cost, was.measurements[i].cost);
     }
     EXPECT_EQ(is.reference_error, 0.6);
+    EXPECT_EQ(is.reference_error_upper, 6.0);
     EXPECT_NEAR(is.measurements[1].expected.value().total(), 0.65, 1e-12);
     EXPECT_THAT(is.input_findings, SizeIs(1));
     EXPECT_TRUE(std::isnan(is.charts[0].curves[0].points[0].error));
@@ -149,13 +150,14 @@ TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
     EXPECT_THAT(
         table,
         HasSubstr(
-            "  expected: the root of the sum of squares of the reference error, 0.6, and the error "
-            "of the method\n"
-            "                  RMS   mean  99 %   max  undefined  expected     PSNR  1 thread      "
+            "  expected: RMS, the root of the sum of squares of the reference error, 0.6 to 6 (the "
+            "input does not show it), and the error of the method\n"
+            "                  RMS   mean  99 %   max  undefined   expected     PSNR  1 thread     "
+            " "
             "               all              memory  stored\n"
-            "  * exact, slow     0      0     0     0                  0.6            1.00 ms  "
+            "  * exact, slow     0      0     0     0                 0.6–6            1.00 ms  "
             "920 µs–1.08 ms  500 µs  500–500 µs  4.1 kB   2.5 B\n"
-            "    near         0.25  0.125   0.5  0.75          2      0.65  40.0 dB    500 µs  "
+            "    near         0.25  0.125   0.5  0.75          2  0.65–6.01  40.0 dB    500 µs  "
             "    460–540 µs  250 µs  250–250 µs  4.1 kB   2.5 B\n"
             "  near: It is not far.\n"));
     EXPECT_THAT(table,

@@ -45,6 +45,7 @@ tools::AccuracyReport sample_report() {
     one.measurements[1].error.undefined = 2;
     one.measurements[1].note = "It is not far.";
     one.reference_error = 0.6;
+    one.reference_error_upper = 6.0;
     for (Measurement& measured : one.measurements)
         measured.expected = ExpectedError{*one.reference_error, measured.error.rms};
     one.input_findings = {"2 x non-finite height (texel 5, 17): read as 0"};

@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <glm/trigonometric.hpp>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "accuracy_report.h"
@@ -189,6 +193,35 @@ std::vector<AssetExperiment> measure_heights(const AssetInput& input, const Asse
     return all;
 }
 
+/// Returns the lossy compression of an image file by its first bytes: JPEG, WebP, or the blocks of
+/// GPUs in DDS and KTX2. Empty: none that is known.
+std::string lossy_compression(const std::filesystem::path& file) {
+    std::array<char, 132> bytes{};
+    std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size());
+    const std::string_view head(bytes.data(), bytes.size());
+    const auto number_at = [&](std::size_t offset) {
+        std::uint32_t number = 0;
+        std::memcpy(&number, bytes.data() + offset, sizeof number);
+        return number;
+    };
+    const auto is_within = [](std::uint32_t value, std::uint32_t first, std::uint32_t last) {
+        return value >= first && value <= last;
+    };
+    if (head.starts_with("\xFF\xD8\xFF")) return "JPEG";
+    if (head.starts_with("RIFF") && head.substr(8, 8) == "WEBPVP8 ") return "WebP";
+    if (head.starts_with("\xABKTX 20")) {
+        constexpr std::uint32_t bc1 = 131, last_astc = 184, basis = 1;  // Numbers of VkFormat.
+        return is_within(number_at(12), bc1, last_astc) || number_at(44) == basis ? "block" : "";
+    }
+    if (!head.starts_with("DDS ")) return "";
+    const std::string_view code = head.substr(84, 4);
+    const bool is_dx10_block =
+        code == "DX10" && (is_within(number_at(128), 70, 84) || is_within(number_at(128), 94, 99));
+    const bool is_block = code.starts_with("DXT") || code.starts_with("ATI") ||
+                          code.starts_with("BC4") || code.starts_with("BC5");
+    return is_block || is_dx10_block ? "block" : "";
+}
+
 /// Returns the extension of a format that relief-bake writes without loss.
 std::string lossless_extension(const std::filesystem::path& file, int bits) {
     const std::string own = extension_of(file);
@@ -305,6 +338,8 @@ std::string options_text(const AssetRequest& request) {
 std::vector<AssetExperiment> measure(const AssetInput& input, const AssetRequest& request,
                                      AssetOptions options, std::string& description) {
     options.file = input.name;
+    if (!input.high && !is_model(input.file))
+        options.lossy_compression = lossy_compression(input.file);
     options.arguments =
         input.high ? quoted(*input.high) + " " + quoted(input.file) : quoted(input.file);
     return about(input.file, [&] {
@@ -471,9 +506,10 @@ void add_limit_options(CLI::App& app, AssetCommandOptions& options) {
     const char* group = "Recommendation; by default the method beyond which more time gains little";
     add_number(app, "--max-error", "DEG", options.max_error, {0.0, 180.0, "degrees"},
                "Recommend the cheapest method whose expected error is within this limit. The "
-               "expected error includes the error of the map or model itself. Without times: the "
-               "method that stores the fewest bytes, then the one with the fewest operations. Exit "
-               "with 1 if an experiment has no such method.")
+               "expected error includes the error of the map or model itself; if that is a range, "
+               "its lower end counts; if it is unknown, as for JPEG files, no method is within a "
+               "limit. Without times: the method that stores the fewest bytes, then the one with "
+               "the fewest operations. Exit with 1 if an experiment has no such method.")
         .group(group);
     add_choice(app, "--max-error-kind", options.max_error_kind, enum_choices<ErrorKind>(),
                "The error figure of --max-error: root mean square, 99th percentile, or maximum. "

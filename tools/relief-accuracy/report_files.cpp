@@ -255,6 +255,14 @@ std::string time_statistics(const std::optional<Timing>& timing) {
     return range_text(spread.p10, spread.p90);
 }
 
+/// Returns the expected error, "1.35", or its range, "1.35–8.5".
+std::string expected_text(const Experiment& experiment, const Measurement& one) {
+    if (!one.expected) return "";
+    const std::optional<double>& upper = experiment.reference_error_upper;
+    return table_number(one.expected->total()) +
+           (upper ? "–" + table_number(ExpectedError{*upper, one.expected->added}.total()) : "");
+}
+
 std::string median_of(const std::optional<Timing>& timing) {
     return timing ? format_seconds(timing->spread().median) : "";
 }
@@ -273,7 +281,7 @@ std::vector<TextColumn> columns_of(const Experiment& experiment) {
             table_number(error.p99),
             table_number(error.max),
             error.undefined > 0 ? fmt::to_string(error.undefined) : "",
-            one.expected ? table_number(one.expected->total()) : "",
+            expected_text(experiment, one),
             error.psnr ? fmt::format("{:.1f} dB", *error.psnr) : "",
             median_of(one.cost.one_thread),
             time_statistics(one.cost.one_thread),
@@ -347,9 +355,14 @@ std::string table_of(const Experiment& experiment) {
                         experiment.input, experiment.ground_truth, experiment.error_unit);
     if (experiment.reference_error) {
         text += fmt::format(
-            "  expected: the root of the sum of squares of the reference error, {:.3g}, and the "
+            "  expected: RMS, the root of the sum of squares of the reference error, {:.3g}{}, and "
+            "the "
             "error of the method\n",
-            *experiment.reference_error);
+            *experiment.reference_error,
+            experiment.reference_error_upper
+                ? fmt::format(" to {:.3g} (the input does not show it)",
+                              *experiment.reference_error_upper)
+                : "");
     }
     text += rows_of(experiment);
     text += notes_of(experiment);

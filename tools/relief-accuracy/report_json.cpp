@@ -60,7 +60,7 @@ Json json_of(const Cost& cost) {
     return json;
 }
 
-Json json_of(const Measurement& one) {
+Json json_of(const Measurement& one, const std::optional<double>& reference_upper) {
     Json choices = Json::object();
     for (const auto& [choice, value] : one.choices)
         choices[choice] = value;
@@ -74,6 +74,10 @@ Json json_of(const Measurement& one) {
         json["expected_error"] = {{"map", one.expected->map},
                                   {"added", one.expected->added},
                                   {"total", one.expected->total()}};
+        if (reference_upper) {
+            json["expected_error"]["total_upper"] =
+                ExpectedError{*reference_upper, one.expected->added}.total();
+        }
     }
     return json;
 }
@@ -143,8 +147,9 @@ Json json_of(const Experiment& one, bool has_files) {
                  {"measurements", Json::array()},
                  {"charts", Json::array()}};
     if (one.reference_error) json["reference_error"] = *one.reference_error;
+    if (one.reference_error_upper) json["reference_error_upper"] = *one.reference_error_upper;
     for (const Measurement& measurement : one.measurements)
-        json["measurements"].push_back(json_of(measurement));
+        json["measurements"].push_back(json_of(measurement, one.reference_error_upper));
     for (const Chart& chart : one.charts)
         json["charts"].push_back(json_of(chart));
     add_pictures(json, one, has_files);
@@ -265,6 +270,8 @@ Experiment experiment_at(const JsonCursor& place) {
     one.finding = place.at("finding").text();
     if (const auto error = place.find_value("reference_error"))
         one.reference_error = error->double_number();
+    if (const auto error = place.find_value("reference_error_upper"))
+        one.reference_error_upper = error->double_number();
     if (const auto findings = place.find_value("input_findings")) {
         for (const JsonCursor& finding : findings->elements())
             one.input_findings.push_back(finding.text());

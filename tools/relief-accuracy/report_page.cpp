@@ -180,6 +180,15 @@ HtmlColumn undefined_column() {
             }};
 }
 
+/// Returns the column of expected errors: "1.35", or a range, "1.35–8.50".
+HtmlColumn expected_column() {
+    return {"expected", "/expected_error/total", [](const ordered_json& measurement) {
+                const auto upper = number_at(measurement, "/expected_error/total_upper");
+                return number_text(number_at(measurement, "/expected_error/total")) +
+                       (upper ? "–" + number_text(upper) : "");
+            }};
+}
+
 /// Returns whether a measurement has a number other than 0 at a path.
 bool has_values(const ordered_json& measurements, const std::string& path) {
     return std::any_of(measurements.begin(), measurements.end(), [&](const ordered_json& one) {
@@ -192,8 +201,7 @@ std::vector<HtmlColumn> columns_of(const ordered_json& measurements) {
         column("RMS", "/error/rms", number_text), column("mean", "/error/mean", number_text),
         column("99 %", "/error/p99", number_text), column("max", "/error/max", number_text)};
     for (const HtmlColumn& optional :
-         {column("PSNR, dB", "/error/psnr", number_text), undefined_column(),
-          column("expected", "/expected_error/total", number_text),
+         {column("PSNR, dB", "/error/psnr", number_text), undefined_column(), expected_column(),
           time_column("one thread", "/cost/one_thread"),
           time_column("all threads", "/cost/all_threads"),
           column("memory", "/cost/peak_bytes", bytes_text),

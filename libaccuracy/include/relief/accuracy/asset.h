@@ -200,6 +200,8 @@ struct RecommendationRule {
     std::span<const double> nominal_costs;
     /// The name of the source of Experiment::reference_error, such as "the map itself".
     std::string reference = "the reference itself";
+    /// The reference has an error of unknown size, so that no limit of the error is kept.
+    bool is_reference_unknown = false;
 };
 
 struct Recommendation {
@@ -235,6 +237,8 @@ struct AssetOptions {
     std::string file;  ///< The name of the input in titles.
     /// The input as an argument of commands, or both files of a pair: "'old vase.obj'".
     std::string arguments;
+    /// The lossy compression of an image file, such as "JPEG"; empty: none. Its error is unknown.
+    std::string lossy_compression{};
     /// Further arguments of commands on height maps, such as " --channel alpha".
     std::string height_arguments;
     std::string command;  ///< The command that repeats the report: "relief-accuracy own vase.obj".

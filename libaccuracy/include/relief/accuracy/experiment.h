@@ -131,6 +131,8 @@ struct Experiment {
     std::string ground_truth{};  ///< The ground truth, and how it is known.
     /// The expected RMS error of this ground truth; absent if there is none or it is unknown.
     std::optional<double> reference_error{};
+    /// The upper end of that error, if the input does not show it: it is a range. Else absent.
+    std::optional<double> reference_error_upper{};
     std::string input{};       ///< "torus, jittered, 64 x 64 cells: 8192 triangles"
     std::string error_unit{};  ///< "degrees", "FLIP"
     std::string item{};        ///< The unit of work: "triangle", "texel", "pixel".
