@@ -124,6 +124,20 @@ TEST(AccuracyCompare, OtherMachinesAreNotJudged) {
     }
 }
 
+TEST(AccuracyCompare, TimesOnAllThreadsAreNotJudged) {
+    const Workplace workplace;
+    AccuracyReport before = steady_report();
+    AccuracyReport after = before;
+    for (std::size_t i = 0; i < 12; ++i) {
+        before.experiments[0].measurements[i].cost.all_threads = Timing{{1.0}};
+        after.experiments[0].measurements[i].cost.all_threads = Timing{{5.0}};
+    }
+    const ProgramResult result = compared(workplace, before, after, "--max-slower 20");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("all: 5.00 times as long on all threads (5.00 to 5.00, 12 "
+                                      "methods): not judged\n"));
+}
+
 TEST(AccuracyCompare, FewMethodsAreNotJudged) {
     const Workplace workplace;
     AccuracyReport few = steady_report();

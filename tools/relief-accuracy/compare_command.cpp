@@ -62,7 +62,9 @@ std::string subject_of(const TimeRatio& times) {
     return times.subject ? std::string(name_of(*times.subject)) : "all";
 }
 
+/// Times on all threads are not judged: a wall clock includes the time of other programs.
 const char* verdict_of(const TimeRatio& times) {
+    if (times.on_all_threads) return "not judged";
     return times.is_slower() ? "slower" : times.is_faster() ? "faster" : "tie";
 }
 
@@ -161,7 +163,7 @@ std::vector<std::string> above_limits(const ReportComparison& comparison,
     std::vector<std::string> lines;
     if (limits.max_slower) {
         for (const TimeRatio& times : comparison.times) {
-            if (times.is_slower(1.0 + *limits.max_slower / 100.0))
+            if (!times.on_all_threads && times.is_slower(1.0 + *limits.max_slower / 100.0))
                 lines.push_back(
                     fmt::format("{} (at most {} % more)", line_of(times), *limits.max_slower));
         }
@@ -346,8 +348,9 @@ Command add_report_compare_command(CLI::App& tool) {
     const Range range{0.0, std::numeric_limits<double>::max(), "percent"};
     const char* group = "Verdict";
     add_number(app, "--max-slower", "PERCENT", options->limits.max_slower, range,
-               "Exit with 1 if the methods of a subject, or all methods, take longer by more than "
-               "this and by more than 15 %, up to which runs are tied: if the whole confidence "
+               "Exit with 1 if the methods of a subject, or all methods, take longer on one thread "
+               "by more than this and by more than 15 %, up to which runs are tied: if the whole "
+               "confidence "
                "interval of the median ratio is above it. With any limit, a missing method also "
                "counts.")
         .group(group);
