@@ -344,16 +344,19 @@ TEST(SceneField, HasALabelForMessages) {
             "clearcoat roughness", "clearcoat texture", "clearcoat roughness texture",
             "clearcoat normal map", "sheen color", "sheen roughness", "sheen color texture",
             "sheen roughness texture", "anisotropy", "anisotropy rotation", "anisotropy texture",
-            "iridescence", "iridescence index", "iridescence thickness",
-            "iridescence thickness minimum", "iridescence texture", "iridescence thickness texture",
-            "transmission", "transmission texture", "thickness", "thickness texture",
-            "attenuation distance", "attenuation color"));
+            "iridescence", "film index", "film thickness", "minimum film thickness",
+            "iridescence texture", "iridescence thickness texture", "transmission",
+            "transmission texture", "thickness", "thickness texture", "attenuation distance",
+            "attenuation color"));
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }
 
 TEST(SceneField, HasATitleAndARangeForPanels) {
     EXPECT_EQ(field_of(&Material::reflection_roughness).title(), "Reflection roughness");
     EXPECT_EQ(field_of(&Material::refractive_index).range, (FieldRange{1.0F, 1e3F}));
+    EXPECT_EQ(field_of(&Material::refractive_index).slider_range, (FieldRange{1.0F, 3.0F}));
+    EXPECT_EQ(field_of(&MetallicRoughness::iridescence_thickness).unit, FieldUnit::nanometers);
+    EXPECT_EQ(field_of(&MetallicRoughness::roughness).slider_range, (FieldRange{0.0F, 1.0F}));
     EXPECT_EQ(field_of(&SpotLight::outer_cone).unit, FieldUnit::radians);
 }
 

@@ -127,21 +127,22 @@ TEST(LoadScene, ReportsMaterialExtensionsThatAreNotDrawn) {
         R"({"extensions": {"KHR_materials_clearcoat": {}, "KHR_materials_ior": {"ior": 1.5},
             "KHR_materials_sheen": {"sheenColorFactor": [0, 0, 0]},
             "KHR_materials_specular": {"specularFactor": 1.0},
+            "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0},
             "KHR_materials_emissive_strength": {"emissiveStrength": 3}}})",
         "");
     EXPECT_TRUE(nothing.empty()) << "these values change nothing";
     EXPECT_TRUE(neutral.materials[0].undrawn_extensions.empty());
     const auto [scene, report] = load(
-        R"({"extensions": {"KHR_materials_dispersion": {"dispersion": 1}}},
+        R"({"extensions": {"KHR_materials_volume_scatter": {}}},
            {"extensions": {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5},
-                           "KHR_materials_dispersion": {"dispersion": 0.1}}})",
-        R"(, "extensionsUsed": ["KHR_materials_diffuse_transmission", "KHR_materials_dispersion"],
+                           "KHR_materials_volume_scatter": {}}})",
+        R"(, "extensionsUsed": ["KHR_materials_diffuse_transmission", "KHR_materials_volume_scatter"],
            "extensionsRequired": ["KHR_materials_diffuse_transmission"])");
-    EXPECT_EQ(report.count("KHR_materials_dispersion"), 2U);
+    EXPECT_EQ(report.count("KHR_materials_volume_scatter"), 2U);
     EXPECT_EQ(report.count("KHR_materials_diffuse_transmission, which the file requires"), 1U);
     EXPECT_THAT(
         scene.materials[1].undrawn_extensions,
-        testing::ElementsAre("KHR_materials_diffuse_transmission", "KHR_materials_dispersion"));
+        testing::ElementsAre("KHR_materials_diffuse_transmission", "KHR_materials_volume_scatter"));
     const auto [drawn, all_drawn] = load(
         R"({"extensions": {"KHR_materials_ior": {"ior": 0.5}, "KHR_materials_specular":
                 {"specularFactor": 0.25, "specularColorFactor": [2, 1, -1]},

@@ -31,11 +31,14 @@ struct FieldRange {
 /// name; in memory every positive value is valid.
 inline constexpr FieldRange positive_range{1e-30F};
 
+inline constexpr FieldRange non_negative_range{0.0F};
+
 /// The unit of a number or vector.
 enum class FieldUnit {
     none,   ///< A factor, an exponent, a flag, a name.
     color,  ///< Linear red, green and blue; with a fourth component: alpha, from 0 to 1.
     texels,
+    nanometers,
     world_length,
     world_position,
     world_direction,  ///< Any length but 0.
@@ -71,13 +74,42 @@ struct SceneField {
     /// The key in scene files. If empty, the fields of the member are in the owner's own object.
     const char* name;
     Value Owner::*member;
-    FieldRange range{};
-    FieldUnit unit = FieldUnit::none;
-    const char* label_text = nullptr;
+    FieldRange range;
+    FieldUnit unit;
+    const char* label_text;
     /// The path of the property in a material of glTF, as in the pointers of
     /// KHR_animation_pointer: "pbrMetallicRoughness/metallicFactor". Empty if glTF does not have it
     /// or stores another value.
-    const char* gltf = "";
+    const char* gltf;
+    FieldRange gltf_range;    ///< The values that glTF permits: in_gltf(), else the range.
+    FieldRange slider_range;  ///< The values of a slider: on_slider(), else the range.
+
+    constexpr SceneField(const char* key, Value Owner::*of, FieldRange accepted = {},
+                         FieldUnit in = {}, const char* text = nullptr, const char* path = "")
+        : name(key),
+          member(of),
+          range(accepted),
+          unit(in),
+          label_text(text),
+          gltf(path),
+          gltf_range(accepted),
+          slider_range(accepted) {}
+
+    [[nodiscard]] constexpr SceneField labeled(const char* text) const {
+        SceneField result = *this;
+        result.label_text = text;
+        return result;
+    }
+    [[nodiscard]] constexpr SceneField in_gltf(FieldRange permitted) const {
+        SceneField result = *this;
+        result.gltf_range = permitted;
+        return result;
+    }
+    [[nodiscard]] constexpr SceneField on_slider(FieldRange shown) const {
+        SceneField result = *this;
+        result.slider_range = shown;
+        return result;
+    }
 
     /// The name of the field in messages: label_text, or the name with spaces instead of
     /// underscores.
@@ -88,9 +120,6 @@ struct SceneField {
     [[nodiscard]] std::string title() const { return capitalized(label()); }
     [[nodiscard]] Value default_value() const { return Owner{}.*member; }
 };
-template <typename Owner, typename Value>
-SceneField(const char*, Value Owner::*, FieldRange = {}, FieldUnit = {}, const char* = nullptr,
-           const char* = "") -> SceneField<Owner, Value>;
 
 /// The fields of T as a tuple of SceneField, in the order in which scene files are written. Empty
 /// for a type that is one value.

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -239,17 +239,18 @@ inline constexpr auto fields_of<Texture> =
                SceneField{"second_texcoords", &Texture::second_texcoords}};
 
 template <>
-inline constexpr auto fields_of<NormalMap> =
-    std::tuple{SceneField{"texture", &NormalMap::texture, {}, {}, "normal map"},
-               SceneField{"scale", &NormalMap::scale, {-1e6F, 1e6F}, {}, "normal map scale"},
-               SceneField{"green", &NormalMap::green}, SceneField{"space", &NormalMap::space},
-               SceneField{"zero_code", &NormalMap::flat}};
+inline constexpr auto fields_of<NormalMap> = std::tuple{
+    SceneField{"texture", &NormalMap::texture, {}, {}, "normal map"},
+    SceneField{"scale", &NormalMap::scale, {-1e6F, 1e6F}, {}, "normal map scale"}.on_slider({0, 4}),
+    SceneField{"green", &NormalMap::green}, SceneField{"space", &NormalMap::space},
+    SceneField{"zero_code", &NormalMap::flat}};
 
 template <>
 inline constexpr auto fields_of<BumpMap> = std::tuple{
     SceneField{"texture", &BumpMap::texture, {}, {}, "bump map"},
     SceneField{
-        "strength", &BumpMap::strength, {-1e6F, 1e6F}, FieldUnit::texels, "bump map strength"}};
+        "strength", &BumpMap::strength, {-1e6F, 1e6F}, FieldUnit::texels, "bump map strength"}
+        .on_slider({0, 128})};
 
 /// Returns the description of a factor of glTF's model.
 /// \param gltf  its path in a material of glTF
@@ -274,12 +275,16 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
                     "pbrMetallicRoughness/roughnessFactor"),
     SceneField{"texture", &MetallicRoughness::texture, {}, {}, "metallic-roughness texture"},
     material_factor("refractive_index", &MetallicRoughness::refractive_index,
-                    "extensions/KHR_materials_ior/ior", {0, 1e3F}),
+                    "extensions/KHR_materials_ior/ior", {0, 1e3F})
+        .in_gltf(non_negative_range)
+        .on_slider({1, 3}),
     material_factor("specular", &MetallicRoughness::specular,
                     "extensions/KHR_materials_specular/specularFactor"),
     material_factor("specular_color", &MetallicRoughness::specular_color,
                     "extensions/KHR_materials_specular/specularColorFactor", {0, max_reflectance},
-                    FieldUnit::color),
+                    FieldUnit::color)
+        .in_gltf(non_negative_range)
+        .on_slider({0, 1}),
     SceneField{"specular_texture", &MetallicRoughness::specular_texture},
     SceneField{"specular_color_texture", &MetallicRoughness::specular_color_texture},
     material_factor("clearcoat", &MetallicRoughness::clearcoat,
@@ -299,25 +304,36 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
                     "extensions/KHR_materials_anisotropy/anisotropyStrength"),
     material_factor("anisotropy_rotation", &MetallicRoughness::anisotropy_rotation,
                     "extensions/KHR_materials_anisotropy/anisotropyRotation", FieldRange{},
-                    FieldUnit::radians),
+                    FieldUnit::radians)
+        .on_slider({-std::numbers::pi_v<float>, std::numbers::pi_v<float>}),
     SceneField{"anisotropy_texture", &MetallicRoughness::anisotropy_texture},
     material_factor("iridescence", &MetallicRoughness::iridescence,
                     "extensions/KHR_materials_iridescence/iridescenceFactor"),
     material_factor("iridescence_index", &MetallicRoughness::iridescence_index,
-                    "extensions/KHR_materials_iridescence/iridescenceIor", {1, 1e3F}),
+                    "extensions/KHR_materials_iridescence/iridescenceIor", {1, 1e3F})
+        .labeled("film index")
+        .in_gltf({1})
+        .on_slider({1, 3}),
     material_factor("iridescence_thickness", &MetallicRoughness::iridescence_thickness,
-                    "extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", {0, 1e6F}),
+                    "extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", {0, 1e6F},
+                    FieldUnit::nanometers)
+        .labeled("film thickness")
+        .in_gltf(non_negative_range)
+        .on_slider({0, 1200}),
     material_factor("iridescence_thickness_minimum",
                     &MetallicRoughness::iridescence_thickness_minimum,
-                    "extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", {0, 1e6F}),
+                    "extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", {0, 1e6F},
+                    FieldUnit::nanometers)
+        .labeled("minimum film thickness")
+        .in_gltf(non_negative_range)
+        .on_slider({0, 1200}),
     SceneField{"iridescence_texture", &MetallicRoughness::iridescence_texture},
     SceneField{"iridescence_thickness_texture", &MetallicRoughness::iridescence_thickness_texture},
     material_factor("transmission", &MetallicRoughness::transmission,
                     "extensions/KHR_materials_transmission/transmissionFactor"),
     SceneField{"transmission_texture", &MetallicRoughness::transmission_texture},
     material_factor("thickness", &MetallicRoughness::thickness,
-                    "extensions/KHR_materials_volume/thicknessFactor",
-                    {0, std::numeric_limits<float>::max()}),
+                    "extensions/KHR_materials_volume/thicknessFactor", non_negative_range),
     SceneField{"thickness_texture", &MetallicRoughness::thickness_texture},
     material_factor("attenuation_distance", &MetallicRoughness::attenuation_distance,
                     "extensions/KHR_materials_volume/attenuationDistance", positive_range,
@@ -325,22 +341,35 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
     material_factor("attenuation_color", &MetallicRoughness::attenuation_color,
                     "extensions/KHR_materials_volume/attenuationColor", {0, 1}, FieldUnit::color)};
 
+/// A factor of glTF's materials that is not drawn.
+struct UndrawnFactor {
+    const char* gltf;  ///< As SceneField::gltf.
+    FieldRange range;  ///< The values that glTF permits; 0 changes nothing.
+};
+inline constexpr std::array undrawn_factors{
+    UndrawnFactor{"extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor",
+                  {0, 1}},
+    UndrawnFactor{"extensions/KHR_materials_dispersion/dispersion", non_negative_range}};
+
 template <>
 inline constexpr auto fields_of<Material> = std::tuple{
     SceneField{"name", &Material::name},
     SceneField{"interpolation", &Material::interpolation},
-    SceneField{"ambient", &Material::ambient, {0, max_reflectance}, FieldUnit::color},
-    SceneField{"diffuse", &Material::diffuse, {0, max_reflectance}, FieldUnit::color},
-    SceneField{"specular", &Material::specular, {0, max_reflectance}, FieldUnit::color},
+    SceneField{"ambient", &Material::ambient, {0, max_reflectance}, FieldUnit::color}.on_slider(
+        {0, 1}),
+    SceneField{"diffuse", &Material::diffuse, {0, max_reflectance}, FieldUnit::color}.on_slider(
+        {0, 1}),
+    SceneField{"specular", &Material::specular, {0, max_reflectance}, FieldUnit::color}.on_slider(
+        {0, 1}),
     SceneField{"emission", &Material::emission, {0, max_reflectance}, FieldUnit::color},
-    SceneField{"shininess", &Material::shininess, {0, 1e6F}},
+    SceneField{"shininess", &Material::shininess, {0, 1e6F}}.on_slider({0, 1000}),
     SceneField{"specular_model", &Material::specular_model},
     SceneField{"highlight_fresnel", &Material::highlight_fresnel},
     SceneField{"metallic_roughness", &Material::metallic_roughness},
     SceneField{"reflectivity", &Material::reflectivity, {0, 1}, FieldUnit::color},
     SceneField{"grazing_reflectivity", &Material::grazing_reflectivity, {0, 1}, FieldUnit::color},
     SceneField{"fresnel", &Material::fresnel},
-    SceneField{"refractive_index", &Material::refractive_index, {1, 1e3F}},
+    SceneField{"refractive_index", &Material::refractive_index, {1, 1e3F}}.on_slider({1, 3}),
     SceneField{"conductor_index", &Material::conductor_index, {0, 1e3F}, FieldUnit::color},
     SceneField{
         "conductor_absorption", &Material::conductor_absorption, {0, 1e3F}, FieldUnit::color},
@@ -366,7 +395,9 @@ inline constexpr auto fields_of<Material> = std::tuple{
     SceneField{"alpha_mode", &Material::alpha_mode},
     SceneField{"opacity", &Material::opacity, {0, 1}},
     SceneField{
-        "alpha_cutoff", &Material::alpha_cutoff, {0, max_reflectance}, {}, nullptr, "alphaCutoff"},
+        "alpha_cutoff", &Material::alpha_cutoff, {0, max_reflectance}, {}, nullptr, "alphaCutoff"}
+        .in_gltf(non_negative_range)
+        .on_slider({0, 1}),
     SceneField{"double_sided", &Material::double_sided, {}, {}, nullptr, "doubleSided"},
     SceneField{"unlit", &Material::unlit}};
 

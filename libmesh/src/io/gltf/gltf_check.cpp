@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Validation of glTF documents: the table of known properties, one walk over a document along this
-// table, and the checks beyond types (version, required extensions, ranges, node trees).
+// Validation of glTF documents: the table of known properties, to which material.h adds those of
+// materials, one walk over a document along this table, and the checks beyond types (version,
+// required extensions, ranges, node trees).
 //
 // extras are never examined. Properties that are not in the table are kept and ignored. The first
 // offense throws InvalidInput. Source: glTF 2.0 (ISO/IEC 12113), chapters 3 and 5.
@@ -13,6 +14,8 @@
 #include <charconv>
 #include <limits>
 #include <map>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 #include "io/gltf/gltf_accessor.h"
@@ -121,18 +124,9 @@ constexpr Rule rules[] = {
     {"image", "name", Kind::string},
     {"material", "name", Kind::string},
     {"material", "pbrMetallicRoughness", Kind::object, "pbr"},
-    {"material", "normalTexture", Kind::object, "textureInfo"},
-    {"material", "occlusionTexture", Kind::object, "textureInfo"},
-    {"material", "emissiveTexture", Kind::object, "textureInfo"},
     {"material", "emissiveFactor", Kind::numbers, {}, false, 3},
     {"material", "alphaMode", Kind::string},
-    {"material", "alphaCutoff", Kind::number},
-    {"material", "doubleSided", Kind::boolean},
     {"pbr", "baseColorFactor", Kind::numbers, {}, false, 4},
-    {"pbr", "baseColorTexture", Kind::object, "textureInfo"},
-    {"pbr", "metallicFactor", Kind::number},
-    {"pbr", "roughnessFactor", Kind::number},
-    {"pbr", "metallicRoughnessTexture", Kind::object, "textureInfo"},
     {"textureInfo", "index", Kind::index, "textures", required},
     {"textureInfo", "texCoord", Kind::integer},
     {"textureInfo", "scale", Kind::number},
@@ -208,30 +202,6 @@ constexpr Rule rules[] = {
     {"spot", "outerConeAngle", Kind::number},
     {"node+KHR_lights_punctual", "light", Kind::index, "lights", required},
     {"material+KHR_materials_emissive_strength", "emissiveStrength", Kind::number},
-    {"material+KHR_materials_ior", "ior", Kind::number},
-    {"material+KHR_materials_specular", "specularFactor", Kind::number},
-    {"material+KHR_materials_specular", "specularTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_specular", "specularColorFactor", Kind::numbers, {}, false, 3},
-    {"material+KHR_materials_specular", "specularColorTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_sheen", "sheenColorFactor", Kind::numbers, {}, false, 3},
-    {"material+KHR_materials_sheen", "sheenColorTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_sheen", "sheenRoughnessFactor", Kind::number},
-    {"material+KHR_materials_sheen", "sheenRoughnessTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_clearcoat", "clearcoatFactor", Kind::number},
-    {"material+KHR_materials_clearcoat", "clearcoatTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_clearcoat", "clearcoatRoughnessFactor", Kind::number},
-    {"material+KHR_materials_clearcoat", "clearcoatRoughnessTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_clearcoat", "clearcoatNormalTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_anisotropy", "anisotropyStrength", Kind::number},
-    {"material+KHR_materials_anisotropy", "anisotropyRotation", Kind::number},
-    {"material+KHR_materials_anisotropy", "anisotropyTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_iridescence", "iridescenceFactor", Kind::number},
-    {"material+KHR_materials_iridescence", "iridescenceTexture", Kind::object, "textureInfo"},
-    {"material+KHR_materials_iridescence", "iridescenceIor", Kind::number},
-    {"material+KHR_materials_iridescence", "iridescenceThicknessMinimum", Kind::number},
-    {"material+KHR_materials_iridescence", "iridescenceThicknessMaximum", Kind::number},
-    {"material+KHR_materials_iridescence", "iridescenceThicknessTexture", Kind::object,
-     "textureInfo"},
     {"textureInfo+KHR_texture_transform", "offset", Kind::numbers, {}, false, 2},
     {"textureInfo+KHR_texture_transform", "rotation", Kind::number},
     {"textureInfo+KHR_texture_transform", "scale", Kind::numbers, {}, false, 2},
@@ -283,12 +253,56 @@ bool is_known(std::string_view extension) {
                        });
 }
 
+using RulesByType = std::map<std::string, std::vector<Rule>, std::less<>>;
+
+/// Returns the type that has a property of a material, by its path (SceneField::gltf).
+std::string type_of_path(std::string_view path) {
+    constexpr std::string_view extensions = "extensions/";
+    const std::size_t end = path.rfind('/');
+    if (end == std::string_view::npos) return "material";
+    const std::string_view owner = path.substr(0, end);
+    if (owner.starts_with(extensions))
+        return fmt::format("material+{}", owner.substr(extensions.size()));
+    return owner == "pbrMetallicRoughness" ? "pbr" : "textureInfo";
+}
+
+/// Adds the factors and textures of material.h, unless the table above has their rules.
+void add_material_rules(RulesByType& by_type) {
+    const auto add = [&](const char* path, Kind kind, std::size_t length = 0) {
+        const std::string_view all = path;
+        if (all.empty()) return;
+        const char* const property = path + (all.rfind('/') + 1);
+        const auto type = by_type.try_emplace(type_of_path(all)).first;
+        for (const Rule& known : type->second) {
+            if (known.property == std::string_view(property)) return;
+        }
+        const std::string_view refers = kind == Kind::object ? "textureInfo" : "";
+        type->second.push_back({type->first, property, kind, refers, false, length});
+    };
+    const auto add_field = [&](const auto& field) {
+        using Value = decltype(field.default_value());
+        if constexpr (std::is_same_v<Value, bool>)
+            add(field.gltf, Kind::boolean);
+        else if constexpr (std::is_same_v<Value, glm::vec3>)
+            add(field.gltf, Kind::numbers, 3);
+        else
+            add(field.gltf, Kind::number);
+    };
+    for_each_field<Material>(add_field);
+    for_each_field<MetallicRoughness>(add_field);
+    for (const UndrawnFactor& factor : undrawn_factors)
+        add(factor.gltf, Kind::number);
+    for (const TextureSlotInfo& slot : texture_slots)
+        add(slot.gltf, Kind::object);
+}
+
 /// The rules of one type.
 const std::vector<Rule>& rules_of(std::string_view type) {
     static const auto by_type = [] {
-        std::map<std::string_view, std::vector<Rule>> result;
+        RulesByType result;
         for (const Rule& rule : rules)
-            result[rule.type].push_back(rule);
+            result[std::string(rule.type)].push_back(rule);
+        add_material_rules(result);
         return result;
     }();
     static const std::vector<Rule> none;

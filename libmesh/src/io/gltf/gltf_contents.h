@@ -56,6 +56,13 @@ const Json* find(const Json& object, const char* key, const char* next, Keys... 
     return inner == nullptr || !inner->is_object() ? nullptr : find(*inner, next, rest...);
 }
 
+/// Returns the value at a path as SceneField::gltf has it, or null:
+/// "extensions/KHR_materials_ior/ior".
+const Json* find_path(const Json& object, std::string_view path);
+
+/// True if fields of MetallicRoughness are in this extension of materials.
+bool has_factors(std::string_view extension);
+
 /// Returns an array of the document; empty if it is absent.
 inline const Json& array_in(const Json& object, const char* key) {
     static const Json empty = Json::array();

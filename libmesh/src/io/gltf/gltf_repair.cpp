@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
@@ -29,37 +30,32 @@ constexpr const char* quantization = "KHR_mesh_quantization";
 /// The values that glTF permits for a number, or for each number of an array.
 struct NumberRange {
     std::string_view type;
-    const char* property;
-    double min = 0.0;
-    double max = 1.0;
+    const char* path;
+    FieldRange range;
 };
 
-constexpr NumberRange ranges[] = {
-    {"pbr", "baseColorFactor"},
-    {"pbr", "metallicFactor"},
-    {"pbr", "roughnessFactor"},
-    {"material", "emissiveFactor"},
-    {"material", "alphaCutoff", 0.0, unlimited},
-    {"textureInfo", "strength"},
-    {"light", "color"},
-    {"light", "intensity", 0.0, unlimited},
-    {"material+KHR_materials_emissive_strength", "emissiveStrength", 0.0, unlimited},
-    {"material+KHR_materials_specular", "specularFactor"},
-    {"material+KHR_materials_specular", "specularColorFactor", 0.0, unlimited},
-    {"material+KHR_materials_sheen", "sheenColorFactor"},
-    {"material+KHR_materials_sheen", "sheenRoughnessFactor"},
-    {"material+KHR_materials_clearcoat", "clearcoatFactor"},
-    {"material+KHR_materials_clearcoat", "clearcoatRoughnessFactor"},
-    {"material+KHR_materials_anisotropy", "anisotropyStrength"},
-    {"material+KHR_materials_iridescence", "iridescenceFactor"},
-    {"material+KHR_materials_iridescence", "iridescenceIor", 1.0, unlimited},
-    {"material+KHR_materials_iridescence", "iridescenceThicknessMinimum", 0.0, unlimited},
-    {"material+KHR_materials_iridescence", "iridescenceThicknessMaximum", 0.0, unlimited},
-    {"material+KHR_materials_transmission", "transmissionFactor"},
-    {"material+KHR_materials_volume", "thicknessFactor", 0.0, unlimited},
-    {"material+KHR_materials_volume", "attenuationColor"},
-    {"material+KHR_materials_dispersion", "dispersion", 0.0, unlimited},
+/// Those of the numbers that no field of material.h has alone.
+constexpr NumberRange more_ranges[] = {
+    {"material", "emissiveFactor", {0, 1}},
+    {"material", "extensions/KHR_materials_emissive_strength/emissiveStrength", non_negative_range},
+    {"light", "color", {0, 1}},
+    {"light", "intensity", non_negative_range},
 };
+
+const std::vector<NumberRange>& number_ranges() {
+    static const auto all = [] {
+        std::vector<NumberRange> result(std::begin(more_ranges), std::end(more_ranges));
+        const auto add = [&](const auto& field) {
+            if (*field.gltf != '\0') result.push_back({"material", field.gltf, field.gltf_range});
+        };
+        for_each_field<Material>(add);
+        for_each_field<MetallicRoughness>(add);
+        for (const auto& [path, range] : undrawn_factors)
+            result.push_back({"material", path, range});
+        return result;
+    }();
+    return all;
+}
 
 /// The types that an extension of Khronos extends.
 struct ExtensionPlace {
@@ -68,32 +64,30 @@ struct ExtensionPlace {
 };
 
 constexpr ExtensionPlace places[] = {
-    {"KHR_texture_transform", "textureInfo"},
-    {"KHR_texture_basisu", "texture"},
-    {"EXT_texture_webp", "texture"},
-    {"KHR_draco_mesh_compression", "primitive"},
-    {"KHR_lights_punctual", "glTF node"},
-    {"KHR_materials_variants", "glTF primitive"},
-    {"KHR_materials_unlit", "material"},
-    {"KHR_materials_emissive_strength", "material"},
-    {"KHR_materials_ior", "material"},
-    {"KHR_materials_specular", "material"},
-    {"KHR_materials_sheen", "material"},
-    {"KHR_materials_clearcoat", "material"},
-    {"KHR_materials_anisotropy", "material"},
-    {"KHR_materials_iridescence", "material"},
-    {"KHR_materials_transmission", "material"},
-    {"KHR_materials_volume", "material"},
-    {"KHR_materials_dispersion", "material"},
+    {"KHR_texture_transform", "textureInfo"}, {"KHR_texture_basisu", "texture"},
+    {"EXT_texture_webp", "texture"},          {"KHR_draco_mesh_compression", "primitive"},
+    {"KHR_lights_punctual", "glTF node"},     {"KHR_materials_variants", "glTF primitive"},
+    {"KHR_materials_unlit", "material"},      {"KHR_materials_emissive_strength", "material"},
 };
 
-bool is_misplaced(std::string_view extension, std::string_view type) {
+/// Returns the types that an extension extends; "" if that is not known.
+std::string_view extended_types(std::string_view extension) {
     const auto* const place =
         std::ranges::find(places, extension, [](const ExtensionPlace& p) { return p.extension; });
-    if (place == std::end(places) || type.find('+') != std::string_view::npos) return false;
-    for (std::size_t begin = 0; begin < place->types.size();) {
-        const std::size_t end = std::min(place->types.find(' ', begin), place->types.size());
-        if (place->types.substr(begin, end - begin) == type) return false;
+    if (place != std::end(places)) return place->types;
+    const std::string prefix = fmt::format("extensions/{}/", extension);
+    const bool is_undrawn = std::ranges::any_of(undrawn_factors, [&](const UndrawnFactor& factor) {
+        return std::string_view(factor.gltf).starts_with(prefix);
+    });
+    return is_undrawn || has_factors(extension) ? "material" : "";
+}
+
+bool is_misplaced(std::string_view extension, std::string_view type) {
+    const std::string_view types = extended_types(extension);
+    if (types.empty() || type.find('+') != std::string_view::npos) return false;
+    for (std::size_t begin = 0; begin < types.size();) {
+        const std::size_t end = std::min(types.find(' ', begin), types.size());
+        if (types.substr(begin, end - begin) == type) return false;
         begin = end + 1;
     }
     return true;
@@ -161,26 +155,38 @@ class DocumentRepair {
     }
 
     void clamp(std::string_view type, Json& object, std::size_t number) {
-        for (const NumberRange& range : ranges) {
-            if (range.type != type || !object.contains(range.property)) continue;
-            Json& value = object[range.property];
+        for (const auto& [owner, path, range] : number_ranges()) {
+            if (owner != type) continue;
+            // The object is not constant, and neither are its parts.
+            auto* const value = const_cast<Json*>(find_path(object, path));
+            if (value == nullptr) continue;
+            const double min = limit(range.min);
+            const double max = limit(range.max);
             bool is_changed = false;
             const auto clamp_one = [&](Json& one) {
                 if (!one.is_number()) return;
                 const auto before = one.get<double>();
-                const double after = std::clamp(before, range.min, range.max);
+                const double after = std::clamp(before, min, max);
                 if (after == before) return;
                 one = after;
                 is_changed = true;
             };
-            if (value.is_array())
-                std::for_each(value.begin(), value.end(), clamp_one);
+            if (value->is_array())
+                std::for_each(value->begin(), value->end(), clamp_one);
             else
-                clamp_one(value);
+                clamp_one(*value);
             if (!is_changed) continue;
-            report_.add(fmt::format("{} out of range", range.property), type, number,
-                        "becomes the nearest permitted value");
+            const std::string_view property = path;
+            report_.add(fmt::format("{} out of range", property.substr(property.rfind('/') + 1)),
+                        type, number, "becomes the nearest permitted value");
         }
+    }
+
+    /// Returns the limit of a range; infinite where there is none.
+    static double limit(float number) {
+        constexpr FieldRange all;
+        return number == all.min || number == all.max ? std::copysign(unlimited, number)
+                                                      : static_cast<double>(number);
     }
 
     void repair_node(Json& node, std::size_t number) {

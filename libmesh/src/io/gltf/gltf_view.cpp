@@ -5,9 +5,8 @@
 // World space, right-handed, +Y up; colors linear; angles in radians; times in seconds. Properties
 // without a place in the scene types stay only in the document. Instance attributes of a wrong type
 // throw InvalidInput. An unusable animation channel is left out and counted. Source: glTF 2.0
-// (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_ior,
-// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
-// KHR_materials_iridescence, KHR_materials_unlit, KHR_texture_transform, EXT_mesh_gpu_instancing.
+// (ISO/IEC 12113), KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit, the
+// extensions in material.h, KHR_texture_transform, EXT_mesh_gpu_instancing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,6 +27,26 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+
+const Json* find_path(const Json& object, std::string_view path) {
+    const Json* found = &object;
+    while (found != nullptr && !path.empty()) {
+        const std::size_t length = std::min(path.find('/'), path.size());
+        const std::string key(path.substr(0, length));
+        found = found->is_object() ? find(*found, key.c_str()) : nullptr;
+        path.remove_prefix(std::min(length + 1, path.size()));
+    }
+    return found;
+}
+
+bool has_factors(std::string_view extension) {
+    const std::string prefix = fmt::format("extensions/{}/", extension);
+    bool has = false;
+    for_each_field<MetallicRoughness>(
+        [&](const auto& field) { has |= std::string_view(field.gltf).starts_with(prefix); });
+    return has;
+}
+
 namespace {
 
 bool has_triangles(const Json& primitive) {
@@ -143,18 +162,6 @@ std::optional<std::size_t> image_of(const Json& texture) {
     return std::nullopt;
 }
 
-/// Returns the property of a path: "extensions/KHR_materials_ior/ior"; null if there is none.
-const Json* find_path(const Json& object, std::string_view path) {
-    const Json* found = &object;
-    while (found != nullptr && !path.empty()) {
-        const std::size_t length = std::min(path.find('/'), path.size());
-        const std::string key(path.substr(0, length));
-        found = found->is_object() ? find(*found, key.c_str()) : nullptr;
-        path.remove_prefix(std::min(length + 1, path.size()));
-    }
-    return found;
-}
-
 /// Returns the texture of a texture info, without its texture coordinates; none without an image.
 std::optional<Texture> texture_in(const Json& root, const Json& info) {
     const Json& texture = root["textures"][size_in(info, "index")];
@@ -185,36 +192,21 @@ GltfTexcoords texcoords_in(const Json& info) {
     return result;
 }
 
-/// Tells whether a property is absent or has a value, which vectors have in all components.
-bool has_only(const Json& extension, const char* key, double value) {
-    const Json* found = find(extension, key);
-    if (found == nullptr) return true;
-    if (!found->is_array()) return found->is_number() && *found == value;
-    return std::all_of(found->begin(), found->end(), [&](const Json& component) {
-        return component.is_number() && component == value;
-    });
-}
-
 /// Tells whether an extension of a material has values that change nothing.
-bool is_neutral(const std::string& name, const Json& extension) {
-    if (!extension.is_object()) return false;
-    // The factor without which the extension does nothing.
-    static constexpr std::array<std::pair<std::string_view, const char*>, 2> factors{{
-        {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"},
-        {"KHR_materials_dispersion", "dispersion"},
-    }};
-    return std::any_of(factors.begin(), factors.end(), [&](const auto& factor) {
-        return factor.first == name && has_only(extension, factor.second, 0.0);
-    });
+bool is_neutral(const Json& material, const std::string& name) {
+    const std::string prefix = "extensions/" + name + "/";
+    return std::any_of(undrawn_factors.begin(), undrawn_factors.end(),
+                       [&](const UndrawnFactor& factor) {
+                           if (!std::string_view(factor.gltf).starts_with(prefix)) return false;
+                           const Json* const value = find_path(material, factor.gltf);
+                           return value == nullptr || *value == 0.0;
+                       });
 }
 
 /// Returns true for extensions whose factors are members of GltfMaterial.
 bool has_members(const std::string& name) {
-    bool has = name == "KHR_materials_unlit" || name == "KHR_materials_emissive_strength";
-    const std::string path = "extensions/" + name + "/";
-    for_each_field<MetallicRoughness>(
-        [&](const auto& field) { has |= std::string_view(field.gltf).starts_with(path); });
-    return has;
+    return name == "KHR_materials_unlit" || name == "KHR_materials_emissive_strength" ||
+           has_factors(name);
 }
 
 /// Returns the extensions that GltfMaterial does not have, without neutral ones.
@@ -223,7 +215,7 @@ std::vector<std::string> more_extensions_of(const Json& json) {
     const Json* extensions = find(json, "extensions");
     if (extensions == nullptr || !extensions->is_object()) return names;
     for (const auto& [name, extension] : extensions->items()) {
-        if (!has_members(name) && !is_neutral(name, extension)) names.push_back(name);
+        if (!has_members(name) && !is_neutral(json, name)) names.push_back(name);
     }
     std::sort(names.begin(), names.end());
     return names;

@@ -79,7 +79,8 @@ inline constexpr auto fields_of<Environment> = std::tuple{
     SceneField{"skybox", &Environment::skybox},
     SceneField{"skybox_blur", &Environment::skybox_blur, {0, 1}, {}, "background blur"},
     SceneField{"lights", &Environment::lights},
-    SceneField{"rotation", &Environment::rotation, {}, FieldUnit::radians, "environment rotation"}};
+    SceneField{"rotation", &Environment::rotation, {}, FieldUnit::radians, "environment rotation"}
+        .on_slider({-std::numbers::pi_v<float>, std::numbers::pi_v<float>})};
 
 /// The field of view lies between 0 and pi, without either; 0 < near < far.
 template <>

@@ -286,6 +286,32 @@ TEST_F(GltfDocumentTest, FilesWithWrongBytesAreRefusedOrCanBeWorkedWith) {
     EXPECT_GT(kept, 250);
 }
 
+TEST_F(GltfDocumentTest, FactorsOfMaterialsHaveTheirTypeAndTexturesExist) {
+    const auto error_with = [&](const char* path, const json& value) {
+        json root = triangle_json();
+        root["materials"] = json::array({json::object()});
+        root[json::json_pointer(fmt::format("/materials/0/{}", path))] = value;
+        return error_of(root, triangle_bytes());
+    };
+    const auto check_factor = [&](const auto& field) {
+        if (*field.gltf == '\0') return;
+        EXPECT_THAT(error_with(field.gltf, "text"), HasSubstr("materials[0].")) << field.gltf;
+    };
+    for_each_field<Material>(check_factor);
+    for_each_field<MetallicRoughness>(check_factor);
+    for (const UndrawnFactor& factor : undrawn_factors)
+        EXPECT_THAT(error_with(factor.gltf, "text"), HasSubstr("is not a number")) << factor.gltf;
+    for (const char* color : {"pbrMetallicRoughness/baseColorFactor",
+                              "extensions/KHR_materials_volume/attenuationColor"})
+        EXPECT_THAT(error_with(color, {1, 1}), HasSubstr("is not an array of numbers")) << color;
+    for (const TextureSlotInfo& slot : texture_slots) {
+        if (*slot.gltf == '\0') continue;
+        EXPECT_THAT(error_with(slot.gltf, {{"index", 7}}),
+                    HasSubstr("index is 7, but there are only 0 textures"))
+            << slot.gltf;
+    }
+}
+
 /// A position in the JSON, a wrong value, and its error message.
 struct DocumentFault {
     const char* pointer;

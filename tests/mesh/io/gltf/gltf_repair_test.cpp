@@ -9,7 +9,10 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "mesh/io/gltf/gltf_support.h"
@@ -156,7 +159,14 @@ const Fault repaired[] = {
      [](FaultyTriangle& t) {
          t.root["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 1.5;
      },
-     "1 x metallicFactor out of range (pbr 0): becomes the nearest permitted value\n"},
+     "1 x metallicFactor out of range (material 0): becomes the nearest permitted value\n"},
+    {"FactorOfAnExtension",
+     [](FaultyTriangle& t) {
+         t.root["extensionsUsed"] = {"KHR_materials_volume"};
+         t.root["materials"][0]["extensions"]["KHR_materials_volume"] = {
+             {"attenuationDistance", 0}};
+     },
+     "1 x attenuationDistance out of range (material 0): becomes the nearest permitted value\n"},
     {"UndeclaredExtension",
      [](FaultyTriangle& t) {
          t.root["materials"][0]["extensions"]["KHR_materials_ior"] = {{"ior", 1.4}};
@@ -269,6 +279,61 @@ TEST_P(GltfRepair, OfAFaultIsReportedOnce) {
 
 INSTANTIATE_TEST_SUITE_P(Faults, GltfRepair, testing::ValuesIn(repaired),
                          [](const auto& fault) { return std::string(fault.param.name); });
+
+/// Writes a document of one material whose factors all have a value. \return the factors by path
+std::map<std::string, json> written_factors(double value, const std::filesystem::path& folder,
+                                            Report& report) {
+    FaultyTriangle triangle;
+    std::vector<std::string> paths;
+    const auto add = [&](const auto& field) {
+        using Value = decltype(field.default_value());
+        const std::string path = fmt::format("/materials/0/{}", field.gltf);
+        constexpr bool is_number =
+            std::is_same_v<Value, float> || std::is_same_v<Value, std::optional<float>>;
+        if constexpr (is_number || std::is_same_v<Value, glm::vec3>) {
+            if (*field.gltf == '\0' || path.ends_with("Texture/strength")) return;
+            triangle.root[json::json_pointer(path)] = value;
+            if constexpr (!is_number) {
+                const std::size_t count = path.ends_with("baseColorFactor") ? 4 : 3;
+                triangle.root[json::json_pointer(path)] = std::vector<double>(count, value);
+            }
+            paths.push_back(path);
+        }
+    };
+    for_each_field<Material>(add);
+    for_each_field<MetallicRoughness>(add);
+    for (const auto& [name, extension] : triangle.root["materials"][0]["extensions"].items())
+        triangle.root["extensionsUsed"].push_back(name);
+    test::write_gltf_file(folder / "in.glb", triangle.root, triangle.bytes);
+    GltfDocument::read(folder / "in.glb").write(folder / "out.glb", report);
+    const json root = test::meaning_of(folder / "out.glb");
+    std::map<std::string, json> result;
+    for (const std::string& path : paths) {
+        const json& factor = root[json::json_pointer(path)];
+        result[path] = factor.is_array() ? factor[0] : factor;
+    }
+    return result;
+}
+
+TEST_F(GltfRepair, KeepsEveryFactorWithinWhatGltfPermits) {
+    Report low;
+    Report high;
+    const auto least = written_factors(-1e9, folder_.path(), low);
+    const auto most = written_factors(1e9, folder_.path(), high);
+    const auto check = [&](const auto& field) {
+        const auto found = least.find(fmt::format("/materials/0/{}", field.gltf));
+        if (found == least.end()) return;
+        SCOPED_TRACE(field.gltf);
+        constexpr FieldRange all;
+        const FieldRange& range = field.gltf_range;
+        EXPECT_EQ(found->second, range.min == all.min ? -1e9 : static_cast<double>(range.min));
+        EXPECT_EQ(most.at(found->first),
+                  range.max == all.max ? 1e9 : static_cast<double>(range.max));
+    };
+    for_each_field<Material>(check);
+    for_each_field<MetallicRoughness>(check);
+    EXPECT_GT(least.size(), 15U);
+}
 
 class GltfRefusal : public GltfRepair {};
 
