@@ -125,12 +125,7 @@ void drop_layers(Features& f) {
         highlights || f.reflection != ReflectionTerm::none || f.environment_diffuse;
     if (!f.metallic_roughness || !is_lit_anyhow(f)) f.sheen = false;
     if (!f.metallic_roughness || !(is_lit_anyhow(f) || f.emission)) f.clearcoat = false;
-    f.sheen_color_texture &= f.sheen;
-    f.sheen_roughness_texture &= f.sheen;
-    f.anisotropy_texture &= f.anisotropy;
-    f.clearcoat_texture &= f.clearcoat;
-    f.clearcoat_roughness_texture &=
-        f.clearcoat && (highlights || f.reflection != ReflectionTerm::none);
+    f.clearcoat_roughness_texture &= highlights || f.reflection != ReflectionTerm::none;
     f.clearcoat_normal_map &= f.clearcoat && f.interpolation == Interpolation::per_pixel;
 }
 
@@ -178,16 +173,16 @@ void drop_colors(Features& f) {
         f.metallic_roughness_texture = f.dielectric_reflectance = f.iridescence = false;
         if (f.alpha == AlphaMode::opaque) f.diffuse_texture = f.vertex_colors = false;
     }
-    if (!f.emission) f.emission_texture = false;
-    f.specular_weight_texture &= f.dielectric_reflectance;
-    f.specular_color_texture &= f.dielectric_reflectance;
-    f.iridescence_texture &= f.iridescence;
-    f.film_thickness_texture &= f.iridescence;
     // In views of one term it needs scattered light to dim.
     f.transmission &= transmits(f) || f.ambient || f.environment_diffuse || light_count(f) > 0;
-    f.transmission_texture &= f.transmission;
     f.volume &= transmits(f);
-    f.thickness_texture &= f.volume;
+}
+
+/// Drops the effects whose base is not there.
+void drop_dependents(Features& f) {
+    for (const EffectRow& row : effect_rows()) {
+        if (row.base != nullptr && !(f.*row.base)) row.effect.set(f, false);
+    }
 }
 
 std::string counted(std::uint32_t count, std::string_view kind) {
@@ -290,6 +285,7 @@ Features canonical(Features f) {
     drop_lookups(f);
     drop_normal(f);
     drop_colors(f);
+    drop_dependents(f);
     drop_alpha(f);
     drop_tone(f);
     drop_second_texcoords(f);

@@ -191,7 +191,9 @@ template <TextureSlot Slot>
 EffectRow texture_row() {
     constexpr SlotEffect sampling = slot_effects[static_cast<std::size_t>(Slot)];
     return {.effect = one_switch<sampling.effect>(slot_info(Slot).effect, sampling.hidden),
-            .decide = [](Subject s) { return of_texture(s, Slot); }};
+            .decide = [](Subject s) { return of_texture(s, Slot); },
+            .base = sampling.base,
+            .part = sampling.part};
 }
 
 Decision of_vertex_colors(Subject s) {

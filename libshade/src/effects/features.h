@@ -2,8 +2,8 @@
 /// \file
 /// Effects as planning, shader assembly and drawing share them: questions about a set of effects,
 /// and the table of effects, in which one row describes everything that planning and forcing know
-/// of an effect. Its shader parts are in surface_steps.cpp, since parts depend on several effects
-/// at once. Pure. Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
+/// of an effect. Shader parts that depend on several effects are in surface_steps.cpp. Pure.
+/// Tests: tests/shade/effects/effects_test.cpp, plan_test.cpp.
 #pragma once
 
 #include <array>
@@ -101,8 +101,10 @@ EnvironmentNeeds environment_needs(const FramePlan& plan);
 
 /// The effect that samples the texture of a slot.
 struct SlotEffect {
-    bool Features::*effect;  ///< Null for the maps of Features::detail.
-    const char* hidden;      ///< The reason why canonical() drops it.
+    bool Features::*effect;          ///< Null for the maps of Features::detail.
+    const char* hidden;              ///< The reason why canonical() drops it.
+    bool Features::*base = nullptr;  ///< EffectRow::base
+    const char* part = "";           ///< EffectRow::part
 };
 
 /// The effects of textures, by slot. Those of glTF's extensions get their rows of the table of
@@ -114,20 +116,33 @@ inline constexpr std::array<SlotEffect, texture_slot_count> slot_effects{{
     {nullptr, ""},
     {nullptr, ""},
     {&Features::occlusion_texture, "there is no light from all around"},
-    {&Features::emission_texture, "the material has no emission that it could tint"},
+    {&Features::emission_texture, "the material has no emission that it could tint",
+     &Features::emission},
     {&Features::opacity_texture, "the material is opaque"},
-    {&Features::specular_weight_texture, "dielectrics reflect the 4% of the index 1.5"},
-    {&Features::specular_color_texture, "dielectrics reflect the 4% of the index 1.5"},
-    {&Features::sheen_color_texture, "there is no sheen"},
-    {&Features::sheen_roughness_texture, "there is no sheen"},
-    {&Features::clearcoat_texture, "there is no coat"},
-    {&Features::clearcoat_roughness_texture, "there is no coat, or it reflects nothing"},
-    {&Features::clearcoat_normal_map, "there is no coat"},
-    {&Features::anisotropy_texture, "there is no anisotropy"},
-    {&Features::iridescence_texture, "there is no film"},
-    {&Features::film_thickness_texture, "there is no film"},
-    {&Features::transmission_texture, "the surface transmits no light"},
-    {&Features::thickness_texture, "there is no volume"},
+    {&Features::specular_weight_texture, "dielectrics reflect the 4% of the index 1.5",
+     &Features::dielectric_reflectance, "metallic_roughness.glsl#weight_texture"},
+    {&Features::specular_color_texture, "dielectrics reflect the 4% of the index 1.5",
+     &Features::dielectric_reflectance, "metallic_roughness.glsl#color_texture"},
+    {&Features::sheen_color_texture, "there is no sheen", &Features::sheen,
+     "sheen.glsl#color_texture"},
+    {&Features::sheen_roughness_texture, "there is no sheen", &Features::sheen,
+     "sheen.glsl#albedo_by_texture"},
+    {&Features::clearcoat_texture, "there is no coat", &Features::clearcoat,
+     "clearcoat.glsl#texture"},
+    {&Features::clearcoat_roughness_texture, "there is no coat, or it reflects nothing",
+     &Features::clearcoat, "clearcoat.glsl#roughness_texture"},
+    {&Features::clearcoat_normal_map, "there is no coat", &Features::clearcoat,
+     "clearcoat.glsl#normal_map"},
+    {&Features::anisotropy_texture, "there is no anisotropy", &Features::anisotropy,
+     "anisotropy.glsl#texture"},
+    {&Features::iridescence_texture, "there is no film", &Features::iridescence,
+     "iridescence.glsl#texture"},
+    {&Features::film_thickness_texture, "there is no film", &Features::iridescence,
+     "iridescence.glsl#thickness_texture"},
+    {&Features::transmission_texture, "the surface transmits no light", &Features::transmission,
+     "refraction.glsl#transmission_texture"},
+    {&Features::thickness_texture, "there is no volume", &Features::volume,
+     "refraction.glsl#thickness_texture"},
 }};
 
 /// Calls visit(texture, bit) for each texture that these features sample and that may be looked up
@@ -203,8 +218,10 @@ struct EffectRow {
     bool (*neutral)(const ForcingSubject& subject) = nullptr;
     /// A more specific reason than effect.hidden; "" if it does not apply.
     const char* (*hidden_by)(const Features& requested, const Features& shown) = nullptr;
-    bool phong_only = false;    ///< glTF's model has its own form of it, or none.
-    bool follows_pose = false;  ///< The decision depends on DrawSubject::pose alone.
+    bool phong_only = false;         ///< glTF's model has its own form of it, or none.
+    bool follows_pose = false;       ///< The decision depends on DrawSubject::pose alone.
+    bool Features::*base = nullptr;  ///< The effect without which canonical() drops it, or null.
+    const char* part = "";  ///< The part of the fragment shader that it alone chooses, or "".
 };
 
 /// A frame-wide effect. All but the skybox follow from the draws and the settings.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of shader parts: the condition of every part that implements a step. At most one part
-// of a step is chosen for any Features value. Pure. Tests:
-// tests/shade/effects/shader_source_test.cpp.
+// The table of shader parts: the condition of every part that implements a step, unless one effect
+// alone chooses it (EffectRow::part). At most one part of a step is chosen for any Features value.
+// Pure. Tests: tests/shade/effects/shader_source_test.cpp.
 #include <initializer_list>
 
 #include "effects/features.h"
@@ -161,8 +161,6 @@ void choose_surface(ShaderSteps& steps, By f, const Needs& needs) {
 void choose_dielectric(ShaderSteps& steps, By f) {
     const bool by_angle = f.dielectric_reflectance && has_lit_facets(f);
     choose(steps, {{"metallic_roughness.glsl#dielectric", f.dielectric_reflectance},
-                   {"metallic_roughness.glsl#weight_texture", f.specular_weight_texture},
-                   {"metallic_roughness.glsl#color_texture", f.specular_color_texture},
                    {"metallic_roughness.glsl#grazing", by_angle}});
 }
 
@@ -184,19 +182,15 @@ void choose_energy(ShaderSteps& steps, By f, bool lit_in_this_stage) {
 /// Chooses the thin film on glTF's facets.
 void choose_film(ShaderSteps& steps, By f) {
     choose(steps, {{"iridescence.glsl#film", f.iridescence},
-                   {"iridescence.glsl#texture", f.iridescence_texture},
-                   {"iridescence.glsl#thickness", f.iridescence && !f.film_thickness_texture},
-                   {"iridescence.glsl#thickness_texture", f.film_thickness_texture}});
+                   {"iridescence.glsl#thickness", f.iridescence && !f.film_thickness_texture}});
 }
 
 /// Chooses what shows through glTF's surfaces.
 void choose_transmission(ShaderSteps& steps, By f) {
     choose(steps, {{"refraction.glsl#transmission_dimming", f.transmission && !transmits(f)},
                    {"refraction.glsl#transmission", transmits(f)},
-                   {"refraction.glsl#transmission_texture", f.transmission_texture},
                    {"refraction.glsl#thin", transmits(f) && !f.volume},
-                   {"refraction.glsl#volume", f.volume},
-                   {"refraction.glsl#thickness_texture", f.thickness_texture}});
+                   {"refraction.glsl#volume", f.volume}});
 }
 
 /// Chooses glTF's facets. Canonical features have anisotropy only where it shows.
@@ -205,8 +199,7 @@ void choose_facets(ShaderSteps& steps, By f, bool in_this_stage) {
     const bool mirrors = f.anisotropy && f.reflection != ReflectionTerm::none;
     choose(steps, {{"metallic_roughness.glsl#lobe", lit && !f.anisotropy},
                    {"anisotropy.glsl#lobe", lit && f.anisotropy},
-                   {"anisotropy.glsl#mirror_normal", mirrors},
-                   {"anisotropy.glsl#texture", f.anisotropy_texture}});
+                   {"anisotropy.glsl#mirror_normal", mirrors}});
 }
 
 /// Chooses the layers on glTF's surfaces. A view of one term has the layers' share of that term;
@@ -217,8 +210,6 @@ void choose_layers(ShaderSteps& steps, By f) {
     const bool smooth_sheen = f.sheen && !f.sheen_roughness_texture;
     choose(steps, {{"sheen.glsl#layer", f.sheen},
                    {"sheen.glsl#albedo", smooth_sheen},
-                   {"sheen.glsl#albedo_by_texture", f.sheen_roughness_texture},
-                   {"sheen.glsl#color_texture", f.sheen_color_texture},
                    {"sheen.glsl#lights", f.sheen && highlights},
                    {"sheen.glsl#width", smooth_sheen && highlights},
                    {"sheen.glsl#width_by_texture", f.sheen_roughness_texture && highlights},
@@ -227,9 +218,6 @@ void choose_layers(ShaderSteps& steps, By f) {
                    {"clearcoat.glsl#layer", f.clearcoat},
                    {"clearcoat.glsl#normal",
                     f.clearcoat && !f.clearcoat_normal_map && f.detail != NormalDetail::none},
-                   {"clearcoat.glsl#normal_map", f.clearcoat_normal_map},
-                   {"clearcoat.glsl#texture", f.clearcoat_texture},
-                   {"clearcoat.glsl#roughness_texture", f.clearcoat_roughness_texture},
                    {"clearcoat.glsl#lights", f.clearcoat && highlights},
                    {"clearcoat.glsl#ambient", f.clearcoat && f.ambient},
                    {"clearcoat.glsl#reflection", mirrors}});
@@ -318,6 +306,14 @@ void choose_colors(ShaderSteps& steps, By f) {
                    {"metallic_roughness.glsl#roughness", f.metallic_roughness && has_lit_facets(f)},
                    {"emission.glsl#color", f.emission && !f.emission_texture},
                    {"emission.glsl#texture", f.emission && f.emission_texture}});
+}
+
+/// Chooses the parts of the effects that choose one part alone.
+void choose_own_parts(ShaderSteps& steps, By f) {
+    for (const EffectRow& row : effect_rows()) {
+        const std::string_view part = row.part;
+        if (!part.empty() && row.effect.on(f)) choose_part(steps, part);
+    }
 }
 
 /// Chooses coverage, and the second texture coordinates, at which at_second_texcoords() looks up.
@@ -419,6 +415,7 @@ void choose_lit_surface(ShaderSteps& steps, By f) {
     choose_scattering(steps, f, lights_here);
     choose_ambient(steps, f);
     choose_reflection(steps, f);
+    choose_own_parts(steps, f);
     choose_coding(steps, f);
 }
 
