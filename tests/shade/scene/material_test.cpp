@@ -360,6 +360,20 @@ TEST(SceneField, HasATitleAndARangeForPanels) {
     EXPECT_EQ(field_of(&SpotLight::outer_cone).unit, FieldUnit::radians);
 }
 
+TEST(SceneField, HasASliderOfAcceptedValuesThatGltfPermits) {
+    const auto lies_in = [](const FieldRange& inner, const FieldRange& outer) {
+        return inner.min >= outer.min && inner.max <= outer.max && inner.min < inner.max;
+    };
+    const auto check = [&](const auto& field) {
+        EXPECT_TRUE(lies_in(field.slider_range, field.range)) << field.name;
+        EXPECT_TRUE(lies_in(field.range, field.gltf_range)) << field.name;
+    };
+    for_each_field<Material>(check);
+    for_each_field<MetallicRoughness>(check);
+    for_each_field<Environment>(check);
+    for_each_field<Shadow>(check);
+}
+
 TEST(EnumNames, HaveLabelsForPanels) {
     EXPECT_THAT(enum_labels<ToneMapping>(),
                 testing::ElementsAre("None", "Reinhard", "ACES (Narkowicz)", "Khronos PBR Neutral",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Effect times are measured without a window. The tests check only properties that do not depend on
 // timing noise.
-#include "window/panels.h"
+#include "window/effects_panel.h"
 
 #include <gtest/gtest.h>
 

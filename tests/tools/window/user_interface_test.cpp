@@ -15,6 +15,7 @@
 #include "support/shared_data.h"
 #include "tools/window/display.h"
 #include "tools/window/viewer_window.h"
+#include "window/controls.h"
 #include "window/panels.h"
 
 namespace relief::tools {

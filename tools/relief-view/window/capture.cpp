@@ -14,6 +14,7 @@
 #include "relief/shade/scene_file.h"
 #include "saved_files.h"
 #include "window/background_jobs.h"
+#include "window/controls.h"
 #include "window/panels.h"
 
 namespace relief::tools {

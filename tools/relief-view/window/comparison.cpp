@@ -8,6 +8,7 @@
 
 #include "relief/mesh/image.h"
 #include "variant_options.h"
+#include "window/controls.h"
 #include "window/panels.h"
 
 namespace relief::tools {

@@ -15,6 +15,7 @@
 #include "relief/mesh/image_file.h"
 #include "scene_options.h"
 #include "variant_options.h"
+#include "window/controls.h"
 #include "window/panels.h"
 
 namespace relief::tools {

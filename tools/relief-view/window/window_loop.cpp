@@ -27,6 +27,8 @@
 #include "window/background_jobs.h"
 #include "window/capture.h"
 #include "window/comparison.h"
+#include "window/controls.h"
+#include "window/effects_panel.h"
 #include "window/input_files.h"
 #include "window/panels.h"
 #include "window/scene_accuracy.h"

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// The effects panel: the reasons for each effect, measured times, and the shader source.
+#include "window/effects_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "common/text.h"
+#include "window/controls.h"
+#include "window/panels.h"
+
+namespace relief::tools {
+
+std::string numbered_lines(const std::string& source) {
+    const bool has_open_end = !source.empty() && source.back() != '\n';
+    const auto count = std::count(source.begin(), source.end(), '\n') + (has_open_end ? 1 : 0);
+    const std::size_t width = fmt::format("{}", count).size();
+    std::istringstream lines(source);
+    std::string text;
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number)
+        text += fmt::format("{:>{}}  {}\n", number, width, line);
+    return text;
+}
+
+void ShaderPanel::assemble(const FramePlan& plan) {
+    programs_.clear();
+    error_.clear();
+    try {
+        for (ShaderListing& listing : shader_listings(plan)) {
+            Program program{describe(listing.features), std::move(listing), "", ""};
+            program.vertex = numbered_lines(program.listing.vertex);
+            program.fragment = numbered_lines(program.listing.fragment);
+            programs_.push_back(std::move(program));
+        }
+    } catch (const std::exception& error) {  // A file in RELIEF_SHADER_DIR may be incomplete.
+        error_ = error.what();
+    }
+}
+
+void ShaderPanel::draw_stage(const char* name, const std::string& source, std::string& numbered) {
+    if (!ImGui::BeginTabItem(name)) return probe_item(name);
+    probe_item(name);
+    if (ImGui::Button("Copy without numbers")) ImGui::SetClipboardText(source.c_str());
+    probe_item("Copy without numbers");
+    // The field is read-only, so the text does not change.
+    ImGui::InputTextMultiline("##source", numbered.data(), numbered.size() + 1,
+                              {-1.0F, 24.0F * ImGui::GetTextLineHeight()},
+                              ImGuiInputTextFlags_ReadOnly);
+    ImGui::EndTabItem();
+}
+
+void ShaderPanel::draw(const std::shared_ptr<const FramePlan>& plan) {
+    if (plan_ != plan) assemble(*plan);
+    plan_ = plan;
+    if (!error_.empty()) ImGui::TextWrapped("%s", error_.c_str());
+    for (std::size_t i = 0; i < programs_.size(); ++i) {
+        Program& program = programs_[i];
+        const bool is_open = ImGui::TreeNode(fmt::format("{}##{}", program.name, i).c_str());
+        probe_item(fmt::format("Program {}", i + 1));
+        if (!is_open) continue;
+        if (ImGui::BeginTabBar("stages")) {
+            draw_stage("Fragment shader", program.listing.fragment, program.fragment);
+            draw_stage("Vertex shader", program.listing.vertex, program.vertex);
+            ImGui::EndTabBar();
+        }
+        ImGui::TreePop();
+    }
+}
+
+namespace {
+
+/// 0: automatic, 1: forced on, 2: forced off.
+int forced(const EffectRequest& requests, const std::string& name) {
+    for (const ForcedEffect& effect : requests.forced) {
+        if (effect.name == name) return effect.on ? 1 : 2;
+    }
+    return 0;
+}
+
+void draw_switch(ViewerState& state, const std::string& name) {
+    int choice = forced(state.effects(), name);
+    ImGui::PushID(name.c_str());
+    ImGui::SetNextItemWidth(4.5F * ImGui::GetFontSize());
+    if (ImGui::Combo("##forced", &choice, "auto\0on\0off\0")) {
+        EffectRequest requests = state.effects();
+        std::erase_if(requests.forced,
+                      [&](const ForcedEffect& effect) { return effect.name == name; });
+        if (choice != 0) requests.forced.push_back({name, choice == 1});
+        state.set_effects(std::move(requests));
+    }
+    probe_item("force " + name);
+    ImGui::PopID();
+}
+
+/// Draws the rows of the effects that are on, or of those that are off.
+void draw_reasons(const PanelInput& input, const std::vector<EffectReason>& reasons, bool are_on) {
+    for (const EffectReason& reason : reasons) {
+        if (reason.on != are_on) continue;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        draw_switch(input.state, reason.effect);
+        // The times come before the names, because long names reach beyond the panel.
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(input.effect_times.text(reason.effect).c_str());
+        ImGui::TableNextColumn();
+        const ImVec4 color =
+            ImGui::GetStyleColorVec4(reason.on ? ImGuiCol_Text : ImGuiCol_TextDisabled);
+        ImGui::TextColored(color, "%s", reason.effect.c_str());
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", reason.reason.c_str());
+    }
+}
+
+/// Draws the measured times, or a button that measures them.
+void draw_effect_times(const PanelInput& input, PanelRequests& requests) {
+    const EffectTimes::State effect_times = input.effect_times.state();
+    if (effect_times.is_running) {
+        const std::size_t done = effect_times.costs.effects.size();
+        const std::string text = fmt::format("effect {} of {}", done + 1, effect_times.count);
+        ImGui::ProgressBar(effect_times.count == 0
+                               ? 0.0F
+                               : static_cast<float>(done) / static_cast<float>(effect_times.count),
+                           {0.5F * ImGui::GetContentRegionAvail().x, 0.0F}, text.c_str());
+        ImGui::SameLine();
+        if (ImGui::Button("Stop")) requests.stop_measuring = true;
+        probe_item("Stop");
+        return;
+    }
+    if (ImGui::Button("Measure times")) requests.measure_effects = true;
+    probe_item("Measure times");
+    if (!effect_times.error.empty()) return ImGui::TextWrapped("%s", effect_times.error.c_str());
+    if (effect_times.costs.effects.empty())
+        return ImGui::TextWrapped(
+            "The time of an effect is the difference between a frame with it and a frame without "
+            "it.");
+    const TimeStatistics& frame = effect_times.costs.frame;
+    ImGui::TextWrapped("Frame: %.2f ms (%.2f to %.2f), %d x %d pixels, %s", frame.median, frame.p10,
+                       frame.p90, effect_times.width, effect_times.height,
+                       counted(static_cast<std::size_t>(effect_times.samples), "sample").c_str());
+}
+
+}  // namespace
+
+void draw_effects_panel(const PanelInput& input, PanelRequests& requests) {
+    if (!input.drawn.plan) return;
+    const FramePlan& plan = *input.drawn.plan;
+    // Debug views do not draw the effects.
+    if (input.state.debug().view == DebugView::picture) draw_effect_times(input, requests);
+    const bool is_open = ImGui::TreeNode("Shaders");
+    probe_item("Shaders");
+    if (is_open) {
+        input.shaders.draw(input.drawn.plan);
+        ImGui::TreePop();
+    }
+    if (ImGui::BeginTable("effects", 3, ImGuiTableFlags_SizingFixedFit)) {
+        for (const bool are_on : {true, false}) {
+            draw_reasons(input, plan.reasons, are_on);
+            if (!plan.draws.empty()) draw_reasons(input, plan.draws.front().reasons, are_on);
+        }
+        ImGui::EndTable();
+    }
+}
+
+}  // namespace relief::tools
