@@ -38,20 +38,10 @@ uniform float transmission;
 
 float transmission_here() { return transmission * transmission_texel(); }
 
-//@part transmission implements transmission
-// The picture behind the surface replaces a share of the scattered light. It is tinted as scattered
-// light is, and lacks what facets mirror. Rough surfaces look up a coarser level of the picture.
-// Texels are fetched and mixed here, so that the weights are exact.
-// Source: KHR_materials_transmission.
-
-//@include "inputs.glsl#min_roughness"
-//@include "refraction.glsl#transmission_share"
-//@include <film>
-//@include <grazing>
-//@include <path>
+//@part behind
+// The picture behind the surface. Texels are fetched and mixed here, so that the weights are exact.
 
 uniform sampler2D behind;  // Radiance multiplied by coverage. Each level has half the size.
-uniform float blurred_level;  // The level for roughness 1.
 uniform vec3 background_radiance;
 
 // The size of a level. textureSize() takes one level for neighbors whose levels differ (llvmpipe).
@@ -79,6 +69,21 @@ vec3 radiance_behind(vec2 place, float level) {
     return texel.rgb + (1.0 - texel.a) * background_radiance;
 }
 
+//@part transmission implements transmission
+// The picture behind the surface replaces a share of the scattered light. It is tinted as scattered
+// light is, and lacks what facets mirror. Rough surfaces look up a coarser level of the picture.
+// Source: KHR_materials_transmission.
+
+//@include "inputs.glsl#min_roughness"
+//@include "refraction.glsl#transmission_share"
+//@include "refraction.glsl#behind"
+//@include <film>
+//@include <grazing>
+//@include <path>
+//@include <dispersion>
+
+uniform float blurred_level;  // The level for roughness 1.
+
 vec3 with_transmission(Surface surface, vec3 scattered) {
     float share = transmission_here();
     float m = 1.0 - clamp(dot(surface.normal_world, surface.view_world), 0.0, 1.0);
@@ -88,7 +93,7 @@ vec3 with_transmission(Surface surface, vec3 scattered) {
         blocking + (grazing_reflectance(surface) - blocking) * (m * m * m * m * m));
     float level = blurred_level * (surface.roughness - min_roughness) / (1.0 - min_roughness);
     Path path = path_through(surface, vec2(textureSize(behind, 0)));
-    vec3 seen = radiance_behind(path.place, level) * path.transmittance;
+    vec3 seen = radiance_along(path, surface, level) * path.transmittance;
     vec3 passing = seen * surface.scattered_color * (vec3(1.0) - blocked);
     return scattered * (1.0 - share) + passing * share;
 }
@@ -150,13 +155,46 @@ uniform float object_scale;
 uniform vec3 absorption;  // The logarithm of the attenuation of a unit of length.
 uniform float volume_index_ratio;  // The outside's refractive index over the inside's.
 
+float path_length() { return thickness * thickness_texel() * object_scale; }
+
+vec2 place_behind(Surface surface, vec2 picture_size, float index_ratio) {
+    vec3 bent_world = refract(-surface.view_world, surface.normal_world, index_ratio);
+    vec4 clip = clip_from_world * vec4(surface.position_world + bent_world * path_length(), 1.0);
+    return clip.w > 0.0 ? clamp(0.5 * clip.xy / clip.w + 0.5, vec2(0.0), vec2(1.0))
+                        : gl_FragCoord.xy / picture_size;
+}
+
 Path path_through(Surface surface, vec2 picture_size) {
-    float path_length = thickness * thickness_texel() * object_scale;
-    vec3 bent_world = refract(-surface.view_world, surface.normal_world, volume_index_ratio);
-    vec4 clip = clip_from_world * vec4(surface.position_world + bent_world * path_length, 1.0);
-    vec2 place = clip.w > 0.0 ? clamp(0.5 * clip.xy / clip.w + 0.5, vec2(0.0), vec2(1.0))
-                              : gl_FragCoord.xy / picture_size;
-    return Path(place, exp(-absorption * path_length));
+    return Path(place_behind(surface, picture_size, volume_index_ratio),
+                exp(-absorption * path_length()));
+}
+
+//@part dispersion implements dispersion
+// Red, green and blue leave the volume in directions of their own: its index is smaller for red and
+// larger for blue than for green, by half of (index - 1) / V with the Abbe number V, but at least 1.
+// Source: KHR_materials_dispersion.
+
+//@include "refraction.glsl#behind"
+//@include "refraction.glsl#volume"
+
+uniform float dispersion;  // 20 / V
+
+vec3 radiance_along(Path path, Surface surface, float level) {
+    float spread = max(1.0 - volume_index_ratio, 0.0) * 0.025 * dispersion;  // Over the index.
+    float red_ratio =
+        volume_index_ratio / max(1.0 - spread, clamp(volume_index_ratio, 1e-20, 1.0));
+    float blue_ratio = volume_index_ratio / (1.0 + spread);
+    vec2 picture_size = vec2(textureSize(behind, 0));
+    return vec3(radiance_behind(place_behind(surface, picture_size, red_ratio), level).r,
+                radiance_behind(path.place, level).g,
+                radiance_behind(place_behind(surface, picture_size, blue_ratio), level).b);
+}
+
+//@neutral dispersion
+//@include "refraction.glsl#behind"
+
+vec3 radiance_along(Path path, Surface surface, float level) {
+    return radiance_behind(path.place, level);
 }
 
 //@part thickness_texture implements thickness_texture

@@ -480,6 +480,17 @@ std::vector<EffectRow> model_rows() {
                  return of_material(s, has, "encloses a volume", "is thin");
              },
          .choice = "a thin surface does not refract"},
+        {.effect = one_switch<&F::dispersion>("dispersion", "there is no volume"),
+         .decide =
+             [](Subject s) {
+                 const bool has = is_physical(s) &&
+                                  s.material.metallic_roughness->dispersion > 0.0F &&
+                                  s.material.metallic_roughness->refractive_index > 1.0F;
+                 return of_material(s, has, "refracts red, green and blue differently",
+                                    "refracts all colors alike");
+             },
+         .base = &F::volume,
+         .part = "refraction.glsl#dispersion"},
         {.effect = one_switch<&F::anisotropy>("anisotropy", no_facets),
          .decide = of_anisotropy,
          .choice = "the mesh has no tangent frame",

@@ -726,14 +726,21 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
     return light;
 }
 
+/// Returns the index of the volume for red, green and blue: by the Abbe number V = 20 / dispersion
+/// the indices of blue and red differ by (n - 1) / V, half of it on either side of green.
+glm::dvec3 volume_indices(const MetallicRoughness& model) {
+    const double index = static_cast<double>(model.refractive_index);
+    const double half =
+        0.5 * std::max(index - 1.0, 0.0) * static_cast<double>(model.dispersion) / 20.0;
+    return {std::max(index - half, std::min(index, 1.0)), index, index + half};
+}
+
 /// Returns the light from behind the surface.
 glm::dvec3 passing_light(const Context& context, const Microfacets& facets, const Hit& hit) {
     const Surface& at = context.surface;
     if (!is_transmissive(context.material, *context.prepared.instances[hit.instance].mesh))
         return glm::dvec3(0.0);
     const MetallicRoughness& model = *context.material.metallic_roughness;
-    const double index = static_cast<double>(model.refractive_index);
-    const double ratio = index > 0.0 ? 1.0 / index : 0.0;
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
     const glm::dvec3 blocked =
         with_film(context, facets, n_dot_v, 1.0,
@@ -745,11 +752,21 @@ glm::dvec3 passing_light(const Context& context, const Microfacets& facets, cons
     const double scale = portable::pow(std::abs(glm::determinant(world_from_object)), 1.0 / 3.0);
     const double length =
         static_cast<double>(model.thickness) * scale * context.look_up(TextureSlot::thickness).g;
-    const glm::dvec3 path = length * glm::refract(-at.view_world, at.normal_world, ratio);
+    const glm::dvec3 indices = volume_indices(model);
+    const double index = indices.g;
     const double spread = index > 0.0 ? std::clamp(2.0 * index - 2.0, 0.0, 1.0) : 1.0;
     const double blur = spread * (facets.roughness - min_roughness) / (1.0 - min_roughness);
-    glm::dvec3 light = context.prepared.behind->look_up(at.position_world + path, at.position_world,
-                                                        blur, context.trace);
+    const auto seen = [&](double by_index) {
+        const double ratio = by_index > 0.0 ? 1.0 / by_index : 0.0;
+        const glm::dvec3 path = length * glm::refract(-at.view_world, at.normal_world, ratio);
+        return context.prepared.behind->look_up(at.position_world + path, at.position_world, blur,
+                                                context.trace);
+    };
+    glm::dvec3 light = seen(index);
+    if (indices.r != indices.b) {
+        light.r = seen(indices.r).r;
+        light.b = seen(indices.b).b;
+    }
     if (model.attenuation_distance) {
         const double lengths = length / static_cast<double>(*model.attenuation_distance);
         const glm::dvec3 color = glm::max(glm::dvec3(model.attenuation_color), 1e-6);

@@ -70,8 +70,8 @@ TEST(CanonicalFeatures, ContainOnlyVisibleFeatures) {
                                       !c.energy_compensation && !c.sheen && !c.clearcoat &&
                                       !c.iridescence && !c.transmission)) &&
             (c.transmission || (!c.transmission_texture && !c.volume)) &&
-            (c.volume || !c.thickness_texture) && (lit || !c.iridescence) && (lit || !c.sheen) &&
-            (lit || c.emission || !c.clearcoat) &&
+            (c.volume || (!c.thickness_texture && !c.dispersion)) && (lit || !c.iridescence) &&
+            (lit || !c.sheen) && (lit || c.emission || !c.clearcoat) &&
             ((c.metallic_roughness && (has_lights(c) || reflects)) || !c.anisotropy) &&
             (has_lights(c) || reflects || c.environment_diffuse || !c.energy_compensation) &&
             (c.dielectric_reflectance ||

@@ -123,6 +123,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::transmission>("transmission"),
         field<&F::transmission_texture>("transmission texture"),
         field<&F::volume>("volume"),
+        field<&F::dispersion>("dispersion"),
         field<&F::thickness_texture>("thickness texture"),
         second<TextureSlot::base_color>("diffuse texture at second coordinates"),
         second<TextureSlot::occlusion>("occlusion texture at second coordinates"),
@@ -332,6 +333,7 @@ Material material_calling_for(const Features& f) {
         m.metallic_roughness->attenuation_distance = 0.8F;
         m.metallic_roughness->attenuation_color = {0.9F, 0.5F, 0.3F};
     }
+    if (f.dispersion) m.metallic_roughness->dispersion = 4.0F;
     if (f.anisotropy) {
         m.metallic_roughness->anisotropy = 0.6F;
         m.metallic_roughness->anisotropy_rotation = 0.7F;

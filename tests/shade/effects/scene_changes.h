@@ -102,6 +102,8 @@ inline const Change thickness_texture =
     with(&MetallicRoughness::iridescence_thickness_texture, Texture{});
 inline const Change clear = with(&MetallicRoughness::transmission, 0.001F);
 inline const Change thick = with(&MetallicRoughness::thickness, 0.001F);
+inline const Change dispersive = with(&MetallicRoughness::dispersion, 0.001F);
+inline const Change index_1 = with(&MetallicRoughness::refractive_index, 1.0F);
 inline const Change clear_texture = with(&MetallicRoughness::transmission_texture, Texture{});
 inline const Change volume_texture = with(&MetallicRoughness::thickness_texture, Texture{});
 inline const Change metal = with(&MetallicRoughness::metallic, 1.0F);

@@ -518,6 +518,15 @@ std::vector<AddedThing> transmission_effects() {
                                model.specular_color = {0.3F, 0.6F, 0.9F};
                            }});
     }
+    for (const float index : {0.0F, 0.5F, 1.0F, 1.7F}) {
+        for (const float dispersion : {5.0F, 200.0F}) {
+            effects.push_back({"dispersion", [=](Scene& s, test::Dice&) {
+                                   M& model = clear_before_cubes(s, 0.1F, 0.5F);
+                                   model.refractive_index = index;
+                                   model.dispersion = dispersion;
+                               }});
+        }
+    }
     effects.push_back({"under film, sheen and coat", [](Scene& s, test::Dice&) {
                            M& model = clear_before_cubes(s, 0.3F, 0.4F);
                            model.iridescence = 0.9F;

@@ -232,6 +232,13 @@ std::vector<ScenePart> model_parts() {
                        model.attenuation_distance = 0.7F;
                        model.attenuation_color = {0.9F, 0.3F, 0.0F};
                    }),
+        plain_part("dispersion",
+                   [](Scene& s) {
+                       MetallicRoughness& model = clear_model_of(s);
+                       model.roughness = 0.2F;
+                       model.thickness = 0.5F;
+                       model.dispersion = 5.0F;
+                   }),
     };
 }
 

@@ -347,7 +347,7 @@ TEST(SceneField, HasALabelForMessages) {
             "iridescence", "film index", "film thickness", "minimum film thickness",
             "iridescence texture", "iridescence thickness texture", "transmission",
             "transmission texture", "thickness", "thickness texture", "attenuation distance",
-            "attenuation color"));
+            "attenuation color", "dispersion"));
     EXPECT_EQ(outer_cone_field.label(), "outer cone");
 }
 

@@ -145,6 +145,9 @@ struct MetallicRoughness {
     /// volume is clear.
     std::optional<float> attenuation_distance = std::nullopt;
     glm::vec3 attenuation_color{1.0F};
+    /// 20 over the Abbe number of the volume, whose index refractive_index is that of green
+    /// (KHR_materials_dispersion); 0: all colors take one path.
+    float dispersion = 0.0F;
 };
 
 /// A material. relief/shade/material.h has the formula of its light.
@@ -339,17 +342,17 @@ inline constexpr auto fields_of<MetallicRoughness> = std::tuple{
                     "extensions/KHR_materials_volume/attenuationDistance", positive_range,
                     FieldUnit::world_length),
     material_factor("attenuation_color", &MetallicRoughness::attenuation_color,
-                    "extensions/KHR_materials_volume/attenuationColor", {0, 1}, FieldUnit::color)};
+                    "extensions/KHR_materials_volume/attenuationColor", {0, 1}, FieldUnit::color),
+    material_factor("dispersion", &MetallicRoughness::dispersion,
+                    "extensions/KHR_materials_dispersion/dispersion", non_negative_range)};
 
 /// A factor of glTF's materials that is not drawn.
 struct UndrawnFactor {
     const char* gltf;  ///< As SceneField::gltf.
     FieldRange range;  ///< The values that glTF permits; 0 changes nothing.
 };
-inline constexpr std::array undrawn_factors{
-    UndrawnFactor{"extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor",
-                  {0, 1}},
-    UndrawnFactor{"extensions/KHR_materials_dispersion/dispersion", non_negative_range}};
+inline constexpr std::array undrawn_factors{UndrawnFactor{
+    "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor", {0, 1}}};
 
 template <>
 inline constexpr auto fields_of<Material> = std::tuple{

@@ -72,7 +72,8 @@ struct Features {
     bool film_thickness_texture = false;
     bool transmission = false;  ///< KHR_materials_transmission
     bool transmission_texture = false;
-    bool volume = false;  ///< KHR_materials_volume
+    bool volume = false;      ///< KHR_materials_volume
+    bool dispersion = false;  ///< KHR_materials_dispersion
     bool thickness_texture = false;
     /// The textures that are looked up at the second texture coordinates: 1 << TextureSlot for
     /// each.

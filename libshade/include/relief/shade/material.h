@@ -91,8 +91,10 @@
 /// f' is at n.v. `behind` is the picture of the skybox and of all surfaces without transmission and
 /// blending, over the background, whose color counts as radiance. It is looked up where the
 /// refracted ray is after `length`, the thickness times the scale of the object (the cube root of
-/// its determinant), seen from the eye; for thickness 0, at the pixel itself. Rough surfaces look
-/// up coarser levels of the picture. The surface itself covers what is behind.
+/// its determinant), seen from the eye; for thickness 0, at the pixel itself. With dispersion, red
+/// and blue have rays of their own, refracted by max(n - s, 1) and n + s, with n the refractive
+/// index, which is at least 1, and s = (n - 1) dispersion / 40. Rough surfaces look up coarser
+/// levels of the picture. The surface itself covers what is behind.
 ///
 /// Sheen adds fibers, and a clear coat covers all of it, emission included. With s the sheen's
 /// color, D' and V' Charlie's distribution and visibility for alpha = (sheen_roughness *
@@ -116,9 +118,9 @@
 /// Sources: [Phong 1975], [Blinn 1977], [Blinn 1978], [Schlick 1994], [Walter et al. 2007],
 /// [Hoffman 2013], [Karis, SIGGRAPH 2013], [Fdez-Aguera 2019], [Turquin 2019], glTF 2.0, appendix
 /// B, with KHR_materials_ior, KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen,
-/// KHR_materials_anisotropy, KHR_materials_iridescence, KHR_materials_transmission and
-/// KHR_materials_volume, [Estevez and Kulla 2017] and [Belcour and Barla 2017]. The CPU
-/// implementation is reference.h.
+/// KHR_materials_anisotropy, KHR_materials_iridescence, KHR_materials_transmission,
+/// KHR_materials_volume and KHR_materials_dispersion, [Estevez and Kulla 2017] and [Belcour and
+/// Barla 2017]. The CPU implementation is reference.h.
 #pragma once
 
 #include <glm/glm.hpp>
