@@ -113,25 +113,6 @@ double slope_at(const double* line, int left, int right) {
     return side * (2.0 * (line[side] - line[0]) - 0.5 * (line[2 * side] - line[0]));
 }
 
-/// Applies the high-pass mask (1 -2 1) `times` times along both axes, and returns the absolute
-/// values. The gain for white noise is 1.
-std::vector<double> high_pass(const HeightTile& tile, int times) {
-    static constexpr std::array second_difference = {-2.0, 1.0};
-    HeightTile high = tile;
-    for (int i = 0; i < times; ++i)
-        high = filtered(high, second_difference);
-    // The squares of the binomial coefficients of 2 n add up to C(4 n, 2 n).
-    const double gain = times == 2 ? 70.0 : 924.0;
-    // At the border the mask reads the extension of the tile, which contains no noise.
-    std::vector<double> inside;
-    for (int y = times; y < tile.height - times; ++y) {
-        for (int x = times; x < tile.width - times; ++x)
-            inside.push_back(std::abs(high.values[static_cast<std::size_t>(y * tile.width + x)]) /
-                             gain);
-    }
-    return inside;
-}
-
 using Neighbors = std::array<double, 8>;
 
 /// Returns the eight neighbors of an interior texel. Opposite neighbors are 4 elements apart.
@@ -204,16 +185,6 @@ std::vector<double> remove_isolated_outliers(HeightTile& tile, double min_height
     return heights;
 }
 
-/// Estimates the standard deviation of Gaussian noise from the 20% quantile of the absolute values.
-/// Detail in up to 80% of the texels hardly changes the result.
-double deviation_from_quantile(std::vector<double>& magnitudes) {
-    if (magnitudes.empty()) return 0.0;
-    // 20% of a Gaussian lies within 0.2533 standard deviations.
-    const auto fifth = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 5);
-    std::nth_element(magnitudes.begin(), fifth, magnitudes.end());
-    return *fifth / 0.2533;
-}
-
 /// Estimates the standard deviation of white noise with the high-pass mask (1 -2 1)^`times`.
 double noise_deviation(std::span<const HeightTile> tiles, int times) {
     std::vector<double> all;
@@ -225,6 +196,31 @@ double noise_deviation(std::span<const HeightTile> tiles, int times) {
 }
 
 }  // namespace
+
+std::vector<double> high_pass(const HeightTile& tile, int times) {
+    static constexpr std::array second_difference = {-2.0, 1.0};
+    HeightTile high = tile;
+    for (int i = 0; i < times; ++i)
+        high = filtered(high, second_difference);
+    // The squares of the binomial coefficients of 2 n add up to C(4 n, 2 n).
+    const double gain = times == 2 ? 70.0 : 924.0;
+    // At the border the mask reads the extension of the tile, which contains no noise.
+    std::vector<double> inside;
+    for (int y = times; y < tile.height - times; ++y) {
+        for (int x = times; x < tile.width - times; ++x)
+            inside.push_back(std::abs(high.values[static_cast<std::size_t>(y * tile.width + x)]) /
+                             gain);
+    }
+    return inside;
+}
+
+double deviation_from_quantile(std::vector<double>& magnitudes) {
+    if (magnitudes.empty()) return 0.0;
+    // 20% of a Gaussian lies within 0.2533 standard deviations.
+    const auto fifth = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 5);
+    std::nth_element(magnitudes.begin(), fifth, magnitudes.end());
+    return *fifth / 0.2533;
+}
 
 HeightTile filtered(const HeightTile& tile, std::span<const double> weights, int spacing) {
     HeightTile result = tile;

@@ -76,6 +76,46 @@ using OctaveDeviations = std::array<double, octave_frequencies.size()>;
 /// ignores edges, because noise is in all texels and edges are in few.
 OctaveDeviations octave_deviations(std::span<const HeightTile> tiles);
 
+/// Applies the high-pass mask (1 -2 1) `times` (2 or 3) times along both axes.
+///
+/// \return the absolute values row by row, without `times` texels along the border; the gain for
+///         white noise is 1
+std::vector<double> high_pass(const HeightTile& tile, int times);
+
+/// Estimates the standard deviation of Gaussian noise from the 20% quantile of its absolute values.
+/// Detail in up to 80% of the texels hardly changes the result.
+///
+/// \param magnitudes  are reordered
+double deviation_from_quantile(std::vector<double>& magnitudes);
+
+/// The standard deviations of independent offsets of whole rows and whole columns, as line scanners
+/// have. 0 if there are none.
+struct LineNoise {
+    double rows = 0.0;
+    double columns = 0.0;
+};
+
+/// Estimates offsets of rows and columns: they are far stronger in the means of the lines than in
+/// waves of a few periods along the lines, and their power does not decrease with frequency.
+///
+/// \param rounding  standard deviation of the rounding of a height
+LineNoise line_noise(std::span<const HeightTile> tiles, double rounding);
+
+/// Removes offsets of rows and columns, except for those that change slowly.
+void remove_line_noise(HeightTile& tile, const LineNoise& noise);
+
+/// The standard deviation of noise that depends on the height.
+struct NoiseByHeight {
+    std::vector<double> heights;     ///< In ascending order.
+    std::vector<double> deviations;  ///< At these heights, piecewise linear between them.
+
+    [[nodiscard]] double at(double height) const;
+};
+
+/// Estimates white noise that grows with the height, or with the depth, by at least one half.
+/// Returns nullopt if the noise does not depend on the height, or if detail is stronger.
+std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles);
+
 /// Computes the two-dimensional discrete Fourier transform of a square in place.
 ///
 /// \param square  `side` rows of `side` numbers
@@ -101,9 +141,9 @@ struct NoiseSpectrum {
     [[nodiscard]] double at(double x, double y) const;
     /// Returns the standard deviation of the noise.
     [[nodiscard]] double deviation() const;
-    /// Returns the standard deviation that the mask of third order of high_pass_noise() measures in
-    /// such noise, if the noise is Gaussian and stationary. For white noise it equals deviation().
-    [[nodiscard]] double high_pass_deviation() const;
+    /// Returns what octave_deviations() measures in such noise, if the noise is Gaussian and
+    /// stationary.
+    [[nodiscard]] OctaveDeviations octave_deviations() const;
 };
 
 /// Generates periodic Gaussian noise with this spectrum on a square of `side` texels.
@@ -135,6 +175,14 @@ class PowerSpectrum {
     ///         stronger; nullopt if the power decreases like that of a surface at all frequencies
     [[nodiscard]] std::optional<NoiseSpectrum> grain() const;
 
+    /// Detects white noise after a blur of up to about two texels. The logarithm of its power
+    /// decreases linearly with the squared frequency, while that of a surface decreases at least
+    /// like -2 log(frequency) in addition.
+    ///
+    /// \param rounding  standard deviation of the rounding
+    /// \return the spectrum of the noise and the rounding; nullopt if there is no such noise
+    [[nodiscard]] std::optional<NoiseSpectrum> blurred_noise(double rounding) const;
+
     /// Estimates the maximum power of detail that the noise can hide. It is a share of the noise at
     /// frequencies without visible detail. Above the highest frequency with visible detail, it also
     /// does not exceed the extrapolated decrease of that detail.
@@ -148,6 +196,10 @@ class PowerSpectrum {
     /// Returns the standard deviation of white noise with the median power of the highest
     /// frequencies. Regular patterns from rounding fill few bins and do not change the median.
     [[nodiscard]] double white_floor() const;
+
+    /// Returns true if the power hardly decreases between the highest frequencies, as that of white
+    /// noise. The power of detail decreases further.
+    [[nodiscard]] bool ends_flat() const;
 
   private:
     /// The mean power of a range of frequencies and directions.

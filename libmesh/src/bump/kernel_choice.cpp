@@ -65,9 +65,12 @@ class KernelErrorModel {
 
     [[nodiscard]] const HeightCoding& coding() const { return coding_; }
     /// Returns the standard deviation of the noise without rounding.
-    [[nodiscard]] double noise() const { return noise_; }
+    [[nodiscard]] double noise() const { return stored_is_reference_ ? 0.0 : grain(); }
     /// Returns the standard deviation of the grain, whether it counts as noise or as detail.
-    [[nodiscard]] double grain() const { return grain_; }
+    [[nodiscard]] double grain() const {
+        return std::sqrt(grain_ * grain_ + lines_.rows * lines_.rows +
+                         lines_.columns * lines_.columns);
+    }
     /// Returns true if the map contains almost nothing but grain.
     [[nodiscard]] bool is_only_grain() const { return is_only_grain_; }
     /// Returns the share of isolated outliers.
@@ -79,6 +82,7 @@ class KernelErrorModel {
     void remove_outliers();
     void detect_grain(Grain grain);
     void restore();
+    void add_line_noise(HeightTile& tile, Random& random) const;
     [[nodiscard]] Image degraded(const HeightTile& tile, std::uint32_t seed) const;
     void degrade();
 
@@ -86,8 +90,10 @@ class KernelErrorModel {
     bool destaircased_ = false;
     HeightCoding coding_;
     std::vector<HeightTile> tiles_;  ///< The parts, which restore() turns into the reference.
-    double grain_ = 0.0;
-    double noise_ = 0.0;
+    LineNoise lines_;
+    double grain_ = 0.0;  ///< Without offsets of lines.
+    double noise_ = 0.0;  ///< Like `grain_`; 0 if grain counts as detail.
+    std::optional<NoiseByHeight> noise_by_height_;
     bool is_only_grain_ = false;
     bool stored_is_reference_ = false;  ///< True if grain counts as detail.
     std::optional<PowerSpectrum> spectrum_;
@@ -244,6 +250,33 @@ bool is_flat(const NoiseSpectrum& noise) {
     return *max < 1.6 * *min;
 }
 
+/// Returns true if the noise is in all parts of the map. Edges can have the same power spectrum,
+/// but most of the map is smoother than noise of that spectrum, which a quantile of the texels
+/// shows.
+///
+/// \param octaves  octave_deviations() of the map
+bool is_stationary(const NoiseSpectrum& noise, const OctaveDeviations& octaves, double rounding) {
+    constexpr double min_ratio = 0.85;
+    const OctaveDeviations expected = noise.octave_deviations();
+    // Lower octaves contain other detail, and rounding hides blurred noise in the highest ones.
+    for (std::size_t i = 0; i < octaves.size(); ++i) {
+        if (expected[i] > 2.0 * rounding) return octaves[i] > min_ratio * expected[i];
+    }
+    return false;
+}
+
+/// Returns the root of the mean square of the deviations at all heights of the tiles.
+double mean_deviation(const NoiseByHeight& noise, std::span<const HeightTile> tiles) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (const HeightTile& tile : tiles) {
+        for (const double height : tile.values)
+            squares += noise.at(height) * noise.at(height);
+        count += static_cast<double>(tile.values.size());
+    }
+    return std::sqrt(squares / count);
+}
+
 /// Sums of squared angles in radians.
 struct SquaredAngles {
     double sum = 0.0;
@@ -304,6 +337,11 @@ void KernelErrorModel::remove_outliers() {
 
 void KernelErrorModel::detect_grain(Grain grain) {
     const double rounding = root_mean_square_rounding(tiles_, coding_);
+    if (!coding_.has_exact_levels) lines_ = line_noise(tiles_, rounding);
+    if (grain != Grain::detail) {
+        for (HeightTile& tile : tiles_)
+            remove_line_noise(tile, lines_);
+    }
     high_pass_ = high_pass_noise(tiles_);
     if (have_spectrum(tiles_)) spectrum_.emplace(tiles_);
     white_deviation_ =
@@ -313,31 +351,35 @@ void KernelErrorModel::detect_grain(Grain grain) {
     OctaveDeviations octaves{};
     if (spectrum_) {
         octaves = octave_deviations(every_fourth(tiles_));
-        colored_noise_ = spectrum_->grain();
+        colored_noise_ = spectrum_->blurred_noise(rounding);
+        if (!colored_noise_) colored_noise_ = spectrum_->grain();
         max_noise_ = max_noise(octaves, high_pass_.deviation, rounding, tiles_[0].width);
     }
-    // Grain is stationary. Edges can have the same power spectrum, but most of the map is smoother
-    // than noise of that spectrum, which a quantile of the texels shows.
-    constexpr double min_noise_ratio = 0.85;
-    const bool is_stationary =
-        high_pass_.deviation > min_deviation &&
-        (!colored_noise_ ||
-         high_pass_.deviation > min_noise_ratio * colored_noise_->high_pass_deviation());
-    if (colored_noise_ && (is_flat(*colored_noise_) || !is_stationary ||
-                           !(colored_noise_->deviation() > min_deviation)))
+    if (colored_noise_ &&
+        (is_flat(*colored_noise_) || !is_stationary(*colored_noise_, octaves, rounding) ||
+         !(colored_noise_->deviation() > min_deviation)))
         colored_noise_.reset();
     // Edges can dominate the spectrum, but not the lower quantiles of the octave bands. The highest
     // band is not compared, because a blur removes most of it.
     constexpr double min_detail_ratio = 1.9;
+    constexpr double min_low_ratio = 0.6;  // Blurred noise has at least as much power below.
     if (!colored_noise_ && max_noise_ &&
         max_noise_->deviation() > std::max(min_deviation, 1.5 * white_deviation_) &&
-        octaves[1] > 2.0 * rounding && octaves[2] < min_detail_ratio * octaves[1])
+        octaves[1] > 2.0 * rounding && octaves[2] < min_detail_ratio * octaves[1] &&
+        std::min(octaves[2], octaves[3]) > min_low_ratio * octaves[1])
         colored_noise_ = max_noise_;
     if (colored_noise_)
         grain_ = quadrature_difference(colored_noise_->deviation(), rounding);
-    else if (high_pass_.is_white && white_deviation_ > min_deviation)
+    else if (high_pass_.is_white && white_deviation_ > min_deviation &&
+             (!spectrum_ || spectrum_->ends_flat())) {
+        noise_by_height_ = relief::noise_by_height(tiles_);
+        if (noise_by_height_) white_deviation_ = mean_deviation(*noise_by_height_, tiles_);
         grain_ = quadrature_difference(white_deviation_, rounding);
-    if (grain_ == 0.0) return;
+    }
+    if (grain_ == 0.0) {
+        stored_is_reference_ = grain == Grain::detail;
+        return;
+    }
     if (spectrum_) {
         const NoiseSpectrum noise =
             colored_noise_ ? *colored_noise_ : NoiseSpectrum::white(white_deviation_);
@@ -380,6 +422,18 @@ void KernelErrorModel::restore() {
     });
 }
 
+void KernelErrorModel::add_line_noise(HeightTile& tile, Random& random) const {
+    const auto add = [&](double deviation, int lines, int between, int length, int along) {
+        for (int line = 0; line < lines && deviation > 0.0; ++line) {
+            const double offset = deviation * random.normal();
+            for (int i = 0; i < length; ++i)
+                tile.values[static_cast<std::size_t>(line * between + i * along)] += offset;
+        }
+    };
+    add(lines_.rows, tile.height, tile.width, tile.width, 1);
+    add(lines_.columns, tile.width, 1, tile.height, tile.width);
+}
+
 /// Returns a tile with new rounding, noise and outliers of the same distribution as in the map.
 Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) const {
     Random random(seed);
@@ -394,10 +448,13 @@ Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) con
         for (double& value : noise)
             value *= share;
     }
+    if (!stored_is_reference_) add_line_noise(result, random);
     for (std::size_t i = 0; i < result.values.size(); ++i) {
         double& value = result.values[i];
         if (!noise.empty())
             value += noise[i];
+        else if (noise_ > 0.0 && noise_by_height_)
+            value += noise_by_height_->at(value) * random.normal();
         else if (noise_ > 0.0)
             value += noise_ * random.normal();
         if (!outliers_.empty() && random.between(0.0, 1.0) < outlier_share_) {
@@ -414,7 +471,7 @@ Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) con
 
 void KernelErrorModel::degrade() {
     const double step = coding_.step();
-    const double min_edge = std::max(3.0 * step, 6.0 * noise_);
+    const double min_edge = std::max(3.0 * step, 6.0 * noise());
     const glm::dvec2 scale = options_.strength / options_.texel;
     edge_share_ = 0.0;
     reference_normals_.assign(tiles_.size(), {});

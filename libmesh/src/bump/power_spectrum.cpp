@@ -99,22 +99,37 @@ double NoiseSpectrum::deviation() const {
     return std::sqrt(power) / side;
 }
 
-double NoiseSpectrum::high_pass_deviation() const {
-    if (rings.size() == 1) return deviation();
-    double power = 0.0;
-    double gain = 0.0;
-    // The power response of the mask (1 -2 1)^3 along one axis.
-    const auto response = [](double f) { return portable::pow(2.0 - 2.0 * portable::cos(f), 6.0); };
-    for (int row = 0; row < side; ++row) {
-        const double y = frequency(row, side);
-        for (int column = 0; column < side; ++column) {
-            const double x = frequency(column, side);
-            const double weight = response(x) * response(y);
-            power += weight * at(x, y);
-            gain += weight;
-        }
+OctaveDeviations NoiseSpectrum::octave_deviations() const {
+    OctaveDeviations result{};
+    if (rings.size() == 1) {
+        result.fill(deviation());
+        return result;
     }
-    return std::sqrt(power / gain);
+    // The responses of the low-pass mask along one axis, up to each octave.
+    const auto count = static_cast<std::size_t>(side);
+    std::vector<double> before(count, 1.0);
+    for (std::size_t octave = 0; octave < result.size(); ++octave) {
+        std::vector<double> after(count);
+        for (int i = 0; i < side; ++i) {
+            const double f = frequency(i, side) * static_cast<double>(1 << octave);
+            after[static_cast<std::size_t>(i)] =
+                before[static_cast<std::size_t>(i)] *
+                (0.375 + 0.5 * portable::cos(f) + 0.125 * portable::cos(2.0 * f));
+        }
+        double power = 0.0;
+        double gain = 0.0;
+        for (std::size_t row = 0; row < count; ++row) {
+            const double y = frequency(static_cast<int>(row), side);
+            for (std::size_t column = 0; column < count; ++column) {
+                const double response = before[row] * before[column] - after[row] * after[column];
+                power += response * response * at(frequency(static_cast<int>(column), side), y);
+                gain += response * response;
+            }
+        }
+        result[octave] = std::sqrt(power / gain);
+        before = std::move(after);
+    }
+    return result;
 }
 
 std::vector<double> noise_field(const NoiseSpectrum& spectrum, int side, std::uint32_t seed) {
@@ -183,6 +198,12 @@ std::size_t PowerSpectrum::bin_at(double x, double y) const {
     // Sectors are centered on the axes, since many synthetic textures have waves along them.
     const int sector = static_cast<int>(std::floor(angle / pi * sectors + 0.5)) % sectors;
     return static_cast<std::size_t>(ring * sectors + sector);
+}
+
+bool PowerSpectrum::ends_flat() const {
+    constexpr double max_ratio = 3.0;
+    const std::vector<Band> bands = this->bands();
+    return bands.size() < 2 || bands[bands.size() - 2].power < max_ratio * bands.back().power;
 }
 
 double PowerSpectrum::white_floor() const {
@@ -286,6 +307,18 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
     const auto roughness = [&](std::size_t i) {
         return bands[i].power * bands[i].frequency * bands[i].frequency;
     };
+    // Grain has power up to the highest frequencies. Only blurred noise has not, which
+    // blurred_noise() detects.
+    const auto ends_before_nyquist = [&](std::size_t first) {
+        constexpr double max_decrease = 30.0;
+        double max_power = 0.0;
+        double min_power = std::numeric_limits<double>::infinity();
+        for (std::size_t i = first; i < bands.size(); ++i) {
+            max_power = std::max(max_power, bands[i].power);
+            min_power = std::min(min_power, bands[i].power);
+        }
+        return max_power > max_decrease * min_power;
+    };
     double max_rise = min_rise;
     std::size_t first = bands.size();
     for (std::size_t valley = 0; valley + 2 < bands.size(); ++valley) {
@@ -293,7 +326,9 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
         if (!(top > 0.0)) continue;
         for (std::size_t i = valley + 1; i < bands.size() && roughness(i) > ripple * top; ++i) {
             top = std::max(top, roughness(i));
-            if (i < valley + 2 || roughness(i) / roughness(valley) < max_rise) continue;
+            if (i < valley + 2 || roughness(i) / roughness(valley) < max_rise ||
+                ends_before_nyquist(valley + 1))
+                continue;
             max_rise = roughness(i) / roughness(valley);
             first = valley + 1;
         }
@@ -330,6 +365,79 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
         noise.rings.push_back(a.power * portable::pow(b.power / a.power, w));
     }
     return noise;
+}
+
+std::optional<NoiseSpectrum> PowerSpectrum::blurred_noise(double rounding) const {
+    // The residual is that of the logarithm of the power.
+    constexpr double max_residual = 0.35;
+    constexpr double max_residual_ratio = 0.5;  ///< To the residual of the model of a surface.
+    constexpr double max_variance = 6.0;        ///< Of the blur, in squared texels.
+    constexpr std::size_t min_bands = 4;
+    std::vector<Band> bands = this->bands();
+    // The corners of the spectrum contain white noise in addition, if there is any.
+    const double floor = bands.empty() ? 0.0 : std::max(rounding * rounding, bands.back().power);
+    while (!bands.empty() &&
+           (bands.back().frequency > 0.5 * side_ || !(bands.back().power > 3.0 * floor)))
+        bands.pop_back();
+    // The fit of log(power) = level - variance * f^2 - exponent * log(f).
+    struct Fit {
+        double level = 0.0;
+        double variance = 0.0;
+        double residual = 0.0;
+    };
+    const auto squared_frequency = [&](const Band& band) {
+        const double f = 2.0 * pi * band.frequency / side_;
+        return f * f;
+    };
+    const auto fit = [&](std::size_t first, std::size_t end, double exponent) {
+        double n = 0.0;
+        double x = 0.0;
+        double y = 0.0;
+        double xx = 0.0;
+        double xy = 0.0;
+        double yy = 0.0;
+        for (std::size_t i = first; i < end; ++i) {
+            const double square = squared_frequency(bands[i]);
+            const double log_power =
+                portable::log(bands[i].power - floor) + 0.5 * exponent * portable::log(square);
+            n += 1.0;
+            x += square;
+            y += log_power;
+            xx += square * square;
+            xy += square * log_power;
+            yy += log_power * log_power;
+        }
+        const double slope = (n * xy - x * y) / (n * xx - x * x);
+        const double level = (y - slope * x) / n;
+        const double squares = yy - level * y - slope * xy;
+        return Fit{level, -slope, std::sqrt(std::max(0.0, squares) / n)};
+    };
+    const auto is_noise = [&](std::size_t first, std::size_t end) {
+        const Fit noise = fit(first, end, 0.0);
+        // The range must include the plateau and the decrease.
+        constexpr double surface_exponent = 2.0;
+        return noise.residual < max_residual && noise.variance < max_variance &&
+               noise.variance * squared_frequency(bands[first]) < 1.0 &&
+               noise.variance * squared_frequency(bands[end - 1]) > 1.5 &&
+               noise.residual < max_residual_ratio * fit(first, end, surface_exponent).residual;
+    };
+    // Other detail or noise can dominate the lowest and the highest bands.
+    for (std::size_t end = bands.size(); end >= min_bands; --end) {
+        for (std::size_t first = 0; first + min_bands <= end; ++first) {
+            if (!is_noise(first, end)) continue;
+            const Fit noise = fit(first, end, 0.0);
+            NoiseSpectrum result;
+            result.side = side_;
+            result.rings.clear();
+            result.min_noise_only_frequency = std::sqrt(squared_frequency(bands[first]));
+            for (int ring = 0; ring < side_; ++ring) {
+                const double f = 2.0 * pi * ring / side_;
+                result.rings.push_back(portable::exp(noise.level - noise.variance * f * f) + floor);
+            }
+            return result;
+        }
+    }
+    return {};
 }
 
 NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {

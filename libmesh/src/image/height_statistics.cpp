@@ -17,6 +17,7 @@
 #include "image/seam_survey.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -58,6 +59,55 @@ auto on_heights(const Image& image, const WithHeights& with_heights) {
     return with_heights(Heights<float>(image));
 }
 
+/// Detects levels that were rounded to the codes of the file, as the 32 levels of 5 bits in a file
+/// of 8 bits are: 0, 8, 16, 25, ...
+///
+/// \return the mean distance of adjacent levels in codes, 1 if there are no such levels
+template <typename Sample>
+double level_spacing(std::span<const Sample> samples, double least, double greatest, double code) {
+    const double max_code = (greatest - least) / code;
+    constexpr double max_codes = 65536.0;
+    if (!(max_code < max_codes)) return 1.0;
+    std::vector<unsigned char> is_used(static_cast<std::size_t>(max_code + 1.5), 0);
+    for (const Sample sample : samples) {
+        const double value = static_cast<double>(sample);
+        if (std::isfinite(value))
+            is_used[static_cast<std::size_t>((value - least) / code + 0.5)] = 1;
+    }
+    std::vector<double> codes;
+    for (std::size_t i = 0; i < is_used.size(); ++i) {
+        if (is_used[i] == 0) continue;
+        if (!codes.empty() && static_cast<double>(i) - codes.back() < 1.5) return 1.0;
+        codes.push_back(static_cast<double>(i));
+    }
+    // Masks and terraces have fewer levels.
+    constexpr std::size_t min_levels = 8;
+    if (codes.size() < min_levels) return 1.0;
+    double min_gap = max_code;
+    for (std::size_t i = 1; i < codes.size(); ++i)
+        min_gap = std::min(min_gap, codes[i] - codes[i - 1]);
+    // The rounded distance of adjacent levels varies by 1. Each level refines the mean.
+    double spacing = min_gap + 0.5;
+    std::vector<double> levels{0.0};
+    for (std::size_t i = 1; i < codes.size(); ++i) {
+        const double step = std::round((codes[i] - codes[i - 1]) / spacing);
+        levels.push_back(levels.back() + std::max(1.0, step));
+        spacing = codes[i] / levels.back();
+    }
+    double min_offset = 0.0;
+    double max_offset = 0.0;
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        min_offset = std::min(min_offset, codes[i] - spacing * levels[i]);
+        max_offset = std::max(max_offset, codes[i] - spacing * levels[i]);
+    }
+    // Rounding shifts a level by at most half a code. Copying the high bits of a value into its low
+    // ones shifts it by slightly more.
+    constexpr double max_spread = 1.3;
+    const double by_chance =
+        portable::pow(max_spread / spacing, static_cast<double>(codes.size()) - 2.0);
+    return max_offset - min_offset <= max_spread && by_chance < 1e-3 ? spacing : 1.0;
+}
+
 template <typename Sample>
 HeightDepth depth_of(const Heights<Sample>& heights) {
     const auto [least, greatest] =
@@ -68,8 +118,9 @@ HeightDepth depth_of(const Heights<Sample>& heights) {
         divisor = std::gcd(divisor, static_cast<unsigned>(sample - *least));
         if (divisor == 1) break;
     }
-    const auto levels = static_cast<unsigned>(heights.largest) / divisor;
-    return {static_cast<int>(std::bit_width(levels)), divisor / heights.largest};
+    const double spacing = level_spacing(heights.samples(), *least, *greatest, divisor);
+    const auto levels = static_cast<unsigned>(heights.largest / (spacing * divisor) + 0.01);
+    return {static_cast<int>(std::bit_width(levels)), spacing * divisor / heights.largest};
 }
 
 /// Returns whether all heights are multiples of a step within the rounding of float.
@@ -99,7 +150,11 @@ HeightDepth depth_of(const Heights<float>& heights) {
     };
     for (int bits = 1; bits <= 16; ++bits) {
         for (const double levels : {std::ldexp(1.0, bits) - 1.0, std::ldexp(1.0, bits)}) {
-            if (are_on_levels(levels)) return {bits, 1.0 / levels};
+            if (!are_on_levels(levels)) continue;
+            const double spacing = level_spacing(heights.samples(), least, greatest, 1.0 / levels);
+            const auto coarse = static_cast<unsigned>(levels / spacing + 0.01);
+            return {spacing > 1.0 ? static_cast<int>(std::bit_width(coarse)) : bits,
+                    spacing / levels};
         }
     }
     // The mean of three colors of 8 bits has these levels.

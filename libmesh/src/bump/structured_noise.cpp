@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Noise that is not the same at every texel: offsets of whole rows or columns, as line scanners
+// have, and noise whose strength depends on the height. Both are estimated from quantiles of high
+// frequencies, like the noise of high_pass_noise(). Nothing throws.
+// Tests: tests/mesh/bump/structured_noise_test.cpp.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "bump/height_tile.h"
+#include "portable_math.h"
+
+namespace relief {
+namespace {
+
+/// Applies the high-pass mask (1 -2 1) `times` times, and returns the absolute values. The gain for
+/// white noise is 1.
+std::vector<double> high_pass_of_line(std::vector<double> line, int times) {
+    for (int i = 0; i < times && line.size() > 2; ++i) {
+        for (std::size_t k = 0; k + 2 < line.size(); ++k)
+            line[k] = line[k] - 2.0 * line[k + 1] + line[k + 2];
+        line.resize(line.size() - 2);
+    }
+    // The square root of C(4 n, 2 n) for n = 2 and n = 3.
+    const double gain = std::sqrt(times == 2 ? 70.0 : 924.0);
+    for (double& value : line)
+        value = std::abs(value) / gain;
+    return line;
+}
+
+/// Returns the heights of each row, or column, weighted by a wave along it: of `periods` periods
+/// per tile, and 1 for none. The result of white noise has the deviation 1 / sqrt(length).
+std::vector<double> line_sums(const HeightTile& tile, bool rows, int periods, double phase) {
+    const int length = rows ? tile.width : tile.height;
+    const int count = rows ? tile.height : tile.width;
+    std::vector<double> weights(static_cast<std::size_t>(length), 1.0 / length);
+    if (periods > 0) {
+        for (int i = 0; i < length; ++i) {
+            const double angle = 2.0 * std::numbers::pi * periods * (i + 0.5) / length + phase;
+            weights[static_cast<std::size_t>(i)] *= std::numbers::sqrt2 * portable::cos(angle);
+        }
+    }
+    std::vector<double> sums(static_cast<std::size_t>(count), 0.0);
+    for (int line = 0; line < count; ++line) {
+        for (int i = 0; i < length; ++i) {
+            const int texel = rows ? line * tile.width + i : i * tile.width + line;
+            sums[static_cast<std::size_t>(line)] +=
+                weights[static_cast<std::size_t>(i)] * tile.values[static_cast<std::size_t>(texel)];
+        }
+    }
+    return sums;
+}
+
+double line_deviation(std::span<const HeightTile> tiles, bool rows, double rounding) {
+    std::vector<double> offsets;
+    std::vector<double> smoother_offsets;
+    std::vector<double> waves;
+    for (const HeightTile& tile : tiles) {
+        const std::vector<double> sums = line_sums(tile, rows, 0, 0.0);
+        for (const double value : high_pass_of_line(sums, 2))
+            smoother_offsets.push_back(value);
+        for (const double value : high_pass_of_line(sums, 3))
+            offsets.push_back(value);
+        for (const int periods : {2, 3, 4}) {
+            for (const double phase : {0.0, std::numbers::pi / 2.0}) {
+                for (const double value :
+                     high_pass_of_line(line_sums(tile, rows, periods, phase), 3))
+                    waves.push_back(value);
+            }
+        }
+    }
+    const double deviation = deviation_from_quantile(offsets);
+    // Detail and white noise are as strong in waves along the lines. Detail along the lines is
+    // smoother than independent offsets.
+    constexpr double min_ratio = 2.5;
+    constexpr double max_smoothness = 1.3;
+    if (deviation < min_ratio * deviation_from_quantile(waves) || deviation < 1.2 * rounding ||
+        deviation_from_quantile(smoother_offsets) > max_smoothness * deviation)
+        return 0.0;
+    return deviation;
+}
+
+void remove_offsets(HeightTile& tile, bool rows, double deviation) {
+    std::vector<double> sums = line_sums(tile, rows, 0, 0.0);
+    HeightTile smooth{static_cast<int>(sums.size()), 1, Wrap::clamp, sums};
+    static constexpr std::array binomial = {0.375, 0.25, 0.0625};
+    for (const int spacing : {1, 2, 4})
+        smooth = filtered(smooth, binomial, spacing);
+    // Edges along the lines are larger than offsets.
+    const double max_offset = 3.0 * deviation;
+    for (int y = 0; y < tile.height; ++y) {
+        for (int x = 0; x < tile.width; ++x) {
+            const auto line = static_cast<std::size_t>(rows ? y : x);
+            tile.values[static_cast<std::size_t>(y * tile.width + x)] -=
+                std::clamp(sums[line] - smooth.values[line], -max_offset, max_offset);
+        }
+    }
+}
+
+}  // namespace
+
+LineNoise line_noise(std::span<const HeightTile> tiles, double rounding) {
+    return {line_deviation(tiles, true, rounding), line_deviation(tiles, false, rounding)};
+}
+
+void remove_line_noise(HeightTile& tile, const LineNoise& noise) {
+    if (noise.rows > 0.0) remove_offsets(tile, true, noise.rows);
+    if (noise.columns > 0.0) remove_offsets(tile, false, noise.columns);
+}
+
+double NoiseByHeight::at(double height) const {
+    if (height <= heights.front()) return deviations.front();
+    if (height >= heights.back()) return deviations.back();
+    const auto above = static_cast<std::size_t>(
+        std::upper_bound(heights.begin(), heights.end(), height) - heights.begin());
+    const double w = (height - heights[above - 1]) / (heights[above] - heights[above - 1]);
+    return std::lerp(deviations[above - 1], deviations[above], w);
+}
+
+std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) {
+    static constexpr std::array binomial = {0.375, 0.25, 0.0625};
+    constexpr std::size_t classes = 6;
+    constexpr std::size_t min_samples = 200;
+    std::vector<std::pair<double, double>> samples;  // Height and magnitude of the noise.
+    for (const HeightTile& tile : tiles) {
+        const HeightTile smooth = filtered(filtered(tile, binomial), binomial, 2);
+        const std::vector<double> magnitudes = high_pass(tile, 2);
+        constexpr int margin = 2;  // Of high_pass().
+        std::size_t next = 0;
+        for (int y = margin; y < tile.height - margin; ++y) {
+            for (int x = margin; x < tile.width - margin; ++x) {
+                samples.emplace_back(smooth.values[static_cast<std::size_t>(y * tile.width + x)],
+                                     magnitudes[next++]);
+            }
+        }
+    }
+    if (samples.size() < classes * min_samples) return std::nullopt;
+    std::sort(samples.begin(), samples.end());
+    NoiseByHeight noise;
+    std::vector<double> magnitudes;
+    for (std::size_t i = 0; i < classes; ++i) {
+        const std::size_t begin = samples.size() * i / classes;
+        const std::size_t end = samples.size() * (i + 1) / classes;
+        magnitudes.clear();
+        for (std::size_t k = begin; k < end; ++k)
+            magnitudes.push_back(samples[k].second);
+        const double deviation = deviation_from_quantile(magnitudes);
+        // Half of a Gaussian lies within 0.6745 standard deviations. Detail is in few texels, and
+        // its distribution has a longer tail.
+        constexpr double max_tail = 1.2;
+        const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
+        std::nth_element(magnitudes.begin(), middle, magnitudes.end());
+        if (!(deviation > 0.0) || *middle / 0.6745 > max_tail * deviation) return std::nullopt;
+        noise.heights.push_back(samples[(begin + end) / 2].first);
+        noise.deviations.push_back(deviation);
+    }
+    // The noise grows with the height, or with the depth if the map is inverted.
+    constexpr double min_growth = 1.5;
+    constexpr double tolerance = 1.1;
+    const bool grows = noise.deviations.back() > noise.deviations.front();
+    for (std::size_t i = 1; i < classes; ++i) {
+        const double low = noise.deviations[grows ? i - 1 : i];
+        const double high = noise.deviations[grows ? i : i - 1];
+        if (low > tolerance * high) return std::nullopt;
+        if (!(noise.heights[i] > noise.heights[i - 1])) return std::nullopt;
+    }
+    const auto [min, max] = std::minmax(noise.deviations.front(), noise.deviations.back());
+    if (max < min_growth * min) return std::nullopt;
+    return noise;
+}
+
+}  // namespace relief
