@@ -116,6 +116,26 @@ struct NoiseByHeight {
 /// Returns nullopt if the noise does not depend on the height, or if detail is stronger.
 std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles);
 
+/// The quantization of JPEG.
+struct BlockQuantization {
+    /// Of the coefficients of 8 x 8 texels, in the unit of heights. Coefficients that are always 0
+    /// have the largest possible step, and unquantized ones have 0.
+    std::array<double, 64> steps{};
+};
+
+/// Detects the blocks of JPEG and estimates their quantization. Returns nullopt if the heights have
+/// no such blocks.
+///
+/// \param tiles  the first texel of each is the first texel of a block
+/// \param code  the difference of adjacent codes of the file, in the unit of heights
+std::optional<BlockQuantization> block_quantization(std::span<const HeightTile> tiles, double code);
+
+/// Smooths a tile as far as the same quantization gives the same coefficients.
+void remove_blocks(HeightTile& tile, const BlockQuantization& quantization);
+
+/// Quantizes a tile in blocks of 8 x 8 texels, except for texels along the border.
+void quantize_blocks(HeightTile& tile, const BlockQuantization& quantization, double code);
+
 /// Computes the two-dimensional discrete Fourier transform of a square in place.
 ///
 /// \param square  `side` rows of `side` numbers

@@ -79,6 +79,7 @@ class KernelErrorModel {
     [[nodiscard]] double edge_share() const { return edge_share_; }
 
   private:
+    void remove_blocks();
     void remove_outliers();
     void detect_grain(Grain grain);
     void restore();
@@ -90,6 +91,7 @@ class KernelErrorModel {
     bool destaircased_ = false;
     HeightCoding coding_;
     std::vector<HeightTile> tiles_;  ///< The parts, which restore() turns into the reference.
+    std::optional<BlockQuantization> blocks_;  ///< Of maps that were stored as JPEG.
     LineNoise lines_;
     double grain_ = 0.0;  ///< Without offsets of lines.
     double noise_ = 0.0;  ///< Like `grain_`; 0 if grain counts as detail.
@@ -318,6 +320,15 @@ double HeightCoding::rounding_deviation(double height) const {
     return of_rounding * std::ldexp(1.0, exponent - mantissa_bits);
 }
 
+void KernelErrorModel::remove_blocks() {
+    constexpr int bits_of_jpeg = 8;
+    if (coding_.depth.bits != bits_of_jpeg || coding_.step() == 0.0) return;
+    blocks_ = block_quantization(tiles_, coding_.step());
+    if (!blocks_) return;
+    for (HeightTile& tile : tiles_)
+        relief::remove_blocks(tile, *blocks_);
+}
+
 void KernelErrorModel::remove_outliers() {
     // A smaller share can be detail, and has little effect.
     constexpr double min_share = 0.001;
@@ -390,7 +401,7 @@ void KernelErrorModel::detect_grain(Grain grain) {
 }
 
 void KernelErrorModel::restore() {
-    if (stored_is_reference_) return;
+    if (stored_is_reference_ || (blocks_ && grain_ == 0.0)) return;
     const double rounding = root_mean_square_rounding(tiles_, coding_);
     const double step = coding_.step();
     // Quantization steps of at most one texel width have as much power in the highest frequencies
@@ -461,6 +472,9 @@ Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) con
             const double which = random.between(0.0, static_cast<double>(outliers_.size()));
             value += outliers_[std::min(outliers_.size() - 1, static_cast<std::size_t>(which))];
         }
+    }
+    if (blocks_) quantize_blocks(result, *blocks_, step);
+    for (double& value : result.values) {
         if (step > 0.0)
             value = step * std::floor((value + shift) / step + 0.5) - shift;
         else
@@ -517,7 +531,8 @@ KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const BumpOptio
     options_.arithmetic = Arithmetic::float64;
     tiles_.resize(parts.size());
     std::transform(parts.begin(), parts.end(), tiles_.begin(), to_tile);
-    remove_outliers();
+    remove_blocks();
+    if (!blocks_) remove_outliers();
     detect_grain(grain);
     restore();
     degrade();
@@ -728,9 +743,11 @@ std::vector<ImagePart> parts_to_analyze(int width, int height) {
     rows = std::min(count_along(height), max_per_axis * max_per_axis / columns);
     const auto offset_along = [side](int i, int count, int length) {
         const std::int64_t max_offset = length - side;
-        if (std::int64_t{count} * side >= length)
-            return static_cast<int>(i * max_offset / std::max(1, count - 1));
-        return static_cast<int>((2 * std::int64_t{i} + 1) * max_offset / (2 * count));
+        const std::int64_t offset = std::int64_t{count} * side >= length
+                                        ? i * max_offset / std::max(1, count - 1)
+                                        : (2 * std::int64_t{i} + 1) * max_offset / (2 * count);
+        constexpr int block = 8;  // Parts begin with a block of JPEG.
+        return static_cast<int>(offset / block * block);
     };
     std::vector<ImagePart> parts;
     for (int row = 0; row < rows; ++row) {
