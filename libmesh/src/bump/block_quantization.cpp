@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The quantization of JPEG: blocks of 8 x 8 texels, whose coefficients of the discrete cosine
-// transform are multiples of a step each [ISO/IEC 10918-1]. The steps are estimated from decoded
+// transform are multiples of a step each [ITU-T T.81]. The steps are estimated from decoded
 // heights. The removal of the blocks projects smoothed heights onto the intervals of the
 // coefficients, as in [Zakhor 1992]. Nothing throws.
 // Tests: tests/mesh/bump/structured_noise_test.cpp.
@@ -155,6 +155,21 @@ void remove_blocks(HeightTile& tile, const BlockQuantization& quantization) {
             write_block(tile, x, y, transformed(values, true));
         });
     }
+}
+
+void add_lost_detail(HeightTile& tile, const BlockQuantization& quantization, std::uint32_t seed) {
+    // Coefficients that are always 0 belong to detail that the map hardly has.
+    const double max_lost_step =
+        0.99 * *std::max_element(quantization.steps.begin(), quantization.steps.end());
+    Random random(seed);
+    for_blocks(tile, 0, [&](int x, int y) {
+        Block values = transformed(read_block(tile, x, y), false);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double step = quantization.steps[i];
+            if (step < max_lost_step) values[i] += step * random.between(-0.5, 0.5);
+        }
+        write_block(tile, x, y, transformed(values, true));
+    });
 }
 
 void quantize_blocks(HeightTile& tile, const BlockQuantization& quantization, double code) {

@@ -136,6 +136,9 @@ void remove_blocks(HeightTile& tile, const BlockQuantization& quantization);
 /// Quantizes a tile in blocks of 8 x 8 texels, except for texels along the border.
 void quantize_blocks(HeightTile& tile, const BlockQuantization& quantization, double code);
 
+/// Adds random detail that the quantization can have removed.
+void add_lost_detail(HeightTile& tile, const BlockQuantization& quantization, std::uint32_t seed);
+
 /// Computes the two-dimensional discrete Fourier transform of a square in place.
 ///
 /// \param square  `side` rows of `side` numbers
@@ -202,6 +205,12 @@ class PowerSpectrum {
     /// \param rounding  standard deviation of the rounding
     /// \return the spectrum of the noise and the rounding; nullopt if there is no such noise
     [[nodiscard]] std::optional<NoiseSpectrum> blurred_noise(double rounding) const;
+
+    /// Returns the spectrum of the strongest noise, after a blur of up to two texels, that the map
+    /// can contain. Its power does not exceed the median power at any frequency.
+    ///
+    /// \param octaves  octave_deviations(), which the noise does not exceed either
+    [[nodiscard]] NoiseSpectrum max_blurred_noise(const OctaveDeviations& octaves) const;
 
     /// Estimates the maximum power of detail that the noise can hide. It is a share of the noise at
     /// frequencies without visible detail. Above the highest frequency with visible detail, it also

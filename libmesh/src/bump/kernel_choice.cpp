@@ -4,10 +4,10 @@
 // tests/mesh/bump/kernel_choice_test.cpp.
 //
 // The error model restores the map as it may have been before storage, adds the same kinds of
-// degradation again, and measures the kernels on the result. It restores the reference in one of
-// three ways. Noise, and quantization that behaves like white noise, is removed by spectral
-// subtraction. Quantization steps wider than texels are removed by destaircase(). Floats without
-// noise remain unchanged.
+// degradation again, and measures the kernels on the result. Blocks of JPEG and offsets of rows or
+// columns are removed first. It then restores the reference in one of three ways. Noise, and
+// quantization that behaves like white noise, is removed by spectral subtraction. Quantization
+// steps wider than texels are removed by destaircase(). Floats without noise remain unchanged.
 #include "relief/mesh/height_map.h"
 
 #include <fmt/format.h>
@@ -64,6 +64,8 @@ class KernelErrorModel {
     [[nodiscard]] KernelPrediction predict_upper(const KernelPrediction& prediction) const;
 
     [[nodiscard]] const HeightCoding& coding() const { return coding_; }
+    /// Returns true if the map was stored as JPEG.
+    [[nodiscard]] bool has_blocks() const { return blocks_.has_value(); }
     /// Returns the standard deviation of the noise without rounding.
     [[nodiscard]] double noise() const { return stored_is_reference_ ? 0.0 : grain(); }
     /// Returns the standard deviation of the grain, whether it counts as noise or as detail.
@@ -383,7 +385,6 @@ void KernelErrorModel::detect_grain(Grain grain) {
         grain_ = quadrature_difference(colored_noise_->deviation(), rounding);
     else if (high_pass_.is_white && white_deviation_ > min_deviation &&
              (!spectrum_ || spectrum_->ends_flat())) {
-        noise_by_height_ = relief::noise_by_height(tiles_);
         if (noise_by_height_) white_deviation_ = mean_deviation(*noise_by_height_, tiles_);
         grain_ = quadrature_difference(white_deviation_, rounding);
     }
@@ -532,7 +533,8 @@ KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const BumpOptio
     tiles_.resize(parts.size());
     std::transform(parts.begin(), parts.end(), tiles_.begin(), to_tile);
     remove_blocks();
-    if (!blocks_) remove_outliers();
+    noise_by_height_ = relief::noise_by_height(tiles_);
+    if (!blocks_ && !noise_by_height_) remove_outliers();
     detect_grain(grain);
     restore();
     degrade();
@@ -551,10 +553,18 @@ KernelPrediction KernelErrorModel::predict_upper(const KernelPrediction& predict
         noise = colored_noise_ ? *colored_noise_
                                : NoiseSpectrum::white(std::max(white_deviation_, rounding));
     upper.unresolved_slope_ = spectrum_->unresolved_slope(noise);
-    if (!stored_is_reference_ && max_noise_ && max_noise_->deviation() > 1.5 * noise_) {
-        upper.colored_noise_ = max_noise_;
-        upper.noise_ = max_noise_->deviation();
-    } else if (noise_ > 0.0) {
+    if (grain() == 0.0 && !stored_is_reference_) {
+        // Fine detail can be blurred noise.
+        const NoiseSpectrum blurred =
+            spectrum_->max_blurred_noise(octave_deviations(every_fourth(tiles_)));
+        if (blurred.deviation() > 2.0 * rounding &&
+            (!max_noise_ || blurred.deviation() > max_noise_->deviation()))
+            upper.max_noise_ = blurred;
+    }
+    if (!stored_is_reference_ && upper.max_noise_ && upper.max_noise_->deviation() > 1.5 * noise_) {
+        upper.colored_noise_ = upper.max_noise_;
+        upper.noise_ = upper.max_noise_->deviation();
+    } else if (noise_ > 0.0 && !blocks_) {
         const NoiseSpectrum hidden = spectrum_->hidden_detail(noise);
         for (std::size_t i = 0; i < upper.tiles_.size(); ++i) {
             std::vector<double>& values = upper.tiles_[i].values;
@@ -654,7 +664,8 @@ std::string coding_text(const HeightCoding& coding) {
 std::string reason_text(const KernelErrorModel& model, const BumpOptions& options,
                         const KernelPrediction& best) {
     const GradientKernel kernel = gradient_kernel(best.kernel, best.gaussian_radius);
-    const std::string coding = coding_text(model.coding());
+    const std::string coding =
+        coding_text(model.coding()) + (model.has_blocks() ? " in blocks of JPEG" : "");
     // The unit of these heights is a texel, so that their differences are slopes.
     const double texels = std::abs(options.strength) / std::sqrt(options.texel.x * options.texel.y);
     const double step = texels * model.coding().step();

@@ -440,6 +440,39 @@ std::optional<NoiseSpectrum> PowerSpectrum::blurred_noise(double rounding) const
     return {};
 }
 
+NoiseSpectrum PowerSpectrum::max_blurred_noise(const OctaveDeviations& octaves) const {
+    const std::vector<Band> bands = this->bands();
+    NoiseSpectrum strongest = NoiseSpectrum::white(0.0);
+    double max_slope = 0.0;
+    for (const double blur : {1.0, 1.5, 2.0}) {
+        const auto decrease = [&](double f) { return portable::exp(-blur * blur * f * f); };
+        NoiseSpectrum noise;
+        noise.side = side_;
+        noise.rings.clear();
+        for (int ring = 0; ring < side_; ++ring)
+            noise.rings.push_back(decrease(2.0 * pi * ring / side_));
+        double power = std::numeric_limits<double>::infinity();
+        const OctaveDeviations of_noise = noise.octave_deviations();
+        for (std::size_t i = 0; i < octaves.size(); ++i) {
+            const double ratio = octaves[i] / of_noise[i];
+            power = std::min(power, ratio * ratio);
+        }
+        // Beyond these frequencies the noise has hardly any power.
+        const double max_frequency = 2.0 / blur;
+        for (const Band& band : bands) {
+            const double f = 2.0 * pi * band.frequency / side_;
+            if (f < max_frequency) power = std::min(power, band.power / decrease(f));
+        }
+        const double slope = power / (blur * blur * blur * blur);
+        if (!(slope > max_slope)) continue;
+        max_slope = slope;
+        for (double& ring : noise.rings)
+            ring *= power;
+        strongest = std::move(noise);
+    }
+    return strongest;
+}
+
 NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {
     // Detail is visible in a ring if its power exceeds `min_visible` times that of the noise.
     // Detail of up to `max_hidden` times the noise can be hidden.

@@ -94,17 +94,27 @@ double level_spacing(std::span<const Sample> samples, double least, double great
         levels.push_back(levels.back() + std::max(1.0, step));
         spacing = codes[i] / levels.back();
     }
-    double min_offset = 0.0;
-    double max_offset = 0.0;
+    // The line of least squares through codes and levels has the mean spacing.
+    const auto count = static_cast<double>(codes.size());
+    const double mean_code = std::accumulate(codes.begin(), codes.end(), 0.0) / count;
+    const double mean_level = std::accumulate(levels.begin(), levels.end(), 0.0) / count;
+    double products = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        products += (codes[i] - mean_code) * (levels[i] - mean_level);
+        squares += (levels[i] - mean_level) * (levels[i] - mean_level);
+    }
+    spacing = products / squares;
+    double min_offset = std::numeric_limits<double>::infinity();
+    double max_offset = -min_offset;
     for (std::size_t i = 0; i < codes.size(); ++i) {
         min_offset = std::min(min_offset, codes[i] - spacing * levels[i]);
         max_offset = std::max(max_offset, codes[i] - spacing * levels[i]);
     }
     // Rounding shifts a level by at most half a code. Copying the high bits of a value into its low
     // ones shifts it by slightly more.
-    constexpr double max_spread = 1.3;
-    const double by_chance =
-        portable::pow(max_spread / spacing, static_cast<double>(codes.size()) - 2.0);
+    constexpr double max_spread = 1.5;
+    const double by_chance = portable::pow(max_spread / spacing, count - 2.0);
     return max_offset - min_offset <= max_spread && by_chance < 1e-3 ? spacing : 1.0;
 }
 
@@ -119,7 +129,7 @@ HeightDepth depth_of(const Heights<Sample>& heights) {
         if (divisor == 1) break;
     }
     const double spacing = level_spacing(heights.samples(), *least, *greatest, divisor);
-    const auto levels = static_cast<unsigned>(heights.largest / (spacing * divisor) + 0.01);
+    const auto levels = static_cast<unsigned>(heights.largest / (spacing * divisor) + 0.25);
     return {static_cast<int>(std::bit_width(levels)), spacing * divisor / heights.largest};
 }
 
@@ -152,7 +162,7 @@ HeightDepth depth_of(const Heights<float>& heights) {
         for (const double levels : {std::ldexp(1.0, bits) - 1.0, std::ldexp(1.0, bits)}) {
             if (!are_on_levels(levels)) continue;
             const double spacing = level_spacing(heights.samples(), least, greatest, 1.0 / levels);
-            const auto coarse = static_cast<unsigned>(levels / spacing + 0.01);
+            const auto coarse = static_cast<unsigned>(levels / spacing + 0.25);
             return {spacing > 1.0 ? static_cast<int>(std::bit_width(coarse)) : bits,
                     spacing / levels};
         }

@@ -106,10 +106,11 @@ Tiling detect_tiling(const ImageView& height);
 struct HeightDepth {
     /// The smallest n for which every height is a multiple of 1 / (2^n - 1), or of 1 / 2^n, up to
     /// float rounding: 1 to 16. 10 for multiples of 1 / 765, the means of three 8-bit colors. 0 if
-    /// there is none (float maps).
+    /// there is none (float maps). Eight or more levels that were rounded to the codes of a file of
+    /// more bits count as their own bits: 5 for 32 levels in 8 bits.
     int bits = 0;
-    /// The step between the values that occur, in the unit of heights (1.0 is white): 257 / 65535
-    /// for 8 bits stored in 16. 0 if `bits` is 0.
+    /// The mean step between the values that occur, in the unit of heights (1.0 is white): 257 /
+    /// 65535 for 8 bits stored in 16. 0 if `bits` is 0.
     double step = 0.0;
 };
 
@@ -288,8 +289,8 @@ std::string expected_error_text(const KernelChoice& choice);
 int best_gaussian_radius(const KernelChoice& choice);
 
 /// Returns the parts of a map that choose_kernel() examines: at most 9 regularly spaced squares of
-/// 128 texels, or smaller ones for a small map. They are ordered from top to bottom, so that a file
-/// can be read in one pass.
+/// 128 texels, or smaller ones for a small map. They begin at multiples of 8 texels, as the blocks
+/// of JPEG do, and are ordered from top to bottom, so that a file can be read in one pass.
 std::vector<ImagePart> parts_to_analyze(int width, int height);
 
 /// Selects the kernel with the smallest expected RMS error of the normals.
@@ -304,12 +305,15 @@ std::vector<ImagePart> parts_to_analyze(int width, int height);
 ///         constant map gets central3, because all kernels are exact
 /// \throws InvalidInput as normals_from_height() does, and if there are no parts
 ///
-/// The kernel error model first restores the map as it may have been before noise and rounding:
-/// white or colored noise is removed by spectral subtraction [Boll 1979], steps wider than texels
-/// by destaircase(), and isolated outliers by a median. It then adds rounding, noise and outliers
-/// again, and measures each kernel on the result. So truncation, noise and quantization have the
-/// same weight as in this map. Maps of at most four levels that are farther apart than the codes of
-/// the file are treated as masks with exact levels.
+/// The kernel error model first restores the map as it may have been before noise and rounding. It
+/// detects white, colored and blurred noise, offsets of rows or columns, noise that grows with the
+/// height, isolated outliers, and the blocks of JPEG (if the parts begin at multiples of 8 texels).
+/// Noise is removed by spectral subtraction [Boll 1979], steps wider than texels by destaircase(),
+/// blocks by projection [Zakhor 1992]. The model then adds the same degradation again, and measures
+/// each kernel on the result. So truncation, noise and quantization have the same weight as in this
+/// map. Noise that is blurred over more than about two texels is taken for detail. Maps of at most
+/// four levels that are farther apart than the codes of the file are treated as masks with exact
+/// levels.
 KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& options,
                            bool destaircased = false, Grain grain = Grain::automatic);
 
