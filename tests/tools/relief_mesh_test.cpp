@@ -2,11 +2,13 @@
 // The commands `relief-mesh process` and `info`: output files, printed text, and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/gltf_document.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
@@ -334,6 +336,48 @@ TEST(InfoCommand, PrintsOneJsonObject) {
     EXPECT_EQ(info["primitives"][0]["attributes"], json({"texcoords"}));
     EXPECT_EQ(info["primitives"][1]["attributes"], json::array());
     EXPECT_EQ(info["primitives"][1]["bounds"]["min"], json({0.0, 0.0, 0.0}));
+}
+
+/// The processor time of this process and of its ended children, in seconds.
+double processor_seconds() {
+    double sum = 0.0;
+    for (const int whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage usage{};
+        ::getrusage(whose, &usage);
+        for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+            sum += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
+    return sum;
+}
+
+TEST_LABELS(not_sanitized);
+TEST(InfoCommand, DecodesAMeshOnceForAllItsInstances) {
+    const Workplace workplace;
+    MeshFile sphere;
+    sphere.mesh = make_sphere(400, 100);
+    sphere.mesh.colors.assign(sphere.mesh.positions.size(), glm::vec4(0.5F));
+    GltfDocument::from_mesh(sphere).write(workplace / "one.gltf");
+    json root = json::parse(workplace.read("one.gltf"));
+    constexpr int count = 300;
+    for (int i = 0; i < count; ++i) {
+        root["nodes"][i] = {{"mesh", 0}, {"translation", {0, 0, 3 * i}}};
+        root["scenes"][0]["nodes"][i] = i;
+    }
+    workplace.write("many.gltf", root.dump());
+
+    const GltfDocument document = read_document(workplace / "many.gltf");
+    double decoding = -processor_seconds();
+    for (int i = 0; i < count; ++i)
+        ASSERT_FALSE(document.mesh({0, 0}).positions.empty());
+    decoding += processor_seconds();
+    double describing = -processor_seconds();
+    const json info = json::parse(workplace.run("relief-mesh info many.gltf --json").out);
+    describing += processor_seconds();
+    EXPECT_EQ(info["instances"], count);
+    EXPECT_EQ(info["primitives"].size(), 1U);
+    EXPECT_EQ(info["bounds"]["max"][2], 3.0 * (count - 1) + 1.0);
+    EXPECT_LT(describing, 0.6 * decoding)
+        << describing << " s; " << decoding << " s to decode " << count << " times";
 }
 
 TEST(InfoCommand, DescribesARealScene) {

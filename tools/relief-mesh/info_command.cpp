@@ -3,8 +3,10 @@
 // materials, and the parts of a scene that are not meshes. Tests: tests/tools/relief_mesh_test.cpp.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -116,17 +118,17 @@ void add_part(ModelInfo& info, std::string name, const Mesh& mesh) {
     info.triangles += mesh.triangles.size();
 }
 
-/// Returns the bounds of the transformed vertices, which are tighter than the transformed bounds.
-Bounds bounds_in_world(Mesh mesh, const glm::mat4& world_from_object) {
-    for (glm::vec3& position : mesh.positions)
-        position = glm::vec3(world_from_object * glm::vec4(position, 1.0F));
-    return bounds_of(mesh);
-}
-
-void include(Bounds& all, const Bounds& more) {
-    if (more.empty()) return;
-    all.min = glm::min(all.min, more.min);
-    all.max = glm::max(all.max, more.max);
+/// Extends bounds by the transformed vertices, whose bounds are tighter than the transformed
+/// bounds. Positions that are not finite are left out.
+void include(Bounds& all, const Mesh& mesh, const glm::mat4& world_from_object) {
+    for (const glm::vec3& position : mesh.positions) {
+        const glm::vec3 world(world_from_object * glm::vec4(position, 1.0F));
+        const bool is_finite =
+            std::isfinite(world.x) && std::isfinite(world.y) && std::isfinite(world.z);
+        if (!is_finite) continue;
+        all.min = glm::min(all.min, world);
+        all.max = glm::max(all.max, world);
+    }
 }
 
 MaterialInfo material_info(const GltfMaterial& material, std::size_t index) {
@@ -155,10 +157,18 @@ void add_materials(ModelInfo& info, const std::vector<Material>& materials) {
 void describe(const GltfDocument& document, ModelInfo& info) {
     const GltfView view = document.view();
     add_materials(info, view.materials);
-    for (const GltfPrimitiveId id : document.triangle_primitives())
-        add_part(info, document.describe(id), document.mesh(id));
-    for (const GltfInstance<GltfPrimitiveId>& placed : view.primitives)
-        include(info.bounds, bounds_in_world(document.mesh(placed.what), placed.world_from_object));
+    // A mesh is decoded once, however many instances it has.
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<glm::mat4>> transforms;
+    for (const GltfInstance<GltfPrimitiveId>& instance : view.primitives) {
+        transforms[{instance.what.mesh, instance.what.primitive}].push_back(
+            instance.world_from_object);
+    }
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        const Mesh mesh = document.mesh(id);
+        add_part(info, document.describe(id), mesh);
+        for (const glm::mat4& world_from_object : transforms[{id.mesh, id.primitive}])
+            include(info.bounds, mesh, world_from_object);
+    }
     info.instances = view.primitives.size();
     info.images = view.images.size();
     info.lights = view.lights.size();
