@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays in and out: views without copies, types and shapes that are refused, exceptions, reports and threads."""
+import json
 import os
 import pathlib
 import subprocess
@@ -232,6 +233,19 @@ class Reports(unittest.TestCase):
             report = []
             relief.Scene.load(model).render(size=(8, 8), report=report)
         self.assertIn(r"b\xe4r.png", "".join(finding["outcome"] for finding in report))
+
+    def test_maps_of_another_kind_are_findings(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder, "scene.json")
+            scene.write_text(json.dumps({
+                "relief_scene": 1,
+                "lights": [{"type": "directional", "direction": [0, 0, -1]}],
+                "nodes": [{"shape": "quad", "material": "photo"}],
+                "materials": {"photo": {"normal_map": str(DATA / "bricks-diffuse.png")}}}))
+            report = []
+            relief.Scene.load(scene, report=report).render(size=(8, 8), report=report)
+        self.assertEqual([finding["kind"] for finding in report],
+                         ["normal map that is not a normal map: its texels are colors, or several masks"])
 
     def test_list_is_needed(self):
         positions, _, triangles = grid(5)

@@ -77,9 +77,10 @@ class MapKinds : public testing::Test {
                     write_description({.kind = MapKind::object_normal}, 8));
     }
 
-    void run(const std::string& words) const {
-        const ProgramResult result = place_.run("relief-bake " + words);
-        EXPECT_EQ(result.exit_code, 0) << words << "\n" << result.error;
+    void run(const std::string& words) const { run_tool("relief-bake " + words); }
+    void run_tool(const std::string& line) const {
+        const ProgramResult result = place_.run(line);
+        EXPECT_EQ(result.exit_code, 0) << line << "\n" << result.error;
     }
     void refuses(const std::string& line, const std::string& error) const {
         const std::string before = place_.outputs();
@@ -155,6 +156,57 @@ TEST_F(MapKinds, ErrorsNameTheCommandThatConverts) {
     refuses("relief-bake pack out/a.png --roughness stated-normal.png:g",
             "as its metadata say (give a roughness map; --assume roughness reads it anyway)");
     EXPECT_EQ(place_.run("relief-bake heights photo.png out/a.png --assume height").exit_code, 2);
+}
+
+TEST_F(MapKinds, MapsOfSceneFilesAreErrors) {
+    struct Row {
+        std::string map;  ///< In JSON.
+        std::string error;
+        std::string assume;
+    };
+    const std::vector<Row> rows = {
+        {R"("normal_map": "photo.png")",
+         "photo.png: is not a normal map: its texels are colors, or several masks (give a normal "
+         "map in tangent space; --assume normal reads it anyway)",
+         "normal"},
+        // One channel cannot be read as normals.
+        {R"("normal_map": {"texture": "height.png"})", "relief-bake bump; --assume normal", ""},
+        {R"("bump_map": "normal.png")", "relief-bake heights; --assume height", "height"},
+        {R"("bump_map": "stated-normal.png")", "as its metadata say", "height"},
+        {R"("diffuse_texture": "stated-normal.png")", "give a color map; --assume color", "color"},
+    };
+    for (const Row& row : rows) {
+        place_.write("scene.json", R"({"relief_scene": 1, "ambient": 0.2,
+            "lights": [{"type": "directional", "direction": [0, -1, -1]}],
+            "nodes": [{"model": "square.obj", "material": "floor"}],
+            "materials": {"floor": {"diffuse": 0.8, )" +
+                                       row.map + "}}}");
+        const std::string line = "relief-view scene.json --output out/a.png --size 8x8";
+        refuses(line, "scene.json: ");
+        refuses(line, " of material 'floor': ");
+        refuses(line, row.error);
+        if (row.assume.empty()) continue;
+        const ProgramResult result = place_.run(line + " --strict --assume " + row.assume);
+        EXPECT_EQ(result.exit_code, 0) << row.map << result.out << result.error;
+        EXPECT_EQ(place_.run("rm out/a.png").exit_code, 0);
+    }
+}
+
+TEST_F(MapKinds, MapsOfModelsAreFindings) {
+    place_.write("m.mtl", "newmtl m\nKd 1 1 1\nmap_Bump normal.png\n");
+    place_.write("m.obj", "mtllib m.mtl\nusemtl m\n" + place_.read("square.obj"));
+    run_tool("relief-mesh material square.obj out/m.glb --assume normal --normal photo.png");
+    for (const auto& [model, finding, assume] :
+         {std::tuple("m.obj", "bump map that seems to be a normal map", "height"),
+          std::tuple("out/m.glb", "normal map that is not a normal map: its texels are colors",
+                     "normal")}) {
+        const std::string line =
+            fmt::format("relief-view {} --output out/a.png --size 8x8 --strict", model);
+        const ProgramResult found = place_.run(line);
+        EXPECT_EQ(found.exit_code, 3) << model;
+        EXPECT_THAT(found.out, HasSubstr(finding));
+        EXPECT_EQ(place_.run(line + " --assume " + assume).exit_code, 0) << model;
+    }
 }
 
 TEST_F(MapKinds, AChannelOfAnotherMapCanBeHeights) {

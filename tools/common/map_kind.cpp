@@ -4,22 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <string_view>
 #include <variant>
 
 #include "common/file_jobs.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/normal_map_check.h"
+#include "relief/mesh/map_kind_check.h"
 #include "relief/mesh/texture_file.h"
 
 namespace relief::tools {
 namespace {
-
-bool holds_normals(MapKind kind) {
-    return kind == MapKind::normal || kind == MapKind::object_normal ||
-           kind == MapKind::world_normal;
-}
 
 /// The way from one kind to another.
 struct KindRemedy {
@@ -36,35 +30,15 @@ constexpr KindRemedy remedies[] = {
     {MapKind::slope_moments, MapKind::normal, "write normals with relief-bake bump"},
 };
 
-/// \param is  the kind of the file; absent: no known one
-FileError wrong_kind(const MapInput& input, std::optional<MapKind> is, const std::string& problem) {
+RefusedMap refused(const MapInput& input, const WrongMapKind& wrong) {
     const MapKind wanted = input.accepted.front();
     std::string remedy = fmt::format("give {}", map_kind_info(wanted).phrase);
     for (const KindRemedy& known : remedies) {
-        if (known.from == is && known.to == wanted) remedy = known.text;
+        if (known.from == wrong.kind && known.to == wanted) remedy = known.text;
     }
-    return failure(input.file, problem,
-                   fmt::format("{}; --assume {} reads it anyway", remedy, enum_name(wanted)));
-}
-
-/// The kind that an image without normals seems to have.
-struct JudgedKind {
-    std::optional<MapKind> kind;
-    const char* phrase;
-};
-
-JudgedKind judged_kind(MapContent content) {
-    switch (content) {
-        case MapContent::gray:
-            return {MapKind::height,
-                    "is gray, like a height map or a mask, so it is not a normal map"};
-        case MapContent::other:
-            return {std::nullopt, "is not a normal map: its texels are colors, or several masks"};
-        case MapContent::object_normals:
-            return {MapKind::object_normal, "seems to be a normal map in object space"};
-        default:
-            return {MapKind::normal, "seems to be a normal map"};
-    }
+    return {failure(input.file, wrong.problem,
+                    fmt::format("{}; --assume {} reads it anyway", remedy, enum_name(wanted))),
+            wanted};
 }
 
 }  // namespace
@@ -112,34 +86,39 @@ Image read_sample(const std::filesystem::path& file) {
 
 bool check_stated_kind(const MapInput& input, const AssumedKinds& assumed) {
     if (std::ranges::count(assumed, input.accepted.front()) > 0) return true;
-    const std::optional<MapKind> stated = read_description(input.metadata).kind;
-    if (!stated) return false;
-    if (std::ranges::count(input.accepted, *stated) > 0) return true;
-    throw wrong_kind(input, stated,
-                     fmt::format("is {}, as its metadata say", map_kind_info(*stated).phrase));
+    const MapDescription stated = read_description(input.metadata);
+    if (const auto wrong = stated_wrong_kind(input.accepted, stated)) throw refused(input, *wrong);
+    return stated.kind.has_value();
 }
 
 void check_judged_kind(const MapInput& input, const ImageView& image) {
-    const MapKind wanted = input.accepted.front();
-    if (!holds_normals(wanted) && wanted != MapKind::height) return;
-    if (static_cast<std::int64_t>(image.width) * image.height < min_judged_texels) return;
-    const MapContent content =
-        judged_content(image, read_description(input.metadata).flat.value_or(FlatCode::half));
-    const JudgedKind judged = judged_kind(content);
-    // Colors may be heights: their mean is read, with a finding.
-    if (wanted == MapKind::height && !(judged.kind && holds_normals(*judged.kind))) return;
-    if (judged.kind && std::ranges::count(input.accepted, *judged.kind) > 0) return;
-    throw wrong_kind(input, judged.kind, judged.phrase);
+    if (!is_judged_by_texels(input.accepted)) return;
+    const auto content = unstated_content(image, read_description(input.metadata));
+    if (!content) return;
+    if (const auto wrong = judged_wrong_kind(input.accepted, *content))
+        throw refused(input, *wrong);
 }
 
 std::map<std::string, std::string> check_kind(const std::filesystem::path& file,
                                               const std::vector<MapKind>& accepted,
                                               const AssumedKinds& assumed) {
     const MapInput input = {file, accepted, read_image_info(file).metadata};
-    const bool is_judged = holds_normals(accepted.front()) || accepted.front() == MapKind::height;
-    if (!check_stated_kind(input, assumed) && is_judged)
+    if (!check_stated_kind(input, assumed) && is_judged_by_texels(accepted))
         check_judged_kind(input, read_sample(file));
     return input.metadata;
+}
+
+Report without_assumed(const Report& report, const AssumedKinds& assumed) {
+    Report rest;
+    for (const Finding& finding : report.findings()) {
+        const bool is_assumed = std::ranges::any_of(assumed, [&](MapKind kind) {
+            // The space of normals has an option of its own.
+            return finding.outcome == drawn_as(kind) ||
+                   (kind == MapKind::normal && finding.outcome == drawn_as(MapKind::object_normal));
+        });
+        if (!is_assumed) rest.add(finding);
+    }
+    return rest;
 }
 
 }  // namespace relief::tools

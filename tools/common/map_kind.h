@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Decides the kind of a map and refuses maps of the wrong kind. The entries of a file win
-/// (map_description.h). Without them, the texels show only whether an image is clearly no normal
-/// map, or is one although heights are expected. --assume overrides both.
+/// Refuses maps of the wrong kind (map_kind_check.h), by the metadata of their file or else by
+/// their texels. --assume overrides both.
 /// Tests: tests/tools/map_kind_test.cpp.
 #pragma once
 
@@ -16,6 +15,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
 
 namespace relief::tools {
 
@@ -34,12 +34,21 @@ struct MapInput {
     std::map<std::string, std::string> metadata;
 };
 
-/// Images with fewer texels are not judged by them.
-inline constexpr int min_judged_texels = 64;
+/// The error for a map of the wrong kind. The message names the remedy.
+class RefusedMap : public FileError {
+  public:
+    RefusedMap(const FileError& error, MapKind wanted) : FileError(error), wanted_(wanted) {}
+
+    /// The kind that --assume must name to read the file anyway.
+    [[nodiscard]] MapKind wanted() const { return wanted_; }
+
+  private:
+    MapKind wanted_;
+};
 
 /// Checks the kind that the file states.
 /// \return whether it is settled, because the file states a kind or it is assumed
-/// \throws FileError if it is not accepted; the message names the remedy
+/// \throws RefusedMap if it is not accepted
 bool check_stated_kind(const MapInput& input, const AssumedKinds& assumed);
 
 /// Reads eight evenly spaced bands of 32 rows, by which the kind is judged, or a small image as a
@@ -48,13 +57,18 @@ Image read_sample(const std::filesystem::path& file);
 
 /// Checks the kind that the texels show, for a file that does not state it.
 /// \param image  the samples of the file, or evenly spaced ones; floats are (n + 1) / 2
-/// \throws FileError if it is clearly not accepted
+/// \throws RefusedMap if it is clearly not accepted
 void check_judged_kind(const MapInput& input, const ImageView& image);
 
 /// Checks the kind of a file that is not read otherwise. It is decoded only if it does not state
 /// its kind and that is judged by the texels. \return its text entries
+/// \throws RefusedMap if it is not accepted
 std::map<std::string, std::string> check_kind(const std::filesystem::path& file,
                                               const std::vector<MapKind>& accepted,
                                               const AssumedKinds& assumed);
+
+/// Returns a report without the findings about maps that are drawn as an assumed kind
+/// (report_drawn_kind()).
+Report without_assumed(const Report& report, const AssumedKinds& assumed);
 
 }  // namespace relief::tools

@@ -96,8 +96,8 @@ void check_baked(const MaterialRequest& request, const GltfDocument& document, s
     }
 }
 
-/// The kinds of maps that a slot accepts.
-std::vector<MapKind> accepted_kinds(TextureSlot slot) {
+/// The kinds of maps that glTF prescribes for a slot.
+std::vector<MapKind> kinds_of_gltf(TextureSlot slot) {
     switch (slot) {
         case TextureSlot::normal:
             return {MapKind::normal};
@@ -113,7 +113,7 @@ std::vector<MapKind> accepted_kinds(TextureSlot slot) {
 /// Checks that a map is what glTF prescribes for its slot. A damaged image is an error here, not in
 /// a renderer.
 void check_slot(const MaterialMap& map, const AssumedKinds& assumed) {
-    const std::vector<MapKind> accepted = accepted_kinds(map.slot);
+    const std::vector<MapKind> accepted = kinds_of_gltf(map.slot);
     const MapDescription stated = read_description(check_kind(map.file, accepted, assumed));
     if (std::ranges::count(assumed, accepted.front()) > 0) return;
     const auto refuse = [&](bool is_wrong, const char* problem, const char* option) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "common/command.h"
@@ -16,6 +17,8 @@
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_description.h"
+#include "relief/mesh/map_kind_check.h"
+#include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
 
@@ -366,6 +369,30 @@ SceneHeights scene_heights(const ViewOptions& options) {
             .is_bump_map = options.height_as == HeightUse::bump_map,
             .strength = options.strength,
             .kernel = options.kernel};
+}
+
+void check_scene_maps(const Scene& scene, const ViewOptions& options) {
+    std::set<std::pair<std::size_t, TextureSlot>> checked;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        for (const TextureSlotInfo& info : texture_slots) {
+            const Texture* const texture = find_texture(scene.materials[i], info.slot);
+            const std::vector<MapKind> accepted = accepted_kinds(info.slot);
+            if (texture == nullptr || accepted.empty()) continue;
+            const ImageSource& image = scene.images[texture->image];
+            const auto* const file = std::get_if<std::filesystem::path>(&image.source);
+            const bool is_named = file != nullptr && image.origin == options.model.string();
+            if (!is_named || !checked.emplace(texture->image, info.slot).second) continue;
+            try {
+                check_kind(*file, accepted, options.assumed);
+            } catch (const RefusedMap& error) {
+                const std::string place =
+                    fmt::format("{} of {}", info.effect, material_label(scene, i));
+                throw RefusedMap(FileError(options.model, place + ": " + error.what()),
+                                 error.wanted());
+            } catch (const FileError&) {  // The renderer reports images that cannot be read.
+            }
+        }
+    }
 }
 
 void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,

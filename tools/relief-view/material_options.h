@@ -33,6 +33,10 @@ std::string reason_for_phong(const ViewOptions& options);
 void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
                         std::vector<std::string>& notes);
 
+/// Checks the kinds of the maps that the scene file of the options names.
+/// \throws RefusedMap with the scene file, the material and the slot
+void check_scene_maps(const Scene& scene, const ViewOptions& options);
+
 /// The height map of the options.
 SceneHeights scene_heights(const ViewOptions& options);
 

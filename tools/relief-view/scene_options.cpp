@@ -230,6 +230,8 @@ ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report
             return load_scene_graph(options.model, scene_options(options), report);
         });
     });
+    if (is_scene_file(options))
+        stages.run("check maps", [&] { check_scene_maps(composed.scene(), options); });
     if (!options.size_given) options.size = composed.graph.picture_size.value_or(options.size);
     select_pose(composed.graph, options);
     Scene& scene = composed.scene();

@@ -270,7 +270,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
 
     Findings findings;
-    findings.add("", report);
+    findings.add("", without_assumed(report, options.assumed));
     Summary summary =
         summary_of(options, composed, plan, drawn ? &*drawn : nullptr, markers, findings, stages);
     if (options.json) {

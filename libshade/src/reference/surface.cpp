@@ -18,6 +18,7 @@
 #include "geometry/direction.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/map_kind_check.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
@@ -219,13 +220,24 @@ PreparedInstance prepared(const Instance& instance, const Mesh& mesh,
     return result;
 }
 
-void find_flat_code(PreparedScene& prepared, const Scene& scene,
-                    const std::optional<NormalMap>& map) {
-    if (!map) return;
-    const std::size_t image = map->texture.image;
-    const Image decoded = decode(scene.images[image], ImageUse::data);
-    prepared.normal_map_bits[image] = decoded.bits();
-    prepared.detected_flat_codes[image] = detected_flat_code(scene.images[image], decoded);
+/// Finds the code of zero of normal maps, and reports normals and heights of another kind.
+void examine_maps(PreparedScene& prepared, const Scene& scene, std::uint32_t number,
+                  Report& report) {
+    const Material& material = prepared.materials[number];
+    for (const TextureSlotInfo& slot : texture_slots) {
+        const Texture* const texture = find_texture(material, slot.slot);
+        const std::vector<MapKind> drawn = drawn_kinds(material, slot.slot);
+        if (texture == nullptr || !is_judged_by_texels(drawn)) continue;
+        const ImageSource& source = scene.images[texture->image];
+        const Image decoded = decode(source, ImageUse::data);
+        if (slot.neutral == NeutralTexel::flat) {
+            prepared.normal_map_bits[texture->image] = decoded.bits();
+            prepared.detected_flat_codes[texture->image] = detected_flat_code(source, decoded);
+        }
+        const auto content = unstated_content(decoded, stated_description(source));
+        const auto wrong = content ? judged_wrong_kind(drawn, *content) : std::nullopt;
+        if (wrong) report_drawn_kind(*wrong, slot.slot, drawn.front(), number, report);
+    }
 }
 
 /// Decodes the textures of all materials that are on meshes with texture coordinates.
@@ -242,8 +254,7 @@ void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report
     for (const std::uint32_t number : textured) {
         Material& material = prepared.materials[number];
         leave_out_textures(scene, prepared.texels.unreadable(), number, material, report);
-        find_flat_code(prepared, scene, material.normal_map);
-        find_flat_code(prepared, scene, coat_map(material));
+        examine_maps(prepared, scene, number, report);
     }
 }
 

@@ -25,6 +25,7 @@
 #include "effects/light_rows.h"
 #include "gl/resources.h"
 #include "progress_stage.h"
+#include "relief/mesh/map_kind_check.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "relief/shade/frame_settings.h"
@@ -106,7 +107,7 @@ Planned planned(const Scene& scene, const DrawPlan& draw) {
 
 ImagePurpose purpose_of(const UsedTexture& used) {
     const TextureSlotInfo& slot = slot_info(used.slot);
-    return {slot.use, slot.neutral == NeutralTexel::flat};
+    return {slot.use, slot.neutral == NeutralTexel::flat, used.slot == TextureSlot::bump};
 }
 
 /// Returns the texture of an effect that is forced on without one.
@@ -140,6 +141,24 @@ void request_planned(SceneTextures& textures, const Scene& scene, const FramePla
         const Planned p = planned(scene, draw);
         for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
             if (used.texture != nullptr) textures.request(used.texture->image, purpose_of(used));
+        }
+    }
+}
+
+/// Reports maps whose texels show another kind than the one as which they are drawn.
+void report_judged_kinds(const SceneTextures& textures, const Scene& scene, const FramePlan& plan,
+                         Report& report) {
+    std::set<std::pair<std::uint32_t, TextureSlot>> reported;
+    for (const DrawPlan& draw : plan.draws) {
+        const Planned p = planned(scene, draw);
+        for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
+            if (used.texture == nullptr || !draw.range.material) continue;
+            const std::vector<MapKind> drawn = drawn_kinds(p.material, used.slot);
+            if (!is_judged_by_texels(drawn)) continue;
+            const auto& content = textures.image(used.texture->image, purpose_of(used)).content;
+            const auto wrong = content ? judged_wrong_kind(drawn, *content) : std::nullopt;
+            if (wrong && reported.emplace(*draw.range.material, used.slot).second)
+                report_drawn_kind(*wrong, used.slot, drawn.front(), *draw.range.material, report);
         }
     }
 }
@@ -285,6 +304,7 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     const double linked_before = cache.programs.milliseconds();
     prepare_meshes(scene, report);
     textures.upload(scene.images);
+    report_judged_kinds(textures, scene, plan, report);
     environment.emplace(api, cache.environments, scene, plan, shows_environment, report);
     if (plan.skybox) {
         skybox.emplace(api, cache.programs, scene, drawn_coding(settings, plan.finishing_pass),

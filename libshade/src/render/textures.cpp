@@ -17,9 +17,11 @@
 #include "effects/features.h"
 #include "parallel.h"
 #include "progress_stage.h"
+#include "relief/mesh/map_kind_check.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene_file.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 namespace {
@@ -189,6 +191,8 @@ std::shared_ptr<const GpuImage> TextureCache::add(const ImageSource& source,
                                                   const ImagePurpose& purpose, const Image& image) {
     GpuImage made{gl::make_texture(*api_, image, source.name), image.bits()};
     if (purpose.normals) made.flat = detected_flat_code(source, image);
+    if (purpose.normals || purpose.heights)
+        made.content = unstated_content(image, stated_description(source));
     images_.push_back(
         {ImageIdentity(source), purpose, std::make_shared<const GpuImage>(std::move(made))});
     return images_.back().image;

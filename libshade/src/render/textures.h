@@ -25,6 +25,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_map_check.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/material.h"
@@ -64,6 +65,7 @@ bool has_textures(const Material& material);
 struct ImagePurpose {
     ImageUse use = ImageUse::color;
     bool normals = false;  ///< For normal maps the code of zero is detected.
+    bool heights = false;
 
     friend auto operator<=>(const ImagePurpose&, const ImagePurpose&) = default;
 };
@@ -73,6 +75,8 @@ struct GpuImage {
     gl::Texture texture;
     int bits = 8;
     FlatCode flat = FlatCode::half;  ///< Detected for normal maps only.
+    /// For normals and heights: the content by the texels, unless the file states it.
+    std::optional<MapContent> content = std::nullopt;
 };
 
 /// A texture and its sampler for one unit.

@@ -11,6 +11,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
+#include "scene/scene_parts.h"
 
 namespace relief {
 
@@ -92,6 +93,15 @@ Texture JsonImages::texture(const JsonCursor& cursor) {
         read_fields(cursor, *this, texture);
     }
     return texture;
+}
+
+void JsonImages::apply_description(const JsonCursor& cursor, NormalMap& map) const {
+    const bool has_green = cursor.is_object() && cursor.find("green");
+    const bool has_space = cursor.is_object() && cursor.find("space");
+    if (has_green && has_space) return;
+    const MapDescription stated = stated_description(images_[map.texture.image]);
+    if (!has_green) map.green = stated.green.value_or(map.green);
+    if (!has_space && stated.kind == MapKind::object_normal) map.space = NormalSpace::object;
 }
 
 void read_material(const JsonCursor& object, JsonImages& images, Material& material) {

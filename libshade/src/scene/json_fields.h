@@ -34,6 +34,10 @@ class JsonImages {
     [[nodiscard]] ImageSource source(const JsonCursor& cursor) const;
     /// Returns the texture of an image. A missing file is no error here: the renderer reports it.
     Texture texture(const JsonCursor& cursor);
+    /// Sets the green direction and the space of a normal map as its file states them, unless the
+    /// scene does.
+    /// \param cursor  the map: a texture, or an object with one
+    void apply_description(const JsonCursor& cursor, NormalMap& map) const;
 
   private:
     [[nodiscard]] std::size_t model_image(const JsonCursor& number) const;
@@ -107,11 +111,12 @@ Map map_from(const JsonCursor& cursor, JsonImages& images) {
     Map map;
     if (cursor.is_text()) {
         map.texture = images.texture(cursor);
-        return map;
+    } else {
+        allow_fields<Map>(cursor);
+        read_fields(cursor, images, map);
+        (void)cursor.at("texture");
     }
-    allow_fields<Map>(cursor);
-    read_fields(cursor, images, map);
-    (void)cursor.at("texture");
+    if constexpr (std::is_same_v<Map, NormalMap>) images.apply_description(cursor, map);
     return map;
 }
 

@@ -20,6 +20,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/map_description.h"
+#include "relief/mesh/map_kind_check.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/texture_file.h"
 #include "scene/scene_parts.h"
@@ -64,40 +65,71 @@ void note_image_file(const ImageSource& source) {
     if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) note_file(*file);
 }
 
-FlatCode detected_flat_code(const ImageSource& source, const Image& image) {
-    if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
-        return detect_flat_code(image, read_image_info(*file).metadata);
-    if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
-        return detect_flat_code(image, read_image_info(std::span(**bytes), source.name).metadata);
-    return detect_flat_code(image);
-}
-
 namespace {
 
-/// Returns the text entries of an image; none if it cannot be read, which the decoder reports.
+/// Returns the text entries of an image. \throws FileError if it cannot be read
 std::map<std::string, std::string> metadata_of(const ImageSource& source) {
-    try {
-        if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
-            return read_image_info(*file).metadata;
-        if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
-            return read_image_info(std::span(**bytes), source.name).metadata;
-    } catch (const FileError&) {
-    }
+    if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
+        return read_image_info(*file).metadata;
+    if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
+        return read_image_info(std::span(**bytes), source.name).metadata;
     return {};
 }
 
 }  // namespace
 
-void apply_stated_green(Scene& scene, Report& report) {
-    std::map<std::size_t, bool> is_down;  // By image.
-    const auto apply = [&](std::optional<NormalMap>& map, std::size_t material) {
-        if (!map) return;
-        const std::size_t image = map->texture.image;
-        const auto [known, is_new] = is_down.try_emplace(image, false);
-        if (is_new && scene.images[image].fault.empty()) {
-            known->second = read_description(metadata_of(scene.images[image])).green == Green::down;
+FlatCode detected_flat_code(const ImageSource& source, const Image& image) {
+    return detect_flat_code(image, metadata_of(source));
+}
+
+MapDescription stated_description(const ImageSource& source) {
+    if (!source.fault.empty()) return {};
+    try {
+        return read_description(metadata_of(source));
+    } catch (const FileError&) {
+        return {};
+    }
+}
+
+namespace {
+
+/// The descriptions of the images of a scene, each read once.
+class StatedDescriptions {
+  public:
+    explicit StatedDescriptions(const Scene& scene) : scene_(scene) {}
+
+    const MapDescription& of(std::size_t image) {
+        const auto [entry, is_new] = known_.try_emplace(image);
+        if (is_new) entry->second = stated_description(scene_.images[image]);
+        return entry->second;
+    }
+
+  private:
+    const Scene& scene_;
+    std::map<std::size_t, MapDescription> known_;
+};
+
+}  // namespace
+
+void report_stated_kinds(const Scene& scene, const std::filesystem::path& origin, Report& report) {
+    StatedDescriptions stated(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        for (const TextureSlotInfo& info : texture_slots) {
+            const Texture* const texture = find_texture(scene.materials[i], info.slot);
+            if (texture == nullptr || scene.images[texture->image].origin != origin.string())
+                continue;
+            const std::vector<MapKind> drawn = drawn_kinds(scene.materials[i], info.slot);
+            if (drawn.empty()) continue;
+            if (const auto wrong = stated_wrong_kind(drawn, stated.of(texture->image)))
+                report_drawn_kind(*wrong, info.slot, drawn.front(), i, report);
         }
-        if (!known->second) return;
+    }
+}
+
+void apply_stated_green(Scene& scene, Report& report) {
+    StatedDescriptions stated(scene);
+    const auto apply = [&](std::optional<NormalMap>& map, std::size_t material) {
+        if (!map || stated.of(map->texture.image).green != Green::down) return;
         map->green = Green::down;
         report.add("normal map that states green down", "material", material,
                    "is drawn as it states; other programs expect green up in this file");
@@ -328,6 +360,7 @@ SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOption
         } else {
             graph.scene = scene_from(read_mesh(file, report), file, options, report);
         }
+        report_stated_kinds(graph.scene, file, report);
         if (extension != ".json" && is_z_up(file, options)) turn_z_up(graph);
         if (clips_exclude_each_other(graph)) graph.clip = 0;
         pose(graph, 0.0);

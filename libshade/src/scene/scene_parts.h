@@ -20,6 +20,7 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
@@ -40,8 +41,16 @@ inline bool is_finite(const glm::mat4& matrix) {
 /// \param owner  begins the message: "camera: "
 void check_field_of_view(const std::string& owner, float vertical_fov);
 
-/// Sets the green direction of normal maps whose files state that it is down. glTF and MTL mean up.
-/// \param report  counts these materials
+/// Returns what the metadata of an image state. Nothing if it cannot be read, which the decoder
+/// reports.
+MapDescription stated_description(const ImageSource& source);
+
+/// Reports the maps whose files state another kind than the one as which they are drawn.
+/// \param origin  the file that names the images; the others are left out
+void report_stated_kinds(const Scene& scene, const std::filesystem::path& origin, Report& report);
+
+/// Sets the green direction of a model's normal maps whose files state that it is down; glTF and
+/// MTL mean up. \param report  counts these materials
 void apply_stated_green(Scene& scene, Report& report);
 
 /// Returns half of the height of the picture: in world units if the camera is orthographic, else on

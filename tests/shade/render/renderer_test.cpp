@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
@@ -14,6 +15,8 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/image_compare.h"
+#include "relief/shade/reference.h"
+#include "relief/shade/renderer.h"
 #include "shade/render/draw_support.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
@@ -329,6 +332,46 @@ TEST_F(Rendering, ReportsTexturesThatCannotShow) {
     Report report;
     const Renderer renderer(context(), scene, {8, 8, 1, OutputCoding::srgb}, report);
     EXPECT_EQ(report.count("textured material on a mesh without texture coordinates"), 1U);
+}
+
+TEST_F(Rendering, ReportsMapsWhoseTexelsShowAnotherKind) {
+    const std::filesystem::path data = test::source_directory() / "data";
+    const Image normals = read_image(data / "scenes/bricks-normal.png", ImageUse::data);
+    const Image colors = read_image(data / "bricks-diffuse.png", ImageUse::data);
+    Image heights = colors;  // All channels are red.
+    for (std::size_t i = 0; i < heights.sample_count(); ++i)
+        heights.as<std::uint8_t>()[i] = colors.as<std::uint8_t>()[i - i % 3];
+    const auto findings_of = [&](const Image& image, bool is_bump_map) {
+        Material material;
+        if (is_bump_map) {
+            material.bump_map = BumpMap{Texture{0}};
+        } else {
+            material.normal_map = NormalMap{Texture{0}};
+        }
+        Scene scene = test::scene_of(test::facing_square(), material);
+        scene.images = {{"image", image}};
+        scene.directional_lights = {{}};
+        Report drawn, again, traced;
+        RenderCache cache(context());
+        const FrameSettings settings{8, 8, 1, OutputCoding::srgb};
+        const FramePlan plan = plan_effects(scene, settings);
+        const Renderer first(cache, context(), scene, plan, settings, drawn);
+        const Renderer second(cache, context(), scene, plan, settings, again);
+        (void)render_reference(scene, {8, 8}, traced);
+        std::string text;
+        for (const Finding& finding : drawn.findings())
+            text += to_string(finding) + "\n";
+        EXPECT_TRUE(std::ranges::equal(drawn.findings(), again.findings())) << text;
+        EXPECT_TRUE(std::ranges::equal(drawn.findings(), traced.findings())) << text;
+        return text;
+    };
+    EXPECT_EQ(findings_of(normals, false), "");
+    EXPECT_THAT(findings_of(colors, false),
+                HasSubstr("normal map that is not a normal map: its texels are colors"));
+    EXPECT_THAT(findings_of(heights, false), HasSubstr("normal map that is gray"));
+    EXPECT_EQ(findings_of(heights, true), "");
+    EXPECT_EQ(findings_of(colors, true), "") << "their red channel may be heights";
+    EXPECT_THAT(findings_of(normals, true), HasSubstr("bump map that seems to be a normal map"));
 }
 
 TEST_F(Rendering, ReportsAShadowWithoutACaster) {

@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <numbers>
 
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/scene_file.h"
@@ -214,6 +216,56 @@ TEST_F(SceneFile, ImagesAreNumberedInTheOrderOfTheKeys) {
     EXPECT_EQ(m.diffuse_texture->image, 0U);
     EXPECT_EQ(m.normal_map->texture.image, 1U);
     EXPECT_EQ(m.specular_texture->image, 2U);
+}
+
+TEST_F(SceneFile, NormalMapsFollowTheMetadataOfTheirFiles) {
+    write_image(folder_ / "down.png", make_image(2, 2, 3, 8, ColorSpace::data),
+                write_description({.kind = MapKind::object_normal, .green = Green::down}, 8));
+    const SceneGraph graph = load(R"("materials": {
+        "a": {"normal_map": "down.png"},
+        "b": {"normal_map": {"texture": "down.png", "scale": 2}},
+        "c": {"normal_map": {"texture": "down.png", "green": "up"}},
+        "d": {"normal_map": {"texture": "down.png", "green": "up", "space": "object"}}})");
+    for (const Material& material : graph.scene.materials) {
+        const bool is_stated = material.name < "c";
+        EXPECT_EQ(material.normal_map->green, is_stated ? Green::down : Green::up);
+        EXPECT_EQ(material.normal_map->space, NormalSpace::object);
+    }
+    EXPECT_TRUE(report_.empty());
+}
+
+TEST_F(SceneFile, MapsThatStateAnotherKindAreReported) {
+    const auto write_as = [&](const char* name, MapKind kind) {
+        write_image(folder_ / name, make_image(2, 2, 3, 8, ColorSpace::data),
+                    write_description({.kind = kind}, 8));
+    };
+    write_as("height.png", MapKind::height);
+    write_as("normal.png", MapKind::normal);
+    write_as("color.png", MapKind::color);
+    std::ofstream(folder_ / "wrong.mtl") << "newmtl one\nmap_Bump normal.png\nmap_Ke color.png\n";
+    std::ofstream(folder_ / "wrong.obj") << "mtllib wrong.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                            "vt 0 0\nusemtl one\nf 1/1 2/1 3/1\n";
+    (void)load(R"("nodes": [{"model": "wrong.obj"}, {"shape": "quad", "material": "b"}],
+        "materials": {
+            "a": {"normal_map": "height.png", "occlusion_texture": "normal.png"},
+            "b": {"diffuse_texture": "normal.png", "bump_map": "height.png"},
+            "c": {"normal_map": {"texture": "normal.png", "space": "object"}}})");
+    const auto expect = [&](const std::string& kind, std::size_t material,
+                            const std::string& outcome) {
+        const auto found = std::ranges::find(report_.findings(), kind, &Finding::kind);
+        ASSERT_NE(found, report_.findings().end()) << kind;
+        EXPECT_EQ(found->first, std::vector{material}) << kind;
+        EXPECT_EQ(found->outcome, outcome);
+    };
+    EXPECT_EQ(report_.findings().size(), 4U);
+    expect("bump map that is a normal map in tangent space, as its metadata say", 0,
+           "is drawn as a height map");
+    expect("normal map that is a height map, as its metadata say", 0,
+           "is drawn as a normal map in tangent space");
+    expect("diffuse texture that is a normal map in tangent space, as its metadata say", 1,
+           "is drawn as a color map");
+    expect("normal map that is a normal map in tangent space, as its metadata say", 2,
+           "is drawn as a normal map in object space");
 }
 
 TEST_F(SceneFile, LightsHaveThreeColors) {

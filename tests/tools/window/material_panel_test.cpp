@@ -164,6 +164,8 @@ TEST_F(MapSlots, RejectMapsOfAnotherKind) {
     EXPECT_THAT([&] { set_map(scene(), 0, slot_named("Bump map"), normals()); },
                 ThrowsMessage<FileError>(HasSubstr("normal map")));
     EXPECT_FALSE(material.bump_map);
+    set_map(scene(), 0, slot_named("Bump map"), normals(), {MapKind::height});
+    EXPECT_TRUE(material.bump_map) << "the kind is assumed";
     // The metadata of the file hold.
     const std::filesystem::path down = workplace() / "down.png";
     write_image(down, read_image(normals(), ImageUse::data),

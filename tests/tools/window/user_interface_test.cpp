@@ -367,6 +367,13 @@ TEST_F(Panel, MaterialsTakeMapsAndChangeTheirModel) {
         return now["places"].contains("thumbnail of Bump map");
     });
     click("clear Bump map", lacks("bump map"));
+    enter("Normal map", "data/bricks-diffuse.png");
+    window().wait_for("the refusal", [](const json& now) {
+        return now["error"].get<std::string>().find("is not a normal map") != std::string::npos;
+    });
+    click("Use it anyway", has("normal map"));
+    EXPECT_EQ(window().state()["error"], "");
+    click("clear Normal map", lacks("normal map"));
     click("clear Diffuse map", lacks("diffuse texture"));
 
     window().click_on("Shading of all");

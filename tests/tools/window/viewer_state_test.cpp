@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "tools/workplace.h"
 #include "window/background_jobs.h"
+#include "window/input_files.h"
 
 namespace relief::tools {
 namespace {
@@ -377,6 +380,58 @@ TEST_F(State, FailedEditChangesNothingAndReportsTheError) {
     EXPECT_EQ(state().request()->scene, scene);
     state().try_edit([](Scene& edited) { edited.exposure = 2.0F; });
     EXPECT_EQ(state().error(), "");
+}
+
+TEST_F(State, UsesAMapOfAnotherKindAnyway) {
+    show("square.obj");
+    state().name_default_material();
+    const std::filesystem::path colors = workplace() / "data/bricks-diffuse.png";
+    const auto normal_map = [&] { return map_name(state().scene(), 0, TextureSlot::normal); };
+    state().set_map(0, TextureSlot::normal, workplace() / "absent.png");
+    EXPECT_FALSE(state().has_refused_map()) << "there is no such file";
+    state().set_map(0, TextureSlot::normal, colors);
+    EXPECT_THAT(state().error(), testing::HasSubstr("is not a normal map"));
+    EXPECT_TRUE(state().has_refused_map());
+    EXPECT_FALSE(normal_map());
+    EXPECT_FALSE(state().use_refused_map()) << "nothing must be read again";
+    EXPECT_EQ(normal_map(), colors.string());
+    EXPECT_EQ(state().error(), "");
+    EXPECT_FALSE(state().has_refused_map());
+    // Another error replaces the refusal.
+    state().set_map(0, TextureSlot::bump, workplace() / test::bricks_map);
+    EXPECT_TRUE(state().has_refused_map());
+    state().set_map(0, TextureSlot::bump, workplace() / "absent.png");
+    EXPECT_FALSE(state().has_refused_map());
+    EXPECT_EQ(normal_map(), colors.string());
+}
+
+TEST_F(State, AMapThatIsRefusedWithTheModelIsAssumedWhenItIsReadAgain) {
+    ViewOptions options;
+    options.model = workplace() / "square.obj";
+    options.normal_map = workplace() / "data/bricks-diffuse.png";
+    Loader loader([] {});
+    const auto load = [&] {
+        loader.start(options);
+        while (true) {
+            if (std::optional<Loaded> loaded = loader.take())
+                return state().take(std::move(*loaded));
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    };
+    load();
+    EXPECT_FALSE(state().has_scene());
+    EXPECT_TRUE(state().has_refused_map());
+    const std::optional<MapKind> kind = state().use_refused_map();
+    ASSERT_EQ(kind, MapKind::normal);
+    options.assumed.push_back(*kind);
+    load();
+    EXPECT_EQ(state().error(), "");
+    EXPECT_FALSE(state().has_refused_map());
+    ASSERT_TRUE(state().has_scene());
+    EXPECT_TRUE(state().scene().materials[0].normal_map);
+    // The assumption ends with the map.
+    options = with_dropped(options, {"other-normal.png"});
+    EXPECT_THAT(options.assumed, IsEmpty());
 }
 
 TEST_F(State, UndoesAndRedoesEditsStepByStep) {

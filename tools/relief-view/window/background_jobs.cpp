@@ -30,6 +30,9 @@ Loaded load(ViewOptions options, const Progress& progress) {
         loaded.composed = compose_scene(options, silent, loaded.findings);
     } catch (const Cancelled&) {
         throw;
+    } catch (const RefusedMap& error) {
+        loaded.error = error.what();
+        loaded.refused = error.wanted();
     } catch (const std::exception& error) {
         loaded.error = error.what();
     }

@@ -155,6 +155,8 @@ struct Loaded {
     std::optional<ComposedScene> composed;
     Report findings;
     std::string error;
+    /// If the error is a map of the wrong kind: the kind that the options may assume.
+    std::optional<MapKind> refused = std::nullopt;
     std::map<std::filesystem::path, FileStamp> files;  ///< Files that were read or not found.
     double seconds = 0.0;
 };

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/map_kind.h"
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/shade/scene.h"
@@ -135,8 +136,10 @@ std::optional<std::string> map_name(const Scene& scene, std::size_t material, Te
 
 /// Sets a map to a file. The wrap modes stay; the default is repeat. A material has either a normal
 /// map or a bump map, so setting one removes the other. The scale and strength of a map stay.
-/// \throws FileError if the file is not an image
+/// \throws RefusedMap if the file is of another kind and that is not assumed; FileError if it is
+/// not
+///         an image
 void set_map(Scene& scene, std::size_t material, TextureSlot slot,
-             const std::filesystem::path& file);
+             const std::filesystem::path& file, const AssumedKinds& assumed = {});
 
 }  // namespace relief::tools

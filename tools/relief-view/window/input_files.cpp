@@ -221,13 +221,16 @@ void drop_one(ViewOptions& options, const std::filesystem::path& file) {
         case DroppedAs::height_map:
             options.height_map = file;
             options.normal_map.reset();
+            std::erase(options.assumed, MapKind::height);
             break;
         case DroppedAs::normal_map:
             options.normal_map = file;
             options.height_map.reset();
+            std::erase(options.assumed, MapKind::normal);
             break;
         case DroppedAs::diffuse_map:
             options.diffuse_map = file;
+            std::erase(options.assumed, MapKind::color);
             break;
         case DroppedAs::environment:
             options.environment = {file};

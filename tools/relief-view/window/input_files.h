@@ -114,7 +114,8 @@ enum class DroppedAs { model, height_map, normal_map, diffuse_map, environment }
 /// ("height", "bump", "disp", "_h"), environments ("env", "pano", "sky") or else diffuse maps.
 DroppedAs dropped_as(const std::filesystem::path& file);
 
-/// Changes the options to show the dropped files. Each file replaces the one of its kind. Six
+/// Changes the options to show the dropped files. Each file replaces the one of its kind, and the
+/// kind of a map is not assumed any more. Six
 /// images are the faces of a cube, identified by the ends of their names ("posx", "px", "right",
 /// ...) or else in alphabetical order.
 ViewOptions with_dropped(ViewOptions options, const std::vector<std::filesystem::path>& files);

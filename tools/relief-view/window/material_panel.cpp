@@ -10,6 +10,7 @@
 #include "common/map_kind.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_description.h"
+#include "relief/mesh/map_kind_check.h"
 #include "relief/shade/scene_fields.h"
 #include "window/controls.h"
 #include "window/edit_panels.h"
@@ -82,29 +83,8 @@ std::optional<std::string> map_name(const Scene& scene, std::size_t material, Te
     return scene.images[texture->image].name;
 }
 
-namespace {
-
-/// The kinds of maps that a slot accepts. Those of the other slots may be packed in many ways.
-std::vector<MapKind> accepted_kinds(TextureSlot slot) {
-    switch (slot) {
-        case TextureSlot::normal:
-            return {MapKind::normal, MapKind::object_normal};
-        case TextureSlot::clearcoat_normal:
-            return {MapKind::normal};
-        case TextureSlot::bump:
-            return {MapKind::height};
-        case TextureSlot::base_color:
-        case TextureSlot::emission:
-            return {MapKind::color};
-        default:
-            return {};
-    }
-}
-
-}  // namespace
-
 void set_map(Scene& scene, std::size_t material, TextureSlot slot,
-             const std::filesystem::path& file) {
+             const std::filesystem::path& file, const AssumedKinds& assumed) {
     const TextureSlotInfo& slot_of_map = slot_info(slot);
     const ImageInfo info = read_image_info(file);
     const std::string_view used = slot_of_map.channels;
@@ -114,7 +94,7 @@ void set_map(Scene& scene, std::size_t material, TextureSlot slot,
             slot == TextureSlot::anisotropy ? "n" : "", slot_of_map.effect, info.channels));
     }
     const std::vector<MapKind> accepted = accepted_kinds(slot);
-    if (!accepted.empty()) check_kind(file, accepted, {});
+    if (!accepted.empty()) check_kind(file, accepted, assumed);
     Material& changed = scene.materials[material];
     const Texture* const before = find_texture(changed, slot);
     Texture texture = before == nullptr ? Texture{} : *before;
@@ -235,7 +215,7 @@ void edit_maps(const PanelInput& input, std::size_t index) {
             file_field(map_title(slot).c_str(), map_name(state.scene(), index, slot),
                        texture != nullptr ? thumbnail_of(input, texture->image) : std::nullopt);
         if (choice.file) {
-            state.try_edit([&](Scene& scene) { set_map(scene, index, slot, *choice.file); });
+            state.set_map(index, slot, *choice.file);
         } else if (choice.is_cleared) {
             state.edit([&](Scene& scene) { remove_texture(scene.materials[index], slot); });
         }

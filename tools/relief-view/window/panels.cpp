@@ -262,6 +262,12 @@ void draw_status(const PanelInput& input, PanelRequests& requests) {
     } else if (!input.progress.stage.empty()) {
         draw_progress("Preparing", input.progress);
     } else if (!error.empty()) {
+        if (input.state.has_refused_map()) {
+            if (ImGui::SmallButton("Use it anyway"))
+                requests.assume = input.state.use_refused_map();
+            probe_item("Use it anyway");
+            ImGui::SameLine();
+        }
         const bool is_light = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg).x > 0.5F;
         draw_line({error},
                   is_light ? ImVec4(0.7F, 0.1F, 0.0F, 1.0F) : ImVec4(1.0F, 0.5F, 0.4F, 1.0F));

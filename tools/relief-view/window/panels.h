@@ -52,6 +52,7 @@ struct PanelRequests {
     std::optional<std::filesystem::path> open;    ///< A file that was selected.
     std::optional<std::string> material_variant;  ///< Empty: the materials without a variant.
     std::optional<float> ambient_occlusion;       ///< Its distance; 0 is none.
+    std::optional<MapKind> assume;                ///< Read the model again as with --assume.
     bool cancel_loading = false;
     bool save_picture = false;
     bool save_turn = false;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "common/map_kind.h"
 #include "common/text.h"
 #include "window/controls.h"
 #include "window/panels.h"
@@ -111,8 +112,9 @@ void draw_findings(const PanelInput& input) {
                                finding.outcome.c_str());
         }
     };
-    draw(input.state.findings());
-    draw(input.drawn.findings);
+    const AssumedKinds& assumed = input.state.options().assumed;
+    draw(without_assumed(input.state.findings(), assumed));
+    draw(without_assumed(input.drawn.findings, assumed));
 }
 
 /// Draws the choice of a material variant, if the file has any.

@@ -101,7 +101,7 @@ ViewerState::ViewerState(ViewOptions options)
     : options_(std::move(options)), effects_(options_.effects.requests) {}
 
 void ViewerState::take(Loaded loaded) {
-    error_ = loaded.error;
+    set_error(loaded.error, loaded.refused);
     if (!loaded.composed) return;
     const bool is_new = loaded.options.model != shown_model_;
     const std::shared_ptr<const Scene> edited = scene_at_rest();
@@ -382,6 +382,41 @@ void ViewerState::turn_environment(float pixels) {
     });
 }
 
+void ViewerState::set_error(std::string error, std::optional<MapKind> refused) {
+    error_ = std::move(error);
+    refused_ = refused;
+}
+
+void ViewerState::set_map(std::size_t material, TextureSlot slot, const std::filesystem::path& file,
+                          const AssumedKinds& assumed) {
+    try_edit([&](Scene& scene) {
+        try {
+            tools::set_map(scene, material, slot, file, assumed);
+        } catch (const RefusedMap& error) {
+            refused_edit_ = {material, slot, file, error.wanted()};
+            throw;
+        }
+    });
+}
+
+void ViewerState::set_map(std::size_t material, TextureSlot slot,
+                          const std::filesystem::path& file) {
+    set_map(material, slot, file, options_.assumed);
+}
+
+bool ViewerState::has_refused_map() const {
+    if (!error_.empty()) return refused_.has_value();
+    return !edit_error_.empty() && refused_edit_;
+}
+
+std::optional<MapKind> ViewerState::use_refused_map() {
+    if (!has_refused_map()) return std::nullopt;
+    if (!error_.empty()) return refused_;
+    const RefusedEdit refused = *refused_edit_;
+    set_map(refused.material, refused.slot, refused.file, {refused.wanted});
+    return std::nullopt;
+}
+
 void ViewerState::aim(const glm::vec2& pointer) {
     if (!scene_) return;
     const Ray ray = ray_through(camera_of(camera_, sphere_), pointer);
@@ -389,7 +424,7 @@ void ViewerState::aim(const glm::vec2& pointer) {
 }
 
 void ViewerState::apply_view_text(const std::string& text) {
-    error_.clear();
+    set_error("");
     try {
         const ViewText view = parse_view_text(text);
         const float fov = view.vertical_fov.value_or(camera_.vertical_fov);
@@ -399,7 +434,7 @@ void ViewerState::apply_view_text(const std::string& text) {
         const bool keeps = !view.camera.place && camera_.orthographic;
         camera_ = orbit_of(view.camera, place, fov, view.orthographic || keeps);
     } catch (const UsageError& error) {
-        error_ = error.what();
+        set_error(error.what());
     }
 }
 
@@ -427,7 +462,7 @@ std::optional<HealthRequest> ViewerState::take_health_request() {
 }
 
 void ViewerState::take(HealthResult found) {
-    if (!found.error.empty()) error_ = found.error;
+    if (!found.error.empty()) set_error(found.error);
     markers_ = std::move(found.markers);
     ++revision_;
 }

@@ -94,6 +94,7 @@ class ViewerState {
     /// edit succeeds.
     template <typename Edit>
     void try_edit(const Edit& change) {
+        refused_edit_.reset();
         try {
             edit(change);
             edit_error_.clear();
@@ -101,6 +102,16 @@ class ViewerState {
             edit_error_ = error.what();
         }
     }
+
+    /// Sets a map of a material to a file, as try_edit().
+    void set_map(std::size_t material, TextureSlot slot, const std::filesystem::path& file);
+
+    /// Returns true if error() is about a map of the wrong kind.
+    [[nodiscard]] bool has_refused_map() const;
+    /// Sets the map of the material that was refused anyway.
+    /// \return if the map was refused when the scene was read, the kind to assume when it is read
+    ///         again
+    std::optional<MapKind> use_refused_map();
 
     /// The lights with the data that only the window stores.
     [[nodiscard]] std::vector<LightRow> light_rows() const;
@@ -205,6 +216,17 @@ class ViewerState {
         bool left_handed_environment;
     };
 
+    /// A map that set_map() refused because of its kind.
+    struct RefusedEdit {
+        std::size_t material;
+        TextureSlot slot;
+        std::filesystem::path file;
+        MapKind wanted;
+    };
+
+    void set_map(std::size_t material, TextureSlot slot, const std::filesystem::path& file,
+                 const AssumedKinds& assumed);
+    void set_error(std::string error, std::optional<MapKind> refused = std::nullopt);
     void begin_edit_step();
     [[nodiscard]] EditState edit_state() const;
     void restore(EditState state);
@@ -262,7 +284,9 @@ class ViewerState {
     std::vector<std::string> notes_;
     Report findings_;
     std::string error_;
+    std::optional<MapKind> refused_;  ///< The kind that the read of error_ may assume.
     std::string edit_error_;
+    std::optional<RefusedEdit> refused_edit_;  ///< That of edit_error_.
 };
 
 }  // namespace relief::tools

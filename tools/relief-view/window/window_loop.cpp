@@ -201,6 +201,7 @@ class WindowLoop {
         measure(drawn, events.panels);
         use_variant(events.panels.material_variant);
         use_occlusion(events.panels.ambient_occlusion);
+        assume(events.panels.assume);
         handle_accuracy_requests(events.panels);
         if (events.panels.save_picture) save(0);
         if (events.panels.save_scene) saving_.save_scene(state_);
@@ -303,6 +304,16 @@ class WindowLoop {
             refused.error = error.what();
             state_.take(std::move(refused));
         }
+    }
+
+    /// Reads the model that was refused because of the kind of a map, and assumes that kind.
+    void assume(const std::optional<MapKind>& kind) {
+        if (!kind) return;
+        read_with([&](const ViewOptions&) {
+            ViewOptions options = loading_options_;
+            options.assumed.push_back(*kind);
+            return options;
+        });
     }
 
     /// Reads the model with the materials of a variant.

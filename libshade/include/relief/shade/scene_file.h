@@ -89,8 +89,8 @@ FrameOptions frame_options(const std::filesystem::path& model, const SceneOption
 ///                coordinate sets (left out) or another transform than their material's first;
 ///                extensions of glTF materials that are not drawn, and those that the file
 ///                requires; statements of MTL without an equivalent (map_Ka, map_Ns, disp, refl,
-///                scaled or shifted maps); animations that cannot be played; and, for
-///                MaterialModel::phong, unreadable textures, whose mean counts as 1
+///                scaled or shifted maps); maps whose files state another kind; animations that
+///                cannot be played; and, for MaterialModel::phong, unreadable textures (mean 1)
 /// \throws FileError as the readers do. A missing image file is reported when it is decoded, and
 ///         only visible images are decoded
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
