@@ -21,6 +21,8 @@
 #include "shade/typical_scenes.h"
 
 namespace relief::bench {
+using namespace relief::shade;
+
 namespace {
 
 double median(const Contender& contender, std::size_t elements) {

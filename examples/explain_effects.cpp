@@ -8,7 +8,7 @@
 #include "relief/shade/scene.h"
 
 int main() {
-    relief::Scene scene;
+    relief::shade::Scene scene;
     scene.meshes.emplace_back(relief::make_torus());
     scene.instances.push_back({.mesh = 0, .name = "torus"});
     relief::Material material;
@@ -21,11 +21,12 @@ int main() {
          .material = 0}};
     scene.directional_lights.push_back({});
 
-    const relief::FramePlan plan = relief::plan_effects(scene, relief::FrameSettings{});
-    const relief::DrawPlan& draw = plan.draws.front();
-    std::printf("%s\n", relief::describe(draw.features).c_str());
+    const relief::shade::FramePlan plan =
+        relief::shade::plan_effects(scene, relief::shade::FrameSettings{});
+    const relief::shade::DrawPlan& draw = plan.draws.front();
+    std::printf("%s\n", relief::shade::describe(draw.features).c_str());
     int on = 0;
-    for (const relief::EffectReason& effect : draw.reasons) {
+    for (const relief::shade::EffectReason& effect : draw.reasons) {
         on += effect.on;
         std::printf("%-3s %s: %s\n", effect.on ? "on" : "off", effect.effect.c_str(),
                     effect.reason.c_str());

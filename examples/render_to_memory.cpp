@@ -12,7 +12,7 @@
 
 int main() {
     try {
-        relief::Scene scene;
+        relief::shade::Scene scene;
         scene.meshes.emplace_back(relief::make_sphere());
         scene.instances.push_back({.mesh = 0, .name = "sphere"});
         relief::Material material;
@@ -22,15 +22,15 @@ int main() {
             {.triangle_count = static_cast<std::uint32_t>(scene.meshes[0]->triangles.size()),
              .material = 0}};
         // The light comes from the camera, so the center of the sphere has the radiance 0.5.
-        const relief::Camera camera = relief::framed(scene, 0.0F, 0.0F, 0.6F, 1.0F);
+        const relief::shade::Camera camera = relief::shade::framed(scene, 0.0F, 0.0F, 0.6F, 1.0F);
         scene.directional_lights.push_back({.direction_world = glm::vec3(0.0F, 0.0F, -1.0F)});
 
-        const relief::Context context;  // A GPU without a display, or Mesa's rasterizer.
+        const relief::shade::Context context;  // A GPU without a display, or Mesa's rasterizer.
         relief::Report report;
-        const relief::FrameSettings settings = {
-            .width = 256, .height = 256, .output = relief::OutputCoding::linear};
-        relief::Renderer renderer(context, scene, settings, report);
-        const relief::Frame frame = renderer.draw(camera);
+        const relief::shade::FrameSettings settings = {
+            .width = 256, .height = 256, .output = relief::shade::OutputCoding::linear};
+        relief::shade::Renderer renderer(context, scene, settings, report);
+        const relief::shade::Frame frame = renderer.draw(camera);
 
         const std::span<const float> pixels = frame.image.as<float>();
         const std::size_t center = (128 * 256 + 128) * 4;

@@ -36,6 +36,8 @@
 #include "relief/shade/scene_file.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
@@ -321,6 +323,8 @@ void maps(Bytes bytes) {
     static_cast<void>(encode_normal_map(resized, format));
     static_cast<void>(normal_mip_levels(resized));
 }
+
+using relief::shade::effects;
 
 /// A scene of arbitrary materials and lights: the plan of its effects and their shaders.
 void effects(Bytes bytes) {

@@ -128,7 +128,7 @@ void translate(std::exception_ptr pointer) {
         set_error(invalid_input, problem);
     } catch (const FileError& problem) {
         set_error(file_error, problem);
-    } catch (const GpuError& problem) {
+    } catch (const shade::GpuError& problem) {
         set_error(gpu_error, problem);
     } catch (const Cancelled& problem) {
         set_error(cancelled, problem);

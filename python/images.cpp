@@ -21,6 +21,8 @@
 #include "relief/shade/image_compare.h"
 
 namespace relief::python {
+using namespace relief::shade;
+
 namespace {
 
 using Text = std::optional<std::string>;

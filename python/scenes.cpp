@@ -15,6 +15,8 @@
 #include "relief/shade/scene_graph.h"
 
 namespace relief::python {
+using namespace relief::shade;
+
 namespace {
 
 using Text = std::optional<std::string>;

@@ -30,6 +30,9 @@
 #endif
 
 namespace relief::bench {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 struct Fields {

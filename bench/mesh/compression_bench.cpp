@@ -20,6 +20,7 @@
 #include "relief/mesh/texture_file.h"
 
 namespace {
+using namespace relief::accuracy;
 
 using namespace relief;
 

@@ -20,6 +20,9 @@
 #include "relief/mesh/report.h"
 
 namespace relief::bench {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,6 +74,8 @@ void write_by_module(const fs::path& file, const Image& image) {
     module.finish(writer, failure);
     module.release(writer);
 }
+
+using relief::detail::read_by_module;
 
 void read_by_module(const fs::path& file, Image& image) {
     const ImageModule& module = image_module(file);

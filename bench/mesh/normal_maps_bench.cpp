@@ -13,6 +13,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace {
+using namespace relief::accuracy;
 
 using namespace relief;
 

@@ -6,6 +6,8 @@
 #include <cmath>
 
 namespace relief::bench {
+using namespace relief::detail;
+
 namespace {
 
 struct Weights {

@@ -20,11 +20,11 @@ inline constexpr std::size_t plain_block_sizes[] = {128, 512};
 ///
 /// \param heights  float, at least 3 x 3
 /// \param strength  in texels
-void plain_sobel_codes(VectorTarget target, std::size_t block_size, const Image& heights,
-                       float strength, Image& map);
+void plain_sobel_codes(relief::detail::VectorTarget target, std::size_t block_size,
+                       const Image& heights, float strength, Image& map);
 
 /// Encodes slopes to the right and down, as other libraries compute them, as nearest codes.
-void plain_codes_of_slopes(VectorTarget target, const float* right, const float* down,
-                           std::size_t count, std::uint16_t* codes);
+void plain_codes_of_slopes(relief::detail::VectorTarget target, const float* right,
+                           const float* down, std::size_t count, std::uint16_t* codes);
 
 }  // namespace relief::bench

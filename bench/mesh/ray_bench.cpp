@@ -12,6 +12,8 @@
 #include "bench_support.h"
 
 namespace relief::bench {
+using namespace relief::detail;
+
 namespace {
 
 constexpr int side = 1024;

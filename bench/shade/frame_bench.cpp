@@ -31,6 +31,8 @@
 #include "shade/typical_scenes.h"
 
 namespace relief::bench {
+using namespace relief::shade;
+
 namespace {
 
 const FrameSettings settings{1280, 720, 1, OutputCoding::srgb};

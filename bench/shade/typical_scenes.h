@@ -17,7 +17,7 @@ struct TypicalScene {
     const char* name;
     const char* minimal;            ///< Folder below bench/shade/minimal.
     std::vector<const char*> uses;  ///< Switches of the branching shader that are on.
-    Scene scene;
+    shade::Scene scene;
 };
 
 /// Random texels; for a normal map, near the flat color.
@@ -32,8 +32,8 @@ inline Image noise(std::uint32_t seed, int size, bool around_flat, ColorSpace sp
     return image;
 }
 
-inline Scene diffuse_scene() {
-    Scene scene;
+inline shade::Scene diffuse_scene() {
+    shade::Scene scene;
     Mesh mesh = make_sphere(316, 159);
     mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
     scene.meshes = {std::move(mesh)};
@@ -43,24 +43,24 @@ inline Scene diffuse_scene() {
     scene.materials = {material};
     scene.instances = {{0, glm::mat4(1.0F), "sphere"}};
     scene.directional_lights = {{{-0.4F, -0.5F, -1.0F}, glm::vec3(0.9F)}};
-    Camera camera;
+    shade::Camera camera;
     camera.world_from_view[3] = glm::vec4(0, 0, 3.0F, 1);
     scene.camera = camera;
     return scene;
 }
 
-inline Texture add_image(Scene& scene, const char* name, Image image) {
+inline Texture add_image(shade::Scene& scene, const char* name, Image image) {
     scene.images.push_back({name, std::move(image)});
     return {scene.images.size() - 1};
 }
 
-inline void add_normal_map(Scene& scene) {
+inline void add_normal_map(shade::Scene& scene) {
     scene.materials[0].normal_map =
         NormalMap{add_image(scene, "normal", noise(2, 1024, true, ColorSpace::data))};
 }
 
 inline std::vector<TypicalScene> typical_scenes() {
-    Scene scene = diffuse_scene();
+    shade::Scene scene = diffuse_scene();
     std::vector<TypicalScene> all;
     all.push_back({"diffuse", "diffuse", {}, scene});
     scene.materials[0].specular = glm::vec3(0.5F);
@@ -72,11 +72,11 @@ inline std::vector<TypicalScene> typical_scenes() {
     add_normal_map(scene);
     all.push_back(
         {"+ normal map", "normal_map", {"highlights", "diffuse_texture", "normal_map"}, scene});
-    Scene physical = scene;
-    CubeFaces faces;
+    shade::Scene physical = scene;
+    shade::CubeFaces faces;
     for (std::uint32_t i = 0; i < 6; ++i)
         faces.faces[i] = {"face", noise(10 + i, 512, false, ColorSpace::srgb)};
-    scene.environment = Environment{faces, 1.0F, false};
+    scene.environment = shade::Environment{faces, 1.0F, false};
     scene.materials[0].reflectivity = glm::vec3(0.3F);
     all.push_back({"+ reflection",
                    "reflection",

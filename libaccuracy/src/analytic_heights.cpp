@@ -15,7 +15,10 @@
 #include "portable_math.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::accuracy::detail;
+using namespace relief::detail;
+
 namespace {
 
 std::size_t texel_at(int width, int column, int row) {
@@ -112,7 +115,7 @@ CodedHeights coded_heights(const Image& heights, int bits) {
     return coded;
 }
 
-std::vector<glm::dvec3> directions_of(const Image& normals) {
+std::vector<glm::dvec3> detail::directions_of(const Image& normals) {
     const std::span<const float> n = normals.as<float>();
     std::vector<glm::dvec3> directions(n.size() / 3);
     for (std::size_t i = 0; i < directions.size(); ++i)
@@ -120,7 +123,7 @@ std::vector<glm::dvec3> directions_of(const Image& normals) {
     return directions;
 }
 
-Image angles_of(const Image& normals, std::span<const glm::dvec3> ground_truth) {
+Image detail::angles_of(const Image& normals, std::span<const glm::dvec3> ground_truth) {
     if (normals.channels != 3 || normals.bits() != 32 ||
         normals.sample_count() != 3 * ground_truth.size()) {
         throw InvalidInput(fmt::format("a map of {} x {} texels of {} channels has no {} normals",
@@ -139,8 +142,8 @@ Image angles_of(const Image& normals, std::span<const glm::dvec3> ground_truth) 
     return angles;
 }
 
-std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3> ground_truth,
-                                int margin) {
+std::vector<float> detail::inner_angles(const Image& normals,
+                                        std::span<const glm::dvec3> ground_truth, int margin) {
     const Image angles = angles_of(normals, ground_truth);
     const std::span<const float> all = angles.as<float>();
     std::vector<float> counted;
@@ -152,7 +155,8 @@ std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3
     return counted;
 }
 
-ErrorStats map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth, int margin) {
+ErrorStats detail::map_errors(const Image& normals, std::span<const glm::dvec3> ground_truth,
+                              int margin) {
     return error_stats(inner_angles(normals, ground_truth, margin));
 }
 
@@ -452,4 +456,4 @@ ErrorStats field_error(const Image& normals, const BumpField& field) {
     return error_stats(std::move(degrees));
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

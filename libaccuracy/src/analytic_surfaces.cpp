@@ -16,7 +16,9 @@
 #include "portable_math.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::detail;
+
 namespace {
 
 struct PlacedPoint {
@@ -442,4 +444,4 @@ Mesh cubic_fan(int valence, std::uint32_t seed) {
     return mesh;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

@@ -18,7 +18,9 @@
 #include "relief/mesh/statistics.h"
 #include "storage_experiments.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::accuracy::detail;
+
 namespace {
 
 constexpr std::array measured_arithmetics = {Arithmetic::float32, Arithmetic::float64};
@@ -287,4 +289,4 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
     return asset;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

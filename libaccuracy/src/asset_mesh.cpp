@@ -21,7 +21,9 @@
 #include "relief/mesh/statistics.h"
 #include "storage_experiments.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::accuracy::detail;
+
 namespace {
 
 /// A smaller crease angle means that the mesh is stored as facets; it says nothing about its edges.
@@ -53,7 +55,7 @@ CreaseRule by_normals(const Mesh& mesh) {
 
 }  // namespace
 
-CreaseRule crease_rule(const Mesh& mesh, const std::optional<double>& crease_angle) {
+CreaseRule detail::crease_rule(const Mesh& mesh, const std::optional<double>& crease_angle) {
     CreaseRule none;
     none.description = "no edge is hard";
     if (crease_angle) {
@@ -508,4 +510,4 @@ std::vector<AssetExperiment> measure_asset_mesh(const Mesh& mesh,
     return all;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

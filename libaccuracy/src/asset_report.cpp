@@ -17,7 +17,10 @@
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/mesh.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::accuracy::detail;
+using namespace relief::detail;
+
 namespace {
 
 /// A method that may be recommended.
@@ -252,8 +255,8 @@ Recommendation recommended(const Experiment& experiment, const RecommendationRul
     return result;
 }
 
-AssetExperiment asset_experiment(Subject subject, const std::string& topic,
-                                 const std::string& title, const AssetOptions& options) {
+AssetExperiment detail::asset_experiment(Subject subject, const std::string& topic,
+                                         const std::string& title, const AssetOptions& options) {
     check_cancelled();
     AssetExperiment asset;
     Experiment& experiment = asset.experiment;
@@ -266,17 +269,17 @@ AssetExperiment asset_experiment(Subject subject, const std::string& topic,
     return asset;
 }
 
-std::function<MethodError()> known_error(const ErrorStats& error) {
+std::function<MethodError()> detail::known_error(const ErrorStats& error) {
     return [error] { return error; };
 }
 
-void set_finding(AssetExperiment& asset) {
+void detail::set_finding(AssetExperiment& asset) {
     asset.experiment.finding = asset.recommendation.description + ".";
     if (!asset.command().empty()) asset.experiment.finding += " To do it: " + asset.command();
 }
 
-void finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule& rule,
-            const AssetOptions& options) {
+void detail::finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule& rule,
+                    const AssetOptions& options) {
     const ProgressStage stage("measuring");
     std::vector<unsigned char> choosable;
     std::vector<double> nominal_costs;
@@ -301,7 +304,7 @@ void finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule
     set_finding(asset);
 }
 
-Mesh part_to_measure(const Mesh& mesh, std::size_t max_triangles) {
+Mesh detail::part_to_measure(const Mesh& mesh, std::size_t max_triangles) {
     const std::size_t count = mesh.triangles.size();
     if (count <= max_triangles) return mesh;
     constexpr std::size_t runs = 8;
@@ -315,4 +318,4 @@ Mesh part_to_measure(const Mesh& mesh, std::size_t max_triangles) {
     return part_of(mesh, triangles);
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

@@ -13,7 +13,7 @@
 #include "relief/accuracy/asset.h"
 #include "relief/mesh/normals.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 /// A smaller error is invisible, and not worth a byte.
 inline constexpr double invisible_degrees = 0.01;
@@ -63,4 +63,4 @@ struct CreaseRule {
 /// \param crease_angle  radians; pi: no edge is hard
 CreaseRule crease_rule(const Mesh& mesh, const std::optional<double>& crease_angle);
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -17,7 +17,9 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/texel_coverage.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t texels_for_limit = std::size_t{1} << 17;
@@ -280,4 +282,4 @@ BakeComparison select_bake(const Baker& baker, const BakeMapOptions& map,
     search.fail(true);
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

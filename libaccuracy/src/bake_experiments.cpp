@@ -20,7 +20,9 @@
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
+using namespace relief::detail;
+
 namespace {
 
 constexpr double bump_height = 0.02;
@@ -30,6 +32,8 @@ struct SphereAngles {
     double longitude = 0.0;  ///< From +z towards +x.
     double polar = 0.0;      ///< From +y.
 };
+
+using relief::accuracy::detail::angles_of;
 
 SphereAngles angles_of(const glm::dvec3& p) {
     return {portable::atan2(p.x, p.z), portable::atan2(std::sqrt(p.x * p.x + p.z * p.z), p.y)};
@@ -208,11 +212,13 @@ struct BakedMap {
 constexpr int picture_side = 320;
 constexpr int picture_rays_per_side = 2;
 
+using relief::accuracy::detail::name_of;
+
 std::string name_of(const BakedMap& map) {
     return fmt::format("{}, {}", name_of(map.way), depth_name(map.format.bits));
 }
 
-Image picture_of(const Scene& scene) {
+Image picture_of(const shade::Scene& scene) {
     return supersampled_reference(scene, picture_side, picture_rays_per_side);
 }
 
@@ -229,10 +235,10 @@ void add_error_maps(const BumpyBake& bake, std::span<const BakedMap> maps, doubl
 /// Adds an image pair per map: the low mesh with the map, and the high mesh. The CPU reference
 /// shader renders both, so OpenGL is not needed.
 void add_renderings(const BumpyBake& bake, std::span<const BakedMap> maps, Experiment& experiment) {
-    const Scene high = lit_scene(bake.high().mesh(), glossy_plastic());
+    const shade::Scene high = lit_scene(bake.high().mesh(), glossy_plastic());
     const Image ground_truth = picture_of(high);
     for (const BakedMap& map : maps) {
-        Scene low =
+        shade::Scene low =
             bumpy_scene(bake.baker().low(), glossy_plastic(), bake.map_by(map.way, map.format));
         low.camera = high.camera;
         experiment.pictures.push_back(image_pair(
@@ -470,4 +476,4 @@ std::vector<PlannedExperiment> bake_plan(const PlanOptions& options) {
              [bake, is_quick] { return by_threshold(bake.get(), is_quick); }}};
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

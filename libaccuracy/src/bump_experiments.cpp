@@ -18,7 +18,7 @@
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 std::span<const NamedKernel> named_kernels() {
     static const std::array kernels = {NamedKernel{"forward", Kernel::forward, 2},
@@ -399,4 +399,4 @@ std::vector<PlannedExperiment> bump_plan(const PlanOptions& options) {
     return plan;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

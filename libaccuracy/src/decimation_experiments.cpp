@@ -15,7 +15,7 @@
 #include "experiment_parts.h"
 #include "relief/mesh/topology.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 std::vector<TriangleSample> area_samples(const Mesh& mesh, std::size_t count) {
     std::vector<double> ends;  // The sum of the areas up to each triangle.
@@ -258,4 +258,4 @@ std::vector<PlannedExperiment> decimation_plan(const PlanOptions& options) {
     return plan;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -12,7 +12,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 /// A point of a triangle.
 struct TriangleSample {
@@ -34,4 +34,4 @@ enum class DecimationError {
 ErrorStats surface_errors(const Mesh& mesh, AnalyticSurface surface, std::uint32_t seed,
                           DecimationError kind);
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -16,7 +16,9 @@
 #include "rendered_methods.h"
 #include "shading_experiments.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
+using namespace relief::shade;
+
 namespace {
 
 /// The methods of the experiment.
@@ -156,4 +158,4 @@ PreparedExperiment energy_experiment(const PlanOptions& options) {
     return prepared;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

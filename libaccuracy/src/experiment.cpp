@@ -15,7 +15,7 @@
 
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::accuracy {
 namespace {
 
 constexpr double undefined_error = std::numeric_limits<double>::quiet_NaN();
@@ -100,8 +100,8 @@ std::optional<double> fitted_order(const std::vector<CurvePoint>& points) {
     double sum_xx = 0.0;
     double sum_xy = 0.0;
     for (const CurvePoint& point : points) {
-        const double x = portable::log(point.x);
-        const double y = portable::log(point.error);
+        const double x = relief::detail::portable::log(point.x);
+        const double y = relief::detail::portable::log(point.error);
         if (!std::isfinite(x) || !std::isfinite(y)) continue;
         count += 1.0;
         sum_x += x;
@@ -366,4 +366,4 @@ ReportComparison compare_reports(const std::vector<Experiment>& before,
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

@@ -23,7 +23,10 @@
 #include "relief/mesh/statistics.h"
 #include "rendered_methods.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::accuracy::detail;
+using namespace relief::detail;
+
 namespace {
 
 /// Leaves out methods, and computes the errors of the others.
@@ -119,8 +122,8 @@ std::size_t share_of(std::size_t rounds, std::size_t pass, std::size_t passes) {
 
 }  // namespace
 
-std::vector<Experiment> run_planned(std::vector<PlannedExperiment> plan,
-                                    const RunOptions& options) {
+std::vector<Experiment> detail::run_planned(std::vector<PlannedExperiment> plan,
+                                            const RunOptions& options) {
     if (options.selects_experiment) {
         std::erase_if(plan, [&](const PlannedExperiment& planned) {
             return !options.selects_experiment(planned.id);
@@ -154,13 +157,13 @@ std::vector<Experiment> run_planned(std::vector<PlannedExperiment> plan,
     return experiments;
 }
 
-Experiment measured(PreparedExperiment prepared, const RunOptions& options) {
+Experiment detail::measured(PreparedExperiment prepared, const RunOptions& options) {
     const bool is_whole = begin(prepared, options);
     if (options.is_timed) add_times(prepared, options.repeats, options.threads);
     return end(prepared, is_whole, options);
 }
 
-const Measurement* most_accurate(const Experiment& experiment) {
+const Measurement* detail::most_accurate(const Experiment& experiment) {
     const Measurement* least = nullptr;
     for (const Measurement& one : experiment.measurements) {
         if (std::isnan(curve_error(one.error))) continue;
@@ -169,7 +172,7 @@ const Measurement* most_accurate(const Experiment& experiment) {
     return least;
 }
 
-std::string arithmetic_finding(const Experiment& experiment, const char* plural) {
+std::string detail::arithmetic_finding(const Experiment& experiment, const char* plural) {
     const auto& all = experiment.measurements;
     double difference = 0.0;
     std::vector<double> ratios;
@@ -188,8 +191,8 @@ std::string arithmetic_finding(const Experiment& experiment, const char* plural)
     return text + ".";
 }
 
-Curve fitted_curve(std::string method, std::vector<CurvePoint> points,
-                   std::optional<double> expected_order) {
+Curve detail::fitted_curve(std::string method, std::vector<CurvePoint> points,
+                           std::optional<double> expected_order) {
     Curve curve;
     curve.method = std::move(method);
     curve.order = fitted_order(points);
@@ -263,7 +266,7 @@ std::vector<Experiment> run_experiments(std::span<const Subject> subjects,
     return run_planned(std::move(plan), options);
 }
 
-std::size_t repeats_per_round(const std::function<void()>& work) {
+std::size_t detail::repeats_per_round(const std::function<void()>& work) {
     constexpr double min_round_seconds = 4e-3;
     const double seconds = seconds_of(work);
     return seconds >= min_round_seconds
@@ -292,14 +295,14 @@ std::optional<std::uint64_t> status_bytes(const std::string& name) {
 
 }  // namespace
 
-double processor_seconds_of(const std::function<void()>& work) {
+double detail::processor_seconds_of(const std::function<void()>& work) {
     constexpr double min_seconds = 1e-9;  // Work that only waits must have a positive time.
     const double begin = processor_seconds();
     work();
     return std::max(processor_seconds() - begin, min_seconds);
 }
 
-std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work) {
+std::optional<std::uint64_t> detail::peak_bytes_of(const std::function<void()>& work) {
     ::malloc_trim(0);  // Otherwise the work could reuse memory that is already resident.
     std::ofstream reset("/proc/self/clear_refs");
     reset << 5 << std::flush;  // Sets VmHWM to the current VmRSS.
@@ -351,4 +354,4 @@ SingleProcessor::~SingleProcessor() {
     if (is_active_) set_affinity(before_);
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

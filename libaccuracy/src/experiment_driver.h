@@ -19,7 +19,7 @@
 
 #include "relief/accuracy/experiment.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 class GlDevice;  // rendered_methods.h
 
@@ -195,4 +195,4 @@ class SingleProcessor {
     bool is_active_ = false;
 };
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -28,7 +28,7 @@
 #include "relief/mesh/normals.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 inline constexpr std::array all_surfaces = {AnalyticSurface::sphere, AnalyticSurface::torus,
                                             AnalyticSurface::ellipsoid, AnalyticSurface::saddle,
@@ -406,4 +406,4 @@ struct TexturedCase {
 /// and with a mirrored texture; and a plate with thin bevels, which has no cells.
 std::vector<TexturedCase> textured_cases();
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

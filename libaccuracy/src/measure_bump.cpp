@@ -15,7 +15,9 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::accuracy {
+using namespace relief::accuracy::detail;
+
 namespace {
 
 /// Only maps with fewer bits than this are de-staircased, because the steps of others are
@@ -327,4 +329,4 @@ const BumpMeasurement* most_accurate(const BumpExperiment& experiment, ErrorKind
     return least;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy

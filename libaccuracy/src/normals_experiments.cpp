@@ -12,7 +12,7 @@
 #include "experiment_driver.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 namespace {
 
 NormalMethod weighted(std::string weighting, NormalWeight weight, Arithmetic arithmetic) {
@@ -89,6 +89,8 @@ struct Case {
     AnalyticSurface surface;
     Triangulation triangulation;
 };
+
+using relief::accuracy::detail::name_of;
 
 std::string name_of(const Case& one) {
     return fmt::format("{}, {}", name_of(one.surface), name_of(one.triangulation));
@@ -308,4 +310,4 @@ std::vector<PlannedExperiment> normals_plan(const PlanOptions& options) {
     return plan;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -16,7 +16,11 @@
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
+using namespace relief::detail;
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 constexpr double eye_distance = 3.0;
@@ -307,4 +311,4 @@ PreparedExperiment glossy_experiment(const PlanOptions& options) {
         });
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

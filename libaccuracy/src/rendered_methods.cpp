@@ -17,7 +17,9 @@
 #include "relief/shade/reference.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
+using namespace relief::shade;
+
 namespace {
 
 FrameSettings settings_of(const RenderedMethod& method, const Image& ground_truth) {
@@ -308,4 +310,4 @@ Image without_alpha(const Image& image) {
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -20,20 +20,20 @@
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 /// An OpenGL context, or the reason why there is none.
 class GlDevice {
   public:
-    explicit GlDevice(Backend backend = Backend::automatic);
+    explicit GlDevice(shade::Backend backend = shade::Backend::automatic);
 
-    [[nodiscard]] const Context& context() const { return *context_; }
+    [[nodiscard]] const shade::Context& context() const { return *context_; }
     [[nodiscard]] bool is_available() const { return context_ != nullptr; }
     /// The reason why OpenGL is not available.
     [[nodiscard]] const std::string& absence() const { return absence_; }
 
   private:
-    std::unique_ptr<Context> context_;
+    std::unique_ptr<shade::Context> context_;
     std::string absence_;
 };
 
@@ -41,7 +41,7 @@ class GlDevice {
 struct RenderedMethod {
     std::string name;
     Choices choices;
-    Scene scene;
+    shade::Scene scene;
     int samples = 1;  ///< Per pixel: 1, or 4 with OpenGL's multisampling.
     /// Rendered pixels along each side of an output pixel; they are averaged afterwards.
     int pixels_per_side = 1;
@@ -78,7 +78,7 @@ PreparedExperiment prepare_rendering(
     std::function<void(Experiment& report, const Renderings& renderings)> finish);
 
 /// Returns the mean seconds of a few frames of a renderer, without reading back.
-double seconds_of_frames(Renderer& renderer, const Camera& camera);
+double seconds_of_frames(shade::Renderer& renderer, const shade::Camera& camera);
 
 /// Returns the note on the renderer and its times that every rendered method has.
 std::string rendering_note(const GlDevice& device);
@@ -124,10 +124,10 @@ inline constexpr glm::vec4 lit_background{0.03F, 0.04F, 0.06F, 1.0F};
 
 /// A mesh under one directional light and weak ambient light before a dark background. The camera
 /// is 30 degrees to the right and 35 degrees above; the image is square.
-Scene lit_scene(Mesh mesh, Material material);
+shade::Scene lit_scene(Mesh mesh, Material material);
 
 /// lit_scene() with a repeated normal map.
-Scene bumpy_scene(Mesh mesh, Material material, Image normal_map);
+shade::Scene bumpy_scene(Mesh mesh, Material material, Image normal_map);
 
 /// A smooth reddish material with a highlight of shininess 40.
 Material glossy_plastic();
@@ -139,7 +139,7 @@ Material glossy_plastic();
 /// \param rays_per_side  rays along each side of a pixel, at the centers of a regular grid
 /// \return three float channels, linear light. Each ray is clamped to [0,1] before the average, as
 ///         a renderer with as many samples does
-Image supersampled_reference(const Scene& scene, int size, int rays_per_side);
+Image supersampled_reference(const shade::Scene& scene, int size, int rays_per_side);
 
 /// Slices around the circle of the torus; the tube has half as many. With this number the torus
 /// stands for the smooth surface.
@@ -151,7 +151,7 @@ std::size_t torus_triangles(int slices);
 std::string name_on_torus(const std::string& method, int slices);
 
 /// The camera at which the smooth torus fills the image.
-Camera torus_camera();
+shade::Camera torus_camera();
 
 /// A chart of the error by triangle count, with one curve per method.
 ///
@@ -161,4 +161,4 @@ Camera torus_camera();
 Chart torus_chart(const Experiment& experiment, std::span<const std::string> methods,
                   std::span<const int> slices);
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

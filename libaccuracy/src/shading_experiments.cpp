@@ -17,7 +17,9 @@
 #include "relief/mesh/normal_map.h"
 #include "rendered_methods.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
+using namespace relief::shade;
+
 namespace {
 
 struct LightingChoice {
@@ -229,7 +231,7 @@ Image bumpy_normals() {
     Image normals = make_image(wave_texels, wave_texels, 3, 32, ColorSpace::data);
     const std::span<float> to = normals.as<float>();
     const auto slope = [](double u, double v, double fast, double slow) {
-        return 0.22 * portable::cos(2.0 * std::numbers::pi * (fast * u + slow * v));
+        return 0.22 * relief::detail::portable::cos(2.0 * std::numbers::pi * (fast * u + slow * v));
     };
     for (int y = 0; y < wave_texels; ++y) {
         for (int x = 0; x < wave_texels; ++x) {
@@ -260,7 +262,8 @@ Scene plane(const Image& map, bool is_antialiased, double away) {
     // Repeat the map instead of moving the camera, so that the plane always fills the image.
     for (glm::vec2& texcoord : scene.meshes.front().edit().texcoords)
         texcoord *= static_cast<float>(away);
-    scene.camera->vertical_fov = static_cast<float>(2.0 * portable::atan2(0.25, 1.0));
+    scene.camera->vertical_fov =
+        static_cast<float>(2.0 * relief::detail::portable::atan2(0.25, 1.0));
     return scene;
 }
 
@@ -472,4 +475,4 @@ std::vector<PlannedExperiment> shading_plan(const PlanOptions& options) {
         planned("shading/edges", "Edges by several samples per pixel", edge_experiment)};
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

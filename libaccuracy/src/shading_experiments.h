@@ -18,7 +18,7 @@
 #include "relief/shade/scene.h"
 #include "rendered_methods.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 // The experiments of shading_plan() in other files: formulas without OpenGL, and environments.
 PreparedExperiment glass_experiment(const PlanOptions& options);
@@ -97,16 +97,16 @@ using EnvironmentFormula = std::function<glm::dvec3(const glm::dvec3& direction_
 glm::dvec3 waves_and_lights(const glm::dvec3& direction_world);
 
 /// Converts an environment to a cube map; a texel is the mean of 2 x 2 directions.
-Environment cube_map_of(const EnvironmentFormula& formula, int size);
+shade::Environment cube_map_of(const EnvironmentFormula& formula, int size);
 
 /// A ball of radius 1 at the origin that reflects all light. The camera is so near that the ball
 /// fills the square image; its visible normals are within 45 degrees of the view direction.
 /// \param roughness  0: a perfect mirror
-Scene mirror_ball(Environment environment, double roughness);
+shade::Scene mirror_ball(shade::Environment environment, double roughness);
 
 /// The exact image of mirror_ball() without roughness, from the equation of the ball.
 /// \param rays_per_side  rays along each side of a pixel
 /// \return three float channels
 Image exact_mirror(const EnvironmentFormula& formula, int size, int rays_per_side);
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -14,7 +14,9 @@
 #include "portable_math.h"
 #include "reference/reference_parts.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
+using namespace relief::detail;
+using namespace relief::shade;
 
 ErrorStats formula_error(const FormulaMethod& method, std::span<const double> ground_truth) {
     std::vector<float> results(ground_truth.size());
@@ -460,4 +462,4 @@ PreparedExperiment unit_normal_experiment(const PlanOptions&) {
     return prepared;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -12,7 +12,7 @@
 #include "experiment_driver.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 namespace {
 
 /// A larger RMS error than this is a failure.
@@ -570,4 +570,4 @@ std::vector<PlannedExperiment> stability_plan(const PlanOptions& options) {
         planned("stability/bump-offset", "Bump: height above zero", bump_by_offset)};
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-namespace relief {
+namespace relief::accuracy::detail {
 namespace {
 
 std::uint32_t added_vertex(Mesh& mesh, const glm::vec3& position) {
@@ -195,4 +195,4 @@ Image textbook_sobel_normals(const Image& height, float strength) {
     return normals;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -24,7 +24,9 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t grain = 4096;  ///< Smaller pieces are not worth a thread.
@@ -298,6 +300,8 @@ ErrorStats patch_errors(const Image& normals, const Image& ground_truth, int blo
 }
 
 namespace {
+
+using relief::accuracy::detail::described;
 
 Experiment described(std::size_t texels) {
     return {.error_unit = "degrees", .item = "texel", .items = static_cast<double>(texels)};
@@ -859,4 +863,4 @@ std::vector<PlannedExperiment> storage_plan(const PlanOptions& options) {
              [is_quick] { return frame_writing_experiment(is_quick); }}};
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

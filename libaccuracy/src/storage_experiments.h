@@ -18,7 +18,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 
 /// The codes to which findings refer.
 enum class NormalCodeId {
@@ -116,4 +116,4 @@ PreparedExperiment normal_reading_experiment(bool is_quick);
 /// A smooth surface: the time of encoding, and the effect of dithering on the mean of a patch.
 PreparedExperiment normal_writing_experiment();
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

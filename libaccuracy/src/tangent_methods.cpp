@@ -8,7 +8,7 @@
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 namespace {
 
 template <typename Values>
@@ -239,4 +239,4 @@ std::vector<TexturedCase> textured_cases() {
     return cases;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

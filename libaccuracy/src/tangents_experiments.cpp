@@ -15,7 +15,7 @@
 #include "relief/mesh/mesh.h"
 #include "rendered_methods.h"
 
-namespace relief {
+namespace relief::accuracy::detail {
 namespace {
 
 constexpr std::array rendered_slices = {24, 96, 384};
@@ -51,10 +51,10 @@ Mesh repeating_torus(int around, TangentFrame frame) {
     return with_frames(std::move(mesh), {.tangents = TangentMethod::mikktspace}, report).mesh;
 }
 
-Scene bumpy_torus(int around, TangentFrame frame) {
+shade::Scene bumpy_torus(int around, TangentFrame frame) {
     Material material = glossy_plastic();
     material.tangent_frame = frame;
-    Scene scene = bumpy_scene(repeating_torus(around, frame), material, wavy_normals());
+    shade::Scene scene = bumpy_scene(repeating_torus(around, frame), material, wavy_normals());
     scene.camera = torus_camera();
     return scene;
 }
@@ -276,6 +276,8 @@ std::string tangents_finding(const Experiment& experiment) {
         derived->error.rms);
 }
 
+using relief::accuracy::detail::described;
+
 Experiment described(const TexturedMesh& ground_truth) {
     return {.error_unit = "degrees",
             .item = "triangle",
@@ -381,4 +383,4 @@ std::vector<PlannedExperiment> tangents_plan(const PlanOptions& options) {
     return plan;
 }
 
-}  // namespace relief
+}  // namespace relief::accuracy::detail

@@ -15,6 +15,9 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 using Real = long double;

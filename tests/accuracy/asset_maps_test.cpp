@@ -22,6 +22,9 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 using test::found;

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using testing::HasSubstr;

@@ -16,6 +16,8 @@
 #include "support/labels.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using test::sized;

@@ -16,6 +16,9 @@
 #include "support/labels.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 constexpr int stacks = 100;

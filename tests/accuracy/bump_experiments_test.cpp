@@ -18,6 +18,9 @@
 #include "support/labels.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 using Real = long double;

@@ -15,6 +15,8 @@
 #include <vector>
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using testing::ElementsAre;

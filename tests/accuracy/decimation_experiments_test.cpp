@@ -13,6 +13,9 @@
 #include "support/labels.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 TEST(NearestOnSurface, IsTheFootOfThePerpendicular) {

@@ -11,6 +11,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::accuracy::detail;
+
 namespace {
 
 /// A map of 4 x 4 texels whose normals lean to the right by an angle in degrees.

@@ -19,44 +19,47 @@
 
 namespace relief::test {
 
-inline RunOptions quick_untimed() {
-    RunOptions options;
+inline accuracy::RunOptions quick_untimed() {
+    accuracy::RunOptions options;
     options.is_quick = true;
     options.is_timed = false;
     return options;
 }
 
 /// Runs one experiment by its id, whose first part is the subject.
-inline Experiment run_one(const std::string& id, RunOptions options = quick_untimed()) {
+inline accuracy::Experiment run_one(const std::string& id,
+                                    accuracy::RunOptions options = quick_untimed()) {
     options.selects_experiment = [&](const std::string& one) { return one == id; };
-    const std::array subjects = {subject_from(id.substr(0, id.find('/')))};
-    std::vector<Experiment> all = run_experiments(subjects, options);
+    const std::array subjects = {accuracy::subject_from(id.substr(0, id.find('/')))};
+    std::vector<accuracy::Experiment> all = accuracy::run_experiments(subjects, options);
     if (all.size() != 1) throw std::runtime_error("no experiment " + id);
     return std::move(all.front());
 }
 
 /// Runs the experiments of one subject.
-inline std::vector<Experiment> run_quick(Subject subject) {
-    return run_experiments(std::array{subject}, quick_untimed());
+inline std::vector<accuracy::Experiment> run_quick(accuracy::Subject subject) {
+    return accuracy::run_experiments(std::array{subject}, quick_untimed());
 }
 
 /// The experiment with a title.
-inline const Experiment& titled(const std::vector<Experiment>& all, const std::string& title) {
-    for (const Experiment& one : all) {
+inline const accuracy::Experiment& titled(const std::vector<accuracy::Experiment>& all,
+                                          const std::string& title) {
+    for (const accuracy::Experiment& one : all) {
         if (one.title == title) return one;
     }
     throw std::runtime_error("no experiment " + title);
 }
 
-inline const Measurement& measurement_of(const Experiment& experiment, const std::string& method) {
-    for (const Measurement& one : experiment.measurements) {
+inline const accuracy::Measurement& measurement_of(const accuracy::Experiment& experiment,
+                                                   const std::string& method) {
+    for (const accuracy::Measurement& one : experiment.measurements) {
         if (one.method == method) return one;
     }
     throw std::runtime_error(experiment.id + " has no method " + method);
 }
 
-inline const Curve& curve_of(const Chart& chart, const std::string& method) {
-    for (const Curve& one : chart.curves) {
+inline const accuracy::Curve& curve_of(const accuracy::Chart& chart, const std::string& method) {
+    for (const accuracy::Curve& one : chart.curves) {
         if (one.method == method) return one;
     }
     throw std::runtime_error(chart.id + " has no curve " + method);
@@ -72,9 +75,9 @@ inline void expect_sound(const ErrorStats& error) {
 }
 
 /// Checks what reports rely on: texts, unique names, and plausible numbers.
-inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
+inline void expect_whole(const std::vector<accuracy::Experiment>& all, accuracy::Subject subject) {
     std::set<std::string> ids;
-    for (const Experiment& one : all) {
+    for (const accuracy::Experiment& one : all) {
         SCOPED_TRACE(one.id);
         EXPECT_TRUE(ids.insert(one.id).second);
         EXPECT_EQ(one.subject, subject);
@@ -87,15 +90,15 @@ inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
         EXPECT_GT(one.items, 0.0);
         EXPECT_FALSE(one.measurements.empty());
         std::set<std::string> methods;
-        for (const Measurement& measurement : one.measurements) {
+        for (const accuracy::Measurement& measurement : one.measurements) {
             SCOPED_TRACE(measurement.method);
             EXPECT_TRUE(methods.insert(measurement.method).second);
             EXPECT_FALSE(measurement.choices.empty());
             expect_sound(measurement.error);
             EXPECT_FALSE(measurement.cost.one_thread || measurement.cost.all_threads);
         }
-        for (const Chart& chart : one.charts) {
-            for (const Curve& curve : chart.curves) {
+        for (const accuracy::Chart& chart : one.charts) {
+            for (const accuracy::Curve& curve : chart.curves) {
                 EXPECT_GE(curve.points.size(), 2U);
                 for (std::size_t i = 1; i < curve.points.size(); ++i)
                     EXPECT_GT(curve.points[i].x, curve.points[i - 1].x);
@@ -104,7 +107,8 @@ inline void expect_whole(const std::vector<Experiment>& all, Subject subject) {
     }
 }
 
-inline const Measurement& found(const AssetExperiment& own, const std::string& method) {
+inline const accuracy::Measurement& found(const accuracy::AssetExperiment& own,
+                                          const std::string& method) {
     return measurement_of(own.experiment, method);
 }
 

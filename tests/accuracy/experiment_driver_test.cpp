@@ -18,6 +18,9 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 using testing::ElementsAre;

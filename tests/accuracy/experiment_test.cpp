@@ -14,6 +14,8 @@
 #include "portable_math.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using testing::ElementsAre;
@@ -49,7 +51,7 @@ TEST(Frontier, ExcludesUnknownResults) {
 }
 
 TEST(Frontier, IsThatOfTheDefinitionOnRandomPrices) {
-    Random random(3);
+    relief::detail::Random random(3);
     for (int round = 0; round < 200; ++round) {
         std::vector<MethodCost> prices(12);
         for (MethodCost& price : prices)  // Few values give ties.
@@ -68,7 +70,7 @@ TEST(Frontier, IsThatOfTheDefinitionOnRandomPrices) {
 
 /// The error and the rounds of a method that takes `seconds`, in rounds that scatter by 5 %.
 /// All methods of a busy round take three times as long.
-MethodCost scattered(Random& random, double error, double seconds) {
+MethodCost scattered(relief::detail::Random& random, double error, double seconds) {
     MethodCost cost{error, seconds};
     for (int round = 0; round < 10; ++round)
         cost.rounds.push_back(seconds * random.between(0.95, 1.05) * (round == 4 ? 3.0 : 1.0));
@@ -76,7 +78,7 @@ MethodCost scattered(Random& random, double error, double seconds) {
 }
 
 TEST(Frontier, TiesMeasuredTimesThatDifferByChance) {
-    Random random(5);
+    relief::detail::Random random(5);
     for (int run = 0; run < 200; ++run) {
         std::vector<MethodCost> costs;
         for (const auto& [error, seconds] :

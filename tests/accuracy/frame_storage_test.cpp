@@ -11,6 +11,9 @@
 #include "experiment_checks.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 using testing::HasSubstr;

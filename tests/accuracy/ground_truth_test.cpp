@@ -17,6 +17,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 constexpr AnalyticSurface all_surfaces[] = {AnalyticSurface::sphere, AnalyticSurface::torus,

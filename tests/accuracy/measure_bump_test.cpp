@@ -19,6 +19,8 @@
 #include "support/images.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using testing::HasSubstr;

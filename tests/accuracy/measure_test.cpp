@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace relief {
+using namespace relief::accuracy::detail;
+
 namespace {
 
 TEST(RepeatsPerRound, MakeARoundLongEnoughToMeasure) {

@@ -20,6 +20,9 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 using testing::HasSubstr;

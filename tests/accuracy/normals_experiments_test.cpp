@@ -14,6 +14,9 @@
 #include "experiment_checks.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 /// Exact normals, each rotated by `degrees` about its own axis in the tangent plane.

@@ -14,6 +14,10 @@
 #include "support/labels.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+using namespace relief::shade;
+
 namespace {
 
 constexpr int cube_side = 24;

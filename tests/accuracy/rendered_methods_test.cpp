@@ -18,6 +18,10 @@
 #include "support/gl_environment.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+using namespace relief::shade;
+
 namespace {
 
 constexpr int drawn_size = 64;

@@ -9,11 +9,13 @@
 #include "support/labels.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 class RenderedExperiment : public ::testing::Test {
   protected:
-    static void SetUpTestSuite() { is_available_ = GlDevice().is_available(); }
+    static void SetUpTestSuite() { is_available_ = accuracy::detail::GlDevice().is_available(); }
     void SetUp() override {
         if (!is_available_) GTEST_SKIP() << "no OpenGL";
     }
@@ -103,7 +105,7 @@ TEST_F(RenderedExperiment, OnSmallHighlightsFindsThatWideningThemHelps) {
 
 TEST_LABELS(slow);
 TEST(ShadingExperiments, AreComplete) {
-    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
+    if (!accuracy::detail::GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const std::vector<Experiment> all = test::run_quick(Subject::shading);
     EXPECT_EQ(all.size(), 10U);
     test::expect_whole(all, Subject::shading);

@@ -13,6 +13,9 @@
 #include "experiment_driver.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 FormulaMethod named(const std::vector<FormulaMethod>& methods, const std::string& name) {

@@ -9,6 +9,9 @@
 #include "experiment_checks.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 TEST(Sweeps, FindTheFailurePointOfEachMethod) {

@@ -17,6 +17,9 @@
 #include "relief/mesh/tangents.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 Mesh sound_torus() {

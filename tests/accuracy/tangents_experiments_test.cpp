@@ -8,6 +8,8 @@
 #include "experiment_checks.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+
 namespace {
 
 using testing::HasSubstr;
@@ -88,7 +90,7 @@ TEST(TangentsExperiments, MapsComeBackFromTheirOwnBasisAlone) {
 }
 
 TEST(RenderedFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
-    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
+    if (!accuracy::detail::GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     const Experiment experiment = run_one("tangents/drawn");
     const auto rms = [&](const char* method) {
         return measurement_of(experiment, method).error.rms;
@@ -107,7 +109,7 @@ TEST(RenderedFrames, OnFewTrianglesDerivedOnesAreFartherOff) {
 }
 
 TEST(RenderedFrames, TakeTimeOfAllThreads) {
-    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
+    if (!accuracy::detail::GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
     RunOptions options = quick_untimed();
     options.is_timed = true;
     options.repeats = {3, 0};

@@ -26,7 +26,7 @@ struct Baked {
     double rays_per_texel = 0.0;
 };
 
-Baked baked(const BumpySphere& high, const Mesh& low, int samples, bool is_auto) {
+Baked baked(const accuracy::detail::BumpySphere& high, const Mesh& low, int samples, bool is_auto) {
     Baked result{make_image(sampled_map_side, sampled_map_side, 3, 32, ColorSpace::data)};
     BakeOptions options;
     options.map.width = options.map.height = sampled_map_side;
@@ -74,7 +74,7 @@ std::string sample_row(const std::string& name, const std::vector<std::string>& 
 }
 
 std::string sample_tables() {
-    const BumpySphere high(200);
+    const accuracy::detail::BumpySphere high(200);
     Report report;
     const Mesh low = with_frames(make_sphere(low_sphere.slices, low_sphere.stacks),
                                  {.tangents = TangentMethod::mikktspace}, report)

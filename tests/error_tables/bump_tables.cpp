@@ -14,6 +14,9 @@
 #include "relief/mesh/height_map.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 constexpr int field_side = 256;

@@ -40,13 +40,13 @@ LowPoint low_point(const Mesh& low, const LowSphere& shape, double u, double v) 
     throw std::logic_error("a texel lies on no triangle");
 }
 
-TexelReference reference_of(const BumpySphere& high, const Mesh& low, const LowSphere& shape,
-                            int map_side, std::size_t texel) {
+TexelReference reference_of(const accuracy::detail::BumpySphere& high, const Mesh& low,
+                            const LowSphere& shape, int map_side, std::size_t texel) {
     TexelReference reference{texel};
     const auto add = [&](double x, double y, glm::dvec3& surface, glm::dvec3& mesh) {
         const LowPoint point = low_point(low, shape, x / map_side, y / map_side);
         const glm::dvec3 from = point.position + 0.05 * point.outward;
-        surface += BumpySphere::on_surface(from, -point.outward).normal;
+        surface += accuracy::detail::BumpySphere::on_surface(from, -point.outward).normal;
         mesh += high.on_mesh(from, -point.outward).normal;
     };
     const auto x = static_cast<double>(texel % static_cast<std::size_t>(map_side));
@@ -61,8 +61,9 @@ TexelReference reference_of(const BumpySphere& high, const Mesh& low, const LowS
 
 }  // namespace
 
-std::vector<TexelReference> texel_references(const BumpySphere& high, const Mesh& low,
-                                             const LowSphere& shape, int map_side) {
+std::vector<TexelReference> texel_references(const accuracy::detail::BumpySphere& high,
+                                             const Mesh& low, const LowSphere& shape,
+                                             int map_side) {
     std::vector<TexelReference> all;
     const auto side = static_cast<std::size_t>(map_side);
     const std::size_t first = side * (side / 10);

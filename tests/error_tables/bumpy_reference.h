@@ -27,7 +27,7 @@ struct TexelReference {
 
 /// The references of every 37th texel away from the poles, where the surface has no formula.
 /// \param low  its normals are the directions of rays
-std::vector<TexelReference> texel_references(const BumpySphere& high, const Mesh& low,
-                                             const LowSphere& shape, int map_side);
+std::vector<TexelReference> texel_references(const accuracy::detail::BumpySphere& high,
+                                             const Mesh& low, const LowSphere& shape, int map_side);
 
 }  // namespace relief::test

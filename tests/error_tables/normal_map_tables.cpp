@@ -14,6 +14,9 @@
 #include "support/images.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 constexpr int storage_side = 256;

@@ -9,6 +9,9 @@
 #include "experiment_parts.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 const std::vector<NormalMethod>& weightings() {

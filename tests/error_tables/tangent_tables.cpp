@@ -16,6 +16,9 @@
 #include "support/shapes.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
+
 namespace {
 
 const std::vector<TangentFrameMethod>& methods() {

@@ -21,6 +21,9 @@
 #include "support/shared_data.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::array all_kernels = {

@@ -17,6 +17,8 @@
 #include "support/images.h"
 
 namespace relief::test {
+using namespace relief::accuracy;
+
 namespace {
 
 std::string not_these(const Image& image, const std::vector<float>& expected) {

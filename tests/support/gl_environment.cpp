@@ -12,15 +12,14 @@
 #include "gl/api.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
-
+namespace relief::shade {
 void PrintTo(Backend backend, std::ostream* out) {
     *out << (backend == Backend::osmesa ? "osmesa" : "egl");
 }
-
-}  // namespace relief
+}  // namespace relief::shade
 
 namespace relief::test {
+using namespace relief::shade;
 
 std::unique_ptr<Context> context_if_installed(Backend backend) {
     try {

@@ -15,28 +15,28 @@
 #include "gl/program.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace relief::shade {
 void PrintTo(Backend backend,
              std::ostream* out);  // NOLINT(readability-identifier-naming): gtest's.
-}
+}  // namespace relief::shade
 
 namespace relief::test {
 
 /// Returns a context, or null if the library of the backend is not installed. Any other failure
 /// throws.
-std::unique_ptr<Context> context_if_installed(Backend backend);
+std::unique_ptr<shade::Context> context_if_installed(shade::Backend backend);
 
-bool is_installed(Backend backend);
+bool is_installed(shade::Backend backend);
 
 /// OSMesa, or EGL on the GPU of the machine if RELIEF_TEST_BACKEND is "egl".
-Backend default_backend();
+shade::Backend default_backend();
 
 /// "osmesa" or "egl".
-std::string backend_name(const ::testing::TestParamInfo<Backend>& info);
+std::string backend_name(const ::testing::TestParamInfo<shade::Backend>& info);
 
 /// The context that the tests of a suite share. The first test creates it. It is null if the
 /// backend is not installed. Only one context exists; another backend replaces it.
-const Context* shared_context(Backend backend);
+const shade::Context* shared_context(shade::Backend backend);
 
 /// Destroys the shared context, so that its thread may have another. Each suite calls it at its
 /// end.
@@ -49,25 +49,25 @@ void expect_clean_context();
 
 /// A test with a context of its parameter's backend, shared with the tests of its suite. It is
 /// skipped if the backend is not installed.
-class GlTest : public ::testing::TestWithParam<Backend> {
+class GlTest : public ::testing::TestWithParam<shade::Backend> {
   protected:
     static void TearDownTestSuite() { release_shared_context(); }
     void SetUp() override;
     void TearDown() override;
 
-    [[nodiscard]] const Context& context() const { return *context_; }
-    [[nodiscard]] const gl::Api& api() const { return context_->api(); }
+    [[nodiscard]] const shade::Context& context() const { return *context_; }
+    [[nodiscard]] const shade::gl::Api& api() const { return context_->api(); }
 
   private:
-    const Context* context_ = nullptr;
+    const shade::Context* context_ = nullptr;
 };
 
 /// Draws one triangle that covers the bound target.
 ///
 /// \param fragment  a whole fragment shader without its #version line
 /// \param prepare  called with the program current, to set uniforms and bind textures
-void cover(const gl::Api& api, const std::string& fragment,
-           const std::function<void(const gl::LinkedProgram&)>& prepare = {});
+void cover(const shade::gl::Api& api, const std::string& fragment,
+           const std::function<void(const shade::gl::LinkedProgram&)>& prepare = {});
 
 /// Sets an environment variable and restores it in the destructor.
 class ScopedVariable {
@@ -91,7 +91,7 @@ class ScopedVariable {
                              relief::test::backend_name)
 
 /// Runs the tests of a suite derived from GlTest on every backend.
-#define RELIEF_ON_EACH_BACKEND(suite)                                                          \
-    INSTANTIATE_TEST_SUITE_P(On, suite,                                                        \
-                             ::testing::Values(relief::Backend::osmesa, relief::Backend::egl), \
-                             relief::test::backend_name)
+#define RELIEF_ON_EACH_BACKEND(suite)                                                              \
+    INSTANTIATE_TEST_SUITE_P(                                                                      \
+        On, suite, ::testing::Values(relief::shade::Backend::osmesa, relief::shade::Backend::egl), \
+        relief::test::backend_name)

@@ -50,8 +50,9 @@ Image rough(int width, int height, std::uint32_t seed = 12345);
 /// Returns the same waves in a field of another resolution.
 /// \param scale  texels of the original field per texel of the new one; both fields share their
 ///       upper left corner
-inline std::vector<HeightWave> resized_waves(std::vector<HeightWave> waves, double scale) {
-    for (HeightWave& wave : waves) {
+inline std::vector<accuracy::HeightWave> resized_waves(std::vector<accuracy::HeightWave> waves,
+                                                       double scale) {
+    for (accuracy::HeightWave& wave : waves) {
         // The center of texel i is at (i + 0.5) * scale - 0.5.
         wave.phase += (wave.frequency.x + wave.frequency.y) * (scale - 1.0) / 2.0;
         wave.frequency *= scale;
@@ -61,32 +62,33 @@ inline std::vector<HeightWave> resized_waves(std::vector<HeightWave> waves, doub
 }
 
 /// Returns the root mean square of the slopes at the texels of a field.
-inline double rms_slope_of(int width, int height, const std::vector<HeightWave>& waves) {
+inline double rms_slope_of(int width, int height, const std::vector<accuracy::HeightWave>& waves) {
     double squares = 0.0;
-    for (const glm::dvec3& normal : wave_heights(width, height, waves).normals)
+    for (const glm::dvec3& normal : accuracy::wave_heights(width, height, waves).normals)
         squares += (normal.x * normal.x + normal.y * normal.y) / (normal.z * normal.z);
     return std::sqrt(squares / (static_cast<double>(width) * height));
 }
 
 /// Returns the waves with their amplitudes multiplied by a factor.
-inline std::vector<HeightWave> scaled_waves(std::vector<HeightWave> waves, double factor) {
-    for (HeightWave& wave : waves)
+inline std::vector<accuracy::HeightWave> scaled_waves(std::vector<accuracy::HeightWave> waves,
+                                                      double factor) {
+    for (accuracy::HeightWave& wave : waves)
         wave.amplitude *= factor;
     return waves;
 }
 
 /// Returns tiling_waves() whose field has exactly this slope. Waves of equal frequency interfere,
 /// so the slope of tiling_waves() is only approximate.
-inline std::vector<HeightWave> waves_with_slope(int side, int count, double shortest,
-                                                double rms_slope, std::uint32_t seed) {
-    const std::vector<HeightWave> waves =
-        tiling_waves(side, side, count, shortest, rms_slope, seed);
+inline std::vector<accuracy::HeightWave> waves_with_slope(int side, int count, double shortest,
+                                                          double rms_slope, std::uint32_t seed) {
+    const std::vector<accuracy::HeightWave> waves =
+        accuracy::tiling_waves(side, side, count, shortest, rms_slope, seed);
     return scaled_waves(waves, rms_slope / rms_slope_of(side, side, waves));
 }
 
 /// Returns the exact normals of a field as an image.
-inline Image normals_image(int width, int height, const std::vector<HeightWave>& waves) {
-    const AnalyticHeights field = wave_heights(width, height, waves);
+inline Image normals_image(int width, int height, const std::vector<accuracy::HeightWave>& waves) {
+    const accuracy::AnalyticHeights field = accuracy::wave_heights(width, height, waves);
     Image image = make_image(width, height, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
         image.as<float>()[i] = static_cast<float>(field.normals[i / 3][static_cast<int>(i % 3)]);

@@ -101,7 +101,7 @@ TEST_F(DebugOptions, WithoutEffectAreRefused) {
 TEST(CommandLineOf, WritesTheChosenOptions) {
     DebugChoices choices;
     EXPECT_EQ(command_line_of(choices), "");
-    choices.view = DebugView::shading_normal;
+    choices.view = shade::DebugView::shading_normal;
     choices.wireframe = choices.vertex_frames = true;
     choices.frame_length = 0.05F;
     choices.grid = true;

@@ -12,6 +12,8 @@
 #include "tools/workplace.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using nlohmann::json;

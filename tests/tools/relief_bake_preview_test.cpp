@@ -15,6 +15,8 @@
 #include "tools/workplace.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using nlohmann::json;

@@ -4,6 +4,8 @@
 #include <limits>
 
 namespace relief::test {
+using namespace relief::accuracy;
+
 namespace {
 
 Measurement measurement(const std::string& method, double rms, double seconds) {

@@ -15,6 +15,8 @@
 #include "view_options.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::degrees_between;

@@ -16,6 +16,8 @@
 #include "view_options.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::Workplace;

@@ -30,6 +30,8 @@
 #include "relief/version.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+
 namespace {
 
 /// The streams of the running tool.

@@ -22,6 +22,8 @@
 #include "parallel.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -16,6 +16,8 @@
 #include "relief/mesh/limits.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+
 namespace {
 
 /// Parses the whole text as a number.

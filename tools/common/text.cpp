@@ -18,6 +18,8 @@
 #include "files.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+
 std::string counted(std::size_t count, const std::string& thing, const std::string& plural) {
     if (count == 1) return "1 " + thing;
     return fmt::format("{} {}", count, plural.empty() ? thing + "s" : plural);

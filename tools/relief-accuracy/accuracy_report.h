@@ -48,7 +48,7 @@ struct AccuracyReport {
     std::string command;  ///< The command that repeats the run.
     Machine machine;
     RunSettings settings;
-    std::vector<Experiment> experiments;
+    std::vector<accuracy::Experiment> experiments;
 };
 
 /// \param draws  whether OpenGL was used; then its name is included
@@ -84,7 +84,8 @@ std::string curves_csv(const AccuracyReport& report);
 enum class PictureRole { heat, before, after };
 
 /// Returns a picture's path relative to the report: "pictures/bump-sine-heat-1.png".
-std::string picture_file(const Experiment& experiment, PictureRole role, std::size_t index);
+std::string picture_file(const accuracy::Experiment& experiment, PictureRole role,
+                         std::size_t index);
 
 /// Writes a report to a folder: report.html, accuracy.json, accuracy.csv, accuracy-curves.csv and
 /// pictures/. Each file is written beside its final name and renamed; the JSON is written last.
@@ -99,6 +100,6 @@ void write_text(const std::filesystem::path& file, const std::string& text);
 /// Returns an experiment as text for a terminal: its question and input, a row per method, notes, a
 /// line per curve, and the finding. Rows on the frontier begin with an asterisk. Empty columns are
 /// omitted.
-std::string table_of(const Experiment& experiment);
+std::string table_of(const accuracy::Experiment& experiment);
 
 }  // namespace relief::tools

@@ -45,7 +45,7 @@ void add_experiment_options(CLI::App& app, ExperimentOptions& options);
 /// \throws UsageError if options contradict each other or have no effect
 void check(const ExperimentOptions& options);
 
-RunOptions run_options(const ExperimentOptions& options);
+accuracy::RunOptions run_options(const ExperimentOptions& options);
 
 /// Returns the options that repeat the experiments: " --quick --repeats 3".
 std::string effort_options(const ExperimentOptions& options);

@@ -22,6 +22,8 @@
 #include "relief/accuracy/experiment.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+
 namespace {
 
 /// Two reports and their comparison.

@@ -34,6 +34,8 @@
 #include "relief/mesh/normal_map_check.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+
 namespace {
 
 /// The content of an image.

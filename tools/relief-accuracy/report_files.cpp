@@ -20,6 +20,9 @@
 #include "report_page.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 using Row = std::vector<std::string>;

@@ -15,6 +15,9 @@
 #include "relief/accuracy/experiment.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 Json json_of(const Machine& machine) {

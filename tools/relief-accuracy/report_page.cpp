@@ -31,6 +31,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+using namespace relief::detail;
 
 // Texts of the page.
 
@@ -395,6 +397,8 @@ std::string chart_table(const ordered_json& chart) {
 
 /// The number of findings per subject that are visible at first.
 constexpr std::size_t max_findings = 4;
+
+using relief::detail::text_of;
 
 /// Returns an escaped text, or an empty one.
 std::string text_of(const ordered_json& json, const char* key) {

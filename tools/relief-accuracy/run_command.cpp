@@ -26,6 +26,8 @@
 #include "relief/shade/renderer.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+using namespace relief::detail;
 
 // The options of `run` and `own`.
 
@@ -173,8 +175,8 @@ std::string compiler_name() {
 
 std::optional<std::string> opengl_name() {
     try {
-        return Context().renderer_name();
-    } catch (const GpuError&) {
+        return shade::Context().renderer_name();
+    } catch (const shade::GpuError&) {
         return std::nullopt;
     }
 }

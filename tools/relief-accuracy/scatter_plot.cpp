@@ -16,6 +16,7 @@
 #include "report_page.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
 
 using namespace plots;
 using nlohmann::ordered_json;

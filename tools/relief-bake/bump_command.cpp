@@ -25,6 +25,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+
 namespace {
 
 /// The options of accuracy. Absent: chosen from the map itself.
@@ -827,7 +829,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& give
         check_write_into(request, write_into, job);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
-        FileSet outputs;
+        relief::detail::FileSet outputs;
         BumpConversion conversion = convert_bump(job, request, stages);
         std::optional<MaterialResult> stored;
         if (write_into.model) {

@@ -391,7 +391,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& g
         check_files(job, request, inputs);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
-        FileSet levels;
+        relief::detail::FileSet levels;
         const MapConversion conversion = convert_map(job, request, stages);
         levels.commit();
         return {line_of(job, conversion, stages), conversion.findings,

@@ -23,6 +23,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
 
 // Samples and bits.
 

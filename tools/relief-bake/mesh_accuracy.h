@@ -22,7 +22,7 @@ namespace relief::tools {
 // Samples and bits by measured errors.
 
 /// "4 samples, 16 bit", "auto samples at 2 degrees, 8 bit, dithered"
-std::string to_string(const MeasuredBake& bake);
+std::string to_string(const accuracy::MeasuredBake& bake);
 
 /// \throws UsageError if options contradict each other, or have no effect
 void check_accuracy(const MeshBakeRequest& request);
@@ -31,8 +31,8 @@ void check_accuracy(const MeshBakeRequest& request);
 /// and the format.
 /// \throws InvalidInput if no samples and bits are within the limit, with the smallest error, its
 ///         larger part, and the bits that another file format would need
-BakeComparison measure_errors(const Baker& baker, const BakeMapOptions& map,
-                              MeshBakeRequest& request, NormalMapFormat& format);
+accuracy::BakeComparison measure_errors(const Baker& baker, const BakeMapOptions& map,
+                                        MeshBakeRequest& request, NormalMapFormat& format);
 
 // Verification: a finished map is compared with its models.
 

@@ -23,6 +23,8 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+
 namespace {
 
 /// Shows the progress of all maps on a terminal.
@@ -302,7 +304,7 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
         options.map.samples = selected.map.samples;
         options.map.sample_angle = selected.map.sample_angle;
     }
-    FileSet outputs;
+    relief::detail::FileSet outputs;
     stages.run("bake",
                [&] { bake_all(settled, *baker, models, std::move(plans), options, stages, bake); });
     if (materials) write_into(*materials, stages, bake);

@@ -39,12 +39,12 @@ struct MeshBake {
     std::optional<BakedAlpha> alpha;  ///< HighTextures::alpha()
     double texel_size = 0.0;  ///< The mean side of a texel in the unit of the mesh; 0: unknown.
     std::vector<BakedMap> maps;
-    BakeResult all;                          ///< Sums and extremes over all maps.
-    BakeFit fit;                             ///< Baker::fit()
-    BakeAgreement agreement;                 ///< Baker::agreement()
-    glm::dvec3 origin{0.0};                  ///< As in BakeModels.
-    std::optional<BakeComparison> accuracy;  ///< If errors were measured before the bake.
-    std::optional<MaterialResult> stored;    ///< The materials of --write-into.
+    BakeResult all;                                    ///< Sums and extremes over all maps.
+    BakeFit fit;                                       ///< Baker::fit()
+    BakeAgreement agreement;                           ///< Baker::agreement()
+    glm::dvec3 origin{0.0};                            ///< As in BakeModels.
+    std::optional<accuracy::BakeComparison> accuracy;  ///< If errors were measured before the bake.
+    std::optional<MaterialResult> stored;              ///< The materials of --write-into.
     Findings findings;
 };
 

@@ -21,6 +21,9 @@
 #include "relief/shade/scene.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+using namespace relief::shade;
+
 namespace {
 
 constexpr glm::ivec2 default_size{512, 512};

@@ -60,8 +60,8 @@ ViewDirection best_view(const Mesh& mesh);
 /// A map for a picture: its file, or if a side is longer than `max_side` texels, a map reduced by
 /// an integer factor. That map has means of normals, in float and green up, and is read a few rows
 /// at a time.
-ImageSource preview_image(const std::filesystem::path& map, const NormalMapFormat& format,
-                          int max_side);
+shade::ImageSource preview_image(const std::filesystem::path& map, const NormalMapFormat& format,
+                                 int max_side);
 
 /// Draws previews. The constructor loads OpenGL, so that a machine without it fails before any
 /// work.
@@ -78,7 +78,7 @@ class MeshPreview {
     [[nodiscard]] const std::string& backend_name() const { return context_->backend_name(); }
 
   private:
-    std::unique_ptr<Context> context_;
+    std::unique_ptr<shade::Context> context_;
 };
 
 }  // namespace relief::tools

@@ -22,6 +22,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief::tools {
+using namespace relief::detail;
 
 // The kit and the comparison.
 

@@ -30,6 +30,8 @@
 #include "relief/shade/scene_file.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 /// The views: a third of a turn apart, two from above and one from below.
@@ -89,7 +91,8 @@ double difference_of(const Image& reference, const Image& picture) {
 ///
 /// \param shift  of the mesh in the picture, to the lower left, in pixels in both directions
 Camera camera_at(const LevelView& view, double pixels, int side, double shift) {
-    const double tangent = portable::tan(static_cast<double>(default_vertical_fov) / 2.0);
+    const double tangent =
+        relief::detail::portable::tan(static_cast<double>(default_vertical_fov) / 2.0);
     const double distance = lod_screen_height / (2.0 * tangent * pixels);
     const Bounds unit{glm::vec3(-0.5F), glm::vec3(0.5F)};
     Camera camera = framed(unit, view.azimuth, view.elevation, default_vertical_fov, 1.0F);
@@ -98,8 +101,9 @@ Camera camera_at(const LevelView& view, double pixels, int side, double shift) {
     const glm::vec3 eye = glm::vec3(axes[2]) * static_cast<float>(distance) +
                           (glm::vec3(axes[0]) + glm::vec3(axes[1])) * moved;
     camera.world_from_view[3] = glm::vec4(eye, 1.0F);
-    camera.vertical_fov = static_cast<float>(
-        2.0 * portable::atan2(tangent * static_cast<double>(side) / lod_screen_height, 1.0));
+    camera.vertical_fov =
+        static_cast<float>(2.0 * relief::detail::portable::atan2(
+                                     tangent * static_cast<double>(side) / lod_screen_height, 1.0));
     camera.near = static_cast<float>(distance - 0.6);
     camera.far = static_cast<float>(distance + 0.6);
     return camera;

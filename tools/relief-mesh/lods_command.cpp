@@ -379,7 +379,7 @@ LodsResult make_levels(const LodsCommand& command, Stages& stages) {
     if (const auto* contents = std::get_if<MeshFile>(&model))
         model = about(command.input, [&] { return GltfDocument::from_mesh(*contents, report); });
     done.findings.add("", report);
-    FileSet files;
+    relief::detail::FileSet files;
     about(command.input, [&] {
         LevelMaker(command, std::get<GltfDocument>(model), stages, done).make_all();
         return 0;

@@ -25,6 +25,7 @@
 #include "window/window_system.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 
@@ -63,7 +64,7 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
                   const double stops = parse_number(subject, text, range);
                   options.scene_fields.set(
                       &Scene::exposure,
-                      static_cast<float>(portable::exp(std::numbers::ln2 * stops)));
+                      static_cast<float>(relief::detail::portable::exp(std::numbers::ln2 * stops)));
               })
         .group(group);
     add_field(app, options.scene_fields, "--tone-mapping", &Scene::tone_mapping,

@@ -14,6 +14,7 @@
 #include "relief/shade/effects.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 // Effects.
 

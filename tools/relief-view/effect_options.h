@@ -23,46 +23,46 @@ namespace relief::tools {
 // Effects: forcing, measuring and dropping them, and printing the plan and the shaders.
 
 /// For example "'vase', material 'clay', 4096 triangles".
-std::string draw_heading(const Scene& scene, const DrawPlan& draw);
+std::string draw_heading(const shade::Scene& scene, const shade::DrawPlan& draw);
 
 /// The plan with its reasons. As text, draws with the same reasons share a list.
-Summary effect_summary(const Scene& scene, const FramePlan& plan);
+Summary effect_summary(const shade::Scene& scene, const shade::FramePlan& plan);
 
 void add_effect_options(CLI::App& app, ViewOptions& options);
 
 /// Parses the value of --effects.
 /// \throws UsageError
-EffectRequest parse_effects(const std::string& subject, const std::string& text);
+shade::EffectRequest parse_effects(const std::string& subject, const std::string& text);
 
 /// The plan of the scene with forced effects.
 /// \throws UsageError with effect, material and reason, if an effect is unknown or impossible in
 ///                 this scene
-FramePlan chosen_plan(const ViewOptions& options, const Scene& scene,
-                      const FrameSettings& settings);
+shade::FramePlan chosen_plan(const ViewOptions& options, const shade::Scene& scene,
+                             const shade::FrameSettings& settings);
 
 /// The measurements that the options request.
 struct FrameMeasures {
-    std::optional<FrameSeries> benchmark;
-    std::optional<EffectCosts> costs;  ///< Requested by --explain-effects.
-    std::optional<BudgetedPlan> budget;
+    std::optional<shade::FrameSeries> benchmark;
+    std::optional<shade::EffectCosts> costs;  ///< Requested by --explain-effects.
+    std::optional<shade::BudgetedPlan> budget;
 };
 
 /// Drops effects from the plan for --budget, then measures the plan.
 /// \throws FileError with the name of the model, if the budget is too small
-FrameMeasures measure_frame(const ViewOptions& options, const MeasuredFrame& frame, FramePlan& plan,
-                            Stages& stages);
+FrameMeasures measure_frame(const ViewOptions& options, const shade::MeasuredFrame& frame,
+                            shade::FramePlan& plan, Stages& stages);
 
 /// Adds the members "benchmark", "effect_costs" and "budget", if they were measured.
 /// \param drawn  a frame of the measured plan
 void add_measures(Summary& summary, const FrameMeasures& measures, const ViewOptions& options,
-                  const Frame& drawn);
+                  const shade::Frame& drawn);
 
 /// Prints the vertex and fragment shader of each program, after a comment with its effects and
 /// draws.
-void print_shaders(const Scene& scene, const FramePlan& plan);
+void print_shaders(const shade::Scene& scene, const shade::FramePlan& plan);
 
 /// [{"effects", "draws", "files", "vertex", "fragment"}]
-Json shaders_json(const FramePlan& plan);
+Json shaders_json(const shade::FramePlan& plan);
 
 // Debug views and overlays.
 
@@ -73,24 +73,26 @@ void add_debug_options(CLI::App& app, ViewOptions& options);
 void check_debug_options(ViewOptions& options);
 
 /// Finds the mesh problems that the options select.
-HealthMarkers chosen_markers(const DebugChoices& choices, const Scene& scene);
+shade::HealthMarkers chosen_markers(const DebugChoices& choices, const shade::Scene& scene);
 
 /// \param markers  the result of chosen_markers()
-Overlays overlays_of(const DebugChoices& choices, const HealthMarkers& markers, const Grid& grid);
+shade::Overlays overlays_of(const DebugChoices& choices, const shade::HealthMarkers& markers,
+                            const shade::Grid& grid);
 
 /// Changes the plan to the selected debug view.
 /// \throws FileError with the name of the model, if the view has nothing to show
-FramePlan viewed_plan(const ViewOptions& options, const Scene& scene, const FrameSettings& settings,
-                      FramePlan plan, Report& report);
+shade::FramePlan viewed_plan(const ViewOptions& options, const shade::Scene& scene,
+                             const shade::FrameSettings& settings, shade::FramePlan plan,
+                             Report& report);
 
 /// Describes each marker color, for example "#ff0000 collapsed triangles: 3".
-void add_legend(Summary& summary, const HealthMarkers& markers);
+void add_legend(Summary& summary, const shade::HealthMarkers& markers);
 
 /// [{"kind", "count", "marked", "color"}]
-Json legend_json(const HealthMarkers& markers);
+Json legend_json(const shade::HealthMarkers& markers);
 
 /// {"wireframe", "vertex_frames", "grid", "health_markers": legend_json() or null}
-Json overlays_json(const DebugChoices& choices, const HealthMarkers& markers);
+Json overlays_json(const DebugChoices& choices, const shade::HealthMarkers& markers);
 
 /// The options that select this view, each after a space; "" for the picture.
 std::string command_line_of(const DebugChoices& choices);

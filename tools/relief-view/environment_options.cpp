@@ -13,6 +13,7 @@
 #include "relief/shade/scene.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 

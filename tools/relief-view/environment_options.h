@@ -25,7 +25,7 @@ bool uses_no_environment(const ViewOptions& options);
 
 /// The environment of the options.
 /// \throws FileError if a folder does not have six images, or if the layout of an image is unclear
-Environment environment_of(const ViewOptions& options);
+shade::Environment environment_of(const ViewOptions& options);
 
 /// Sets what the reflection options, whose fields the material has already, imply for others: the
 /// indices of a conductor, and reflectivities.
@@ -34,6 +34,7 @@ void complete_reflection(Material& material, const ViewOptions& options);
 /// Sets the environment of a scene from the options, the scene file or the default studio.
 /// \param notes  receives messages for the user
 /// \throws UsageError if an option would have no effect
-void set_environment(Scene& scene, const ViewOptions& options, std::vector<std::string>& notes);
+void set_environment(shade::Scene& scene, const ViewOptions& options,
+                     std::vector<std::string>& notes);
 
 }  // namespace relief::tools

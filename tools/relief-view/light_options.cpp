@@ -10,6 +10,7 @@
 #include "portable_math.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 
@@ -107,10 +108,10 @@ SpotLight spot(const std::string& subject, std::string_view text) {
 
 glm::vec3 towards(float azimuth, float elevation) {
     const auto sine = [](float angle) {
-        return static_cast<float>(portable::sin(static_cast<double>(angle)));
+        return static_cast<float>(relief::detail::portable::sin(static_cast<double>(angle)));
     };
     const auto cosine = [](float angle) {
-        return static_cast<float>(portable::cos(static_cast<double>(angle)));
+        return static_cast<float>(relief::detail::portable::cos(static_cast<double>(angle)));
     };
     return {cosine(elevation) * sine(azimuth), sine(elevation),
             cosine(elevation) * cosine(azimuth)};

@@ -23,6 +23,8 @@
 #include "relief/shade/scene_file.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+using namespace relief::shade;
 
 namespace {
 

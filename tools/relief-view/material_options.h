@@ -30,14 +30,14 @@ std::string reason_for_phong(const ViewOptions& options);
 /// \param notes  receives messages for the user, such as meshes without texture coordinates
 /// \throws UsageError if an option would have no effect
 /// \throws FileError if no mesh has texture coordinates for a map, or if the height map is invalid
-void override_materials(Scene& scene, const ViewOptions& options, Stages& stages, Report& report,
-                        std::vector<std::string>& notes);
+void override_materials(shade::Scene& scene, const ViewOptions& options, Stages& stages,
+                        Report& report, std::vector<std::string>& notes);
 
 /// Checks the kinds of the maps that the scene file of the options names.
 /// \throws RefusedMap with the scene file, the material and the slot
-void check_scene_maps(const Scene& scene, const ViewOptions& options);
+void check_scene_maps(const shade::Scene& scene, const ViewOptions& options);
 
 /// The height map of the options.
-SceneHeights scene_heights(const ViewOptions& options);
+shade::SceneHeights scene_heights(const ViewOptions& options);
 
 }  // namespace relief::tools

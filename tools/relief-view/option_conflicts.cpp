@@ -12,6 +12,8 @@
 #include "picture_sink.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using Options = ViewOptions;

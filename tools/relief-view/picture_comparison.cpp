@@ -15,6 +15,8 @@
 #include "window/orbit_camera.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 /// Adds an opaque alpha channel.

@@ -16,8 +16,8 @@
 namespace relief::tools {
 
 struct PictureComparison {
-    ImageDifference difference;
-    FlipDifference flip;
+    shade::ImageDifference difference;
+    shade::FlipDifference flip;
     double peak = 1;  ///< The largest sample value: 255, 65535 or 1.
 };
 
@@ -83,8 +83,8 @@ void check_compare_options(const ViewOptions& options);
 
 /// The other side of a comparison.
 struct OtherSide {
-    Scene scene;
-    Camera camera;
+    shade::Scene scene;
+    shade::Camera camera;
 };
 
 /// \param composed  the scene of these options
@@ -95,8 +95,8 @@ OtherSide other_side(const ViewOptions& options, const ComposedScene& composed, 
 
 /// The scene of another file. A model gets the lighting of this scene; a scene file has its own.
 /// \param options  options whose model is the other file
-OtherSide side_of_file(const Scene& scene, const Camera& camera, const ViewOptions& options,
-                       Scene other);
+OtherSide side_of_file(const shade::Scene& scene, const shade::Camera& camera,
+                       const ViewOptions& options, shade::Scene other);
 
 /// For example "kernel=central3", or the name of the file.
 std::string side_name(const CompareChoices& choices);

@@ -16,6 +16,7 @@
 #include "view_options.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 
@@ -33,8 +34,8 @@ void turn(ComposedScene& composed, double angle) {
     const glm::vec3 middle = composed.middle;
     glm::mat4 turned = glm::translate(glm::mat4(1.0F), middle);
     const auto rounded = static_cast<double>(static_cast<float>(angle));
-    const auto sine = static_cast<float>(portable::sin(rounded));
-    const auto cosine = static_cast<float>(portable::cos(rounded));
+    const auto sine = static_cast<float>(relief::detail::portable::sin(rounded));
+    const auto cosine = static_cast<float>(relief::detail::portable::cos(rounded));
     glm::mat4 rotation(1.0F);
     rotation[0] = {cosine, 0.0F, -sine, 0.0F};
     rotation[2] = {sine, 0.0F, cosine, 0.0F};

@@ -30,8 +30,9 @@ struct SequenceTimes {
 /// \param prepare  makes the renderer of the current scene; called again for each picture if
 ///                 materials move
 /// \return the last frame
-Frame draw_sequence(const std::function<std::unique_ptr<Renderer>()>& prepare,
-                    ComposedScene& composed, const ViewOptions& options, Stages& stages,
-                    const std::function<void(const Frame&)>& take, SequenceTimes& times);
+shade::Frame draw_sequence(const std::function<std::unique_ptr<shade::Renderer>()>& prepare,
+                           ComposedScene& composed, const ViewOptions& options, Stages& stages,
+                           const std::function<void(const shade::Frame&)>& take,
+                           SequenceTimes& times);
 
 }  // namespace relief::tools

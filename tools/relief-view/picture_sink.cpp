@@ -186,7 +186,7 @@ class VideoSink : public PictureSink {
         fail("needs the program ffmpeg, which is not installed");
     }
 
-    FileReplacement file_;
+    relief::detail::FileReplacement file_;
     double rate_;
     pid_t process_ = 0;
     int socket_ = -1;

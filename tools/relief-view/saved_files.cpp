@@ -20,6 +20,7 @@
 #include "view_options.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 

@@ -28,6 +28,6 @@ void save_files(const ViewOptions& options, const ComposedScene& composed, Stage
 /// \throws FileError if a file cannot be read or written
 /// \throws InvalidInput if the model is a scene file
 void save_model(const std::filesystem::path& file, const std::filesystem::path& model,
-                const SceneOptions& options = {});
+                const shade::SceneOptions& options = {});
 
 }  // namespace relief::tools

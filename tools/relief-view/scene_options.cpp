@@ -27,6 +27,8 @@
 #include "window/orbit_camera.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+using namespace relief::shade;
 
 // The model.
 

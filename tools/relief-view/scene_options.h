@@ -25,12 +25,12 @@ namespace relief::tools {
 void add_model_options(CLI::App& app, ViewOptions& options);
 
 /// The options with which the model file is read.
-SceneOptions scene_options(const ViewOptions& options);
+shade::SceneOptions scene_options(const ViewOptions& options);
 
 /// A scene with its camera, ready to be drawn.
 struct ComposedScene {
-    SceneGraph graph;
-    Camera camera;
+    shade::SceneGraph graph;
+    shade::Camera camera;
     bool camera_follows_scene = false;  ///< The camera belongs to the scene and may move.
     std::vector<std::string> notes;     ///< Messages for the summary.
 
@@ -38,8 +38,8 @@ struct ComposedScene {
     std::vector<glm::mat4> at_rest;
     glm::vec3 middle{0.0F};
 
-    Scene& scene() { return graph.scene; }
-    [[nodiscard]] const Scene& scene() const { return graph.scene; }
+    shade::Scene& scene() { return graph.scene; }
+    [[nodiscard]] const shade::Scene& scene() const { return graph.scene; }
 };
 
 /// Reads the model and applies the options.
@@ -51,6 +51,6 @@ struct ComposedScene {
 ComposedScene compose_scene(ViewOptions& options, Stages& stages, Report& report);
 
 /// Returns the number of triangles of all instances.
-std::size_t triangle_count(const Scene& scene);
+std::size_t triangle_count(const shade::Scene& scene);
 
 }  // namespace relief::tools

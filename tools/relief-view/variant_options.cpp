@@ -11,6 +11,7 @@
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 

@@ -36,7 +36,7 @@ std::string to_text(const Variant& variant);
 /// \param options  the options of the scene, which contain its height map
 /// \throws UsageError if the variant would change nothing
 /// \throws FileError if a map cannot be read
-PreparedVariant prepare(const Variant& variant, const Scene& scene, const ViewOptions& options,
-                        Report& report);
+shade::PreparedVariant prepare(const Variant& variant, const shade::Scene& scene,
+                               const ViewOptions& options, Report& report);
 
 }  // namespace relief::tools

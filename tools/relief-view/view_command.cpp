@@ -29,6 +29,7 @@
 #include "window/shortcuts.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 

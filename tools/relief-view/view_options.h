@@ -31,9 +31,10 @@ namespace relief::tools {
 /// "none": the scene has no lights.
 struct NoLight {};
 
-using LightOption = std::variant<NoLight, DirectionalLight, PointLight, SpotLight>;
+using LightOption =
+    std::variant<NoLight, shade::DirectionalLight, shade::PointLight, shade::SpotLight>;
 
-using Variant = SceneVariant;
+using Variant = shade::SceneVariant;
 
 inline constexpr float default_split = 0.5F;
 
@@ -51,7 +52,7 @@ enum class HealthChoice { problem, all };
 
 /// The options --show, --wireframe, --vertex-frames, --frame-length, --grid and --health-markers.
 struct DebugChoices {
-    DebugView view = DebugView::picture;
+    shade::DebugView view = shade::DebugView::picture;
     bool wireframe = false;
     bool vertex_frames = false;
     std::optional<float> frame_length;  ///< Relative to the size of the scene.
@@ -61,9 +62,9 @@ struct DebugChoices {
 
 /// The options --effects, --benchmark, --budget and --print-shaders.
 struct EffectChoices {
-    EffectRequest requests;        ///< --effects
-    std::optional<int> benchmark;  ///< Number of frames to time.
-    std::optional<double> budget;  ///< Maximum milliseconds per frame.
+    shade::EffectRequest requests;  ///< --effects
+    std::optional<int> benchmark;   ///< Number of frames to time.
+    std::optional<double> budget;   ///< Maximum milliseconds per frame.
     bool print_shaders = false;
 
     /// Returns whether frames are drawn even without a picture.
@@ -113,8 +114,8 @@ struct ViewOptions {
 
     // Fields of all materials, of the environment and of the scene.
     FieldChanges<Material> material_fields;
-    FieldChanges<Environment> environment_fields;
-    FieldChanges<Scene> scene_fields;
+    FieldChanges<shade::Environment> environment_fields;
+    FieldChanges<shade::Scene> scene_fields;
     bool no_fresnel = false;  ///< --fresnel none
 
     std::optional<std::filesystem::path> reference;
@@ -134,10 +135,10 @@ struct ViewOptions {
 
     std::optional<NormalMode> normals;
     std::optional<double> crease_degrees;
-    std::optional<UpAxis> up;
+    std::optional<shade::UpAxis> up;
     std::optional<std::string> material_variant;  ///< Its name or number in a glTF file.
 
-    std::optional<SceneOptions::MaterialModel> shading;
+    std::optional<shade::SceneOptions::MaterialModel> shading;
     std::optional<std::string> material;  ///< A name of the table of classic materials.
     std::optional<MetallicOption> metallic_roughness;
 
@@ -171,7 +172,7 @@ struct ViewOptions {
                !effects.print_shaders && !effects.measures();
     }
 
-    Backend backend = Backend::automatic;
+    shade::Backend backend = shade::Backend::automatic;
     bool explain_effects = false;
     EffectChoices effects;
     DebugChoices debug;

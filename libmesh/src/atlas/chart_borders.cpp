@@ -8,7 +8,7 @@
 #include "atlas/clustering.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// The shares of the charts in a face near a border.
@@ -216,4 +216,4 @@ void smooth_borders(const AtlasSurface& surface, Segmentation& segmentation) {
     segmentation.count = number_components(surface, segmentation.chart);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -5,7 +5,7 @@
 
 #include "atlas/flat_charts.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
@@ -73,4 +73,4 @@ void align_to_box(FlatChart& chart) {
     chart.size = high - low;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

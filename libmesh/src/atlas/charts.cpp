@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error of mean normals is that of [Cohen-Steiner et al. 2004]; instead of its iterations, clusters
-// merge in rounds.
+// The error of mean normals is that of [Cohen-Steiner et al. 2004]; instead of its iterations,
+// clusters merge in rounds.
 #include "atlas/charts.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include "portable_math.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -223,4 +223,4 @@ Segmentation divided(const AtlasSurface& surface, const ChartLimits& limits) {
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -13,7 +13,7 @@
 
 #include "atlas/surface.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// What a chart may span.
 struct ChartLimits {
@@ -38,4 +38,4 @@ void smooth_borders(const AtlasSurface& surface, Segmentation& segmentation);
 
 inline constexpr double min_part_area = 2e-4;
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -13,7 +13,7 @@
 
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// The common border of two clusters, a < b.
 struct ClusterEdge {
@@ -146,4 +146,4 @@ std::vector<std::uint32_t> merge_in_rounds(Clusters& clusters, std::size_t count
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

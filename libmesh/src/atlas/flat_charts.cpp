@@ -11,7 +11,7 @@
 #include "parallel.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Triangles below this share of the whole area may be stretched: their corners are rounded.
@@ -282,4 +282,4 @@ std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers
     return parts;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -12,7 +12,7 @@
 #include "atlas/flatten.h"
 #include "atlas/injectivity.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A chart in the plane, in the unit of the surface; y points up.
 struct FlatChart {
@@ -50,4 +50,4 @@ std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers
                                        const FlatChart& chart, std::uint32_t face,
                                        const FlatnessLimits& limits);
 
-}  // namespace relief
+}  // namespace relief::detail

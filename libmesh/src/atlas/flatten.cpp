@@ -12,7 +12,7 @@
 #include "geometry/direction.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr int iterations = 8;
@@ -200,4 +200,4 @@ Stretch stretch_of(const AtlasSurface& surface, std::uint32_t face,
     return {0.5 * (keeps + reverses), 0.5 * (keeps - reverses)};
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -13,7 +13,7 @@
 
 #include "atlas/surface.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// The faces of a chart with vertices of their own. A vertex where two fans of the chart meet is
 /// two vertices.
@@ -75,4 +75,4 @@ struct Stretch {
 Stretch stretch_of(const AtlasSurface& surface, std::uint32_t face,
                    const std::array<glm::dvec2, 3>& coordinates);
 
-}  // namespace relief
+}  // namespace relief::detail

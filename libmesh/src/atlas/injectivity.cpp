@@ -8,7 +8,7 @@
 
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// An edge of the border between two vertices of the chart.
@@ -192,4 +192,4 @@ std::optional<std::uint32_t> overlap_in(const ChartMesh& chart,
     return std::nullopt;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

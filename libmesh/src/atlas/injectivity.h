@@ -10,7 +10,7 @@
 
 #include "atlas/flatten.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A chart on the lattice: y points up. Numbers are at least 0 and below 2^26, so that the
 /// orientation of three points is exact in 64 bits.
@@ -36,4 +36,4 @@ inline std::int64_t orientation(const LatticePoint& a, const LatticePoint& b,
 std::optional<std::uint32_t> overlap_in(const ChartMesh& chart,
                                         std::span<const LatticePoint> points);
 
-}  // namespace relief
+}  // namespace relief::detail

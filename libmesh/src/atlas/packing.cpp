@@ -16,7 +16,7 @@
 #include "parallel.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// The number of packs after which the best scale is good enough, and after which packing fails.
@@ -450,4 +450,4 @@ glm::dvec2 placed(const glm::dvec2& point, const Placement& placement, double te
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

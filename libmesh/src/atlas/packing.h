@@ -12,7 +12,7 @@
 
 #include "atlas/flat_charts.h"
 
-namespace relief {
+namespace relief::detail {
 
 struct PackingOptions {
     glm::ivec2 size{2048};  ///< Texels.
@@ -39,4 +39,4 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
 /// Returns a point of a chart in texels.
 glm::dvec2 placed(const glm::dvec2& point, const Placement& placement, double texels_per_unit);
 
-}  // namespace relief
+}  // namespace relief::detail

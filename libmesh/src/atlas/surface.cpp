@@ -12,7 +12,7 @@
 #include "portable_math.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
@@ -368,4 +368,4 @@ AtlasSurface atlas_surface(const Mesh& mesh, const AtlasConstraints& constraints
     return surface;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -23,7 +23,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 inline constexpr std::uint32_t no_face = std::numeric_limits<std::uint32_t>::max();
 
@@ -66,4 +66,4 @@ struct AtlasConstraints {
 ///         triangles are cut apart
 AtlasSurface atlas_surface(const Mesh& mesh, const AtlasConstraints& constraints, Report& report);
 
-}  // namespace relief
+}  // namespace relief::detail

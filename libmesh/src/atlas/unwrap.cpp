@@ -18,6 +18,8 @@
 #include "progress_stage.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Coordinates are multiples of 1 / lattice_size of the map.

@@ -25,6 +25,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 std::vector<glm::vec3> cage_corners(const Mesh& cage, const Mesh& low) {
@@ -151,8 +153,8 @@ ProjectionLine LowSurface::line(const CoveredTexel& texel, const BakeDistances& 
     return line;
 }
 
-std::optional<CoveredTexel> moved_inside(const Mesh& mesh, const CoveredTexel& texel,
-                                         double distance) {
+std::optional<CoveredTexel> detail::moved_inside(const Mesh& mesh, const CoveredTexel& texel,
+                                                 double distance) {
     const glm::dvec3 weights(texel.weights());
     glm::dvec3 least = distance * inverse_heights(mesh, mesh.triangles[texel.triangle]);
     if (!std::isfinite(sum(least))) return std::nullopt;

@@ -15,7 +15,7 @@
 #include "bake/bake_work.h"
 #include "geometry/direction.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t sample_count = 1024;
@@ -279,4 +279,4 @@ void report_agreement(const BakeAgreement& agreement, const BakeOptions& options
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

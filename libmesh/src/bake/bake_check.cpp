@@ -26,6 +26,8 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The normals of some rows of a bake.

@@ -16,6 +16,8 @@
 #include "bake/bake_work.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 struct UnitPair {
@@ -37,7 +39,7 @@ std::string pair_name_of(const BakePartName& part, BakeSide side) {
 
 }  // namespace
 
-std::string unit_cause(double size_ratio) {
+std::string detail::unit_cause(double size_ratio) {
     const double ratio = std::max(size_ratio, 1.0 / size_ratio);
     for (const UnitPair& pair : unit_pairs) {
         if (std::abs(std::log(ratio / pair.ratio)) > std::log(1.05)) continue;

@@ -16,7 +16,7 @@
 #include "portable_math.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr int block = 4;                      // Samples along the side of a block.
@@ -403,4 +403,4 @@ BakeCounts bake_rows(const BakeWork& work, int first_row, std::span<const Covere
     return counts;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -16,7 +16,7 @@
 #include "bake/ray_scene.h"
 #include "relief/mesh/bake.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// The low-poly mesh of a bake: positions and projection lines of texels. All values are in the
 /// space and unit of the meshes, in double.
@@ -167,4 +167,4 @@ struct BakeCounts {
 BakeCounts bake_rows(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,
                      const BakedRows& rows, Report& report);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -23,7 +23,7 @@
 #include "parallel.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Averages texels of a layer. Directions that cancel give the first one.
@@ -447,4 +447,4 @@ void BorderFill::push(const BakedRows& rows) {
     if (work.end_row == work.height) work.finish();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -18,7 +18,7 @@
 
 #include "relief/mesh/bake.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// The columns of a row that have the nearest of some points, where each column knows the distance
 /// of its own nearest point straight above or below. Integers make it exact, and the time is linear
@@ -140,4 +140,4 @@ class BorderFill {
     std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -21,7 +21,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A hit that may tie with another one of the same ray.
 struct TiedHit {
@@ -578,4 +578,4 @@ double EmbreeScene::distance_from(const glm::dvec3& point, double enough) const 
     return state.distance;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -31,6 +31,7 @@ struct RTCDeviceTy;
 struct RTCSceneTy;
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// A ray in the space of the meshes.
 struct Ray {
@@ -147,4 +148,5 @@ class EmbreeScene {
     std::vector<std::unique_ptr<MeshOfScene>> meshes_;  ///< By name; null if unused.
 };
 
+}  // namespace detail
 }  // namespace relief

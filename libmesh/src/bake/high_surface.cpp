@@ -21,7 +21,7 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Returns the texel that a wrapped index refers to.
@@ -83,6 +83,8 @@ double linear_value(Sample sample, bool is_srgb) {
         return static_cast<double>(sample);
     }
 }
+
+using relief::detail::check;
 
 void check(const SurfaceTexture& texture, int min_channels, const char* what) {
     if (texture.image == nullptr || texture.image->empty())
@@ -451,4 +453,4 @@ double HighSurface::largest_coordinate(const glm::dmat4& axes_from_mesh) const {
     return largest;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -13,7 +13,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Textures are decoded to linear values before they are filtered, in double, as OpenGL defines it
 /// for the full-size level. A coordinate that is not finite reads the first texel.
@@ -93,4 +93,4 @@ class HighSurface {
     std::unique_ptr<RayScene> scene_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

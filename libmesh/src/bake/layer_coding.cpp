@@ -10,6 +10,8 @@
 #include "relief/mesh/bake.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Encodes alpha, which is linear in all layers.

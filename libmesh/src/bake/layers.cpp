@@ -17,6 +17,8 @@
 #include "relief/mesh/normals.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The start distance of rays above the surface, relative to the scene's size. It exceeds the
@@ -98,7 +100,7 @@ void store_mean(const glm::dvec3& sum, std::uint32_t hits, std::span<float> valu
 
 }  // namespace
 
-void check(const OcclusionOptions& options) {
+void detail::check(const OcclusionOptions& options) {
     constexpr int max_rays = 65536;
     if (options.distance && !(*options.distance >= 0.0 && std::isfinite(*options.distance))) {
         throw InvalidInput(

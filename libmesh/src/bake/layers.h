@@ -13,7 +13,7 @@
 #include "bake/high_surface.h"
 #include "relief/mesh/bake.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A layer that rows of a bake may hold.
 struct BakedLayer {
@@ -112,4 +112,4 @@ class LayerBake {
     std::vector<glm::dvec3> positions_, colors_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

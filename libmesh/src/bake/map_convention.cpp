@@ -16,6 +16,8 @@
 #include "relief/mesh/tangents.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t max_texels = 4096;

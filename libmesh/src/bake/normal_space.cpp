@@ -24,7 +24,7 @@ glm::dvec3 converted(const Mesh& mesh, const CoveredTexel& texel, const glm::dve
                      Conversion direction, std::size_t index, Report& report) {
     const glm::dvec3 flat(0.0, 0.0, 1.0);
     if (!texel.is_covered()) return flat;
-    const TexelFrame frame(mesh, texel.triangle, glm::dvec3(texel.weights()));
+    const detail::TexelFrame frame(mesh, texel.triangle, glm::dvec3(texel.weights()));
     if (!frame.is_usable()) {
         report.add("texel without a frame", "texel", index, "is (0, 0, 1)");
         return flat;

@@ -15,6 +15,8 @@
 #include "parallel.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Below this number of rays per triangle, Embree's fast build is worthwhile: it saves 85 of 300 ns
@@ -102,7 +104,7 @@ double RayScene::distance_from(const glm::dvec3& point, double enough) const {
     return embree_.distance_from(point, enough);
 }
 
-Ray from_outside(const ProjectionLine& line) {
+Ray detail::from_outside(const ProjectionLine& line) {
     return {line.point + line.outside * line.outward, -line.outward, 0.0,
             line.outside + line.inside};
 }
@@ -350,7 +352,7 @@ BakeMismatch::BakeMismatch(Kind kind, const BakeFit& fit, double reach, std::str
       reach_(reach),
       part_(std::move(part)) {}
 
-double diagonal(const Bounds& box) {
+double detail::diagonal(const Bounds& box) {
     return glm::distance(glm::dvec3(box.max), glm::dvec3(box.min));
 }
 
@@ -370,7 +372,7 @@ BakeFit compare_boxes(std::span<const Mesh> high, const Mesh& low) {
     return compare_boxes(high_box, low_box);
 }
 
-BakeFit compare_boxes(const Bounds& high, const Bounds& low) {
+BakeFit detail::compare_boxes(const Bounds& high, const Bounds& low) {
     BakeFit fit{.high = high, .low = low};
     if (fit.low.empty() || fit.high.empty()) return fit;
     const glm::dvec3 above = glm::dvec3(fit.high.min) - glm::dvec3(fit.low.max);
@@ -384,8 +386,8 @@ BakeFit compare_boxes(const Bounds& high, const Bounds& low) {
     return fit;
 }
 
-BakeDistances distances_between(std::span<const Mesh> high, const RayScene& high_scene,
-                                const Mesh& low) {
+BakeDistances detail::distances_between(std::span<const Mesh> high, const RayScene& high_scene,
+                                        const Mesh& low) {
     const RayScene low_scene({{low.positions, low.triangles}});
     const double from_low = largest_distance(points_on(low), high_scene);
     const double from_high = largest_distance(vertices_of(high), low_scene);

@@ -32,7 +32,7 @@
 #include "bake/embree_scene.h"
 #include "relief/mesh/bake.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Triangles of one mesh; both spans must outlive the scene.
 struct RayMesh {
@@ -146,4 +146,4 @@ double diagonal(const Bounds& box);
 /// Like the public compare_boxes(), for existing boxes.
 BakeFit compare_boxes(const Bounds& high, const Bounds& low);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -28,6 +28,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Integers that hold sums of products of two fixed-point coordinates.

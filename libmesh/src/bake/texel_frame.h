@@ -10,7 +10,7 @@
 
 #include "relief/mesh/mesh.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// The axes of tangent space, in object space, in double.
 struct TexelFrame {
@@ -65,4 +65,4 @@ struct TexelFrame {
     }
 };
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -10,7 +10,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t size = TriangleCluster<float>::size;
@@ -442,4 +442,4 @@ template void candidates(const TriangleCluster<float>&, const RayLines<16>&, std
 template void candidates(const TriangleCluster<double>&, const RayLines<16>&, std::size_t,
                          std::size_t, std::span<std::uint64_t, 16>);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -23,7 +23,7 @@
 #include <span>
 #include <vector>
 
-namespace relief {
+namespace relief::detail {
 
 /// A ray and the two axes of its projection plane.
 struct RayFrame {
@@ -178,4 +178,4 @@ template <typename Number>
 void candidates(const TriangleCluster<Number>& cluster, const RayLines<16>& lines,
                 std::size_t begin, std::size_t count, std::span<std::uint64_t, 16> bits);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -25,7 +25,7 @@
 
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 constinit thread_local FileSet* current_file_set = nullptr;
 
@@ -450,4 +450,4 @@ void replace_file(const std::filesystem::path& file, std::span<const std::byte> 
     replacement.commit();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

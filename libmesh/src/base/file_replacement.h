@@ -21,6 +21,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 class StagedFile;
 
@@ -121,4 +122,5 @@ void write_all(const FileReplacement& replacement, std::span<const std::byte> by
 /// Replaces the contents of a file. \throws FileError
 void replace_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
+}  // namespace detail
 }  // namespace relief

@@ -21,7 +21,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Records that a file is read. \return the file to open \throws FileError if it is missing or a
@@ -157,4 +157,4 @@ std::string utf8_name(std::string name, std::string_view element, std::size_t in
     return converted;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -19,6 +19,8 @@ namespace RELIEF_API relief {
 
 class Report;
 
+namespace detail {
+
 /// Returns the bytes of a file, as text. \throws FileError if it is missing, a folder or unreadable
 std::string read_file(const std::filesystem::path& file);
 
@@ -88,4 +90,5 @@ inline std::uint32_t big32(std::span<const std::byte> bytes, std::size_t offset 
     return value;
 }
 
+}  // namespace detail
 }  // namespace relief

@@ -13,7 +13,7 @@
 #include "near_names.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 using Json = nlohmann::json;
@@ -256,4 +256,4 @@ void JsonCursor::fail_unknown(std::string_view value, std::span<const std::strin
                      did_you_mean(value, known)));
 }
 
-}  // namespace relief
+}  // namespace relief::detail

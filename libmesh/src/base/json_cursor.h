@@ -24,6 +24,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// Limits the nesting of a document before it is parsed. Broken text is not noticed.
 /// \throws InvalidInput if arrays and objects are nested deeper
@@ -103,4 +104,5 @@ class JsonCursor {
     Wording wording_;
 };
 
+}  // namespace detail
 }  // namespace relief

@@ -13,6 +13,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// \throws InvalidInput if `count` elements of `size` bytes exceed the limit of memory
 void require_memory(std::uint64_t count, std::uint64_t size);
@@ -44,4 +45,5 @@ void reserve_to_fill(std::vector<T>& values, std::size_t count) {
     expect_filling(values.data(), count * sizeof(T));
 }
 
+}  // namespace detail
 }  // namespace relief

@@ -16,6 +16,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 std::atomic<std::uint64_t> memory_limit{0};
@@ -59,7 +61,7 @@ InputLimits input_limits() {
     return {memory > 0 ? memory : default_memory, pixel_limit, permits_outside_files};
 }
 
-void require_memory(std::uint64_t count, std::uint64_t size) {
+void detail::require_memory(std::uint64_t count, std::uint64_t size) {
     const std::uint64_t limit = input_limits().memory;
     const std::uint64_t bytes = saturated_product(count, size);
     if (bytes <= limit) return;
@@ -67,8 +69,8 @@ void require_memory(std::uint64_t count, std::uint64_t size) {
                                    mebibytes(bytes), mebibytes(limit)));
 }
 
-void require_memory_for(const std::filesystem::path& file, std::uint64_t count,
-                        std::uint64_t size) {
+void detail::require_memory_for(const std::filesystem::path& file, std::uint64_t count,
+                                std::uint64_t size) {
     try {
         require_memory(count, size);
     } catch (const InvalidInput& error) {
@@ -76,7 +78,7 @@ void require_memory_for(const std::filesystem::path& file, std::uint64_t count,
     }
 }
 
-void require_pixels(const std::filesystem::path& file, int width, int height) {
+void detail::require_pixels(const std::filesystem::path& file, int width, int height) {
     const std::uint64_t limit = input_limits().pixels;
     const std::uint64_t pixels =
         static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);

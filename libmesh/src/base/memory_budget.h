@@ -11,6 +11,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// A small file can stand for much more memory than it has bytes: by arrays without data, by
 /// references to the same data, or by compression. Readers draw from the budget of the file before
@@ -44,4 +45,5 @@ class MemoryBudget {
     std::uint64_t taken_ = 0;
 };
 
+}  // namespace detail
 }  // namespace relief

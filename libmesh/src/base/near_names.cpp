@@ -6,7 +6,7 @@
 #include <cctype>
 #include <utility>
 
-namespace relief {
+namespace relief::detail {
 
 namespace {
 
@@ -79,4 +79,4 @@ std::string did_you_mean(std::string_view wanted, std::span<const std::string> k
     return text + "?";
 }
 
-}  // namespace relief
+}  // namespace relief::detail

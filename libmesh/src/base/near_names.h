@@ -11,6 +11,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// The known names that are nearest to an unknown one, nearest first, at most three.
 ///
@@ -22,4 +23,5 @@ std::vector<std::string> near_names(std::string_view wanted, std::span<const std
 /// "; did you mean 'gold' or 'polished gold'?", or "" if no name is near.
 std::string did_you_mean(std::string_view wanted, std::span<const std::string> known);
 
+}  // namespace detail
 }  // namespace relief

@@ -10,7 +10,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-namespace relief {
+namespace relief::detail {
 
 /// Rounds to the nearest integer, halves away from 0. Casts are faster: without SSE 4.1, std::round
 /// and std::floor are calls.
@@ -82,4 +82,4 @@ inline OctahedralCode nearest_code(const glm::dvec2& place, int largest, int par
     return code;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

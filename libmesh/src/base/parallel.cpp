@@ -24,8 +24,9 @@
 #endif
 
 namespace relief {
+using namespace relief::detail;
 
-constinit std::atomic<void (*)()> before_each_piece = nullptr;
+constinit std::atomic<void (*)()> detail::before_each_piece = nullptr;
 
 namespace {
 
@@ -155,8 +156,8 @@ void parallel_for_with_progress(std::size_t count, std::size_t grain, Progress* 
 
 }  // namespace
 
-void parallel_for(std::size_t count, std::size_t grain,
-                  const std::function<void(std::size_t, std::size_t)>& body) {
+void detail::parallel_for(std::size_t count, std::size_t grain,
+                          const std::function<void(std::size_t, std::size_t)>& body) {
     if (count == 0) return;
     if (current_progress != nullptr)
         return parallel_for_with_progress(count, grain, current_progress, body);
@@ -169,8 +170,9 @@ void parallel_for(std::size_t count, std::size_t grain,
     run_pieces(count, grain, run_piece);
 }
 
-void parallel_for_reporting(std::size_t count, std::size_t grain, Report& report,
-                            const std::function<void(std::size_t, std::size_t, Report&)>& body) {
+void detail::parallel_for_reporting(
+    std::size_t count, std::size_t grain, Report& report,
+    const std::function<void(std::size_t, std::size_t, Report&)>& body) {
     std::vector<Report> found((count + grain - 1) / grain);
     parallel_for(found.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t piece = first; piece < last; ++piece)
@@ -180,7 +182,7 @@ void parallel_for_reporting(std::size_t count, std::size_t grain, Report& report
         report.merge(one);
 }
 
-std::size_t thread_count() {
+std::size_t detail::thread_count() {
     // The limits of this operation and of set_thread_limit(), or the number of processors. This
     // call starts no threads.
     if (current_thread_limit > 0) return current_thread_limit;
@@ -190,7 +192,7 @@ std::size_t thread_count() {
         capped, static_cast<std::size_t>(std::max(tbb::info::default_concurrency(), 1)));
 }
 
-void parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_small) {
+void detail::parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_small) {
     std::vector<std::exception_ptr> failures(tasks.size());
     parallel_for(tasks.size(), are_small ? tasks.size() : 1,
                  [&](std::size_t begin, std::size_t end) {

@@ -13,6 +13,7 @@
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// Calls body(begin, end) for disjoint pieces that cover [0, count), on all threads.
 ///
@@ -52,4 +53,5 @@ void parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_sm
 /// the loop has only one piece. An exception counts as thrown by the piece. The default is null.
 extern constinit std::atomic<void (*)()> before_each_piece;
 
+}  // namespace detail
 }  // namespace relief

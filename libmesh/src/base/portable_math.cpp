@@ -11,7 +11,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace relief::portable {
+namespace relief::detail::portable {
 namespace {
 
 /// Remainder of an angle modulo a quarter turn, from -pi/4 to pi/4.
@@ -150,9 +150,9 @@ double erf(double x) {
     return std::copysign(std::min(result, 1.0), x);
 }
 
-}  // namespace relief::portable
+}  // namespace relief::detail::portable
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 VectorTarget of_processor() {
@@ -181,4 +181,4 @@ VectorTarget best_vector_target() {
     return processor;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -35,6 +35,7 @@
 #define RELIEF_INLINE [[gnu::always_inline]] inline
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// Bits of a vector register.
 enum class VectorTarget { any = 128, wide = 256, widest = 512 };
@@ -43,9 +44,10 @@ enum class VectorTarget { any = 128, wide = 256, widest = 512 };
 /// RELIEF_VECTOR_BITS (128, 256) limits it, so that tests can compare targets.
 VectorTarget best_vector_target();
 
+}  // namespace detail
 }  // namespace relief
 
-namespace relief {
+namespace relief::detail {
 
 /// Errors are at most 4 units of the last place, of pow() 60.
 namespace RELIEF_API portable {
@@ -242,4 +244,4 @@ class Random {
     std::uint64_t state_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

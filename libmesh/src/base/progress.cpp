@@ -12,9 +12,10 @@
 #include "progress_stage.h"
 
 namespace relief {
+using namespace relief::detail;
 
-constinit thread_local Progress* current_progress = nullptr;
-constinit thread_local unsigned current_thread_limit = 0;
+constinit thread_local Progress* detail::current_progress = nullptr;
+constinit thread_local unsigned detail::current_thread_limit = 0;
 
 namespace {
 
@@ -68,7 +69,7 @@ void Progress::tell() {
     tell_(state());
 }
 
-void note_file(const std::filesystem::path& file) {
+void detail::note_file(const std::filesystem::path& file) {
     Progress* const progress = current_progress;
     if (progress == nullptr) return;
     std::error_code error;

@@ -14,6 +14,7 @@
 #include "relief/mesh/execution.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// The Progress of this thread; null if there is none.
 extern constinit thread_local Progress* current_progress;
@@ -74,4 +75,5 @@ class ProgressPiece {
     bool was_piece_;
 };
 
+}  // namespace detail
 }  // namespace relief

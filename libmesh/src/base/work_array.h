@@ -13,6 +13,7 @@
 #include "relief/mesh/execution.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// The Workspace of this thread's operation; null if there is none.
 extern constinit thread_local Workspace* current_workspace;
@@ -69,4 +70,5 @@ class WorkArray {
     std::size_t size_ = 0;
 };
 
+}  // namespace detail
 }  // namespace relief

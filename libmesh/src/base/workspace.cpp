@@ -15,8 +15,9 @@
 #include "work_array.h"
 
 namespace relief {
+using namespace relief::detail;
 
-constinit thread_local Workspace* current_workspace = nullptr;
+constinit thread_local Workspace* detail::current_workspace = nullptr;
 
 WorkspaceScope::WorkspaceScope(Workspace& workspace)
     : before_(std::exchange(current_workspace, &workspace)) {}

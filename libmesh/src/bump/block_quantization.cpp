@@ -12,7 +12,7 @@
 #include "bump/height_tile.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr int block = 8;
@@ -185,4 +185,4 @@ void quantize_blocks(HeightTile& tile, const BlockQuantization& quantization, do
     });
 }
 
-}  // namespace relief
+}  // namespace relief::detail

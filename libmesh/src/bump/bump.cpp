@@ -30,6 +30,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The factors of the kernel sums, to the right and upwards.
@@ -464,8 +466,8 @@ bool make_rows(const HeightRows& heights, const BumpOptions& options, const Bump
 
 }  // namespace
 
-bool make_bump_rows(const HeightRows& heights, const BumpOptions& options, const BumpTarget& target,
-                    int first, int last) {
+bool detail::make_bump_rows(const HeightRows& heights, const BumpOptions& options,
+                            const BumpTarget& target, int first, int last) {
     switch (heights.bits) {
         case 8:
             return make_rows<std::uint8_t>(heights, options, target, first, last);
@@ -559,7 +561,7 @@ Image image_to_fill(int width, int height, int channels, int bits) {
 
 }  // namespace
 
-void check_bump(const BumpOptions& options) {
+void detail::check_bump(const BumpOptions& options) {
     if (!(std::abs(options.strength) <= max_strength)) {
         throw InvalidInput(fmt::format("the strength is {}, but must be within +-{}",
                                        options.strength, max_strength));

@@ -19,7 +19,7 @@
 #include "bump/bump_rows.h"
 #include "image/normal_coding.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// An unsigned integer of the size of a Real.
@@ -500,4 +500,4 @@ template bool codes_3x3(VectorTarget, const Rows3x3&, const Weights3x3&, std::si
 template bool codes_3x3(VectorTarget, const Rows3x3&, const Weights3x3&, std::size_t,
                         const NormalMapFormat&, std::uint16_t*);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 template <typename Sample, typename Real>
@@ -223,4 +223,4 @@ template void combine_columns(VectorTarget, const KernelWeights<float>&, const f
 template void combine_columns(VectorTarget, const KernelWeights<double>&, const double*,
                               const double*, std::size_t, double, double, double*, double*);
 
-}  // namespace relief
+}  // namespace relief::detail

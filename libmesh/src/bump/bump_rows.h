@@ -20,6 +20,7 @@
 #include "relief/mesh/normal_map.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// The grain size of parallel loops over rows.
 inline constexpr std::size_t bump_texels_per_piece = 1 << 16;
@@ -146,4 +147,5 @@ template <typename Code>
 bool codes_3x3(VectorTarget target, const Rows3x3& rows, const Weights3x3& weights,
                std::size_t width, const NormalMapFormat& format, Code* codes);
 
+}  // namespace detail
 }  // namespace relief

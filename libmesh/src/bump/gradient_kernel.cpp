@@ -13,6 +13,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Returns a kernel of antisymmetric differences and symmetric smoothing weights, both from the

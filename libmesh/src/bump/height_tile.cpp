@@ -13,7 +13,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Returns a sample of a line, also beyond its ends.
@@ -318,4 +318,4 @@ HighPassNoise high_pass_noise(std::span<const HeightTile> tiles) {
     return {std::min(second_order, third_order), third_order <= 1.1 * second_order};
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -17,7 +17,7 @@
 
 #include "relief/mesh/bump.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A height field, stored row by row.
 struct HeightTile {
@@ -254,4 +254,4 @@ class PowerSpectrum {
 HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
                          const NoiseSpectrum& noise);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -30,6 +30,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The rounding of stored heights.
@@ -328,7 +330,7 @@ void KernelErrorModel::remove_blocks() {
     blocks_ = block_quantization(tiles_, coding_.step());
     if (!blocks_) return;
     for (HeightTile& tile : tiles_)
-        relief::remove_blocks(tile, *blocks_);
+        detail::remove_blocks(tile, *blocks_);
 }
 
 void KernelErrorModel::remove_outliers() {
@@ -337,7 +339,7 @@ void KernelErrorModel::remove_outliers() {
     std::size_t texels = 0;
     const std::vector<HeightTile> as_stored = tiles_;
     for (HeightTile& tile : tiles_) {
-        const std::vector<double> removed = relief::remove_outliers(tile, 2.5 * coding_.step());
+        const std::vector<double> removed = detail::remove_outliers(tile, 2.5 * coding_.step());
         outliers_.insert(outliers_.end(), removed.begin(), removed.end());
         texels += tile.values.size();
     }
@@ -533,7 +535,7 @@ KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const BumpOptio
     tiles_.resize(parts.size());
     std::transform(parts.begin(), parts.end(), tiles_.begin(), to_tile);
     remove_blocks();
-    noise_by_height_ = relief::noise_by_height(tiles_);
+    noise_by_height_ = detail::noise_by_height(tiles_);
     if (!blocks_ && !noise_by_height_) remove_outliers();
     detect_grain(grain);
     restore();

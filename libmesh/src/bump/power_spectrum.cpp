@@ -13,7 +13,7 @@
 #include "image/texel_loops.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -602,4 +602,4 @@ HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

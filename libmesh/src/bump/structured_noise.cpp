@@ -11,7 +11,7 @@
 #include "bump/height_tile.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Applies the high-pass mask (1 -2 1) `times` times, and returns the absolute values. The gain for
@@ -170,4 +170,4 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) 
     return noise;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -12,6 +12,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// Returns the first corner (3 per triangle) that refers to a vertex that does not exist.
 std::optional<std::size_t> corner_beyond(TriangleSpan triangles, std::size_t vertex_count);
@@ -20,4 +21,5 @@ std::optional<std::size_t> corner_beyond(TriangleSpan triangles, std::size_t ver
 ///         index: "triangle 7 names vertex 12, but there are only 8"
 void check_triangles(TriangleSpan triangles, std::size_t vertex_count);
 
+}  // namespace detail
 }  // namespace relief

@@ -18,7 +18,7 @@
 #include "relief/mesh/buffers.h"
 #include "work_array.h"
 
-namespace relief {
+namespace relief::detail {
 
 using Corner = std::uint32_t;
 
@@ -122,4 +122,4 @@ class CornersByVertex {
     WorkArray<Corner> corners_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -14,6 +14,8 @@
 #include "portable_math.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t grain = 1 << 14;

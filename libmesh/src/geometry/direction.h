@@ -13,7 +13,7 @@
 
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Normalizes `vector`. Returns zero if it has no direction (zero or not finite).
 inline glm::dvec3 direction_or_zero(const glm::dvec3& vector) {
@@ -62,4 +62,4 @@ inline constexpr double unit_tolerance = 0.007;
 /// causes up to 0.014; larger values are intentional.
 inline constexpr double leaning_tolerance = 0.02;
 
-}  // namespace relief
+}  // namespace relief::detail

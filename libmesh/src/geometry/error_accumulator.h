@@ -12,7 +12,7 @@
 
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Accumulates the root mean square, the mean and the maximum.
 class ErrorMoments {
@@ -133,4 +133,4 @@ class ErrorAccumulator {
     std::vector<std::size_t> bins_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

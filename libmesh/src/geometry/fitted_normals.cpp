@@ -18,6 +18,8 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr int fine_degree = 4;

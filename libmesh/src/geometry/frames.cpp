@@ -25,6 +25,8 @@
 #include "relief/mesh/tangents.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 template <int N>

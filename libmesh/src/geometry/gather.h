@@ -14,7 +14,7 @@
 #include "portable_math.h"
 #include "relief/mesh/buffers.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Smallest and largest vertex index of some triangles.
 struct VertexRange {
@@ -81,4 +81,4 @@ RELIEF_INLINE void gather_four(const StridedSpan<const glm::vec3>& values,
     std::memcpy(z, &c, sizeof c);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -22,6 +22,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The largest index of one triangle or more.
@@ -48,14 +50,14 @@ std::uint32_t largest_index(const TriangleSpan& triangles) {
 
 }  // namespace
 
-std::optional<std::size_t> corner_beyond(TriangleSpan triangles, std::size_t vertex_count) {
+std::optional<std::size_t> detail::corner_beyond(TriangleSpan triangles, std::size_t vertex_count) {
     if (triangles.empty() || largest_index(triangles) < vertex_count) return std::nullopt;
     for (std::size_t corner = 0;; ++corner) {
         if (triangles[corner / 3][static_cast<int>(corner % 3)] >= vertex_count) return corner;
     }
 }
 
-void check_triangles(TriangleSpan triangles, std::size_t vertex_count) {
+void detail::check_triangles(TriangleSpan triangles, std::size_t vertex_count) {
     constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 3;
     if (triangles.size() > most) {
         throw InvalidInput(fmt::format(

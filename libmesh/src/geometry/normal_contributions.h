@@ -21,7 +21,7 @@
 #include "portable_math.h"
 #include "relief/mesh/normals.h"
 
-namespace relief {
+namespace relief::detail {
 
 template <typename Real>
 struct TriangleContributions {
@@ -115,4 +115,4 @@ void with_weight(NormalWeight weight, const Body& body) {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -30,7 +30,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/execution.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 using Block = std::span<const glm::uvec3>;
@@ -733,4 +733,4 @@ std::vector<std::uint32_t> round_shared_normals(const NormalSums& sums,
     return doubtful.sorted();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -23,7 +23,7 @@
 #include "relief/mesh/normals.h"
 #include "work_array.h"
 
-namespace relief {
+namespace relief::detail {
 /// Sum of contributions at one vertex, as wide as one vector register.
 struct alignas(32) WeightedNormalSum {
     double x, y, z;
@@ -123,4 +123,4 @@ std::vector<std::uint32_t> round_shared_normals(const NormalSums& sums,
                                                 std::span<const std::uint32_t> members,
                                                 StridedSpan<glm::vec3> normals);
 
-}  // namespace relief
+}  // namespace relief::detail

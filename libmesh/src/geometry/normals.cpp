@@ -37,6 +37,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 enum class PlaceKind : std::uint8_t {

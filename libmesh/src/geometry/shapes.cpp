@@ -12,6 +12,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr int max_parts = 4096;

@@ -33,6 +33,8 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 // Float positions determine an angle with an error of about 1e-7 for well-shaped triangles. The
@@ -222,7 +224,7 @@ class FansAtPosition {
 
 }  // namespace
 
-SmoothFans smooth_fans(const FanInput& input, const HardEdges& hard_edges) {
+SmoothFans detail::smooth_fans(const FanInput& input, const HardEdges& hard_edges) {
     constexpr std::size_t grain = 4096;
     const CornersByVertex corners(input.positions.size(), input.welded);
     SmoothFans fans;

@@ -11,7 +11,7 @@
 #include "relief/mesh/buffers.h"
 #include "relief/mesh/normals.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Fans of corners. Fan indices have no meaning.
 struct SmoothFans {
@@ -41,4 +41,4 @@ struct FanInput {
 /// fan of their own.
 SmoothFans smooth_fans(const FanInput& input, const HardEdges& hard_edges);
 
-}  // namespace relief
+}  // namespace relief::detail

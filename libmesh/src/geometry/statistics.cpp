@@ -48,7 +48,7 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
     const double cosine = glm::dot(a, b);
     if (!std::isfinite(sine) || !std::isfinite(cosine) || (sine == 0.0 && cosine == 0.0))
         return std::numeric_limits<double>::quiet_NaN();
-    return portable::atan2(sine, cosine) * 180.0 / std::numbers::pi;
+    return detail::portable::atan2(sine, cosine) * 180.0 / std::numbers::pi;
 }
 
 std::size_t ErrorStats::bin_of(double degrees) {
@@ -59,7 +59,7 @@ std::size_t ErrorStats::bin_of(double degrees) {
 ErrorStats error_stats(std::vector<float> errors) {
     const std::size_t all = errors.size();
     std::erase_if(errors, [](float error) { return std::isnan(error); });
-    ErrorMoments moments;
+    detail::ErrorMoments moments;
     ErrorStats stats;
     for (const float error : errors) {
         const auto value = static_cast<double>(error);
@@ -87,7 +87,7 @@ ErrorStats direction_error(std::span<const glm::vec3> directions,
         throw InvalidInput(fmt::format("{} directions cannot be compared with {}",
                                        directions.size(), reference.size()));
     }
-    ErrorAccumulator angles;
+    detail::ErrorAccumulator angles;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         if (!counts.empty() && counts[i] == 0) continue;
         angles.add(degrees_between(glm::dvec3(directions[i]), reference[i]));

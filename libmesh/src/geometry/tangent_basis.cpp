@@ -20,6 +20,8 @@
 #include "portable_math.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t grain = 2048;
@@ -361,18 +363,18 @@ TriangleGradient gradient_of(const glm::vec3 (&p)[3], const glm::vec2 (&t)[3]) {
 
 }  // namespace
 
-TriangleGradient triangle_gradient(StridedSpan<const glm::vec3> positions,
-                                   StridedSpan<const glm::vec2> texcoords,
-                                   const glm::uvec3& triangle) {
+TriangleGradient detail::triangle_gradient(StridedSpan<const glm::vec3> positions,
+                                           StridedSpan<const glm::vec2> texcoords,
+                                           const glm::uvec3& triangle) {
     const glm::vec3 p[] = {positions[triangle.x], positions[triangle.y], positions[triangle.z]};
     const glm::vec2 t[] = {upright(texcoords[triangle.x]), upright(texcoords[triangle.y]),
                            upright(texcoords[triangle.z])};
     return gradient_of(p, t);
 }
 
-std::vector<Gradient> gradient_kinds(StridedSpan<const glm::vec3> positions,
-                                     StridedSpan<const glm::vec2> texcoords,
-                                     TriangleSpan triangles) {
+std::vector<Gradient> detail::gradient_kinds(StridedSpan<const glm::vec3> positions,
+                                             StridedSpan<const glm::vec2> texcoords,
+                                             TriangleSpan triangles) {
     std::vector<Gradient> kinds(triangles.size());
     parallel_for(triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

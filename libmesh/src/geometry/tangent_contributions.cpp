@@ -19,7 +19,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 // Weight of a corner without angle or area. Its direction counts only if there is no other: the
@@ -494,4 +494,4 @@ TriangleGradients compute_contributions(const TangentInput& input, TangentWeight
     return gradients;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -19,7 +19,7 @@
 #include "geometry/corners.h"
 #include "geometry/texture_gradient.h"
 
-namespace relief {
+namespace relief::detail {
 /// Weight of a triangle at a corner.
 enum class TangentWeight {
     angle,    ///< Angle of the corner in the plane of the normal [Mikkelsen 2008].
@@ -163,4 +163,4 @@ struct TriangleGradients {
 TriangleGradients compute_contributions(const TangentInput& input, TangentWeight weight,
                                         std::span<glm::vec4> contributions);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -27,7 +27,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t max_pairwise = 64;
@@ -510,4 +510,4 @@ GroupFindings average_groups(const GroupInput& input, std::span<glm::vec4> corne
     return all;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -17,7 +17,7 @@
 #include "geometry/tangent_contributions.h"
 #include "geometry/tangent_signs.h"
 
-namespace relief {
+namespace relief::detail {
 /// One triangle's term of a sum, and its texture directions in the plane of the normal in float
 /// precision: unit or zero.
 struct SidedTerm {
@@ -82,4 +82,4 @@ struct GroupFindings {
 /// contribution.
 GroupFindings average_groups(const GroupInput& input, std::span<glm::vec4> corners);
 
-}  // namespace relief
+}  // namespace relief::detail

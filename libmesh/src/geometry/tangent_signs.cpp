@@ -19,7 +19,7 @@
 #include "geometry/value_order.h"
 #include "parallel.h"
 
-namespace relief {
+namespace relief::detail {
 struct EdgeUse {
     std::uint32_t other_vertex;  ///< Other end of the edge.
     bool arrives;                ///< True if the triangle runs towards the vertex.
@@ -331,4 +331,4 @@ TriangleSigns triangle_signs(const TangentInput& mesh, const CornersByVertex& co
     return {kinds, std::move(signs)};
 }
 
-}  // namespace relief
+}  // namespace relief::detail

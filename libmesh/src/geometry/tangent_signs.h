@@ -26,7 +26,7 @@
 #include "geometry/texture_gradient.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 /// An edge of a triangle, relative to the vertex at its end.
 struct EdgeUse;
 
@@ -167,4 +167,4 @@ class TriangleSigns {
 TriangleSigns triangle_signs(const TangentInput& mesh, const CornersByVertex& corners,
                              const TriangleGradients& gradients);
 
-}  // namespace relief
+}  // namespace relief::detail

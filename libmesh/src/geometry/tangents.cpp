@@ -41,6 +41,8 @@
 #include "work_array.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using Offer = std::optional<glm::vec3>;

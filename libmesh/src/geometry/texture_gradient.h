@@ -17,7 +17,7 @@
 #include "portable_math.h"
 #include "relief/mesh/buffers.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Kinds of triangles with respect to tangents.
 enum class Gradient : std::uint8_t {
@@ -86,4 +86,4 @@ std::vector<Gradient> gradient_kinds(StridedSpan<const glm::vec3> positions,
                                      StridedSpan<const glm::vec2> texcoords,
                                      TriangleSpan triangles);
 
-}  // namespace relief
+}  // namespace relief::detail

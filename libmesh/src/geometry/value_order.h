@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-namespace relief {
+namespace relief::detail {
 
 /// Returns the rank in the total order of floats: -0 equals +0, NaNs are ordered by their bits.
 inline std::uint32_t ordinal(float value) {
@@ -25,4 +25,4 @@ int compare_values(const glm::vec<size, float>& a, const glm::vec<size, float>& 
     return 0;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

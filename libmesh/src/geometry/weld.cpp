@@ -22,7 +22,7 @@
 #include "progress_stage.h"
 #include "work_array.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
@@ -334,4 +334,4 @@ std::vector<std::uint32_t> weld_near_positions(StridedSpan<const glm::vec3> posi
     return representatives;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -18,6 +18,7 @@
 #include "relief/mesh/buffers.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 /// For every vertex, the smallest index of a vertex with an equal position (its position class).
 std::vector<std::uint32_t> weld_positions(StridedSpan<const glm::vec3> positions);
 
@@ -94,4 +95,5 @@ class DisjointSets {
     std::vector<std::uint32_t> parents_;
 };
 
+}  // namespace detail
 }  // namespace relief

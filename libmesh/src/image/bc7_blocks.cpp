@@ -18,6 +18,8 @@
 #include "relief/mesh/block_compression.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t block_texels = 16;

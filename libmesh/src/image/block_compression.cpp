@@ -29,6 +29,8 @@
 #include "portable_math.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t texels_per_block = 16;

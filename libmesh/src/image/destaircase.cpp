@@ -17,6 +17,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The number of scales, each twice as wide as the one before; the widest has a deviation of 37

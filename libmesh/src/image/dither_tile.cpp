@@ -10,6 +10,8 @@
 #include <limits>
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 DitherTile tile_of_ranks(std::size_t side, const std::vector<std::uint32_t>& ranks) {
@@ -156,7 +158,7 @@ constexpr std::array<std::size_t, 3> shifts_y = {0, 38, 11};
 
 }  // namespace
 
-const DitherTile& dither_tile(Dither dither) {
+const DitherTile& detail::dither_tile(Dither dither) {
     if (dither == Dither::ordered) {
         static const DitherTile bayer = bayer_tile();
         return bayer;

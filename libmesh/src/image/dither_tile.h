@@ -9,7 +9,7 @@
 
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Thresholds in (0,1), repeated in both directions. The side is a power of two.
 struct DitherTile {
@@ -36,4 +36,4 @@ class DitherRow {
     std::array<std::size_t, 3> shifts_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -17,7 +17,7 @@
 #include "image/fft.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 /// One pass: `count` groups of `radix` samples at a distance. Each sample is `stride` lanes wide.
 struct ComplexFft::Pass {
     std::size_t radix, groups, stride;
@@ -360,4 +360,4 @@ void RealTransform::inverse(double* samples, std::vector<double>& scratch) const
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-namespace relief {
+namespace relief::detail {
 /// Rows side by side: sample j of lane i is real[j * lanes + i] + sqrt(-1) imag[j * lanes + i].
 struct ComplexRows {
     double* real;
@@ -75,4 +75,4 @@ class RealTransform {
         sines_;  ///< Cosines and sines of pi k / (2n), for the cosine transform.
 };
 
-}  // namespace relief
+}  // namespace relief::detail

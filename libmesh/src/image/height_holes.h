@@ -11,6 +11,7 @@
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// Texels that are not part of the surface.
 struct Transparency {
@@ -32,4 +33,5 @@ struct Transparency {
 std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& report,
                                 const Transparency& transparency = {});
 
+}  // namespace detail
 }  // namespace relief

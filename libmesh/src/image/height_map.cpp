@@ -26,6 +26,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 bool is_gray(const Image& image) {
@@ -328,8 +330,8 @@ std::vector<float> without_transparent(std::span<const float> heights,
 
 }  // namespace
 
-std::vector<float> filled_holes(const Image& height, const Wraps& wrap, Report& report,
-                                const Transparency& transparency) {
+std::vector<float> detail::filled_holes(const Image& height, const Wraps& wrap, Report& report,
+                                        const Transparency& transparency) {
     const std::span<const unsigned char> transparent = transparency.texels;
     if (transparent.empty() && all_finite(height.as<float>())) return {};
     const std::vector<float> heights = without_transparent(height.as<float>(), transparent);

@@ -21,6 +21,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Access to the heights of a map by column and row, in double.

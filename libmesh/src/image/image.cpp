@@ -25,6 +25,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t samples_per_piece = 1 << 14;
@@ -288,7 +290,7 @@ Image part_of(const Image& image, const ImagePart& part) {
     return result;
 }
 
-void check_floats(const ImageView& image, int channels, const char* what) {
+void detail::check_floats(const ImageView& image, int channels, const char* what) {
     if (image.empty()) throw InvalidInput(fmt::format("the image of {} is empty", what));
     if (image.channels != channels || image.bits() != 32) {
         throw InvalidInput(fmt::format("{} have {} float channels, not {} of {} bits", what,

@@ -23,7 +23,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t texels_per_sum = 1 << 15;
@@ -442,4 +442,4 @@ FlatEvidence flat_evidence(const ImageView& map) {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -21,7 +21,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/normal_map_check.h"
 
-namespace relief {
+namespace relief::detail {
 /// The meaning of samples.
 struct SampleMeaning {
     FlatCode flat = FlatCode::middle;
@@ -138,4 +138,4 @@ struct FlatEvidence {
 /// \param map  at least three channels; a map of 32 bits gives no evidence
 FlatEvidence flat_evidence(const ImageView& map);
 
-}  // namespace relief
+}  // namespace relief::detail

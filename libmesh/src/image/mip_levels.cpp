@@ -15,6 +15,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t samples_per_piece = 1 << 16;

@@ -19,6 +19,7 @@
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 /// The codes of flat texels, see flat_texel_codes().
 using FlatCodes = std::optional<std::array<std::uint16_t, 2>>;
@@ -126,4 +127,5 @@ void resize_normal_rows(const Resampling& resampling, ResizeDomain domain, const
 void resize_sample_rows(const Resampling& resampling, const FloatRows& samples, int first_row,
                         Image& result);
 
+}  // namespace detail
 }  // namespace relief

@@ -15,7 +15,7 @@
 #include "portable_math.h"
 #include "relief/mesh/normal_map.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Codes of 8 or 16 bits with one of the two meanings of zero. Real is the type of the arithmetic.
 template <typename Code, typename Real = double>
@@ -110,4 +110,4 @@ class ExactFlat {
     std::optional<std::array<std::uint16_t, 2>> codes_;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

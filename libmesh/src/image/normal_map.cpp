@@ -22,6 +22,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Encodes a row of normals: to_codes(column, direction, samples) for each texel.
@@ -186,8 +188,8 @@ void decode_normal_map(const ImageView& map, Green green, FlatCode flat,
     });
 }
 
-Image encode_normal_rows(const ImageView& normals, const NormalMapFormat& format, int first_row,
-                         Report& report) {
+Image detail::encode_normal_rows(const ImageView& normals, const NormalMapFormat& format,
+                                 int first_row, Report& report) {
     Image result = make_image(normals.width, normals.height, 3, format.bits, ColorSpace::data);
     with_sample_type(result, [&]<typename Sample>(Sample) {
         encode<Sample>(normals, format, first_row, MutableImageView(result), report);
@@ -195,8 +197,8 @@ Image encode_normal_rows(const ImageView& normals, const NormalMapFormat& format
     return result;
 }
 
-Image decode_normal_rows(const ImageView& map, FlatCode flat, const FlatCodes& codes,
-                         Report& report) {
+Image detail::decode_normal_rows(const ImageView& map, FlatCode flat, const FlatCodes& codes,
+                                 Report& report) {
     check_map(map);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
     with_sample_type(map, [&]<typename Sample>(Sample) {

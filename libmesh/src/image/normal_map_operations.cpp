@@ -19,6 +19,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr double largest_strength = 1e6;
@@ -93,7 +95,7 @@ void decode_xy(const ImageView& map, const XyChannels& channels, double up, Flat
 
 }  // namespace
 
-void check_xy_channels(int count, const XyChannels& channels) {
+void detail::check_xy_channels(int count, const XyChannels& channels) {
     for (const int channel : {channels.x, channels.y}) {
         if (channel < 0 || channel >= count)
             throw InvalidInput(
@@ -115,8 +117,8 @@ Image decode_xy_map(const ImageView& map, const XyChannels& channels, Green gree
     return result;
 }
 
-Image decode_xy_rows(const ImageView& map, const XyChannels& channels, FlatCode flat,
-                     const FlatCodes& codes, Report& report) {
+Image detail::decode_xy_rows(const ImageView& map, const XyChannels& channels, FlatCode flat,
+                             const FlatCodes& codes, Report& report) {
     check_xy_channels(map.channels, channels);
     Image result = make_image(map.width, map.height, 3, 32, ColorSpace::data);
     with_sample_type(map, [&]<typename Sample>(Sample) {
@@ -126,8 +128,8 @@ Image decode_xy_rows(const ImageView& map, const XyChannels& channels, FlatCode 
     return result;
 }
 
-void append_row_lengths(const Image& map, FlatCode flat, std::vector<RowLengths>& lengths,
-                        Report& report) {
+void detail::append_row_lengths(const Image& map, FlatCode flat, std::vector<RowLengths>& lengths,
+                                Report& report) {
     if (map.empty()) throw InvalidInput("the normal map is empty");
     if (map.channels < 3)
         throw InvalidInput(fmt::format("a normal map has 3 or 4 channels, not {}", map.channels));
@@ -140,7 +142,7 @@ void append_row_lengths(const Image& map, FlatCode flat, std::vector<RowLengths>
     });
 }
 
-LengthRange range_of(const std::vector<RowLengths>& rows) {
+LengthRange detail::range_of(const std::vector<RowLengths>& rows) {
     RowLengths all;
     for (const RowLengths& row : rows) {
         all.min = std::min(all.min, row.min);
@@ -281,8 +283,8 @@ void blend_row(float* base, const float* detail, std::size_t width, std::size_t 
 
 }  // namespace
 
-void blend_normal_rows(Image& base, int first_row, const Image& detail, NormalBlend method,
-                       Report& report) {
+void detail::blend_normal_rows(Image& base, int first_row, const Image& detail, NormalBlend method,
+                               Report& report) {
     check_floats(base, 3, "normals of a base");
     check_floats(detail, 3, "normals of a detail");
     float* const to = base.as<float>().data();

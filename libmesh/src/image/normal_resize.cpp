@@ -24,6 +24,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 double sinc(double x) {
@@ -125,7 +127,7 @@ FloatRows rows_of(const Image& image) {
 
 }  // namespace
 
-void check_resize(int width, int height, const ResizeOptions& options) {
+void detail::check_resize(int width, int height, const ResizeOptions& options) {
     if (width < 1 || height < 1)
         throw InvalidInput(
             fmt::format("the size is {} x {} texels, but must be at least 1 x 1", width, height));
@@ -183,7 +185,7 @@ std::vector<float> Resampling::sum_of_rows(std::size_t row, std::size_t channels
     return sums;
 }
 
-Image slopes_to_average(const Image& normals, Report& report) {
+Image detail::slopes_to_average(const Image& normals, Report& report) {
     Image result = make_image(normals.width, normals.height, 2, 32, ColorSpace::data);
     const std::span<const float> from = normals.as<float>();
     const std::span<float> to = result.as<float>();
@@ -200,8 +202,9 @@ Image slopes_to_average(const Image& normals, Report& report) {
     return result;
 }
 
-void resize_normal_rows(const Resampling& resampling, ResizeDomain domain, const FloatRows& normals,
-                        const FloatRows& slopes, int first_row, Image& result, Report& report) {
+void detail::resize_normal_rows(const Resampling& resampling, ResizeDomain domain,
+                                const FloatRows& normals, const FloatRows& slopes, int first_row,
+                                Image& result, Report& report) {
     const bool has_slopes = domain == ResizeDomain::slopes;
     const std::size_t channels = has_slopes ? 2 : 3;
     float* const to = result.as<float>().data();
@@ -215,8 +218,8 @@ void resize_normal_rows(const Resampling& resampling, ResizeDomain domain, const
     });
 }
 
-void resize_sample_rows(const Resampling& resampling, const FloatRows& samples, int first_row,
-                        Image& result) {
+void detail::resize_sample_rows(const Resampling& resampling, const FloatRows& samples,
+                                int first_row, Image& result) {
     float* const to = result.as<float>().data();
     const auto channels = static_cast<std::size_t>(result.channels);
     const std::size_t row_size = static_cast<std::size_t>(result.width) * channels;

@@ -12,6 +12,7 @@
 #include "relief/mesh/height_map.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 
 class SeamSurvey {
   public:
@@ -46,4 +47,5 @@ class SeamSurvey {
     std::vector<double> first_, previous_;
 };
 
+}  // namespace detail
 }  // namespace relief

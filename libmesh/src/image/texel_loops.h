@@ -17,6 +17,7 @@
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
+namespace detail {
 inline constexpr std::size_t texels_per_piece = 1 << 14;
 
 /// Calls each(texel, report) for every texel in parallel; the findings come together in `report`.
@@ -107,4 +108,5 @@ inline constexpr double largest_sample =
     std::is_floating_point_v<Sample> ? 1.0
                                      : static_cast<double>(std::numeric_limits<Sample>::max());
 
+}  // namespace detail
 }  // namespace relief

@@ -6,7 +6,7 @@
 
 #include "topology/edge_collapse_parts.h"
 
-namespace relief {
+namespace relief::detail {
 
 CollapseError::CollapseError(const CollapseInput& input, const CollapseSurface& surface)
     : input_(input),
@@ -156,4 +156,4 @@ glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) 
     return (1.0 + beyond * remainder) * offset;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

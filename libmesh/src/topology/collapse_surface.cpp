@@ -7,7 +7,7 @@
 
 #include "topology/edge_collapse_parts.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Returns freed memory to the system. The C library keeps blocks of up to 32 MB, which would add a
@@ -193,4 +193,4 @@ std::size_t CollapseSurface::collapse(std::uint32_t vertex, const Ring& ring, co
     return (left != Ring::no_triangle ? 1U : 0U) + (right != Ring::no_triangle ? 1U : 0U);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -32,6 +32,8 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Match of a triangle of a: the first corner of a's triangle is corner `turn` of b's.

@@ -33,6 +33,8 @@
 #include "topology/topology.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 void check(const Mesh& mesh, const Deformation& deformation, const DecimateOptions& options) {

@@ -22,6 +22,8 @@
 #include "topology/diagnose_parts.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using enum Severity;
@@ -156,7 +158,7 @@ DiagnosedMesh::DiagnosedMesh(const Mesh& diagnosed)
     });
 }
 
-void diagnose_triangles(const DiagnosedMesh& diagnosed, Tally& tally) {
+void detail::diagnose_triangles(const DiagnosedMesh& diagnosed, Tally& tally) {
     for (std::size_t t = 0; t < diagnosed.shapes.size(); ++t) {
         check_cancelled(t);
         switch (diagnosed.shapes[t]) {
@@ -198,7 +200,7 @@ std::vector<Use> uses_of(const DiagnosedMesh& diagnosed) {
 
 }  // namespace
 
-void diagnose_vertices(const DiagnosedMesh& diagnosed, Tally& tally) {
+void detail::diagnose_vertices(const DiagnosedMesh& diagnosed, Tally& tally) {
     const std::vector<Use> uses = uses_of(diagnosed);
     for (std::size_t v = 0; v < diagnosed.classes.size(); ++v) {
         check_cancelled(v);
@@ -212,7 +214,7 @@ void diagnose_vertices(const DiagnosedMesh& diagnosed, Tally& tally) {
     }
 }
 
-void diagnose_texture(const DiagnosedMesh& diagnosed, Tally& tally) {
+void detail::diagnose_texture(const DiagnosedMesh& diagnosed, Tally& tally) {
     const Mesh& mesh = diagnosed.mesh;
     if (mesh.texcoords.empty()) return;
     for (std::size_t v = 0; v < mesh.texcoords.size(); ++v) {
@@ -321,7 +323,7 @@ void diagnose_tangents(const Mesh& mesh, Tally& tally) {
 
 }  // namespace
 
-void diagnose_frames(const DiagnosedMesh& diagnosed, Tally& tally) {
+void detail::diagnose_frames(const DiagnosedMesh& diagnosed, Tally& tally) {
     if (!diagnosed.mesh.normals.empty()) diagnose_normals(diagnosed, tally);
     diagnose_tangents(diagnosed.mesh, tally);
 }

@@ -10,7 +10,7 @@
 #include "progress_stage.h"
 #include "topology/diagnose_parts.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t grain = 1024;
@@ -230,4 +230,4 @@ void diagnose_edges(const DiagnosedMesh& diagnosed, Tally& tally) {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

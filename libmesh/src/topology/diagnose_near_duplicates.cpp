@@ -15,7 +15,7 @@
 #include "parallel.h"
 #include "topology/diagnose_parts.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t grain = 4096;
@@ -187,4 +187,4 @@ void diagnose_near_duplicates(const DiagnosedMesh& diagnosed, Tally& tally) {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -14,7 +14,7 @@
 #include "geometry/corners.h"
 #include "relief/mesh/diagnose.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Counts of conditions, one entry for each.
 class Tally {
@@ -88,4 +88,4 @@ struct TextureOverlap {
 TextureOverlap texture_overlap(std::span<const glm::vec2> texcoords,
                                std::span<const glm::uvec3> triangles);
 
-}  // namespace relief
+}  // namespace relief::detail

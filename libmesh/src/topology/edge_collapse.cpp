@@ -17,7 +17,7 @@
 #include "portable_math.h"
 #include "topology/edge_collapse_parts.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::uint32_t none = no_corner;
@@ -585,4 +585,4 @@ Collapsed collapse_edges(CollapseInput input) {
     return Collapser(std::move(input)).run();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

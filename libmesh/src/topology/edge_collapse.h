@@ -25,7 +25,7 @@
 
 #include "topology/topology.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Frees the memory of a vector, which an assignment of {} would keep.
 template <typename T>
@@ -99,4 +99,4 @@ Collapsed collapse_edges(CollapseInput input);
 /// The maximum number of triangles around a vertex that moves.
 constexpr std::size_t max_valence = 64;
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -14,7 +14,7 @@
 
 #include "topology/edge_collapse.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A corner of the surface.
 struct CornerData {
@@ -251,4 +251,4 @@ class CollapseError {
     std::size_t sums_per_wedge_ = 0;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -27,6 +27,8 @@
 #include "topology/topology.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 struct LoopPoints {

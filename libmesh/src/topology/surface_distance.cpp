@@ -25,6 +25,8 @@
 #include "relief/mesh/topology.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();

@@ -18,7 +18,7 @@
 #include "progress_stage.h"
 #include "topology/diagnose_parts.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr int min_side = 1024;
@@ -229,4 +229,4 @@ TextureOverlap texture_overlap(std::span<const glm::vec2> texcoords,
     return overlap;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

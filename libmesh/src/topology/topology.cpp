@@ -10,7 +10,7 @@
 #include "progress_stage.h"
 #include "topology/topology.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// An edge of a triangle, relative to the edge's smaller vertex.
@@ -205,4 +205,4 @@ Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, R
     return TopologyMaker(mesh, classes, order, report).make();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -19,7 +19,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 struct Topology {
     std::vector<glm::uvec3> triangles;  ///< Indices of the surface's own vertices.
@@ -46,4 +46,4 @@ struct Topology {
 Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report,
                      std::span<const Corner> order = {});
 
-}  // namespace relief
+}  // namespace relief::detail

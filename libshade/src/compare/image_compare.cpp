@@ -32,7 +32,8 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
 
 // Samples
 
@@ -670,4 +671,4 @@ FlipDifference flip_difference(const Image& reference, const Image& test,
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -12,7 +12,8 @@
 #include "effects/light_rows.h"
 #include "relief/shade/effects.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -317,4 +318,4 @@ std::string describe(const Features& f) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -13,7 +13,8 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -224,4 +225,4 @@ FramePlan plan_view(const Scene& scene, const FrameSettings& settings, FramePlan
     return plan;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -16,7 +16,9 @@
 #include "near_names.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -332,4 +334,4 @@ std::vector<std::string> effects_in(const FramePlan& plan) {
     return names;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

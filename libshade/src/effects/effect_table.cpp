@@ -12,7 +12,8 @@
 
 #include "effects/light_rows.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -835,8 +836,9 @@ Features lights_of(const Scene& scene) {
 
 }  // namespace
 
-DrawSubject draw_subject(const Scene& scene, const Material& material, const std::string& name,
-                         const Mesh& mesh, const Instance* instance, ShadowTerm shadow) {
+DrawSubject detail::draw_subject(const Scene& scene, const Material& material,
+                                 const std::string& name, const Mesh& mesh,
+                                 const Instance* instance, ShadowTerm shadow) {
     Features lights = lights_of(scene);
     lights.shadow = shadow;
     DrawSubject subject{scene, material, mesh, name, has_tint(material, mesh), lights};
@@ -848,7 +850,7 @@ DrawSubject draw_subject(const Scene& scene, const Material& material, const std
     return subject;
 }
 
-std::uint32_t second_texcoords_of(const Material& material) {
+std::uint32_t detail::second_texcoords_of(const Material& material) {
     std::uint32_t bits = 0;
     for (std::size_t i = 0; i < texture_slot_count; ++i) {
         const Texture* const texture = find_texture(material, texture_slots[i].slot);
@@ -858,7 +860,7 @@ std::uint32_t second_texcoords_of(const Material& material) {
     return bits;
 }
 
-const std::vector<EffectRow>& effect_rows() {
+const std::vector<EffectRow>& detail::effect_rows() {
     static const std::vector<EffectRow> all = [] {
         std::vector<EffectRow> rows = model_rows();
         for (const auto& more : {interpolation_rows(), deformation_rows(), color_rows(),
@@ -879,14 +881,15 @@ const std::vector<Effect>& effects() {
     return all;
 }
 
-const EffectRow* find_effect(std::string_view name) {
+const EffectRow* detail::find_effect(std::string_view name) {
     const auto& all = effect_rows();
     const auto row = std::find_if(all.begin(), all.end(),
                                   [&](const EffectRow& r) { return r.effect.name == name; });
     return row == all.end() ? nullptr : &*row;
 }
 
-std::string hidden_reason(const EffectRow& row, const Features& requested, const Features& shown) {
+std::string detail::hidden_reason(const EffectRow& row, const Features& requested,
+                                  const Features& shown) {
     if (shown.unlit) return "the material is unlit";
     const std::string specific = row.hidden_by == nullptr ? "" : row.hidden_by(requested, shown);
     if (!specific.empty()) return specific;
@@ -894,4 +897,4 @@ std::string hidden_reason(const EffectRow& row, const Features& requested, const
     return row.effect.hidden;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

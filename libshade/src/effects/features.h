@@ -15,7 +15,7 @@
 
 #include "relief/shade/effects.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 // Questions about a set of effects
 
@@ -253,4 +253,4 @@ const EffectRow* find_effect(std::string_view name);
 /// \param requested  the requested effects  \param shown  the effects that canonical() left
 std::string hidden_reason(const EffectRow& row, const Features& requested, const Features& shown);
 
-}  // namespace relief
+}  // namespace relief::shade::detail

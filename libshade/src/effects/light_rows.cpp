@@ -12,7 +12,8 @@
 #include "portable_math.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 namespace {
 
@@ -142,6 +143,8 @@ MainLight main_light(const Scene& scene) {
     return {};
 }
 
+using relief::shade::detail::casts_shadow;
+
 bool casts_shadow(const Scene& scene, const Instance& instance) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.material_ranges.empty()) return !mesh.triangles.empty();
@@ -257,4 +260,4 @@ ShadowTerm shadow_term(const Scene& scene) {
     return view ? view->kind : ShadowTerm::none;
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -24,6 +24,7 @@
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+namespace shade::detail {
 
 /// The rows that fit a uniform block of every OpenGL 3.3 (16 KiB); more need a buffer texture.
 inline constexpr std::uint32_t max_block_rows = 1024;
@@ -94,4 +95,5 @@ std::optional<ShadowView> shadow_view(const Scene& scene);
 /// Returns the kind of the light that casts a shadow; none if nothing does.
 ShadowTerm shadow_term(const Scene& scene);
 
+}  // namespace shade::detail
 }  // namespace relief

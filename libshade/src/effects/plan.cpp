@@ -14,7 +14,8 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -156,7 +157,7 @@ void plan_finishing(const FrameSettings& settings, FramePlan& plan) {
         shadows ? "a surface shows the shadow of the main light" : "no surface shows a shadow");
     const bool transmits =
         std::any_of(plan.draws.begin(), plan.draws.end(),
-                    [](const DrawPlan& draw) { return relief::transmits(draw.features); });
+                    [](const DrawPlan& draw) { return shade::detail::transmits(draw.features); });
     set_frame_effect(plan, &FramePlan::transmission_background, transmits,
                      transmits ? "a material shows what is behind it by transmission"
                                : "no material shows what is behind it by transmission");
@@ -187,7 +188,7 @@ Features features_of(const Scene& scene, const Material& material, const Mesh& m
         .features;
 }
 
-EnvironmentNeeds environment_needs(const FramePlan& plan) {
+EnvironmentNeeds detail::environment_needs(const FramePlan& plan) {
     EnvironmentNeeds needs;
     needs.blurred = plan.blurred_skybox;
     for (const DrawPlan& draw : plan.draws) {
@@ -248,4 +249,4 @@ FramePlan plan_effects(const Scene& scene, const FrameSettings& settings) {
     return plan;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

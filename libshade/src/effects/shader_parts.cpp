@@ -11,7 +11,7 @@
 
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 namespace {
 
@@ -198,4 +198,4 @@ const ShaderPart* find_neutral_code(std::string_view step) {
     return find_in(embedded_index().neutral_by_step, step);
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

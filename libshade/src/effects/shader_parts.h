@@ -21,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-namespace relief {
+namespace relief::shade::detail {
 
 struct ShaderInclude {
     bool is_step = false;
@@ -82,4 +82,4 @@ const ShaderPart* find_embedded_part(std::string_view address);
 /// Returns the embedded neutral code of a step; null if there is none.
 const ShaderPart* find_neutral_code(std::string_view step);
 
-}  // namespace relief
+}  // namespace relief::shade::detail

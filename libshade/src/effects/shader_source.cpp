@@ -21,7 +21,8 @@
 #include "progress_stage.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 namespace {
 
@@ -267,4 +268,4 @@ std::string with_file_names(const std::string& message, const ShaderSource& sour
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -22,7 +22,7 @@
 #include "effects/shader_parts.h"
 #include "relief/shade/effects.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 struct SourceLine {
     int file = -1;  ///< Index into ShaderSource::files; -1 for lines that are in no file.
@@ -93,4 +93,4 @@ ShaderSteps output_steps(OutputCoding coding, const Scene& scene);
 /// Returns the same steps, and the rotation of the environment if the scene has one.
 ShaderSteps skybox_steps(OutputCoding coding, const Scene& scene);
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -12,7 +12,8 @@
 #include "effects/shader_source.h"
 #include "relief/shade/effects.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -115,7 +116,7 @@ ShaderListing listing_of(const Features& features) {
 
 }  // namespace
 
-SurfaceProgram surface_program(const Features& features, GlslVersion version) {
+SurfaceProgram detail::surface_program(const Features& features, GlslVersion version) {
     const ChosenSteps chosen = chosen_steps(features);
     const ShaderConstants constants =
         light_count(features) > 0 ? light_constants(features) : ShaderConstants{};
@@ -153,4 +154,4 @@ std::vector<ShaderListing> shader_listings(const FramePlan& plan) {
     return listings;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

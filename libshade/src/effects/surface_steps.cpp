@@ -8,7 +8,7 @@
 #include "effects/shader_source.h"
 #include "relief/shade/effects.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 namespace {
 
@@ -470,4 +470,4 @@ ShaderSteps skybox_steps(OutputCoding coding, const Scene& scene) {
     return steps;
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

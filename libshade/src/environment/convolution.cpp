@@ -28,7 +28,8 @@
 #include "portable_math.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 // The distribution
 
@@ -665,4 +666,4 @@ IrradianceSh rotated(const IrradianceSh& coefficients, double radians) {
     return turned;
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

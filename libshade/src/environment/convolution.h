@@ -18,6 +18,7 @@
 #include "relief/mesh/image.h"
 
 namespace RELIEF_API relief {
+namespace shade::detail {
 
 // The distribution
 
@@ -184,4 +185,5 @@ glm::dvec3 irradiance_over_pi(const IrradianceSh& coefficients, const glm::dvec3
 /// Returns the coefficients of the environment rotated about the y axis, from +z to +x.
 IrradianceSh rotated(const IrradianceSh& coefficients, double radians);
 
+}  // namespace shade::detail
 }  // namespace relief

@@ -17,7 +17,8 @@
 #include "relief/shade/lights.h"
 #include "relief/shade/shared.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 // Cube faces
 
@@ -54,12 +55,12 @@ constexpr Cells vertical_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}}}
 
 /// Returns the integral of 1 / (1 + s^2 + t^2)^(3/2) from (0, 0).
 double corner_solid_angle(double s, double t) {
-    return portable::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
+    return relief::detail::portable::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
 }
 
 }  // namespace
 
-const std::array<glm::mat3, 6>& world_from_face() {
+const std::array<glm::mat3, 6>& detail::world_from_face() {
     static const std::array<glm::mat3, 6> matrices{
         glm::mat3{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}}, glm::mat3{{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
         glm::mat3{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   glm::mat3{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
@@ -68,11 +69,11 @@ const std::array<glm::mat3, 6>& world_from_face() {
     return matrices;
 }
 
-glm::dvec3 face_direction(std::size_t face, double s, double t) {
+glm::dvec3 detail::face_direction(std::size_t face, double s, double t) {
     return glm::dmat3(world_from_face().at(face)) * glm::dvec3(s, t, 1.0);
 }
 
-FacePoint face_point(const glm::dvec3& direction) {
+FacePoint detail::face_point(const glm::dvec3& direction) {
     const glm::dvec3 size = glm::abs(direction);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
     const std::size_t face = 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0.0 ? 1 : 0);
@@ -81,12 +82,12 @@ FacePoint face_point(const glm::dvec3& direction) {
     return {face, point.x, point.y};
 }
 
-double solid_angle(const glm::dvec2& from, const glm::dvec2& to) {
+double detail::solid_angle(const glm::dvec2& from, const glm::dvec2& to) {
     return corner_solid_angle(to.x, to.y) - corner_solid_angle(from.x, to.y) -
            corner_solid_angle(to.x, from.y) + corner_solid_angle(from.x, from.y);
 }
 
-void check_faces(std::span<const Image> faces, std::string_view name) {
+void detail::check_faces(std::span<const Image> faces, std::string_view name) {
     if (faces.size() != 6) {
         throw InvalidInput(
             fmt::format("cube map '{}' has {} faces, but needs 6", name, faces.size()));
@@ -113,7 +114,7 @@ void check_faces(std::span<const Image> faces, std::string_view name) {
     }
 }
 
-std::vector<Image> faces_of_cross(const Image& cross, std::string_view name) {
+std::vector<Image> detail::faces_of_cross(const Image& cross, std::string_view name) {
     const bool is_horizontal = cross.width / 4 * 3 == cross.height && cross.width % 4 == 0;
     const bool is_vertical = cross.height / 4 * 3 == cross.width && cross.height % 4 == 0;
     if (cross.empty() || (!is_horizontal && !is_vertical)) {
@@ -137,7 +138,7 @@ std::vector<Image> faces_of_cross(const Image& cross, std::string_view name) {
     return faces;
 }
 
-std::vector<Image> other_handed(std::span<const Image> faces) {
+std::vector<Image> detail::other_handed(std::span<const Image> faces) {
     std::vector<Image> mirrored;
     for (const std::size_t face : {1U, 0U, 2U, 3U, 4U, 5U}) {
         const Image& from = faces[face];
@@ -150,19 +151,19 @@ std::vector<Image> other_handed(std::span<const Image> faces) {
 
 // Angular maps
 
-double angular_map_reach(int width) {
+double detail::angular_map_reach(int width) {
     return std::max(0.0, 1.0 - 2.0 * angular_map_rim / width);
 }
 
-glm::dvec2 angular_map_place(const glm::dvec3& direction, int width) {
+glm::dvec2 detail::angular_map_place(const glm::dvec3& direction, int width) {
     const double across = std::hypot(direction.x, direction.y);
-    const double angle = portable::atan2(across, -direction.z) / std::numbers::pi;
+    const double angle = relief::detail::portable::atan2(across, -direction.z) / std::numbers::pi;
     const double radius = std::min(angle, angular_map_reach(width));
     const glm::dvec2 side = across > 0.0 ? glm::dvec2(direction) / across : glm::dvec2(1.0, 0.0);
     return {0.5 + 0.5 * radius * side.x, 0.5 - 0.5 * radius * side.y};
 }
 
-void check_angular_map(const Image& image, std::string_view name) {
+void detail::check_angular_map(const Image& image, std::string_view name) {
     if (image.empty()) throw InvalidInput(fmt::format("angular map '{}' has no texels", name));
     if (image.width != image.height) {
         throw InvalidInput(fmt::format("angular map '{}' has {} x {} texels, but must be square",
@@ -188,7 +189,7 @@ float storable(float value, std::size_t texel, Report& report) {
 
 }  // namespace
 
-Image storable_radiance(const Image& image, Report& report) {
+Image detail::storable_radiance(const Image& image, Report& report) {
     Image linear = to_linear(image);
     const auto samples = linear.as<float>();
     const auto channels = static_cast<std::size_t>(linear.channels);
@@ -197,7 +198,7 @@ Image storable_radiance(const Image& image, Report& report) {
     return linear;
 }
 
-bool fits_half_floats(const Image& radiance) {
+bool detail::fits_half_floats(const Image& radiance) {
     const auto samples = radiance.as<float>();
     return std::all_of(samples.begin(), samples.end(),
                        [](float sample) { return std::abs(sample) <= max_half; });
@@ -281,4 +282,4 @@ bool is_studio(const Environment& environment) {
            std::holds_alternative<Shared<Image>>(panorama->image.source);
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -26,6 +26,7 @@
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
+namespace shade::detail {
 
 // Cube faces
 
@@ -104,4 +105,5 @@ Image storable_radiance(const Image& image, Report& report);
 /// Returns true if half floats can hold every sample, rounded.
 bool fits_half_floats(const Image& radiance);
 
+}  // namespace shade::detail
 }  // namespace relief

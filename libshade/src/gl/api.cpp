@@ -10,7 +10,7 @@
 
 #include "relief/shade/renderer.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 
 namespace {
 
@@ -140,4 +140,4 @@ void Api::check(std::string_view doing) const {
     messages_ = std::move(messages);  // Warnings stay until take_messages().
 }
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

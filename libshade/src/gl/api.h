@@ -19,7 +19,7 @@
 
 #include "gl/api.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 
 // Entry points
 
@@ -216,4 +216,4 @@ std::vector<EglDisplay> egl_displays();
 /// \throws GpuError saying why not
 std::unique_ptr<PlatformContext> make_egl_context(const EglDisplay& display);
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

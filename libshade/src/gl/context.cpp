@@ -27,7 +27,7 @@
 
 #include "gl/api.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 
 // Libraries
 
@@ -360,9 +360,9 @@ std::unique_ptr<PlatformContext> make_egl_context(const EglDisplay& display) {
     return std::make_unique<EglContext>(display);
 }
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl
 
-namespace relief {
+namespace relief::shade {
 
 namespace {
 
@@ -492,4 +492,4 @@ const gl::Api& Context::api() const {
     return *implementation_->opened.api;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

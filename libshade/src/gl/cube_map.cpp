@@ -21,7 +21,8 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/renderer.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
+using namespace relief::shade::detail;
 
 GLenum cube_face_target(std::size_t face) {
     return GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
@@ -383,8 +384,9 @@ void draw_mirror_pictures(const Api& api, const CubeMap& environment, const Cube
         const double shrinking = static_cast<double>(environment.size) / (cube.size >> level);
         painter.paint(cube, level, 1, [&](const LinkedProgram& program) {
             program.set("environment", 0);
-            program.set("level", static_cast<float>(
-                                     std::max(0.0, portable::log(shrinking) / std::numbers::ln2)));
+            program.set("level",
+                        static_cast<float>(std::max(
+                            0.0, relief::detail::portable::log(shrinking) / std::numbers::ln2)));
         });
     }
     api->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
@@ -427,4 +429,4 @@ CubeMap make_prefiltered(const Api& api, const CubeMap& environment) {
     return cube;
 }
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

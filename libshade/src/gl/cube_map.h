@@ -20,7 +20,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 
 struct CubeMap {
     Texture texture;  ///< GL_TEXTURE_CUBE_MAP, complete, linear light at lookup.
@@ -92,4 +92,4 @@ void check_cube_size(const Api& api, int size, std::string_view name);
 /// framebuffer binding and the viewport; leaves no program or vertex array bound.
 CubeMap make_prefiltered(const Api& api, const CubeMap& environment);
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

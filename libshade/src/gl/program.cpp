@@ -10,7 +10,7 @@
 
 #include "relief/shade/renderer.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 
 namespace {
 
@@ -279,4 +279,4 @@ bool LinkedProgram::bind_block(std::string_view name, GLuint binding) const {
     return true;
 }
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

@@ -12,7 +12,7 @@
 
 #include "gl/api.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 
 /// The place of a vertex attribute or of a fragment output.
 struct Location {
@@ -83,4 +83,4 @@ class LinkedProgram {
     ProgramInterface interface_;
 };
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

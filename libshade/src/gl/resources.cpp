@@ -15,7 +15,8 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/renderer.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
+using namespace relief::detail;
 
 // Buffers
 
@@ -474,4 +475,4 @@ void MippedCopy::copy(const RenderTarget& drawn) const {
     }
 }
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

@@ -14,7 +14,7 @@
 #include "gl/api.h"
 #include "relief/mesh/image.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 
 // Buffers
 
@@ -214,4 +214,4 @@ class MippedCopy {
     std::vector<Framebuffer> levels_;
 };
 
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

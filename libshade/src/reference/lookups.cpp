@@ -16,7 +16,9 @@
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
 
-namespace relief::reference {
+namespace relief::shade::reference {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Textures
 
@@ -373,4 +375,4 @@ glm::dvec3 PictureBehind::look_up(const glm::dvec3& position_world,
     return glm::dvec3(texel) + (1.0 - texel.a) * background_;
 }
 
-}  // namespace relief::reference
+}  // namespace relief::shade::reference

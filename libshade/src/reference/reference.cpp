@@ -17,7 +17,9 @@
 #include "reference/reference_parts.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -448,4 +450,4 @@ Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding 
     return picture;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

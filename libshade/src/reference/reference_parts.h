@@ -41,11 +41,11 @@
 #include "relief/shade/material.h"
 #include "relief/shade/scene.h"
 
-namespace RELIEF_API relief {
+namespace relief::detail {
 class EmbreeScene;
-}
+}  // namespace relief::detail
 
-namespace relief {
+namespace relief::shade {
 namespace RELIEF_API reference {
 
 // Lookups
@@ -167,9 +167,9 @@ class EnvironmentLookup {
 
     Layout layout_ = Layout::faces;
     double intensity_ = 1.0;
-    glm::dvec2 turn_{1.0, 0.0};   ///< The cosine and the sine of the rotation.
-    std::vector<Texels> images_;  ///< Six faces, or one image.
-    IrradianceSh irradiance_{};   ///< Multiplied by the intensity.
+    glm::dvec2 turn_{1.0, 0.0};          ///< The cosine and the sine of the rotation.
+    std::vector<Texels> images_;         ///< Six faces, or one image.
+    detail::IrradianceSh irradiance_{};  ///< Multiplied by the intensity.
 };
 
 /// The picture behind transmissive surfaces, as Material says, with its mip levels: a texel of each
@@ -247,25 +247,25 @@ class Visibility {
     double near_;
     double far_;
     bool is_orthographic_;
-    std::unique_ptr<EmbreeScene> embree_;
+    std::unique_ptr<relief::detail::EmbreeScene> embree_;
 };
 
 /// Triangles of all instances in world space, for the shadow of the main light.
 class ShadowCasters {
   public:
     /// \param meshes  their positions are in world space
-    ShadowCasters(ShadowView view, std::vector<ViewMesh> meshes);
+    ShadowCasters(detail::ShadowView view, std::vector<ViewMesh> meshes);
     ~ShadowCasters();
 
     /// Returns the triangles between a position and a point of the light, with their weights.
     [[nodiscard]] std::vector<Hit> between(const glm::dvec3& position_world,
                                            const glm::dvec2& point) const;
 
-    [[nodiscard]] const ShadowView& view() const { return view_; }
+    [[nodiscard]] const detail::ShadowView& view() const { return view_; }
 
   private:
-    ShadowView view_;
-    std::unique_ptr<EmbreeScene> embree_;
+    detail::ShadowView view_;
+    std::unique_ptr<relief::detail::EmbreeScene> embree_;
 };
 
 // Prepared scenes and surfaces
@@ -302,10 +302,10 @@ struct PreparedScene {
     std::map<std::size_t, FlatCode> detected_flat_codes;  ///< By image.
     std::map<std::size_t, int> normal_map_bits;           ///< By image.
     std::optional<EnvironmentLookup> environment;
-    std::map<float, SheenAlbedo> sheen_albedos;  ///< By sheen roughness.
-    std::optional<PictureBehind> behind;         ///< If a surface is transmissive.
-    std::unique_ptr<ShadowCasters> shadow;       ///< If a light casts one.
-    std::map<float, SheenAlbedos> sheen_tables;  ///< The same, if a texture multiplies it.
+    std::map<float, detail::SheenAlbedo> sheen_albedos;  ///< By sheen roughness.
+    std::optional<PictureBehind> behind;                 ///< If a surface is transmissive.
+    std::unique_ptr<ShadowCasters> shadow;               ///< If a light casts one.
+    std::map<float, detail::SheenAlbedos> sheen_tables;  ///< The same, if a texture multiplies it.
 };
 
 /// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal
@@ -370,4 +370,4 @@ struct Shaded {
 Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material, Trace& trace);
 
 }  // namespace reference
-}  // namespace relief
+}  // namespace relief::shade

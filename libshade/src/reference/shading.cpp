@@ -16,7 +16,9 @@
 #include "portable_math.h"
 #include "relief/shade/scene.h"
 
-namespace relief::reference {
+namespace relief::shade::reference {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Fresnel
 
@@ -891,4 +893,4 @@ Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& mate
     return {phong_radiance(context, hit, tint), alpha};
 }
 
-}  // namespace relief::reference
+}  // namespace relief::shade::reference

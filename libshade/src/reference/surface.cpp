@@ -27,7 +27,9 @@
 #include "render/textures.h"
 #include "scene/scene_parts.h"
 
-namespace relief::reference {
+namespace relief::shade::reference {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Rays from the eye
 
@@ -563,9 +565,11 @@ Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int cor
     return surface;
 }
 
-}  // namespace relief::reference
+}  // namespace relief::shade::reference
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Ambient occlusion
 
@@ -631,4 +635,4 @@ void add_ambient_occlusion(Scene& scene, int rays) {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::shade

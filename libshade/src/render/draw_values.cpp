@@ -17,7 +17,8 @@
 #include "render/program_cache.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 namespace {
 
@@ -369,4 +370,4 @@ void LightStorage::bind(const gl::Api& api, const Features& features) const {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -18,7 +18,7 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/scene.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 /// 19 rows of 8 vectors.
 using SheenRows = std::array<glm::vec4, 152>;
@@ -164,4 +164,4 @@ class LightStorage {
     std::map<Key, Lights> lights_;
 };
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -12,7 +12,8 @@
 #include "relief/shade/effects.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -73,7 +74,7 @@ struct EffectCostMeasurement::Implementation {
             whole = renderer_of(frame, plan);
             picture = whole->draw(frame.camera).image;
         }
-        less = renderer_of(frame, relief::without(frame, plan, {names[done.size()]}));
+        less = renderer_of(frame, relief::shade::without(frame, plan, {names[done.size()]}));
     }
 
     /// Draws with and without the effect, in alternating order, because pauses between rounds
@@ -204,4 +205,4 @@ std::vector<FrameSeries> time_frames(std::span<Renderer* const> renderers, const
     return series;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

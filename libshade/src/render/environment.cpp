@@ -19,7 +19,8 @@
 #include "render/draw_values.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 namespace {
 
@@ -238,4 +239,4 @@ void Skybox::draw(const gl::Api& api, const Camera& camera, float aspect) const 
     api->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

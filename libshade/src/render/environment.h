@@ -18,7 +18,7 @@
 #include "render/program_cache.h"
 #include "render/textures.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 /// The maps of an environment, each computed on first use.
 struct GpuEnvironment {
@@ -114,4 +114,4 @@ class Skybox {
     float blurred_levels_;
 };
 
-}  // namespace relief
+}  // namespace relief::shade::detail

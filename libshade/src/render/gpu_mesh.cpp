@@ -17,7 +17,8 @@
 #include "relief/mesh/frames.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 void PlannedStreams::add(const PlannedInterface& planned) {
     const auto uses = [&](const char* name) {
@@ -399,4 +400,4 @@ std::span<const glm::uvec3> SortedTriangles::sort(const glm::vec3& farther_objec
     return sorted_;
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -17,7 +17,7 @@
 #include "relief/shade/scene.h"
 #include "render/program_cache.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 /// The streams that all draws of a mesh need together, beside the positions.
 struct PlannedStreams {
@@ -195,4 +195,4 @@ class SortedTriangles {
     std::vector<glm::uvec3> sorted_;
 };
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -15,7 +15,10 @@
 #include "render/draw_values.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
+
 namespace {
 
 /// Adds a line from a point, unless the direction has no length.
@@ -73,7 +76,7 @@ Grid grid_below(const Bounds& world) {
     return grid;
 }
 
-GridLines grid_lines(const Grid& grid) {
+GridLines detail::grid_lines(const Grid& grid) {
     const double reach = grid.cells * grid.spacing;
     GridLines lines;
     for (int i = -grid.cells; i <= grid.cells; ++i) {
@@ -89,8 +92,8 @@ GridLines grid_lines(const Grid& grid) {
     return lines;
 }
 
-void add_vertex_frames(const Mesh& mesh, const glm::mat4& world_from_object,
-                       const glm::dvec3& center, double length, VertexFrameLines& lines) {
+void detail::add_vertex_frames(const Mesh& mesh, const glm::mat4& world_from_object,
+                               const glm::dvec3& center, double length, VertexFrameLines& lines) {
     DrawValues values;
     set_place(values, world_from_object);
     const glm::dmat4 to_world(world_from_object);
@@ -332,4 +335,4 @@ void OverlayDrawing::draw(const glm::dmat4& clip_from_world,
     gl->Finish();
 }
 
-}  // namespace relief
+}  // namespace relief::shade

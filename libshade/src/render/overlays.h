@@ -16,7 +16,7 @@
 #include "relief/shade/effects.h"
 #include "render/gpu_mesh.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 /// Lines along the frames of vertices; each pair of points is a line.
 struct VertexFrameLines {
@@ -117,4 +117,4 @@ class OverlayDrawing {
     std::vector<glm::mat4> world_from_object_;  ///< By instance.
 };
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -8,7 +8,7 @@
 #include "gl/cube_map.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::shade::detail {
 namespace {
 
 gl::ColorFormat format_of(OutputCoding coding) {
@@ -139,4 +139,4 @@ void TargetPool::drop_unused() {
     std::erase_if(targets_, [](const Entry& entry) { return entry.target.use_count() == 1; });
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -17,7 +17,7 @@
 #include "relief/shade/scene.h"
 #include "render/program_cache.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 /// A pool of render targets, because allocating memory for millions of samples is slow.
 class TargetPool {
@@ -107,4 +107,4 @@ class Picture {
     gl::VertexArray empty_vertices_;        ///< Core OpenGL draws only with a vertex array.
 };
 
-}  // namespace relief
+}  // namespace relief::shade::detail

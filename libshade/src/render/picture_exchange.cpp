@@ -11,7 +11,7 @@
 #include "gl/resources.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace relief::shade {
 namespace {
 
 /// Returns texels of four channels, with row 0 at the bottom.
@@ -118,4 +118,4 @@ PictureExchange::Shown PictureExchange::get() {
             slot.beside ? slot.beside->color().name() : 0U};
 }
 
-}  // namespace relief
+}  // namespace relief::shade

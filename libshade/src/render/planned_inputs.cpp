@@ -12,7 +12,8 @@
 #include "effects/features.h"
 #include "render/textures.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -128,4 +129,4 @@ std::vector<PlannedPass> planned_passes(const FramePlan& plan) {
     return passes;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

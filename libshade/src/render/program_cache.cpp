@@ -15,7 +15,7 @@
 #include "relief/mesh/statistics.h"
 #include "relief/shade/renderer.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 namespace {
 
@@ -118,4 +118,4 @@ void ProgramCache::clear() {
     others_.clear();
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -15,7 +15,7 @@
 #include "gl/program.h"
 #include "relief/shade/effects.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 /// Vertex attributes, by GLSL name.
 enum class Attribute : GLuint {
@@ -95,4 +95,4 @@ class ProgramCache {
     double milliseconds_ = 0;
 };
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -39,7 +39,9 @@
 #include "render/textures.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 /// The resources that renderers of one context share.
 struct RenderCache::Implementation {
@@ -874,4 +876,4 @@ RenderCache::Contents RenderCache::contents() const {
             implementation_->targets.size()};
 }
 
-}  // namespace relief
+}  // namespace relief::shade

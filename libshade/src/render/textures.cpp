@@ -23,7 +23,9 @@
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
+
 namespace {
 
 const char* const unreadable_reason = "its image cannot be read";
@@ -295,7 +297,7 @@ std::vector<std::string> SceneTextures::decode_all(const std::vector<ImageSource
             auto& [key, image] = decoded_[i];
             const ImageSource& source = sources[key.first];
             try {
-                image = relief::decode(source, key.second.use);
+                image = shade::decode(source, key.second.use);
             } catch (const FileError& error) {
                 if (source.is_required) throw;
                 faults[i] = error.what();
@@ -319,4 +321,4 @@ void SceneTextures::upload(const std::vector<ImageSource>& sources) {
     decoded_.clear();
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -33,6 +33,7 @@
 #include "render/program_cache.h"
 
 namespace RELIEF_API relief {
+namespace shade::detail {
 
 /// A sampler of the program of a draw.
 struct UsedTexture {
@@ -198,4 +199,5 @@ class SceneTextures {
     std::vector<std::pair<Key, Image>> decoded_;
 };
 
+}  // namespace shade::detail
 }  // namespace relief

@@ -14,7 +14,10 @@
 #include "relief/shade/scene.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
+
 namespace {
 
 /// The picture shows the box enlarged by this factor, so that nothing touches its edge.
@@ -89,7 +92,7 @@ float fitting_factor(const Scene& scene, const Camera& camera, const glm::vec3& 
 
 }  // namespace
 
-glm::mat3 orbit_axes(double azimuth, double elevation) {
+glm::mat3 detail::orbit_axes(double azimuth, double elevation) {
     const glm::dvec2 azimuth_sincos(portable::sin(azimuth), portable::cos(azimuth));
     const glm::dvec2 elevation_sincos(portable::sin(elevation), portable::cos(elevation));
     const glm::dvec3 back(azimuth_sincos.x * elevation_sincos.y, elevation_sincos.x,
@@ -169,4 +172,4 @@ Camera framed(const Scene& scene, float azimuth, float elevation, float vertical
     return at_distance(boxed, center, factor);
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -17,7 +17,9 @@
 #include "relief/shade/scene_graph.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -201,7 +203,8 @@ bool is_skinned(const MeshPose& pose) {
                        [](const glm::mat4& matrix) { return matrix != glm::mat4(1.0F); });
 }
 
-void deform(const MeshPose& pose, std::span<const std::uint32_t> source_vertex, Mesh& mesh) {
+void detail::deform(const MeshPose& pose, std::span<const std::uint32_t> source_vertex,
+                    Mesh& mesh) {
     const std::vector<glm::vec3> rest_normals = mesh.normals;
     const std::vector<glm::vec4> rest_tangents = mesh.tangents;
     const SourceVertices source(source_vertex);
@@ -225,8 +228,8 @@ Shared<Mesh> deformed_mesh(const Scene& scene, std::size_t instance) {
     return mesh;
 }
 
-GltfDeformation of_vertices(GltfDeformation deformation,
-                            std::span<const std::uint32_t> source_vertex) {
+GltfDeformation detail::of_vertices(GltfDeformation deformation,
+                                    std::span<const std::uint32_t> source_vertex) {
     for (GltfMorphTarget& target : deformation.targets) {
         take_vertices(source_vertex, target.positions);
         take_vertices(source_vertex, target.normals);
@@ -239,7 +242,7 @@ GltfDeformation of_vertices(GltfDeformation deformation,
     return deformation;
 }
 
-FramedMesh with_separate_frames(Mesh mesh, const FrameOptions& options, Report& report) {
+FramedMesh detail::with_separate_frames(Mesh mesh, const FrameOptions& options, Report& report) {
     const std::vector<std::uint32_t> source = separate_triangles(mesh);
     FramedMesh framed = with_frames(std::move(mesh), options, report);
     for (std::uint32_t& vertex : framed.source_vertex)
@@ -247,8 +250,8 @@ FramedMesh with_separate_frames(Mesh mesh, const FrameOptions& options, Report& 
     return framed;
 }
 
-void set_poses(SceneGraph& graph, std::span<const glm::mat4> world_from_node,
-               std::span<const NodeWeights> weights) {
+void detail::set_poses(SceneGraph& graph, std::span<const glm::mat4> world_from_node,
+                       std::span<const NodeWeights> weights) {
     for (const DeformedInstance& deformed : graph.deformed) {
         Instance& instance = graph.scene.instances.at(deformed.instance);
         if (!instance.pose) continue;
@@ -262,4 +265,4 @@ void set_poses(SceneGraph& graph, std::span<const glm::mat4> world_from_node,
     }
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -32,7 +32,9 @@
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Mean colors of images
 
@@ -76,7 +78,7 @@ double mean_of_floats(const std::vector<float>& samples, std::size_t channel, st
 
 }  // namespace
 
-glm::vec3 mean_color(const Image& image) {
+glm::vec3 detail::mean_color(const Image& image) {
     if (image.empty()) return glm::vec3(1.0F);
     const auto channels = static_cast<std::size_t>(image.channels);
     glm::vec3 mean(1.0F);
@@ -846,8 +848,8 @@ void add_appearance(const GltfView& view, const std::filesystem::path& model,
 
 }  // namespace
 
-SceneGraph graph_from(const GltfDocument& document, const std::filesystem::path& model,
-                      const SceneOptions& options, Report& report) {
+SceneGraph detail::graph_from(const GltfDocument& document, const std::filesystem::path& model,
+                              const SceneOptions& options, Report& report) {
     const GltfView view = document.view();
     SceneGraph graph;
     add_appearance(view, model, options, graph.scene, report);
@@ -878,4 +880,4 @@ std::vector<Scene> mesh_scenes(const GltfDocument& document, std::span<const std
     return scenes;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

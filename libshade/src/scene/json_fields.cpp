@@ -13,7 +13,8 @@
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 namespace {
 
@@ -240,4 +241,4 @@ Json environment_json(const Environment& environment, const SourceName& name) {
     return object;
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

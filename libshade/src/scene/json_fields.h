@@ -16,7 +16,7 @@
 #include "json_cursor.h"
 #include "relief/shade/scene_fields.h"
 
-namespace relief {
+namespace relief::shade::detail {
 
 // Reading
 
@@ -28,19 +28,19 @@ class JsonImages {
         : scene_file_(scene_file), folder_(scene_file.parent_path()), images_(images) {}
 
     /// Returns the file that a string names. \throws InvalidInput if it does not exist
-    [[nodiscard]] std::filesystem::path file(const JsonCursor& cursor) const;
+    [[nodiscard]] std::filesystem::path file(const relief::detail::JsonCursor& cursor) const;
     /// Returns the folder that a string names; it need not exist.
-    [[nodiscard]] std::filesystem::path folder(const JsonCursor& cursor) const;
-    [[nodiscard]] ImageSource source(const JsonCursor& cursor) const;
+    [[nodiscard]] std::filesystem::path folder(const relief::detail::JsonCursor& cursor) const;
+    [[nodiscard]] ImageSource source(const relief::detail::JsonCursor& cursor) const;
     /// Returns the texture of an image. A missing file is no error here: the renderer reports it.
-    Texture texture(const JsonCursor& cursor);
+    Texture texture(const relief::detail::JsonCursor& cursor);
     /// Sets the green direction and the space of a normal map as its file states them, unless the
     /// scene does.
     /// \param cursor  the map: a texture, or an object with one
-    void apply_description(const JsonCursor& cursor, NormalMap& map) const;
+    void apply_description(const relief::detail::JsonCursor& cursor, NormalMap& map) const;
 
   private:
-    [[nodiscard]] std::size_t model_image(const JsonCursor& number) const;
+    [[nodiscard]] std::size_t model_image(const relief::detail::JsonCursor& number) const;
 
     std::filesystem::path scene_file_;
     std::filesystem::path folder_;
@@ -49,18 +49,18 @@ class JsonImages {
 };
 
 /// Returns a linear color: three numbers, one number for gray, or "#rrggbb", which is sRGB-coded.
-glm::vec3 color_in(const JsonCursor& cursor);
+glm::vec3 color_in(const relief::detail::JsonCursor& cursor);
 /// Returns degrees as radians. The conversion is in double, so that a written angle gives the same
 /// bits.
-float radians_from(const JsonCursor& cursor);
+float radians_from(const relief::detail::JsonCursor& cursor);
 /// Returns a vector of any length but 0.
-glm::vec3 direction_from(const JsonCursor& cursor);
+glm::vec3 direction_from(const relief::detail::JsonCursor& cursor);
 /// Returns a matrix by columns.
-glm::mat4 matrix_from(const JsonCursor& cursor);
+glm::mat4 matrix_from(const relief::detail::JsonCursor& cursor);
 
 /// Returns the value of that name. Another name is refused with all names.
 template <typename Names>
-auto one_of(const JsonCursor& cursor, const Names& names) {
+auto one_of(const relief::detail::JsonCursor& cursor, const Names& names) {
     std::vector<std::string> known;
     for (const auto& entry : names) {
         if (cursor.text() == entry.name) return entry.value;
@@ -88,7 +88,8 @@ std::vector<std::string> field_names() {
 
 /// Refuses all members but the fields of T and these.
 template <typename T>
-void allow_fields(const JsonCursor& object, std::initializer_list<const char*> more = {}) {
+void allow_fields(const relief::detail::JsonCursor& object,
+                  std::initializer_list<const char*> more = {}) {
     std::vector<std::string> known = field_names<T>();
     known.insert(known.end(), more.begin(), more.end());
     std::sort(known.begin(), known.end());
@@ -97,17 +98,18 @@ void allow_fields(const JsonCursor& object, std::initializer_list<const char*> m
 
 /// Sets the fields that an object names, by their descriptions; the others keep their values.
 template <typename Owner>
-void read_fields(const JsonCursor& object, JsonImages& images, Owner& owner);
+void read_fields(const relief::detail::JsonCursor& object, JsonImages& images, Owner& owner);
 
 /// Sets what an object says about a material. "like" replaces the material by one of the classic
 /// table first.
-void read_material(const JsonCursor& object, JsonImages& images, Material& material);
+void read_material(const relief::detail::JsonCursor& object, JsonImages& images,
+                   Material& material);
 
-Environment environment_from(const JsonCursor& object, JsonImages& images);
+Environment environment_from(const relief::detail::JsonCursor& object, JsonImages& images);
 
 /// Returns a normal or bump map: a texture, or an object with one.
 template <typename Map>
-Map map_from(const JsonCursor& cursor, JsonImages& images) {
+Map map_from(const relief::detail::JsonCursor& cursor, JsonImages& images) {
     Map map;
     if (cursor.is_text()) {
         map.texture = images.texture(cursor);
@@ -121,7 +123,8 @@ Map map_from(const JsonCursor& cursor, JsonImages& images) {
 }
 
 template <typename Field, typename Value>
-void read_value(const JsonCursor& cursor, const Field& field, JsonImages& images, Value& value) {
+void read_value(const relief::detail::JsonCursor& cursor, const Field& field, JsonImages& images,
+                Value& value) {
     if constexpr (std::is_same_v<Value, std::optional<Environment>>) {
         value = environment_from(cursor, images);
     } else if constexpr (is_optional_value<Value>) {
@@ -165,7 +168,7 @@ void read_value(const JsonCursor& cursor, const Field& field, JsonImages& images
 }
 
 template <typename Owner>
-void read_fields(const JsonCursor& object, JsonImages& images, Owner& owner) {
+void read_fields(const relief::detail::JsonCursor& object, JsonImages& images, Owner& owner) {
     // In the order of the keys, which numbers the images of textures. Saved scenes rely on it.
     for (const std::string& key : object.keys()) {
         for_each_field<Owner>([&](const auto& field) {
@@ -250,4 +253,4 @@ void add_fields(Json& object, const Owner& owner, const ImageName& name) {
     });
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -17,7 +17,9 @@
 #include "relief/shade/scene_graph.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Lights
 
@@ -167,4 +169,4 @@ HealthMarkers health_markers(const Scene& scene, std::optional<Severity> severit
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

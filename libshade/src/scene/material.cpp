@@ -12,7 +12,7 @@
 
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace relief::shade {
 
 namespace {
 
@@ -188,4 +188,4 @@ float specular_normalization(const Material& material) {
     return normalized ? (material.shininess + 2.0F) / 8.0F : 1.0F;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -13,7 +13,10 @@
 #include "relief/shade/frame_settings.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
+
 namespace {
 
 /// Returns the name in quotes, or the number if the name is empty.
@@ -42,7 +45,7 @@ bool has_bare_triangles(const Mesh& mesh) {
 
 }  // namespace
 
-void add_instance(const Scene& scene, std::size_t instance, Bounds& world) {
+void detail::add_instance(const Scene& scene, std::size_t instance, Bounds& world) {
     const glm::mat4& world_from_object = scene.instances[instance].world_from_object;
     const Shared<Mesh> mesh = deformed_mesh(scene, instance);
     for (const glm::vec3& position_object : mesh->positions) {
@@ -145,4 +148,4 @@ void add_default_lights(Scene& scene, const Camera& camera) {
     scene.ambient = glm::vec3(ambient);
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -25,7 +25,9 @@
 #include "relief/mesh/texture_file.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Images
 
@@ -82,7 +84,7 @@ FlatCode detected_flat_code(const ImageSource& source, const Image& image) {
     return detect_flat_code(image, metadata_of(source));
 }
 
-MapDescription stated_description(const ImageSource& source) {
+MapDescription detail::stated_description(const ImageSource& source) {
     if (!source.fault.empty()) return {};
     try {
         return read_description(metadata_of(source));
@@ -111,7 +113,8 @@ class StatedDescriptions {
 
 }  // namespace
 
-void report_stated_kinds(const Scene& scene, const std::filesystem::path& origin, Report& report) {
+void detail::report_stated_kinds(const Scene& scene, const std::filesystem::path& origin,
+                                 Report& report) {
     StatedDescriptions stated(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         for (const TextureSlotInfo& info : texture_slots) {
@@ -126,7 +129,7 @@ void report_stated_kinds(const Scene& scene, const std::filesystem::path& origin
     }
 }
 
-void apply_stated_green(Scene& scene, Report& report) {
+void detail::apply_stated_green(Scene& scene, Report& report) {
     StatedDescriptions stated(scene);
     const auto apply = [&](std::optional<NormalMap>& map, std::size_t material) {
         if (!map || stated.of(map->texture.image).green != Green::down) return;
@@ -379,4 +382,4 @@ Scene load_scene(const std::filesystem::path& file, Report& report) {
     return load_scene(file, SceneOptions{}, report);
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -23,7 +23,9 @@
 #include "relief/shade/scene_fields.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Key frames
 
@@ -85,7 +87,7 @@ glm::vec4 between(const KeyChannel& channel, std::size_t key, float t) {
 
 }  // namespace
 
-void check_keys(const KeyChannel& channel) {
+void detail::check_keys(const KeyChannel& channel) {
     const std::size_t keys = channel.times.size();
     if (keys == 0) throw InvalidInput("a channel has no keys");
     const bool has_weights = channel.property == KeyChannel::Property::weights;
@@ -124,7 +126,7 @@ void check_keys(const KeyChannel& channel) {
     }
 }
 
-std::vector<float> weights_at(const KeyChannel& channel, double seconds) {
+std::vector<float> detail::weights_at(const KeyChannel& channel, double seconds) {
     const std::vector<float>& times = channel.times;
     const std::size_t per_key = values_per_key(channel);
     if (times.empty() || channel.weights.size() % (per_key * times.size()) != 0)
@@ -163,7 +165,7 @@ std::vector<float> weights_at(const KeyChannel& channel, double seconds) {
     return result;
 }
 
-glm::vec4 value_at(const KeyChannel& channel, double seconds) {
+glm::vec4 detail::value_at(const KeyChannel& channel, double seconds) {
     const std::vector<float>& times = channel.times;
     if (times.empty() || channel.values.size() != times.size() * values_per_key(channel))
         check_keys(channel);  // Throws.
@@ -616,14 +618,14 @@ bool moves_materials(const SceneGraph& graph) {
     return moves;
 }
 
-void check_pointer(const SceneGraph& graph, const KeyChannel& channel) {
+void detail::check_pointer(const SceneGraph& graph, const KeyChannel& channel) {
     if (visit_moved(graph, channel, [](const auto& /*moved*/, const FieldRange& /*range*/) {}))
         return;
     throw InvalidInput(fmt::format("an animation moves '{}' of object {}, which does not exist",
                                    channel.pointer, channel.node));
 }
 
-bool is_in_range(const SceneGraph& graph, const KeyChannel& channel) {
+bool detail::is_in_range(const SceneGraph& graph, const KeyChannel& channel) {
     bool is_in = true;
     SceneGraph copy;  // Of the objects, because an optional number may be absent.
     copy.scene.materials = graph.scene.materials;
@@ -796,7 +798,7 @@ void append_objects(SceneGraph& graph, SceneGraph& part, const Carriers& carrier
 
 }  // namespace
 
-void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
+void detail::append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     const std::size_t first_image = graph.scene.images.size();
     const std::size_t first_mesh = graph.scene.meshes.size();
     const auto first_material = static_cast<std::uint32_t>(graph.scene.materials.size());
@@ -837,4 +839,4 @@ void append(SceneGraph& graph, SceneGraph part, std::size_t node) {
     graph.scene.ambient += part.scene.ambient;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -27,8 +27,11 @@
 #include "relief/shade/scene_graph.h"
 
 namespace RELIEF_API relief {
+namespace shade::detail {
 
 // Numbers
+
+using relief::detail::is_finite;
 
 inline bool is_finite(const glm::mat4& matrix) {
     for (int column = 0; column < 4; ++column) {
@@ -58,7 +61,7 @@ void apply_stated_green(Scene& scene, Report& report);
 inline double half_height(const Camera& camera) {
     return camera.orthographic_height
                ? 0.5 * static_cast<double>(*camera.orthographic_height)
-               : portable::tan(static_cast<double>(camera.vertical_fov) * 0.5);
+               : relief::detail::portable::tan(static_cast<double>(camera.vertical_fov) * 0.5);
 }
 
 /// Returns the position of a perspective camera as (x,y,z,1), and the direction to an orthographic
@@ -182,4 +185,5 @@ inline glm::vec3 usable(const glm::vec3& color, float limit) {
 ///         image without finite samples is 1
 glm::vec3 mean_color(const Image& image);
 
+}  // namespace shade::detail
 }  // namespace relief

@@ -18,7 +18,8 @@
 #include "scene/json_fields.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade::detail {
+using namespace relief::detail;
 
 namespace {
 
@@ -497,4 +498,4 @@ SceneGraph read_scene_json(const std::filesystem::path& file, const SceneOptions
     }
 }
 
-}  // namespace relief
+}  // namespace relief::shade::detail

@@ -16,7 +16,9 @@
 #include "relief/shade/scene_file.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::shade::detail;
+
 namespace {
 
 /// The format of converted height maps.
@@ -346,4 +348,4 @@ Scene with_lighting_of(const Scene& scene, Scene other) {
     return other;
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -16,7 +16,10 @@
 #include "relief/shade/scene.h"
 #include "scene/json_fields.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
+
 namespace {
 
 bool is_scene_file(const std::filesystem::path& file) {
@@ -230,4 +233,4 @@ void save_scene(const std::filesystem::path& file, const SceneToSave& saved) {
     SceneWriter(file, saved).write();
 }
 
-}  // namespace relief
+}  // namespace relief::shade

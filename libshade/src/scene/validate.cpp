@@ -13,7 +13,9 @@
 #include "relief/shade/scene_fields.h"
 #include "scene/scene_parts.h"
 
-namespace relief {
+namespace relief::shade {
+using namespace relief::detail;
+using namespace relief::shade::detail;
 
 // Fields by their descriptions
 
@@ -212,7 +214,7 @@ void validate_instance(const Scene& scene, std::size_t index) {
 
 }  // namespace
 
-void check_field_of_view(const std::string& owner, float vertical_fov) {
+void detail::check_field_of_view(const std::string& owner, float vertical_fov) {
     const SceneField field = field_of(&Camera::vertical_fov);
     if (vertical_fov > field.range.min && vertical_fov < field.range.max) return;
     throw InvalidInput(
@@ -399,4 +401,4 @@ void validate(const SceneGraph& graph) {
     validate(scene);
 }
 
-}  // namespace relief
+}  // namespace relief::shade

@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// A chart of triangles that are joined where they share an edge.

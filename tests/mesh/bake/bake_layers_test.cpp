@@ -19,6 +19,8 @@
 #include "support/invariants.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::bake;

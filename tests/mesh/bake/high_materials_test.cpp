@@ -16,6 +16,8 @@
 #include "support/invariants.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::bake;

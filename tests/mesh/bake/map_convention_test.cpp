@@ -26,6 +26,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using test::sized;

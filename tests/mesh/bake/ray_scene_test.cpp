@@ -14,6 +14,8 @@
 #include "relief/mesh/mesh.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Returns a number from -1 to 1.

@@ -22,7 +22,11 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
+
+using relief::detail::text_of;
 
 std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file);

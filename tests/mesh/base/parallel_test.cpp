@@ -45,6 +45,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 TEST(Parallel, EveryElementIsVisitedOnce) {

@@ -16,6 +16,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 TEST(Progress, WithoutAScopeNothingIsCountedOrStopped) {

@@ -18,6 +18,8 @@
 #include "support/images.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using std::numbers::pi;

@@ -19,6 +19,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 using Complex = std::complex<double>;

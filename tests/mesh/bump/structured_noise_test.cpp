@@ -11,6 +11,8 @@
 #include "relief/mesh/height_map.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr int tile_side = 128;

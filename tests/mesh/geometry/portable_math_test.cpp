@@ -12,6 +12,8 @@
 #include "portable_math.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();

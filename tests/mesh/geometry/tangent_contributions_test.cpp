@@ -19,6 +19,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::degrees_between;

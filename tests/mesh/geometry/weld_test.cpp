@@ -14,6 +14,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::infinite;

@@ -22,6 +22,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 using test::heights_of;

@@ -17,6 +17,9 @@
 #include "support/invariants.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t rows_at_once = RealTransform::lanes;

@@ -23,6 +23,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::accuracy;
+using namespace relief::detail;
+
 namespace {
 
 using enum MapCondition;

@@ -18,6 +18,8 @@
 #include "support/invariants.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using test::image_of;

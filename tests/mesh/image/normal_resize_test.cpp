@@ -17,6 +17,8 @@
 #include "support/invariants.h"
 
 namespace relief {
+using namespace relief::accuracy;
+
 namespace {
 
 using test::message_of;

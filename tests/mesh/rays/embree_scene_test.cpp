@@ -20,6 +20,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using Corners = std::array<glm::dvec3, 3>;

@@ -12,9 +12,10 @@ namespace relief::test {
 
 inline std::size_t boundary_edges(const Mesh& mesh) {
     Report report;
-    const Topology surface = topology_of(mesh, weld_positions(mesh.positions), report);
+    const relief::detail::Topology surface =
+        relief::detail::topology_of(mesh, relief::detail::weld_positions(mesh.positions), report);
     return static_cast<std::size_t>(
-        std::count(surface.opposite.begin(), surface.opposite.end(), no_corner));
+        std::count(surface.opposite.begin(), surface.opposite.end(), relief::detail::no_corner));
 }
 
 }  // namespace relief::test

@@ -20,6 +20,8 @@
 #include "topology/diagnose_parts.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::mesh_from;

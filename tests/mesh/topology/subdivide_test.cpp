@@ -21,6 +21,8 @@
 #include "topology/topology.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::boundary_edges;

@@ -17,6 +17,8 @@
 #include "relief/shade/image_compare.h"
 
 namespace relief::test {
+using namespace relief::shade;
+
 namespace {
 
 constexpr double pi = std::numbers::pi;

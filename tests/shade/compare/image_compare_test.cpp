@@ -11,6 +11,8 @@
 #include "relief/shade/image_compare.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -17,6 +17,9 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 using testing::Contains;

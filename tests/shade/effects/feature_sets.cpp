@@ -12,6 +12,8 @@
 #include "support/shapes.h"
 
 namespace relief::test {
+using namespace relief::shade;
+
 namespace {
 
 template <auto Member, unsigned Count = 2>

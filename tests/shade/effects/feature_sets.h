@@ -16,36 +16,37 @@ namespace relief::test {
 struct FeatureField {
     const char* name;
     unsigned count;
-    unsigned (*get)(const Features& f);
-    void (*set)(Features& f, unsigned value);
+    unsigned (*get)(const shade::Features& f);
+    void (*set)(shade::Features& f, unsigned value);
 };
 
 const std::vector<FeatureField>& feature_fields();
 
 /// Returns random values with a probability for each field. Unlit, which removes most other
 /// effects, is rare.
-Features random_features(std::mt19937& random);
+shade::Features random_features(std::mt19937& random);
 
 /// Calls visit with `count` random sets, the same in every run.
-void for_random_features(std::size_t count, const std::function<void(const Features&)>& visit);
+void for_random_features(std::size_t count,
+                         const std::function<void(const shade::Features&)>& visit);
 
 /// A small set of canonical features in which every value of every field meets every value of every
 /// other field, as far as 40,000 random sets show that they can meet. The greedy algorithm has a
 /// fixed order.
-const std::vector<Features>& covering_features();
+const std::vector<shade::Features>& covering_features();
 
 struct CallingScene {
-    Scene scene;
-    FrameSettings settings;
+    shade::Scene scene;
+    shade::FrameSettings settings;
     /// The planned features of its only draw: the requested ones, unless no scene needs exactly
     /// those (a light buffer for few lights; glTF's model without reflection of the environment;
     /// codes before blending).
-    Features expected;
+    shade::Features expected;
 };
 
 /// Returns a pose with two morph targets, of which the second has no weight, and two joints, which
 /// bend a mesh of about unit size. Features without morphing or skinning leave it at rest.
-MeshPose pose_calling_for(const Mesh& mesh, const Features& features);
+shade::MeshPose pose_calling_for(const Mesh& mesh, const shade::Features& features);
 
 /// Returns the mesh with vertices of its own for every triangle, and the normals of their planes.
 Mesh faceted(const Mesh& mesh);
@@ -54,15 +55,16 @@ Mesh faceted(const Mesh& mesh);
 std::vector<float> shares_of(const Mesh& mesh);
 
 /// \param features  canonical
-CallingScene scene_calling_for(const Features& features);
+CallingScene scene_calling_for(const shade::Features& features);
 
 /// The default material with a name.
 Material gray(const char* name = "body");
 
 /// A grid under one directional light.
-Scene lit_scene(const Material& material);
+shade::Scene lit_scene(const Material& material);
 
 /// Returns the reason of an effect. \throws std::runtime_error if there is none
-const EffectReason& reason(const std::vector<EffectReason>& reasons, const char* effect);
+const shade::EffectReason& reason(const std::vector<shade::EffectReason>& reasons,
+                                  const char* effect);
 
 }  // namespace relief::test

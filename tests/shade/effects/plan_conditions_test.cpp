@@ -12,6 +12,8 @@
 #include "shade/effects/scene_changes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::gray;

@@ -16,26 +16,26 @@ namespace relief::test::changes {
 
 /// A scene with one draw, and the settings of its frame.
 struct Frame {
-    Scene scene = lit_scene(gray());
-    FrameSettings settings{.samples = 1};
+    shade::Scene scene = lit_scene(gray());
+    shade::FrameSettings settings{.samples = 1};
 
     Material& material() { return scene.materials[0]; }
     Mesh& mesh() { return scene.meshes[0].edit(); }
 };
 
 using Change = std::function<void(Frame&)>;
-using Sun = DirectionalLight;
+using Sun = shade::DirectionalLight;
 
 template <typename T>
 Change with(T Material::*member, std::type_identity_t<T> value) {
     return [=](Frame& f) { f.material().*member = value; };
 }
 template <typename T>
-Change with(T Scene::*member, std::type_identity_t<T> value) {
+Change with(T shade::Scene::*member, std::type_identity_t<T> value) {
     return [=](Frame& f) { f.scene.*member = value; };
 }
 template <typename T>
-Change with(T FrameSettings::*member, std::type_identity_t<T> value) {
+Change with(T shade::FrameSettings::*member, std::type_identity_t<T> value) {
     return [=](Frame& f) { f.settings.*member = value; };
 }
 template <typename T>
@@ -43,11 +43,11 @@ Change with_sun(T Sun::*member, std::type_identity_t<T> value) {
     return [=](Frame& f) { f.scene.directional_lights[0].*member = value; };
 }
 template <typename T>
-Change with_point_light(T PointLight::*member, std::type_identity_t<T> value) {
+Change with_point_light(T shade::PointLight::*member, std::type_identity_t<T> value) {
     return [=](Frame& f) { f.scene.point_lights[0].*member = value; };
 }
 template <typename T>
-Change with_spot(T PointLight::*member, std::type_identity_t<T> value) {
+Change with_spot(T shade::PointLight::*member, std::type_identity_t<T> value) {
     return [=](Frame& f) { f.scene.spot_lights[0].point.*member = value; };
 }
 inline Change with_suns(std::size_t count) {
@@ -146,16 +146,16 @@ inline const Change second_texcoords = [](Frame& f) { f.mesh().texcoords_2.resiz
 inline const Change no_texcoords = [](Frame& f) { f.mesh().texcoords.clear(); };
 inline const Change stored_tangents = [](Frame& f) { f.mesh().tangents.assign(4, {1, 0, 0, 1}); };
 
-inline const Change ambient = with(&Scene::ambient, faint);
-inline const Change clamped = with(&Scene::clamp_terms, true);
-inline const Change no_suns = with(&Scene::directional_lights, {});
+inline const Change ambient = with(&shade::Scene::ambient, faint);
+inline const Change clamped = with(&shade::Scene::clamp_terms, true);
+inline const Change no_suns = with(&shade::Scene::directional_lights, {});
 inline const Change point_light = [](Frame& f) {
     f.scene.point_lights.push_back({{0, 0, 1}, faint});
 };
 inline const Change constant_light = [](Frame& f) {
-    f.scene.point_lights.push_back({{0, 0, 1}, faint, std::nullopt, Falloff::none});
+    f.scene.point_lights.push_back({{0, 0, 1}, faint, std::nullopt, shade::Falloff::none});
 };
-inline const Change black_point_light = with_point_light(&PointLight::intensity, black);
+inline const Change black_point_light = with_point_light(&shade::PointLight::intensity, black);
 inline const Change black_second_light = [](Frame& f) {
     f.scene.point_lights[1].intensity = black;
 };
@@ -163,15 +163,15 @@ inline const Change spot_light = [](Frame& f) {
     f.scene.spot_lights.push_back({{{0, 0, 1}, faint}});
 };
 /// An environment that is neither visible itself nor scattered.
-inline const Change environment =
-    with(&Scene::environment, Environment{Equirectangular{}, 1.0F, false, false});
+inline const Change environment = with(
+    &shade::Scene::environment, shade::Environment{shade::Equirectangular{}, 1.0F, false, false});
 inline const Change rotated = [](Frame& f) { f.scene.environment->rotation = 0.001F; };
 inline const Change skybox = [](Frame& f) { f.scene.environment->skybox = true; };
 inline const Change hazy = [](Frame& f) { f.scene.environment->skybox_blur = 0.001F; };
 inline const Change scattered = [](Frame& f) { f.scene.environment->lights = true; };
 
 inline const Change morph_target = [](Frame& f) {
-    MeshPose& pose = f.scene.instances[0].pose.emplace();
+    shade::MeshPose& pose = f.scene.instances[0].pose.emplace();
     pose.deformation.edit().targets.resize(1);
     pose.deformation.edit().targets[0].positions.assign(4, {0, 0, 1});
     pose.weights = {0.0F};
@@ -181,7 +181,7 @@ inline const Change morphed = [](Frame& f) {
     f.scene.instances[0].pose->weights = {0.001F};
 };
 inline const Change joints = [](Frame& f) {
-    MeshPose& pose = f.scene.instances[0].pose.emplace();
+    shade::MeshPose& pose = f.scene.instances[0].pose.emplace();
     pose.joint_matrices.assign(2, glm::mat4(1.0F));
 };
 inline const Change moved_joint = [](Frame& f) {
@@ -191,11 +191,11 @@ inline const Change flat_normals = [](Frame& f) {
     f.scene.instances[0].pose->has_flat_normals = true;
 };
 
-inline const Change shadowed = with(&Scene::shadow, Shadow{});
+inline const Change shadowed = with(&shade::Scene::shadow, shade::Shadow{});
 /// A point light at this share of the radius of the mesh from its middle.
 inline Change with_light_at(float share) {
     return [=](Frame& f) {
-        const Bounds bounds = world_bounds(f.scene);
+        const Bounds bounds = shade::world_bounds(f.scene);
         const glm::vec3 middle = 0.5F * (bounds.min + bounds.max);
         const float radius = 0.5F * glm::distance(bounds.min, bounds.max);
         f.scene.point_lights.push_back({middle + glm::vec3(0, 0, share * radius), faint});
@@ -208,11 +208,13 @@ inline Change with_last_share(float share) {
     };
 }
 
-inline const Change exposed = with(&Scene::exposure, 0.999F);
-inline const Change reinhard = with(&Scene::tone_mapping, ToneMapping::reinhard);
-inline const Change aces = with(&Scene::tone_mapping, ToneMapping::aces);
-inline const Change linear_output = with(&FrameSettings::output, OutputCoding::linear);
-inline const Change two_samples = with(&FrameSettings::samples, 2);
-inline const Change view_of_data = with(&FrameSettings::view, DebugView::shading_normal);
+inline const Change exposed = with(&shade::Scene::exposure, 0.999F);
+inline const Change reinhard = with(&shade::Scene::tone_mapping, shade::ToneMapping::reinhard);
+inline const Change aces = with(&shade::Scene::tone_mapping, shade::ToneMapping::aces);
+inline const Change linear_output =
+    with(&shade::FrameSettings::output, shade::OutputCoding::linear);
+inline const Change two_samples = with(&shade::FrameSettings::samples, 2);
+inline const Change view_of_data =
+    with(&shade::FrameSettings::view, shade::DebugView::shading_normal);
 
 }  // namespace relief::test::changes

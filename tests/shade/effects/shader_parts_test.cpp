@@ -10,6 +10,8 @@
 #include "relief/shade/renderer.h"
 
 namespace relief {
+using namespace relief::shade::detail;
+
 namespace {
 
 using testing::ElementsAre;
@@ -17,7 +19,7 @@ using testing::ElementsAre;
 std::string refusal(std::string_view text) {
     try {
         (void)parts_of("file.glsl", text);
-    } catch (const GpuError& error) {
+    } catch (const shade::GpuError& error) {
         return error.what();
     }
     return "no refusal";

@@ -19,6 +19,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade::detail;
+
 namespace {
 
 using std::numbers::pi;

@@ -21,7 +21,7 @@ inline std::vector<Image> faces_of(int size,
         std::size_t i = 0;
         for (int y = 0; y < size; ++y) {
             for (int x = 0; x < size; ++x) {
-                const glm::dvec3 value = radiance(glm::normalize(face_direction(
+                const glm::dvec3 value = radiance(glm::normalize(shade::detail::face_direction(
                     face, 2.0 * (x + 0.5) / size - 1.0, 2.0 * (y + 0.5) / size - 1.0)));
                 for (int c = 0; c < 3; ++c)
                     image.as<float>()[i++] = static_cast<float>(value[c]);
@@ -41,13 +41,13 @@ inline void for_each_texel(
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const glm::dvec2 from(x * side - 1.0, y * side - 1.0);
-            const double weight = solid_angle(from, from + side);
+            const double weight = shade::detail::solid_angle(from, from + side);
             for (std::size_t face = 0; face < 6; ++face) {
                 const float* sample =
                     faces[face].as<float>().data() + static_cast<std::size_t>(3 * (y * size + x));
-                visit(
-                    glm::normalize(face_direction(face, from.x + 0.5 * side, from.y + 0.5 * side)),
-                    weight, glm::dvec3(sample[0], sample[1], sample[2]));
+                visit(glm::normalize(shade::detail::face_direction(face, from.x + 0.5 * side,
+                                                                   from.y + 0.5 * side)),
+                      weight, glm::dvec3(sample[0], sample[1], sample[2]));
             }
         }
     }

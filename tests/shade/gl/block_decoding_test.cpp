@@ -17,7 +17,7 @@
 #include "relief/mesh/block_compression.h"
 #include "support/gl_environment.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 namespace {
 
 constexpr int texels_across = 256;     ///< 4096 blocks.
@@ -137,4 +137,4 @@ TEST_P(BlockDecoding, Bc7) {
 }
 
 }  // namespace
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

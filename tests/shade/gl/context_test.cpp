@@ -22,6 +22,8 @@
 #include "support/labels.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::ScopedVariable;

@@ -24,7 +24,7 @@
 #include "support/invariants.h"
 #include "support/shared_data.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 namespace {
 
 using ::testing::ElementsAre;
@@ -592,4 +592,4 @@ TEST_P(CubeMapProjection, ConvertingDisturbsNoDrawingState) {
 }
 
 }  // namespace
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

@@ -15,8 +15,10 @@
 #include "support/gl_environment.h"
 
 namespace {
+using namespace relief::shade;
 
 using namespace relief;
+using namespace relief::shade;
 
 /// A smooth panorama with a bright spot, and a noisy image.
 Image panorama() {

@@ -13,7 +13,9 @@
 #include "support/gl_environment.h"
 #include "support/labels.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
+using namespace relief::shade::detail;
+
 namespace {
 
 using test::faces_of;
@@ -169,4 +171,4 @@ TEST_P(Prefilter, DisturbsNoDrawingState) {
 }
 
 }  // namespace
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

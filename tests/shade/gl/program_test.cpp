@@ -21,7 +21,7 @@
 #include "support/invariants.h"
 #include "support/shared_data.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 namespace {
 
 using test::samples_of;
@@ -296,4 +296,4 @@ TEST_P(FrameDecoding, ThePagesShadersDecodeAsTheLibraryDoes) {
 }
 
 }  // namespace
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

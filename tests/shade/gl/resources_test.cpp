@@ -23,7 +23,7 @@
 #include "support/gl_environment.h"
 #include "support/images.h"
 
-namespace relief::gl {
+namespace relief::shade::gl {
 namespace {
 
 using test::samples_of;
@@ -586,4 +586,4 @@ TEST_P(RenderTargets, SizesAndSamplesThatCannotBeAreRefusedWithTheLimit) {
 }
 
 }  // namespace
-}  // namespace relief::gl
+}  // namespace relief::shade::gl

@@ -9,7 +9,7 @@
 
 #include "reference/reference_parts.h"
 
-namespace relief::reference {
+namespace relief::shade::reference {
 namespace {
 
 TEST(Fresnel, AtNormalIncidenceIsTheSquaredRatioOfDifferenceAndSum) {
@@ -147,4 +147,4 @@ TEST(Fresnel, IsZeroForZeroReflectivity) {
 }
 
 }  // namespace
-}  // namespace relief::reference
+}  // namespace relief::shade::reference

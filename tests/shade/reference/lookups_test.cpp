@@ -10,7 +10,7 @@
 #include "reference/reference_parts.h"
 #include "shade/render/draw_support.h"
 
-namespace relief::reference {
+namespace relief::shade::reference {
 namespace {
 
 constexpr Wrap all_wraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
@@ -353,4 +353,4 @@ TEST(DirectionalAlbedo, OmitsMultipleScattering) {
 }
 
 }  // namespace
-}  // namespace relief::reference
+}  // namespace relief::shade::reference

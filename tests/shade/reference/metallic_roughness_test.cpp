@@ -15,6 +15,9 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 using std::numbers::pi;

@@ -18,6 +18,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::pixel;

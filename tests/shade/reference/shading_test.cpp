@@ -14,6 +14,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::expect_near;

@@ -16,7 +16,7 @@
 #include "support/invariants.h"
 #include "support/shapes.h"
 
-namespace relief::reference {
+namespace relief::shade::reference {
 namespace {
 
 /// A mesh at a position in view space.
@@ -209,9 +209,11 @@ TEST(AmbientOcclusion, FollowsMirroredInstances) {
 }
 
 }  // namespace
-}  // namespace relief::reference
+}  // namespace relief::shade::reference
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::pixel;

@@ -20,23 +20,23 @@ namespace relief::test {
 inline constexpr double storage_rounding = 2e-6;
 
 /// Renders a scene with the reference and discards its findings.
-inline Reference traced(const Scene& scene, int size) {
+inline shade::Reference traced(const shade::Scene& scene, int size) {
     Report report;
-    return render_reference(scene, {size, size}, report);
+    return shade::render_reference(scene, {size, size}, report);
 }
 
 /// Returns the radiance at a pixel. With facing_square() and 2 x 2 pixels, pixel (1, 0) shows the
 /// point (1, 1, 0), where the eye is in the direction (-1, -1, 3) / sqrt(11). With an odd size, the
 /// middle pixel shows the origin from the front.
-inline glm::dvec3 radiance_at(const Scene& scene, int size, int x, int y) {
+inline glm::dvec3 radiance_at(const shade::Scene& scene, int size, int x, int y) {
     return glm::dvec3(pixel(traced(scene, size).radiance, x, y));
 }
 
-inline glm::dvec3 in_the_middle(const Scene& scene) {
+inline glm::dvec3 in_the_middle(const shade::Scene& scene) {
     return radiance_at(scene, 3, 1, 1);
 }
 
-inline glm::dvec3 in_the_corner(const Scene& scene) {
+inline glm::dvec3 in_the_corner(const shade::Scene& scene) {
     return radiance_at(scene, 2, 1, 0);
 }
 

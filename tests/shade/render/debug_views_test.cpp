@@ -22,6 +22,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::pixel;
@@ -362,7 +364,7 @@ TEST_F(DebugViewPictures, OfDiffuseLightAgreeWithTheReferenceOfAMatteScene) {
 /// The programs of views have only the inputs that the plan lists.
 TEST_LABELS(not_sanitized);
 TEST_F(DebugViewPictures, LinkForACoveringSetAndUseThePlannedInputs) {
-    ProgramCache cache(context().api());
+    shade::detail::ProgramCache cache(context().api());
     std::set<Features> tried;
     std::size_t at = 0;
     for (Features f : test::covering_features()) {

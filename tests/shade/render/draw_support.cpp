@@ -7,6 +7,7 @@
 #include "support/shapes.h"
 
 namespace relief::test {
+using namespace relief::shade;
 
 void DrawTest::SetUp() {
     context_ = shared_context(default_backend());

@@ -26,43 +26,44 @@ class DrawTest : public ::testing::Test {
     void SetUp() override;
     void TearDown() override;
 
-    [[nodiscard]] const Context& context() const { return *context_; }
+    [[nodiscard]] const shade::Context& context() const { return *context_; }
 
     /// Renders the scene with its own camera and discards findings.
-    [[nodiscard]] Frame render(const Scene& scene, const FrameSettings& settings) const;
-    [[nodiscard]] Frame render(const Scene& scene, const FramePlan& plan,
-                               const FrameSettings& settings) const;
+    [[nodiscard]] shade::Frame render(const shade::Scene& scene,
+                                      const shade::FrameSettings& settings) const;
+    [[nodiscard]] shade::Frame render(const shade::Scene& scene, const shade::FramePlan& plan,
+                                      const shade::FrameSettings& settings) const;
 
     /// Renders in linear float with 1 sample per pixel: the exact radiance at each pixel center.
-    [[nodiscard]] Image radiance(const Scene& scene, int width, int height) const;
+    [[nodiscard]] Image radiance(const shade::Scene& scene, int width, int height) const;
 
   private:
-    const Context* context_ = nullptr;
+    const shade::Context* context_ = nullptr;
 };
 
 /// Returns the color of a pixel, counted from the upper left. 8-bit samples are codes.
 glm::dvec4 pixel(const Image& image, int x, int y);
 
 /// A camera at (0,0,3) that looks at the origin along -z. It sees 2 units up and down there.
-Camera front_camera();
+shade::Camera front_camera();
 
 /// A material without visible effects. Tests switch on the effect under test.
 Material black_material();
 
 /// A scene with only this mesh and material at the origin, and front_camera().
-Scene scene_of(Mesh mesh, const Material& material);
+shade::Scene scene_of(Mesh mesh, const Material& material);
 
 /// A square of 4 x 4 around the origin that faces +z, with an upright texture.
 Mesh facing_square();
 
 /// scene_of(facing_square(), material).
-Scene square_scene(const Material& material);
+shade::Scene square_scene(const Material& material);
 
 /// An image of one color.
 Image constant_image(const glm::vec4& color, int channels, int bits, ColorSpace space);
 
 /// An environment of constant radiance.
-Environment constant_environment(const glm::vec3& radiance, bool skybox);
+shade::Environment constant_environment(const glm::vec3& radiance, bool skybox);
 
 /// Returns whether two images hold the same bits.
 bool same_bits(const Image& a, const Image& b);
@@ -99,14 +100,14 @@ inline std::vector<UnreadableTexture> unreadable_textures() {
 }
 
 /// A scene in which all terms of a material show.
-inline Scene scene_for_unreadable_textures() {
+inline shade::Scene scene_for_unreadable_textures() {
     Material material;
     material.name = "wall";
     material.specular = {0.5F, 0.5F, 0.5F};
     material.emission = {0.2F, 0.1F, 0.0F};
     material.alpha_mode = AlphaMode::blend;
     material.opacity = 0.75F;
-    Scene scene = scene_of(sphere(16, 8), material);
+    shade::Scene scene = scene_of(sphere(16, 8), material);
     scene.ambient = {0.3F, 0.3F, 0.3F};
     scene.directional_lights = {{{1, -0.5F, -1}, {0.8F, 0.8F, 0.8F}}};
     return scene;

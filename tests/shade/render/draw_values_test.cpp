@@ -17,6 +17,9 @@
 #include "support/labels.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 glm::mat4 scaling(float x, float y, float z) {

@@ -16,6 +16,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 class Environments : public test::DrawTest {

@@ -17,6 +17,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 using test::pixel;

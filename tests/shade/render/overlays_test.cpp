@@ -18,6 +18,9 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 using test::pixel;

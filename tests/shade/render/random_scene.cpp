@@ -14,6 +14,9 @@
 #include "support/shapes.h"
 
 namespace relief::test {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 template <typename T, std::size_t count>

@@ -47,8 +47,8 @@ Image random_normals(Dice& dice);
 
 /// Six faces of a smooth random environment. By default they are so coarse that their reflection in
 /// a sphere is magnified.
-Environment random_environment(Dice& dice, int face_size = 6);
+shade::Environment random_environment(Dice& dice, int face_size = 6);
 
-Scene random_scene(std::uint64_t seed);
+shade::Scene random_scene(std::uint64_t seed);
 
 }  // namespace relief::test

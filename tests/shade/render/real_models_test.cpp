@@ -12,6 +12,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 struct Model {

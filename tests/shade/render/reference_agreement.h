@@ -50,23 +50,25 @@ inline Worst furthest(const Image& drawn, const Image& expected, const Image& ed
 }
 
 /// Returns the effects of all draws of a scene, for messages.
-inline std::string effects_of(const Scene& scene) {
+inline std::string effects_of(const shade::Scene& scene) {
     std::string text;
-    for (const DrawPlan& draw : plan_effects(scene, {.samples = 1}).draws)
-        text += "\n    " + describe(draw.features);
+    for (const shade::DrawPlan& draw : shade::plan_effects(scene, {.samples = 1}).draws)
+        text += "\n    " + shade::describe(draw.features);
     return text;
 }
 
 /// Expects that OpenGL's picture of size x size pixels is that of the reference.
 /// \param tolerance  in codes
-inline void expect_agreement(const Context& context, const Scene& scene, int size,
+inline void expect_agreement(const shade::Context& context, const shade::Scene& scene, int size,
                              double tolerance) {
     Report report;
-    const Reference reference = render_reference(scene, {size, size}, report);
-    const Image expected = reference_picture(reference.radiance, scene, OutputCoding::srgb);
-    const Image drawn = Renderer(context, scene, {size, size, 1, OutputCoding::srgb}, report)
-                            .draw(*scene.camera)
-                            .image;
+    const shade::Reference reference = shade::render_reference(scene, {size, size}, report);
+    const Image expected =
+        shade::reference_picture(reference.radiance, scene, shade::OutputCoding::srgb);
+    const Image drawn =
+        shade::Renderer(context, scene, {size, size, 1, shade::OutputCoding::srgb}, report)
+            .draw(*scene.camera)
+            .image;
     const Worst worst = furthest(drawn, expected, reference.edges);
     EXPECT_LE(worst.codes, tolerance) << "at " << worst.x << ", " << worst.y << effects_of(scene);
     EXPECT_GT(worst.compared, size * size / 4) << "edges nearly everywhere";
@@ -77,14 +79,14 @@ inline constexpr int reference_size = 48;
 
 class AgainstReference : public DrawTest {
   protected:
-    void expect_agreement(const Scene& scene, double tolerance = agreement_tolerance) const {
+    void expect_agreement(const shade::Scene& scene, double tolerance = agreement_tolerance) const {
         test::expect_agreement(context(), scene, reference_size, tolerance);
     }
 };
 
 /// A sphere under three lights, rotated so that neither poles nor seam are in front.
-inline Scene lit_sphere() {
-    Scene scene = scene_of(sphere(32, 24), Material{});
+inline shade::Scene lit_sphere() {
+    shade::Scene scene = scene_of(sphere(32, 24), Material{});
     scene.ambient = {0.1F, 0.15F, 0.2F};
     scene.directional_lights = {{{-1, -2, -3}, {0.6F, 0.5F, 0.4F}}};
     scene.point_lights = {{{-2, 1, 2}, {0.9F, 1.2F, 1.5F}}};

@@ -20,6 +20,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::AgainstReference;
@@ -665,7 +667,7 @@ class Shadows : public AgainstReference {
     [[nodiscard]] ShadowErrors errors_of(const Scene& scene) const {
         constexpr int size = 128;
         Report report;
-        const relief::Reference reference = render_reference(scene, {size, size, 0.0}, report);
+        const shade::Reference reference = render_reference(scene, {size, size, 0.0}, report);
         const Image expected = reference_picture(reference.radiance, scene, OutputCoding::srgb);
         const FrameSettings settings{size, size, 1, OutputCoding::srgb};
         const Image drawn = render(scene, settings).image;

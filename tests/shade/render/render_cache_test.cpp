@@ -24,6 +24,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 class RendererPrograms : public test::GlTest {};

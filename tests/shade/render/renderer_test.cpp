@@ -22,6 +22,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::pixel;

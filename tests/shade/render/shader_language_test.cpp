@@ -22,6 +22,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 struct SampleProgram {

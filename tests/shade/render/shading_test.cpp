@@ -15,6 +15,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using test::pixel;

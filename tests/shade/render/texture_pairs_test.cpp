@@ -20,6 +20,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 #ifdef __SANITIZE_ADDRESS__

@@ -16,6 +16,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 /// Returns the depth of the farthest corner of the cube from -1 to 1.

@@ -19,6 +19,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 using ::testing::HasSubstr;

@@ -20,6 +20,9 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::shade;
+using namespace relief::shade::detail;
+
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;

@@ -13,6 +13,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::shade;
+
 namespace {
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();

@@ -21,6 +21,8 @@
 #include "tools/workplace.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+
 namespace {
 
 FILE_LABELS(docs);

@@ -12,6 +12,9 @@
 #include "tools/workplace.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+using namespace relief::shade;
+
 namespace {
 
 using test::eventually;

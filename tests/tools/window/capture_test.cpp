@@ -14,6 +14,8 @@
 #include "tools/workplace.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::Workplace;

@@ -15,6 +15,8 @@
 #include "tools/window/display.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::eventually;

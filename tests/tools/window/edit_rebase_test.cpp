@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using testing::ElementsAre;

@@ -9,6 +9,8 @@
 #include "support/shapes.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 TEST(ShaderPanel, NumbersLinesInAColumn) {

@@ -9,6 +9,8 @@
 #include "support/invariants.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::half_turn;

@@ -14,6 +14,8 @@
 #include "support/shapes.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::half_turn;

@@ -17,6 +17,8 @@
 #include "window/viewer_state.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::Workplace;

@@ -13,6 +13,8 @@
 #include "tools/window/display.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+
 namespace {
 
 using test::eventually;
@@ -27,7 +29,7 @@ Loaded torus(const std::string& name) {
     Loaded loaded;
     loaded.options.model = name;
     loaded.composed.emplace();
-    Scene& scene = loaded.composed->scene();
+    shade::Scene& scene = loaded.composed->scene();
     scene.meshes.emplace_back(std::move(ground_truth.mesh));
     scene.instances.push_back({});
     return loaded;

@@ -14,6 +14,8 @@
 #include "window/input_files.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 using test::Workplace;

@@ -13,6 +13,8 @@
 #include "tools/window/viewer_window.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 FILE_LABELS(window);

@@ -17,6 +17,8 @@
 #include "relief/shade/scene_file.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+using namespace relief::shade;
 
 // Reading and checking.
 

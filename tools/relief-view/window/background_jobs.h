@@ -187,13 +187,13 @@ class Loader {
 
 /// A scene to check.
 struct HealthRequest {
-    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const shade::Scene> scene;
     std::optional<HealthChoice> choice;  ///< If absent, the search is cancelled.
 };
 
 /// The marked problems, or an error.
 struct HealthResult {
-    HealthMarkers markers;
+    shade::HealthMarkers markers;
     std::string error;
 };
 
@@ -229,7 +229,7 @@ class Thumbnails {
     void want() { is_wanted_ = true; }
 
     /// Starts decoding if the images are wanted and differ from those of the last start.
-    void update(const Scene& scene);
+    void update(const shade::Scene& scene);
 
     /// The picture of the last start, if it is ready: sRGB of 8 bits. Each is returned once. The
     /// cell of an image that cannot be decoded is transparent.
@@ -251,7 +251,7 @@ class Thumbnails {
         Image picture;
         std::vector<Place> places;
     };
-    static Result reduced(const std::vector<ImageSource>& images);
+    static Result reduced(const std::vector<shade::ImageSource>& images);
 
     NewestJob<Result> job_;
     bool is_wanted_ = false;
@@ -276,7 +276,7 @@ class AdaptiveResolution {
     /// The settings for drawing. During motion, slow pictures get one sample per pixel and, if that
     /// is not enough, a half to a quarter of the width and height, so that a picture takes about
     /// max_milliseconds.
-    [[nodiscard]] FrameSettings settings_for(FrameSettings full, double now) const;
+    [[nodiscard]] shade::FrameSettings settings_for(shade::FrameSettings full, double now) const;
 
   private:
     double milliseconds_ = 0.0;
@@ -285,31 +285,31 @@ class AdaptiveResolution {
 
 /// Work for the drawing thread, in its OpenGL context. Each call does one step and returns whether
 /// there is more to do. The thread also destroys the function, with the GPU objects that it owns.
-using DrawTask = std::function<bool(const Context& context, RenderCache& cache)>;
+using DrawTask = std::function<bool(const shade::Context& context, shade::RenderCache& cache)>;
 
 /// A second scene to draw at the same time, with the same effects and settings.
 struct BesideRequest {
-    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const shade::Scene> scene;
     std::uint64_t revision = 0;
-    Camera camera;
+    shade::Camera camera;
 };
 
 /// A request for one picture.
 struct DrawRequest {
-    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const shade::Scene> scene;
     std::uint64_t revision = 0;  ///< Changes with everything except the camera and the pose.
     std::uint64_t pose = 0;      ///< Changes if only instances and lights have moved.
-    EffectRequest effects;
-    FrameSettings settings;
-    Camera camera;
+    shade::EffectRequest effects;
+    shade::FrameSettings settings;
+    shade::Camera camera;
     std::optional<BesideRequest> beside = std::nullopt;
     /// A finished picture to show instead of the scene.
     std::shared_ptr<const Image> instead = nullptr;
 };
 
 /// The plan of a scene with forced effects.
-FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
-                      const EffectRequest& effects);
+shade::FramePlan forced_plan(const shade::Scene& scene, const shade::FrameSettings& settings,
+                             const shade::EffectRequest& effects);
 
 /// The last picture, or the reason why it could not be drawn.
 struct RenderedPicture {
@@ -318,12 +318,12 @@ struct RenderedPicture {
     bool is_difference = false;   ///< DrawRequest::instead was shown.
     std::uint64_t frames = 0;     ///< Total number of frames.
     std::uint64_t renderers = 0;  ///< Total number of renderers.
-    FrameTimes times;
-    std::shared_ptr<const FramePlan> plan;
+    shade::FrameTimes times;
+    std::shared_ptr<const shade::FramePlan> plan;
     Report findings;
     std::string error;  ///< Empty if there was no error.
-    FrameSettings settings;
-    Camera camera;
+    shade::FrameSettings settings;
+    shade::Camera camera;
     /// The images and shaders that the last renderer read or tried to read. A new object after each
     /// preparation.
     std::shared_ptr<const std::map<std::filesystem::path, FileStamp>> files;
@@ -333,7 +333,7 @@ struct RenderedPicture {
 struct DrawContext {
     std::function<void()> use;
     std::function<void()> release;
-    GlLoader loader = nullptr;
+    shade::GlLoader loader = nullptr;
     std::function<void()> wake;  ///< Called when there is news.
 };
 
@@ -358,11 +358,11 @@ class DrawThread {
     void add(DrawTask task);
 
     [[nodiscard]] RenderedPicture drawn();
-    [[nodiscard]] PictureExchange::Shown shown();
+    [[nodiscard]] shade::PictureExchange::Shown shown();
 
     /// Makes a texture of a picture, which replaces that of the last call.
     void put_thumbnails(Image picture);
-    [[nodiscard]] PictureExchange::Shown thumbnails();
+    [[nodiscard]] shade::PictureExchange::Shown thumbnails();
 
     /// Returns whether a request is waiting or being drawn.
     [[nodiscard]] bool is_busy();
@@ -392,8 +392,8 @@ class DrawThread {
     std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();
     std::exception_ptr failure_;
     RenderedPicture drawn_;
-    PictureExchange* handover_ = nullptr;
-    PictureExchange* thumbnails_ = nullptr;
+    shade::PictureExchange* handover_ = nullptr;
+    shade::PictureExchange* thumbnails_ = nullptr;
     std::thread thread_;
 };
 
@@ -404,8 +404,8 @@ class EffectTimes {
   public:
     struct State {
         bool is_running = false;
-        std::size_t count = 0;  ///< Number of effects; 0 if it is not yet known.
-        EffectCosts costs;      ///< Costs of the effects that have been measured.
+        std::size_t count = 0;     ///< Number of effects; 0 if it is not yet known.
+        shade::EffectCosts costs;  ///< Costs of the effects that have been measured.
         std::string error;
         int width = 0;  ///< Width of the measured frames in pixels; 0 without a measurement.
         int height = 0;
@@ -423,7 +423,7 @@ class EffectTimes {
     ///
     /// \param plan  the plan of the current picture
     /// \param request  the request at full resolution
-    void discard_unless_valid_for(const FramePlan& plan, const DrawRequest& request);
+    void discard_unless_valid_for(const shade::FramePlan& plan, const DrawRequest& request);
 
     /// "1.25 ms"; "noise" for a time below the noise, and empty if the effect was not measured.
     [[nodiscard]] std::string text(const std::string& effect) const;
@@ -434,7 +434,7 @@ class EffectTimes {
         std::atomic<bool> is_wanted = true;
         std::mutex mutex;
         State state;
-        FramePlan plan;  ///< Empty until the measurement has started.
+        shade::FramePlan plan;  ///< Empty until the measurement has started.
     };
     class MeasurementTask;
 

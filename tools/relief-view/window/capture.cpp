@@ -18,6 +18,8 @@
 #include "window/panels.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 /// A renderer with the scene that it rotates.
@@ -173,7 +175,7 @@ void Saving::save_scene(ViewerState& state) {
     const std::shared_ptr<const Scene> scene = state.scene_at_rest();
     begin(file, [model, file, scene, camera = request->camera, size = state.view(),
                  options = scene_options(state.options())] {
-        relief::save_scene(file, {model, *scene, camera, size, options});
+        shade::save_scene(file, {model, *scene, camera, size, options});
     });
 }
 

@@ -29,10 +29,10 @@ struct CaptureSettings {
 
 /// A request to save one picture or a turntable.
 struct CaptureRequest {
-    std::shared_ptr<const Scene> scene;
-    EffectRequest effects;
-    FrameSettings settings;
-    Camera camera;
+    std::shared_ptr<const shade::Scene> scene;
+    shade::EffectRequest effects;
+    shade::FrameSettings settings;
+    shade::Camera camera;
     bool transparent = false;
     int turntable = 0;       ///< Number of pictures; 0 for a single picture.
     glm::vec3 middle{0.0F};  ///< Center of the rotation.

@@ -12,6 +12,8 @@
 #include "window/panels.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 Image drawn_image(const Context& context, RenderCache& cache, const Scene& scene,

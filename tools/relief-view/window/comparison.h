@@ -23,7 +23,7 @@ namespace relief::tools {
 struct ComparisonKey {
     std::uint64_t revision = 0;
     std::uint64_t beside = 0;
-    Camera camera;
+    shade::Camera camera;
     int width = 0;
     int height = 0;
     friend bool operator==(const ComparisonKey&, const ComparisonKey&) = default;
@@ -83,11 +83,11 @@ enum class ComparisonView {
 class VariantInputs {
   public:
     VariantInputs() = default;
-    explicit VariantInputs(const Scene& scene);
-    [[nodiscard]] bool is(const Scene& scene) const;
+    explicit VariantInputs(const shade::Scene& scene);
+    [[nodiscard]] bool is(const shade::Scene& scene) const;
 
   private:
-    std::vector<Shared<Mesh>::Identity> meshes_;
+    std::vector<shade::Shared<Mesh>::Identity> meshes_;
     std::vector<std::size_t> images_;  ///< Image indices of the materials' maps.
 };
 
@@ -136,15 +136,15 @@ class Comparison {
   private:
     /// The result of a preparation thread.
     struct PreparedSide {
-        PreparedVariant prepared;
-        std::optional<Scene> file;  ///< The scene of the other file, if there is no variant.
-        ViewOptions options;        ///< The options of the other file.
+        shade::PreparedVariant prepared;
+        std::optional<shade::Scene> file;  ///< The scene of the other file, if there is no variant.
+        ViewOptions options;               ///< The options of the other file.
         std::string error;
     };
 
     void discard();
     void begin(const ViewerState& state);
-    void compose(const Scene& shown, const DrawRequest& request);
+    void compose(const shade::Scene& shown, const DrawRequest& request);
     [[nodiscard]] std::string label(bool is_other) const;
 
     CompareChoices choices_;
@@ -158,7 +158,7 @@ class Comparison {
     NewestJob<PreparedSide> preparing_;
     std::optional<VariantInputs> read_;  ///< Empty if a preparation is needed.
     std::optional<PreparedSide> prepared_;
-    std::shared_ptr<const Scene> composed_;
+    std::shared_ptr<const shade::Scene> composed_;
     std::uint64_t composed_of_ = 0;  ///< Revision of the state.
     std::uint64_t composed_pose_ = 0;
     std::uint64_t revision_ = 0;

@@ -24,15 +24,15 @@ namespace relief::tools {
 // Lights.
 
 /// The alternatives are in the order of LightType.
-using AnyLight = std::variant<DirectionalLight, PointLight, SpotLight>;
+using AnyLight = std::variant<shade::DirectionalLight, shade::PointLight, shade::SpotLight>;
 
 LightType type_of(const AnyLight& light);
 
 /// All lights: directional lights first, then point lights, then spotlights.
-std::vector<AnyLight> lights_of(const Scene& scene);
+std::vector<AnyLight> lights_of(const shade::Scene& scene);
 
 /// Replaces all lights of the scene. The order within a kind stays.
-void set_lights(Scene& scene, const std::vector<AnyLight>& lights);
+void set_lights(shade::Scene& scene, const std::vector<AnyLight>& lights);
 
 /// A new light at the upper right, for a model of this size.
 AnyLight new_light(LightType type, const BoundingSphere& sphere);
@@ -53,7 +53,7 @@ struct LightRow {
     /// of its node.
     float speed = 0.0F;
     /// The node that carries it. Without one, animations do not move the light.
-    Carried carried = {};
+    shade::Carried carried = {};
 };
 
 /// Identifies lights across edits, and rotates them.
@@ -62,7 +62,7 @@ class LightRows {
     /// Updates the list for another scene, or for changed lights. Lights of the same kind keep
     /// their id and speed in order. Lights that were detached from their node stay so.
     /// \param carriers  the nodes of the lights; the lists may be shorter
-    void update(const Scene& scene, const LightCarriers& carriers = {});
+    void update(const shade::Scene& scene, const LightCarriers& carriers = {});
 
     /// The nodes of the lights.
     [[nodiscard]] LightCarriers carriers() const;
@@ -71,23 +71,23 @@ class LightRows {
     void detach_all();
 
     /// The rows for the scene of the last update().
-    [[nodiscard]] std::vector<LightRow> rows(const Scene& scene) const;
+    [[nodiscard]] std::vector<LightRow> rows(const shade::Scene& scene) const;
 
     /// Replaces the lights of the scene, sorted by kind. New lights get an id.
-    void set(Scene& scene, std::vector<LightRow> rows);
+    void set(shade::Scene& scene, std::vector<LightRow> rows);
 
     /// Returns whether any light rotates.
     [[nodiscard]] bool is_moving() const;
 
     /// Rotates the lights by the elapsed time.
-    void advance(Scene& scene, double seconds, const glm::vec3& center) const;
+    void advance(shade::Scene& scene, double seconds, const glm::vec3& center) const;
 
   private:
     struct Entry {
         LightType type;
         unsigned id;
         float speed;
-        Carried carried;
+        shade::Carried carried;
         bool is_detached = false;  ///< It had a node.
     };
 
@@ -132,14 +132,15 @@ std::string map_title(TextureSlot slot);
 bool is_map_used(const Material& material, TextureSlot slot);
 
 /// The name of the image, if there is one.
-std::optional<std::string> map_name(const Scene& scene, std::size_t material, TextureSlot slot);
+std::optional<std::string> map_name(const shade::Scene& scene, std::size_t material,
+                                    TextureSlot slot);
 
 /// Sets a map to a file. The wrap modes stay; the default is repeat. A material has either a normal
 /// map or a bump map, so setting one removes the other. The scale and strength of a map stay.
 /// \throws RefusedMap if the file is of another kind and that is not assumed; FileError if it is
 /// not
 ///         an image
-void set_map(Scene& scene, std::size_t material, TextureSlot slot,
+void set_map(shade::Scene& scene, std::size_t material, TextureSlot slot,
              const std::filesystem::path& file, const AssumedKinds& assumed = {});
 
 }  // namespace relief::tools

@@ -16,6 +16,8 @@
 #include "relief/shade/scene_fields.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 /// Compares by name and path, because the file's contents may have changed.

@@ -28,6 +28,7 @@ struct RebasedEdits {
 /// \param read  the scene as it was read
 /// \param edited  the same scene with edits
 /// \param fresh  the scene as it is read now; receives the edits
-RebasedEdits rebase_edits(const Scene& read, const Scene& edited, Scene& fresh);
+RebasedEdits rebase_edits(const shade::Scene& read, const shade::Scene& edited,
+                          shade::Scene& fresh);
 
 }  // namespace relief::tools

@@ -14,6 +14,7 @@
 #include "window/panels.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 std::string numbered_lines(const std::string& source) {
     const bool has_open_end = !source.empty() && source.back() != '\n';

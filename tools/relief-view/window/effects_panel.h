@@ -17,19 +17,19 @@ std::string numbered_lines(const std::string& source);
 /// The shader source of each program, assembled once per plan.
 class ShaderPanel {
   public:
-    void draw(const std::shared_ptr<const FramePlan>& plan);
+    void draw(const std::shared_ptr<const shade::FramePlan>& plan);
 
   private:
     struct Program {
         std::string name;
-        ShaderListing listing;
+        shade::ShaderListing listing;
         std::string vertex;  ///< With line numbers.
         std::string fragment;
     };
-    void assemble(const FramePlan& plan);
+    void assemble(const shade::FramePlan& plan);
     static void draw_stage(const char* name, const std::string& source, std::string& numbered);
 
-    std::shared_ptr<const FramePlan> plan_;
+    std::shared_ptr<const shade::FramePlan> plan_;
     std::vector<Program> programs_;
     std::string error_;
 };

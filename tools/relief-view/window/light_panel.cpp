@@ -16,6 +16,7 @@
 #include "window/panels.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 

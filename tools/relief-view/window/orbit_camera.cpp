@@ -12,6 +12,8 @@
 #include <vector>
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 constexpr float half_turn = std::numbers::pi_v<float>;

@@ -40,10 +40,10 @@ BoundingSphere bounding_sphere(const Bounds& bounds);
 
 /// The camera for the renderer. The near and far planes enclose the sphere, and their ratio is
 /// limited to keep the depth precision.
-Camera camera_of(const OrbitCamera& orbit, const BoundingSphere& sphere);
+shade::Camera camera_of(const OrbitCamera& orbit, const BoundingSphere& sphere);
 
 /// The same camera with the near and far planes for another sphere.
-Camera with_depth_range(Camera camera, const BoundingSphere& sphere);
+shade::Camera with_depth_range(shade::Camera camera, const BoundingSphere& sphere);
 
 /// The camera of --camera AZIMUTH,ELEVATION@X,Y,Z,DISTANCE.
 OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float vertical_fov,
@@ -51,7 +51,7 @@ OrbitCamera orbit_of(const CameraOption& option, const CameraPlace& place, float
 
 /// The orbit of another camera, around the point of its axis that is nearest to the center of the
 /// sphere.
-OrbitCamera orbit_of(const Camera& camera, const BoundingSphere& sphere);
+OrbitCamera orbit_of(const shade::Camera& camera, const BoundingSphere& sphere);
 
 /// Orbits by a drag in pixels. A drag over the height of the view rotates by 180 degrees. The
 /// elevation is limited to the poles.
@@ -83,12 +83,12 @@ struct Ray {
 };
 
 /// \param pointer  relative to the center of the view, in halves of its height, y up
-Ray ray_through(const Camera& camera, const glm::vec2& pointer);
+Ray ray_through(const shade::Camera& camera, const glm::vec2& pointer);
 
 /// The nearest hit of a ray with a triangle, from either side. Transparent triangles count. All
 /// triangles are tested, which takes some milliseconds per million. Degenerate triangles and
 /// triangles with NaN are never hit.
-std::optional<glm::vec3> surface_hit(const Scene& scene, const Ray& ray);
+std::optional<glm::vec3> surface_hit(const shade::Scene& scene, const Ray& ray);
 
 /// Moves the target to a point and keeps the direction. The distance becomes the depth of the
 /// point, so its size on the screen stays. Points behind the camera are ignored.

@@ -22,7 +22,7 @@ namespace {
 /// The parts of the status line, the most important one first.
 std::vector<std::string> status_parts(const PanelInput& input) {
     if (!input.state.has_scene()) return {};
-    const FrameSettings& settings = input.drawn.settings;
+    const shade::FrameSettings& settings = input.drawn.settings;
     return {input.captured,
             counted(triangle_count(input.state.scene()), "triangle"),
             fmt::format("{} x {} pixels", settings.width, settings.height),

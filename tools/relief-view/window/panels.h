@@ -43,7 +43,7 @@ struct PanelInput {
     Comparison* comparison = nullptr;
     SceneAccuracy* accuracy = nullptr;
     Thumbnails* thumbnails = nullptr;
-    PictureExchange::Shown thumbnail_texture{};
+    shade::PictureExchange::Shown thumbnail_texture{};
 };
 
 /// The panels' requests to the window.

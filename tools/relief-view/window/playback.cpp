@@ -7,6 +7,8 @@
 #include <utility>
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 /// Times at which the reach of an animation is measured.
@@ -48,7 +50,7 @@ void Playback::take(const SceneGraph& graph, bool is_same) {
     graph_ = graph;
     light_counts_ = counts_of(graph_.scene);
     clips_ = clip_names(graph_);
-    if (is_same && camera < graph_.cameras.size()) relief::choose_camera(graph_, camera);
+    if (is_same && camera < graph_.cameras.size()) shade::choose_camera(graph_, camera);
     if (is_same && clips_.size() == clip_count) {
         graph_.clip = clip;
     } else if (!is_same) {
@@ -60,7 +62,7 @@ void Playback::take(const SceneGraph& graph, bool is_same) {
 }
 
 void Playback::choose_camera(std::size_t index) {
-    relief::choose_camera(graph_, index);
+    shade::choose_camera(graph_, index);
     measure();
 }
 
@@ -72,7 +74,7 @@ void Playback::set_clip(std::optional<std::size_t> clip) {
 
 /// Measures the length of the clip, whether it moves the camera, and how far it reaches.
 void Playback::measure() {
-    duration_ = relief::duration(graph_);
+    duration_ = shade::duration(graph_);
     moves_camera_ = false;
     reach_ = {};
     if (duration_ == 0.0) return;
@@ -81,7 +83,7 @@ void Playback::measure() {
         boxes.push_back(bounds_of(*mesh));
     std::optional<Camera> first;
     for (int i = 0; i < reach_samples; ++i) {
-        relief::pose(graph_, duration_ * i / reach_samples);
+        shade::pose(graph_, duration_ * i / reach_samples);
         const Scene& posed = graph_.scene;
         for (std::size_t k = 0; k < posed.instances.size(); ++k) {
             const Instance& instance = posed.instances[k];
@@ -122,7 +124,7 @@ void Playback::pose(Scene& scene, const LightCarriers& lights, double seconds) {
     graph_.directional_lights = lights.directional;
     graph_.point_lights = lights.point;
     graph_.spot_lights = lights.spot;
-    relief::pose(graph_, seconds);
+    shade::pose(graph_, seconds);
     scene.materials = moved.materials;
     if (has_same_lights) {
         scene.directional_lights = moved.directional_lights;

@@ -18,9 +18,9 @@ namespace relief::tools {
 
 /// The nodes that carry the lights of a scene, in the order of its lists.
 struct LightCarriers {
-    std::vector<Carried> directional;
-    std::vector<Carried> point;
-    std::vector<Carried> spot;
+    std::vector<shade::Carried> directional;
+    std::vector<shade::Carried> point;
+    std::vector<shade::Carried> spot;
 };
 
 /// Plays the animation of a scene. Time is in seconds and only grows while it plays, because
@@ -29,10 +29,10 @@ class Playback {
   public:
     /// Takes over the animation of a scene that was read. The same scene, read again, keeps the
     /// time, the speed and whether it plays; another one plays from the start.
-    void take(const SceneGraph& graph, bool is_same);
+    void take(const shade::SceneGraph& graph, bool is_same);
 
     /// Returns whether the clip moves numbers or colors of materials.
-    [[nodiscard]] bool moves_materials() const { return relief::moves_materials(graph_); }
+    [[nodiscard]] bool moves_materials() const { return shade::moves_materials(graph_); }
 
     /// Returns whether the clip moves anything.
     [[nodiscard]] bool has_motion() const { return duration_ > 0.0; }
@@ -64,19 +64,19 @@ class Playback {
     /// Moves instances and lights of the scene to their place at a time, and sets the numbers and
     /// colors that move. Lights without a node stay where they are. If lights were added or removed
     /// since take(), their colors do not move.
-    void pose(Scene& scene, const LightCarriers& lights, double seconds);
-    void pose(Scene& scene, const LightCarriers& lights) { pose(scene, lights, time_); }
+    void pose(shade::Scene& scene, const LightCarriers& lights, double seconds);
+    void pose(shade::Scene& scene, const LightCarriers& lights) { pose(scene, lights, time_); }
 
     /// The camera of the last pose, if the animation moves it.
-    [[nodiscard]] std::optional<Camera> camera() const;
+    [[nodiscard]] std::optional<shade::Camera> camera() const;
 
     /// The names of the cameras of the file, and the one whose motion camera() tells.
-    [[nodiscard]] std::vector<std::string> cameras() const { return camera_names(graph_); }
+    [[nodiscard]] std::vector<std::string> cameras() const { return shade::camera_names(graph_); }
     [[nodiscard]] std::size_t chosen_camera() const { return graph_.chosen_camera; }
     /// The next pose() places the camera.
     void choose_camera(std::size_t index);
     /// The camera of the last pose. Requires cameras().
-    [[nodiscard]] const Camera& shown_camera() const { return *graph_.scene.camera; }
+    [[nodiscard]] const shade::Camera& shown_camera() const { return *graph_.scene.camera; }
 
     /// The names of the material variants of the file.
     [[nodiscard]] const std::vector<std::string>& material_variants() const {
@@ -95,9 +95,9 @@ class Playback {
 
   private:
     void measure();
-    [[nodiscard]] const Orbit* orbit_of(std::size_t node) const;
+    [[nodiscard]] const shade::Orbit* orbit_of(std::size_t node) const;
 
-    SceneGraph graph_;
+    shade::SceneGraph graph_;
     std::vector<std::string> clips_;
     double duration_ = 0.0;
     double time_ = 0.0;

@@ -19,6 +19,9 @@
 #include "window/panels.h"
 
 namespace relief::tools {
+using namespace relief::accuracy;
+using namespace relief::shade;
+
 namespace {
 
 /// Few rounds are enough to rank the methods.

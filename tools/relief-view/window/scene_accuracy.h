@@ -24,7 +24,7 @@ namespace relief::tools {
 
 /// An experiment with its rows in the panel.
 struct AccuracyTopic {
-    AssetExperiment own;
+    accuracy::AssetExperiment own;
     std::vector<std::size_t> rows;  ///< Indices of all measurements, the fastest first.
     /// For each measurement, the variant that applies it, if there is one.
     std::vector<std::optional<Variant>> uses;
@@ -65,7 +65,7 @@ class SceneAccuracy {
   private:
     struct Computed {
         Variant variant;
-        PreparedVariant prepared;
+        shade::PreparedVariant prepared;
         std::string error;
     };
 

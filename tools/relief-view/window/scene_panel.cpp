@@ -13,6 +13,7 @@
 #include "window/panels.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 namespace {
 

@@ -23,6 +23,8 @@
 #include "window/viewer_state.h"
 
 namespace relief::tools {
+using namespace relief::shade;
+
 namespace {
 
 constexpr ImU32 line_color = IM_COL32(255, 255, 255, 255);

@@ -38,7 +38,7 @@ class UserInterface {
     };
 
     /// Draws one frame with panels and picture, and applies mouse gestures to the state.
-    Events draw(const PanelInput& input, const PictureExchange::Shown& picture);
+    Events draw(const PanelInput& input, const shade::PictureExchange::Shown& picture);
 
     void show_help() { is_help_open_ = !is_help_open_; }
     [[nodiscard]] bool is_help_open() const { return is_help_open_; }
@@ -80,7 +80,7 @@ class UserInterface {
     [[nodiscard]] glm::vec2 on_view(const glm::vec2& place, const ViewerState& state) const;
     void apply(const Move& move, ViewerState& state) const;
     [[nodiscard]] bool is_on_line() const;
-    void draw_view(const PanelInput& input, const PictureExchange::Shown& picture,
+    void draw_view(const PanelInput& input, const shade::PictureExchange::Shown& picture,
                    const ViewPlace& place);
 
     const WindowSystem& system_;

@@ -23,6 +23,7 @@
 #include "window/orbit_camera.h"
 
 namespace relief::tools {
+using namespace relief::shade;
 
 SceneTree tree_of(const SceneGraph& graph) {
     SceneTree tree;
@@ -121,7 +122,7 @@ void ViewerState::take(Loaded loaded) {
     }
     const LightCarriers carriers{graph.directional_lights, graph.point_lights, graph.spot_lights};
     auto scene = std::make_shared<Scene>(std::move(graph.scene));
-    if (has_named_default_) relief::name_default_material(*scene);
+    if (has_named_default_) shade::name_default_material(*scene);
     auto read = std::make_shared<const Scene>(*scene);
     rebased_ = edited ? rebase_edits(*read_, *edited, *scene) : RebasedEdits{};
     notes_.insert(notes_.end(), rebased_.lost.begin(), rebased_.lost.end());
@@ -297,9 +298,9 @@ void ViewerState::name_default_material() {
     if (!scene_) return;
     has_named_default_ = true;
     auto read = std::make_shared<Scene>(*read_);
-    relief::name_default_material(*read);
+    shade::name_default_material(*read);
     read_ = std::move(read);
-    edit(relief::name_default_material);
+    edit(shade::name_default_material);
     // Earlier states have no such material.
     undo_.clear();
     end_edit_step();

@@ -45,7 +45,7 @@ struct SceneTree {
     std::vector<TreeNode> nodes;
     TreeNode world;  ///< Objects without a node.
 };
-SceneTree tree_of(const SceneGraph& graph);
+SceneTree tree_of(const shade::SceneGraph& graph);
 
 /// All instances of a node and the nodes below it.
 std::vector<std::size_t> instances_below(const SceneTree& tree, const TreeNode& node);
@@ -60,8 +60,8 @@ class ViewerState {
 
     [[nodiscard]] const ViewOptions& options() const { return options_; }
     [[nodiscard]] bool has_scene() const { return scene_ != nullptr; }
-    [[nodiscard]] const Scene& scene() const { return *scene_; }
-    [[nodiscard]] std::shared_ptr<const Scene> shared_scene() const { return scene_; }
+    [[nodiscard]] const shade::Scene& scene() const { return *scene_; }
+    [[nodiscard]] std::shared_ptr<const shade::Scene> shared_scene() const { return scene_; }
     /// The number of scenes that were read.
     [[nodiscard]] std::uint64_t scenes() const { return scenes_; }
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
@@ -81,7 +81,7 @@ class ViewerState {
     template <typename Edit>
     void edit(const Edit& change) {
         if (!scene_) return;
-        auto edited = std::make_shared<Scene>(*scene_);
+        auto edited = std::make_shared<shade::Scene>(*scene_);
         change(*edited);
         begin_edit_step();
         replace(std::move(edited));
@@ -146,8 +146,8 @@ class ViewerState {
     /// Applies the camera of a command line. If the text contains none, error() reports it.
     void apply_view_text(const std::string& text);
 
-    void set_effects(EffectRequest effects);
-    [[nodiscard]] const EffectRequest& effects() const { return effects_; }
+    void set_effects(shade::EffectRequest effects);
+    [[nodiscard]] const shade::EffectRequest& effects() const { return effects_; }
 
     /// Shows the picture of a camera of the file, and follows it if the animation moves it.
     /// Requires a scene. \param index  into playback().cameras()
@@ -159,7 +159,7 @@ class ViewerState {
     std::optional<HealthRequest> take_health_request();
     void take(HealthResult found);
     [[nodiscard]] const DebugChoices& debug() const { return options_.debug; }
-    [[nodiscard]] const HealthMarkers& markers() const { return markers_; }
+    [[nodiscard]] const shade::HealthMarkers& markers() const { return markers_; }
     /// Returns whether point lights and spotlights are shown as spheres.
     [[nodiscard]] bool has_light_markers() const { return has_light_markers_; }
 
@@ -172,7 +172,7 @@ class ViewerState {
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
     [[nodiscard]] const BoundingSphere& sphere() const { return sphere_; }
     /// The grid below the scene as it was read.
-    [[nodiscard]] const Grid& grid() const { return grid_; }
+    [[nodiscard]] const shade::Grid& grid() const { return grid_; }
 
     /// Returns whether the turntable or a light rotates, or the animation plays.
     [[nodiscard]] bool is_turning() const {
@@ -195,7 +195,7 @@ class ViewerState {
     }
 
     /// The scene with its edits, in the pose in which it was read.
-    [[nodiscard]] std::shared_ptr<const Scene> scene_at_rest();
+    [[nodiscard]] std::shared_ptr<const shade::Scene> scene_at_rest();
 
     /// The request for the current picture. Empty without a scene or a view.
     [[nodiscard]] std::optional<DrawRequest> request() const;
@@ -208,7 +208,7 @@ class ViewerState {
   private:
     /// The values that an edit can change.
     struct EditState {
-        std::shared_ptr<const Scene> scene;
+        std::shared_ptr<const shade::Scene> scene;
         LightRows light_rows;
         std::vector<std::pair<std::size_t, float>> orbit_speeds;  ///< Of nodes of the animation.
         std::vector<std::filesystem::path> environment;
@@ -231,7 +231,7 @@ class ViewerState {
     [[nodiscard]] EditState edit_state() const;
     void restore(EditState state);
     void exchange_edits(std::vector<EditState>& from, std::vector<EditState>& to);
-    void replace(std::shared_ptr<const Scene> scene);
+    void replace(std::shared_ptr<const shade::Scene> scene);
     void show_all_but_hidden();
     /// Measures how far the clip moves the scene.
     void measure_reach();
@@ -247,15 +247,15 @@ class ViewerState {
     void look_from(float azimuth, float elevation);
 
     ViewOptions options_;
-    std::shared_ptr<const Scene> scene_;
-    std::shared_ptr<const Scene> read_;  ///< The scene without edits.
-    RebasedEdits rebased_;               ///< Edits of the last scene that was read.
-    std::vector<EditState> undo_;        ///< The states before each step, the oldest first.
-    std::vector<EditState> redo_;        ///< The states after the steps that were undone.
+    std::shared_ptr<const shade::Scene> scene_;
+    std::shared_ptr<const shade::Scene> read_;  ///< The scene without edits.
+    RebasedEdits rebased_;                      ///< Edits of the last scene that was read.
+    std::vector<EditState> undo_;               ///< The states before each step, the oldest first.
+    std::vector<EditState> redo_;               ///< The states after the steps that were undone.
     bool is_step_open_ = false;
     std::uint64_t scenes_ = 0;  ///< The number of scenes that were read.
     /// The scene without hidden instances, with light markers.
-    std::shared_ptr<const Scene> shown_;
+    std::shared_ptr<const shade::Scene> shown_;
     bool has_light_markers_ = false;
     std::vector<bool> hidden_;  ///< Indexed by instance.
     bool has_named_default_ = false;
@@ -271,14 +271,14 @@ class ViewerState {
     std::optional<OrbitCamera> followed_;
     std::filesystem::path shown_model_;
     std::uint64_t revision_ = 0;
-    std::uint64_t pose_ = 0;  ///< Changes when only instances and lights move.
-    HealthMarkers markers_;   ///< The result of the search for mesh problems.
+    std::uint64_t pose_ = 0;        ///< Changes when only instances and lights move.
+    shade::HealthMarkers markers_;  ///< The result of the search for mesh problems.
     bool has_health_request_ = false;
-    EffectRequest effects_;
+    shade::EffectRequest effects_;
     OrbitCamera camera_;
     Bounds bounds_;  ///< Of the scene as it was read.
     BoundingSphere sphere_;
-    Grid grid_;
+    shade::Grid grid_;
     glm::ivec2 view_{0};
     bool is_turning_ = false;
     std::vector<std::string> notes_;

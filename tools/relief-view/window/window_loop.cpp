@@ -36,6 +36,8 @@
 #include "window/window_system.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+
 namespace {
 
 constexpr int frames_to_settle = 3;  // Dear ImGui reacts to the previous frame.
@@ -279,7 +281,7 @@ class WindowLoop {
                a.settings.width == b.settings.width && a.settings.height == b.settings.height;
     }
 
-    [[nodiscard]] bool is_reduced(const FrameSettings& settings) const {
+    [[nodiscard]] bool is_reduced(const shade::FrameSettings& settings) const {
         return settings.width < state_.view().x || settings.height < state_.view().y ||
                settings.samples < state_.options().samples;
     }
@@ -470,9 +472,9 @@ class WindowLoop {
     ShaderPanel shaders_;
     std::optional<DrawRequest> requested_;
     AdaptiveResolution resolution_;
-    FrameSettings requested_settings_;  ///< Settings of the last request.
-    std::uint64_t reduced_ = 0;         ///< Number of requests with reduced resolution.
-    std::uint64_t relinked_ = 0;        ///< How often the programs were linked again.
+    shade::FrameSettings requested_settings_;  ///< Settings of the last request.
+    std::uint64_t reduced_ = 0;                ///< Number of requests with reduced resolution.
+    std::uint64_t relinked_ = 0;               ///< How often the programs were linked again.
     bool is_full_resolution_pending_ =
         false;  ///< The picture at full resolution is still to be drawn.
     int pending_frames_ = frames_to_settle;

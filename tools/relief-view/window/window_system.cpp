@@ -24,6 +24,8 @@
 #include "json_cursor.h"
 
 namespace relief::tools {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::array scale_steps{0.5F, 0.75F, 1.0F, 1.25F, 1.5F, 1.75F,
@@ -301,7 +303,7 @@ void WindowSystem::release_worker_context() const {
     glfwMakeContextCurrent(nullptr);
 }
 
-GlLoader WindowSystem::loader() {
+shade::GlLoader WindowSystem::loader() {
     return glfwGetProcAddress;
 }
 

@@ -131,7 +131,7 @@ class WindowSystem {
     /// Makes the second context current on the calling thread.
     void use_worker_context() const;
     void release_worker_context() const;
-    static GlLoader loader();
+    static shade::GlLoader loader();
 
     /// Makes wait() return. Any thread may call it.
     static void wake();

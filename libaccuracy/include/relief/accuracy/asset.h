@@ -27,6 +27,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
+namespace accuracy {
 
 /// A method of conversion.
 struct BumpMethod {
@@ -173,7 +174,11 @@ const BumpMeasurement* cheapest_within(const BumpExperiment& experiment, const E
 /// Returns the measurement with the smallest error; null if there is none.
 const BumpMeasurement* most_accurate(const BumpExperiment& experiment, ErrorKind kind);
 
+}  // namespace accuracy
+
 class Baker;
+
+namespace accuracy {
 
 /// The cost to minimize: time (Measurement::cost, on one thread if that was measured), or the
 /// stored bytes of each item.
@@ -319,4 +324,5 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
 /// \param size  texels along each side of the map
 AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOptions& options);
 
+}  // namespace accuracy
 }  // namespace relief

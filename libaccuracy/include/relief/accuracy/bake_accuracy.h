@@ -18,6 +18,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
+namespace accuracy {
 
 /// The number of samples per texel.
 struct BakeSampling {
@@ -125,4 +126,5 @@ struct NoBakeWithinLimit : InvalidInput {
 ///         are given for a map of more than 2048 texels along a side
 BakeComparison select_bake(const Baker& baker, const BakeMapOptions& map, const BakeSearch& search);
 
+}  // namespace accuracy
 }  // namespace relief

@@ -23,6 +23,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
+namespace accuracy {
 
 /// The subjects of experiments, with the names of `relief-accuracy run`.
 enum class Subject {
@@ -329,4 +330,5 @@ struct ReportComparison {
 ReportComparison compare_reports(const std::vector<Experiment>& before,
                                  const std::vector<Experiment>& after);
 
+}  // namespace accuracy
 }  // namespace relief

@@ -18,6 +18,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
+namespace accuracy {
 
 /// The height amplitude * sin(dot(frequency, (x, y)) + phase); x points right and y down, both in
 /// texels.
@@ -233,4 +234,5 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
 ///         y, and the exact frames are those of the square
 TexturedMesh beveled_plate(double width);
 
+}  // namespace accuracy
 }  // namespace relief

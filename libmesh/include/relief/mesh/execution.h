@@ -20,6 +20,12 @@
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/report.h"
 
+namespace relief::detail {
+class ProgressStage;
+void note_file(const std::filesystem::path& file);
+class WorkMemory;
+}  // namespace relief::detail
+
 namespace RELIEF_API relief {
 
 /// The floating-point type of a computation. Each option of this type documents its accuracy and
@@ -102,8 +108,8 @@ class Progress {
     [[nodiscard]] std::map<std::filesystem::path, FileStamp> files() const;
 
   private:
-    friend class ProgressStage;
-    friend void note_file(const std::filesystem::path& file);
+    friend class detail::ProgressStage;
+    friend void detail::note_file(const std::filesystem::path& file);
 
     struct Stage {
         std::string name;
@@ -185,7 +191,7 @@ class Workspace {
     void clear();
 
   private:
-    friend class WorkMemory;
+    friend class detail::WorkMemory;
 
     struct Block {
         void* memory = nullptr;

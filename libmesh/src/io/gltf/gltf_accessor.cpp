@@ -24,6 +24,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Returns the bytes of a view, starting at the holder's offset.
@@ -120,7 +122,7 @@ std::vector<Value> copied(std::string_view bytes) {
 
 }  // namespace
 
-std::size_t component_size(int component_type) {
+std::size_t detail::component_size(int component_type) {
     switch (component_type) {
         case gltf_code::int8:
         case gltf_code::uint8:
@@ -136,7 +138,7 @@ std::size_t component_size(int component_type) {
     }
 }
 
-std::size_t component_count(std::string_view type) {
+std::size_t detail::component_count(std::string_view type) {
     if (type == "SCALAR") return 1;
     if (type == "VEC2") return 2;
     if (type == "VEC3") return 3;
@@ -146,7 +148,7 @@ std::size_t component_count(std::string_view type) {
     return 0;
 }
 
-ElementLayout element_layout(const Json& accessor) {
+ElementLayout detail::element_layout(const Json& accessor) {
     const auto& type = accessor["type"].get_ref<const std::string&>();
     ElementLayout layout;
     layout.component_type = accessor["componentType"].get<int>();
@@ -161,7 +163,7 @@ ElementLayout element_layout(const Json& accessor) {
     return layout;
 }
 
-ElementLayout index_layout(const GltfContents& contents, std::size_t accessor) {
+ElementLayout detail::index_layout(const GltfContents& contents, std::size_t accessor) {
     const ElementLayout layout = element_layout(contents.root["accessors"][accessor]);
     if (layout.components != 1 ||
         (layout.component_type != gltf_code::uint8 && layout.component_type != gltf_code::uint16 &&
@@ -172,7 +174,7 @@ ElementLayout index_layout(const GltfContents& contents, std::size_t accessor) {
     return layout;
 }
 
-PackedElements packed_elements(const GltfContents& contents, std::size_t accessor) {
+PackedElements detail::packed_elements(const GltfContents& contents, std::size_t accessor) {
     const Json& json = contents.root["accessors"][accessor];
     const std::size_t size = element_layout(json).size;
     const std::size_t count = size_in(json, "count");
@@ -198,7 +200,7 @@ PackedElements packed_elements(const GltfContents& contents, std::size_t accesso
     return elements;
 }
 
-std::string raw_elements(const GltfContents& contents, std::size_t accessor) {
+std::string detail::raw_elements(const GltfContents& contents, std::size_t accessor) {
     return std::string(packed_elements(contents, accessor).bytes());
 }
 
@@ -260,30 +262,31 @@ std::string chosen_elements(const GltfContents& contents, const Json& json, std:
 }  // namespace
 
 template <typename Vector>
-std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor) {
+std::vector<Vector> detail::float_elements(const GltfContents& contents, std::size_t accessor) {
     const Json& json = contents.root["accessors"][accessor];
     return floats_of<Vector>(json, accessor, packed_elements(contents, accessor).bytes());
 }
 
 template <typename Vector>
-std::vector<Vector> float_elements(const GltfContents& contents, std::size_t accessor,
-                                   std::span<const std::uint32_t> chosen) {
+std::vector<Vector> detail::float_elements(const GltfContents& contents, std::size_t accessor,
+                                           std::span<const std::uint32_t> chosen) {
     const Json& json = contents.root["accessors"][accessor];
     return floats_of<Vector>(json, accessor, chosen_elements(contents, json, accessor, chosen));
 }
 
-template std::vector<glm::vec1> float_elements(const GltfContents&, std::size_t);
-template std::vector<glm::vec2> float_elements(const GltfContents&, std::size_t);
-template std::vector<glm::vec3> float_elements(const GltfContents&, std::size_t);
-template std::vector<glm::vec4> float_elements(const GltfContents&, std::size_t);
-template std::vector<glm::vec2> float_elements(const GltfContents&, std::size_t,
-                                               std::span<const std::uint32_t>);
-template std::vector<glm::vec3> float_elements(const GltfContents&, std::size_t,
-                                               std::span<const std::uint32_t>);
-template std::vector<glm::vec4> float_elements(const GltfContents&, std::size_t,
-                                               std::span<const std::uint32_t>);
+template std::vector<glm::vec1> detail::float_elements(const GltfContents&, std::size_t);
+template std::vector<glm::vec2> detail::float_elements(const GltfContents&, std::size_t);
+template std::vector<glm::vec3> detail::float_elements(const GltfContents&, std::size_t);
+template std::vector<glm::vec4> detail::float_elements(const GltfContents&, std::size_t);
+template std::vector<glm::vec2> detail::float_elements(const GltfContents&, std::size_t,
+                                                       std::span<const std::uint32_t>);
+template std::vector<glm::vec3> detail::float_elements(const GltfContents&, std::size_t,
+                                                       std::span<const std::uint32_t>);
+template std::vector<glm::vec4> detail::float_elements(const GltfContents&, std::size_t,
+                                                       std::span<const std::uint32_t>);
 
-std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::size_t accessor) {
+std::vector<std::uint32_t> detail::index_elements(const GltfContents& contents,
+                                                  std::size_t accessor) {
     const ElementLayout layout = index_layout(contents, accessor);
     const PackedElements packed = packed_elements(contents, accessor);
     const std::string_view elements = packed.bytes();
@@ -295,7 +298,7 @@ std::vector<std::uint32_t> index_elements(const GltfContents& contents, std::siz
     return result;
 }
 
-std::vector<glm::uvec3> index_triples(const GltfContents& contents, std::size_t accessor) {
+std::vector<glm::uvec3> detail::index_triples(const GltfContents& contents, std::size_t accessor) {
     const ElementLayout layout = index_layout(contents, accessor);
     const PackedElements packed = packed_elements(contents, accessor);
     const std::string_view elements = packed.bytes();
@@ -467,7 +470,8 @@ std::vector<glm::uvec3> compacted(GltfTriangles all) {
 
 }  // namespace
 
-void check_counts(const GltfContents& contents, const Json& primitive, std::size_t vertex_count) {
+void detail::check_counts(const GltfContents& contents, const Json& primitive,
+                          std::size_t vertex_count) {
     for (const auto& [name, accessor] : primitive["attributes"].items()) {
         const std::size_t count =
             size_in(contents.root["accessors"][accessor.get<std::size_t>()], "count");
@@ -490,7 +494,7 @@ void check_counts(const GltfContents& contents, const Json& primitive, std::size
     }
 }
 
-const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id) {
+const Json& detail::primitive_json(const GltfContents& contents, GltfPrimitiveId id) {
     const Json& meshes = array_in(contents.root, "meshes");
     if (id.mesh >= meshes.size() || id.primitive >= meshes[id.mesh]["primitives"].size()) {
         throw InvalidInput(
@@ -499,7 +503,7 @@ const Json& primitive_json(const GltfContents& contents, GltfPrimitiveId id) {
     return meshes[id.mesh]["primitives"][id.primitive];
 }
 
-std::string describe_primitive(const GltfContents& contents, GltfPrimitiveId id) {
+std::string detail::describe_primitive(const GltfContents& contents, GltfPrimitiveId id) {
     const Json& meshes = array_in(contents.root, "meshes");
     const std::string name =
         id.mesh < meshes.size() ? text_in(meshes[id.mesh], "name") : std::string();
@@ -511,13 +515,13 @@ std::string GltfDocument::describe(GltfPrimitiveId id) const {
     return describe_primitive(contents_->data, id);
 }
 
-bool shares_vertices(const GltfContents& contents, const Json& primitive) {
+bool detail::shares_vertices(const GltfContents& contents, const Json& primitive) {
     const auto position = index_in(primitive["attributes"], "POSITION");
     return position && *position < contents.position_uses.size() &&
            contents.position_uses[*position] > 1;
 }
 
-GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
+GltfTriangles detail::read_triangles(const GltfContents& contents, GltfPrimitiveId id) {
     const Json& primitive = primitive_json(contents, id);
     const auto position = index_in(primitive["attributes"], "POSITION");
     if (!position) throw InvalidInput("it has no positions");

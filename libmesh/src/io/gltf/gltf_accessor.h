@@ -18,7 +18,7 @@
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/gltf_document.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Numeric codes that glTF takes from OpenGL.
 namespace gltf_code {
@@ -109,4 +109,4 @@ struct GltfTriangles {
 ///         attributes differ in length
 GltfTriangles read_triangles(const GltfContents& contents, GltfPrimitiveId id);
 
-}  // namespace relief
+}  // namespace relief::detail

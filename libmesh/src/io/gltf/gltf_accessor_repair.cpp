@@ -24,7 +24,7 @@
 #include "io/gltf/gltf_contents.h"
 #include "progress_stage.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// The uses of an accessor.
@@ -606,4 +606,4 @@ void repair_accessors(GltfContents& contents, Report& report) {
     AccessorRepair(contents, report).run();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -15,6 +15,8 @@
 #include "relief/mesh/gltf_document.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 std::size_t element_count(const Json& root, std::size_t accessor) {
@@ -166,7 +168,7 @@ class ContentCount {
 
 }  // namespace
 
-void take_contents(GltfContents& contents) {
+void detail::take_contents(GltfContents& contents) {
     ContentCount(contents).take_all();
 }
 

@@ -21,7 +21,7 @@
 #include "io/gltf/gltf_accessor.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 enum class Kind {
@@ -791,4 +791,4 @@ void check_gltf(const Json& root) {
     check_nodes(root);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

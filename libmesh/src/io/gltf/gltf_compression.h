@@ -11,7 +11,7 @@
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Returns true for each buffer that is only a placeholder. Such a buffer has no URI, is not the
 /// binary chunk of a GLB (or is marked as a fallback), and all its views have a compressed copy in
@@ -52,4 +52,4 @@ bool decode_meshopt_attributes_v1(std::string_view packed, std::size_t count, st
 /// or 8.
 void decode_meshopt_colors(std::string& elements, std::size_t stride);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -32,7 +32,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Keys are sorted; their order has no meaning in JSON.
 using Json = nlohmann::json;
@@ -158,9 +158,15 @@ struct GltfContents {
     [[nodiscard]] std::filesystem::path folder() const { return file.parent_path(); }
 };
 
+}  // namespace relief::detail
+
+namespace relief {
 struct GltfDocument::Contents {
-    GltfContents data;
+    detail::GltfContents data;
 };
+}  // namespace relief
+
+namespace relief::detail {
 
 /// Reads and checks a file with its buffers, see GltfDocument::read(). Images are not opened; only
 /// their existence is checked.
@@ -318,4 +324,4 @@ std::string uri_of(const std::string& file_name);
 /// DDS; empty for any other format.
 std::string image_media_type(std::string_view bytes);
 
-}  // namespace relief
+}  // namespace relief::detail

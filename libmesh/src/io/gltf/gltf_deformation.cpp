@@ -17,6 +17,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Returns the vector that stands for a joint. The vectors of a low-discrepancy sequence differ

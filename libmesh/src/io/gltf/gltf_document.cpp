@@ -31,6 +31,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::uint32_t json_chunk = 0x4E4F534A;
@@ -246,7 +248,7 @@ void count_position_uses(GltfContents& contents) {
 
 }  // namespace
 
-GltfContents read_gltf(const std::filesystem::path& file, Report& report) {
+GltfContents detail::read_gltf(const std::filesystem::path& file, Report& report) {
     try {
         Container container = parse_container(read_file(file), file, report);
         const ProgressStage stage("parsing");
@@ -512,11 +514,11 @@ std::string base64_decoded(std::string_view text) {
 
 }  // namespace
 
-bool is_data_uri(std::string_view uri) {
+bool detail::is_data_uri(std::string_view uri) {
     return uri.starts_with("data:");
 }
 
-DataUri decode_data_uri(std::string_view uri) {
+DataUri detail::decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (!is_data_uri(uri) || comma == uri.npos) throw InvalidInput("is not a data URI");
     std::string_view head = uri.substr(5, comma - 5);
@@ -526,7 +528,7 @@ DataUri decode_data_uri(std::string_view uri) {
     return {std::string(head), is_base64 ? base64_decoded(body) : percent_decoded(body)};
 }
 
-bool has_scheme(std::string_view uri) {
+bool detail::has_scheme(std::string_view uri) {
     if (uri.empty() || !is_letter(uri.front())) return false;
     std::size_t i = 0;
     while (i < uri.size() && (is_letter(uri[i]) || is_digit(uri[i]) || uri[i] == '+' ||
@@ -536,8 +538,8 @@ bool has_scheme(std::string_view uri) {
     return i < uri.size() && uri[i] == ':';
 }
 
-std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder,
-                                                 std::string_view uri) {
+std::optional<std::filesystem::path> detail::path_inside(const std::filesystem::path& folder,
+                                                         std::string_view uri) {
     const std::string name = percent_decoded(uri);
     if (name.empty() || has_scheme(uri) || name.find('\0') != name.npos) return std::nullopt;
     const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
@@ -553,8 +555,8 @@ std::optional<std::filesystem::path> path_inside(const std::filesystem::path& fo
     return path;
 }
 
-std::optional<std::filesystem::path> readable_path(const std::filesystem::path& folder,
-                                                   std::string_view uri) {
+std::optional<std::filesystem::path> detail::readable_path(const std::filesystem::path& folder,
+                                                           std::string_view uri) {
     if (auto path = path_inside(folder, uri)) return path;
     const std::string name = percent_decoded(uri);
     if (!input_limits().outside_files || name.empty() || has_scheme(uri) ||
@@ -564,7 +566,7 @@ std::optional<std::filesystem::path> readable_path(const std::filesystem::path& 
     return (folder / name).lexically_normal();
 }
 
-std::string uri_of(const std::string& file_name) {
+std::string detail::uri_of(const std::string& file_name) {
     std::string result;
     for (const char c : file_name) {
         if (is_letter(c) || is_digit(c) || c == '-' || c == '.' || c == '_' || c == '~') {
@@ -576,7 +578,7 @@ std::string uri_of(const std::string& file_name) {
     return result;
 }
 
-std::string image_media_type(std::string_view bytes) {
+std::string detail::image_media_type(std::string_view bytes) {
     const auto at = [&](std::size_t offset, std::string_view text) {
         return bytes.size() >= offset + text.size() && bytes.substr(offset, text.size()) == text;
     };

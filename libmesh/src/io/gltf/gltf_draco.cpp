@@ -23,7 +23,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Number types that glTF and Draco have in common.
@@ -397,4 +397,4 @@ void unpack_draco(GltfContents& contents, Report& report) {
     if (any) remove_unused_extension(contents.root, draco_extension);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -21,6 +21,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Returns the buffer of added data.
@@ -46,12 +48,12 @@ void widen_bounds(const std::string& elements, std::size_t element_size, std::si
 
 }  // namespace
 
-void reserve_bytes(GltfContents& contents, std::size_t count) {
+void detail::reserve_bytes(GltfContents& contents, std::size_t count) {
     GltfBuffer& buffer = added_buffer(contents);
     buffer.storage.reserve(buffer.storage.size() + count);
 }
 
-std::size_t append_bytes(GltfContents& contents, std::string_view bytes) {
+std::size_t detail::append_bytes(GltfContents& contents, std::string_view bytes) {
     GltfBuffer& buffer = added_buffer(contents);
     buffer.storage.resize((buffer.storage.size() + 3) / 4 * 4, '\0');
     const std::size_t offset = buffer.storage.size();
@@ -61,7 +63,7 @@ std::size_t append_bytes(GltfContents& contents, std::string_view bytes) {
     return offset;
 }
 
-std::size_t add_view(GltfContents& contents, std::string_view bytes) {
+std::size_t detail::add_view(GltfContents& contents, std::string_view bytes) {
     const std::size_t offset = append_bytes(contents, bytes);
     Json& views = contents.root["bufferViews"];
     views.push_back(
@@ -69,8 +71,8 @@ std::size_t add_view(GltfContents& contents, std::string_view bytes) {
     return views.size() - 1;
 }
 
-std::size_t add_elements(GltfContents& contents, std::size_t size, const std::string& elements,
-                         int target) {
+std::size_t detail::add_elements(GltfContents& contents, std::size_t size,
+                                 const std::string& elements, int target) {
     const std::size_t count = elements.size() / size;
     // Vertex attributes must begin at multiples of four bytes.
     const std::size_t stride = target == gltf_code::array_buffer ? (size + 3) / 4 * 4 : size;
@@ -89,8 +91,8 @@ std::size_t add_elements(GltfContents& contents, std::size_t size, const std::st
     return view;
 }
 
-std::size_t add_accessor(GltfContents& contents, Json accessor, const std::string& elements,
-                         int target) {
+std::size_t detail::add_accessor(GltfContents& contents, Json accessor, const std::string& elements,
+                                 int target) {
     const std::size_t size = element_layout(accessor).size;
     accessor["bufferView"] = add_elements(contents, size, elements, target);
     accessor["count"] = elements.size() / size;
@@ -101,8 +103,8 @@ std::size_t add_accessor(GltfContents& contents, Json accessor, const std::strin
     return accessors.size() - 1;
 }
 
-std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std::string& elements,
-                                int target) {
+std::size_t detail::add_shared_accessor(GltfContents& contents, Json accessor,
+                                        const std::string& elements, int target) {
     for (const char* key : {"bufferView", "byteOffset", "sparse"})
         accessor.erase(key);
     accessor["count"] = elements.size() / element_layout(accessor).size;
@@ -121,7 +123,7 @@ std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std
     return number;
 }
 
-void update_bounds(Json& accessor, const std::string& elements) {
+void detail::update_bounds(Json& accessor, const std::string& elements) {
     const ElementLayout layout = element_layout(accessor);
     Json least = Json::array();
     Json most = Json::array();
@@ -162,7 +164,7 @@ void update_bounds(Json& accessor, const std::string& elements) {
     if (accessor.contains("max")) accessor["max"] = most;
 }
 
-void set_bounds(Json& accessor, std::span<const glm::vec3> positions) {
+void detail::set_bounds(Json& accessor, std::span<const glm::vec3> positions) {
     Json least = Json::array();
     Json most = Json::array();
     for (int k = 0; k < 3; ++k) {
@@ -180,13 +182,13 @@ void set_bounds(Json& accessor, std::span<const glm::vec3> positions) {
     accessor["max"] = std::move(most);
 }
 
-void erase_extension(Json& holder, const char* extension) {
+void detail::erase_extension(Json& holder, const char* extension) {
     if (find(holder, "extensions", extension) == nullptr) return;
     holder["extensions"].erase(extension);
     if (holder["extensions"].empty()) holder.erase("extensions");
 }
 
-void remove_unused_extension(Json& root, std::string_view extension) {
+void detail::remove_unused_extension(Json& root, std::string_view extension) {
     if (has_extension(root, extension)) return;
     for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
         if (!root.contains(list)) continue;

@@ -29,6 +29,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Replaces the frames of one primitive.

@@ -12,6 +12,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr const char* lod_extension = "MSFT_lod";

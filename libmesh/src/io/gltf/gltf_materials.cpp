@@ -17,6 +17,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Extensions whose `source` takes precedence over that of a texture.

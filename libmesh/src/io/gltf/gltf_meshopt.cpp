@@ -22,7 +22,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t group_size = 16;
@@ -435,4 +435,4 @@ void unpack_meshopt(GltfContents& contents) {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -21,7 +21,7 @@
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -483,4 +483,4 @@ void repair_document(GltfContents& contents, Report& report) {
     repair_accessors(contents, report);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

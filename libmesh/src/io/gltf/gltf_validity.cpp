@@ -27,7 +27,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// The value of an attribute that replaces one that glTF forbids.
@@ -565,4 +565,4 @@ void repair_values(GltfContents& contents, GltfPrimitiveId id, Report& report) {
     ValueRepair(contents, id, report).run();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -18,7 +18,7 @@
 #include "io/gltf/gltf_contents.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 template <typename Value, typename Visit>
@@ -256,4 +256,4 @@ void check_values(GltfContents& contents, Report& report) {
     ValueChecker(contents, report).check();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -27,8 +27,9 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
 
-const Json* find_path(const Json& object, std::string_view path) {
+const Json* detail::find_path(const Json& object, std::string_view path) {
     const Json* found = &object;
     while (found != nullptr && !path.empty()) {
         const std::size_t length = std::min(path.find('/'), path.size());
@@ -39,7 +40,7 @@ const Json* find_path(const Json& object, std::string_view path) {
     return found;
 }
 
-bool has_factors(std::string_view extension) {
+bool detail::has_factors(std::string_view extension) {
     const std::string prefix = fmt::format("extensions/{}/", extension);
     bool has = false;
     for_each_field<MetallicRoughness>(

@@ -33,6 +33,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// A document with a single buffer, and the pieces of this buffer in order.

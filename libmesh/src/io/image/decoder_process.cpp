@@ -43,7 +43,7 @@
 
 extern char** environ;  // NOLINT: POSIX declares it in no header.
 
-namespace relief {
+namespace relief::detail {
 
 constinit std::atomic<int> max_decoder_milliseconds = 0;
 
@@ -548,4 +548,4 @@ DecodedImage::~DecodedImage() {
     }
 }
 
-}  // namespace relief
+}  // namespace relief::detail

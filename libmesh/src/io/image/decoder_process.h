@@ -22,7 +22,7 @@
 
 #include "io/image/image_module.h"
 
-namespace relief {
+namespace relief::detail {
 
 // In the program
 
@@ -111,4 +111,4 @@ struct DecoderReply {
     std::uint64_t size = 0;
 };
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -35,6 +35,8 @@
 #include "io/image/decoder_process.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr int socket_descriptor = 0;

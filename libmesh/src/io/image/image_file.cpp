@@ -29,6 +29,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The header of a JPEG.
@@ -97,8 +99,8 @@ std::optional<Image> image_of(const Header& header, std::optional<Samples> sampl
 
 }  // namespace
 
-std::optional<Image> read_directly(const ImageContainer& container,
-                                   const std::filesystem::path& name) {
+std::optional<Image> detail::read_directly(const ImageContainer& container,
+                                           const std::filesystem::path& name) {
     const std::string_view format = container.format;
     if (format == "png") {
         if (const auto png = open_plain_png(container.stripped)) {

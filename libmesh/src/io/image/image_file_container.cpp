@@ -17,7 +17,7 @@
 #include "files.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -346,4 +346,4 @@ ImageContainer examine_image(std::span<const std::byte> bytes, const std::filesy
     return container;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -20,7 +20,7 @@
 
 #include "relief/mesh/image.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// An encoded image, ready for the module.
 struct ImageContainer {
@@ -78,4 +78,4 @@ bool check_exr(std::span<const std::byte> start, std::uint64_t size,
 std::optional<Image> read_directly(const ImageContainer& container,
                                    const std::filesystem::path& name);
 
-}  // namespace relief
+}  // namespace relief::detail

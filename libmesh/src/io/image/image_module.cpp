@@ -85,7 +85,7 @@ extern "C" __attribute__((visibility("default"))) int TIFFCheckpointDirectory(vo
 
 // --- The functions of the module ---
 
-namespace relief {
+namespace relief::detail {
 
 struct ImageModuleReader {
     std::unique_ptr<OIIO::Filesystem::IOProxy> bytes;
@@ -363,8 +363,9 @@ constexpr ImageModule table{image_module_version,
                             release};
 
 }  // namespace
-}  // namespace relief
+}  // namespace relief::detail
 
-extern "C" __attribute__((visibility("default"))) const relief::ImageModule* relief_image_module() {
-    return &relief::table;
+extern "C" __attribute__((visibility("default"))) const relief::detail::ImageModule*
+relief_image_module() {
+    return &relief::detail::table;
 }

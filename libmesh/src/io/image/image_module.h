@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace relief {
+namespace relief::detail {
 
 /// The version of this interface; it changes with every change here. Modules of other versions are
 /// refused.
@@ -101,4 +101,4 @@ struct ImageModule {
     void (*release)(ImageModuleWriter* writer);
 };
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -26,7 +26,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Returns the file of the shared library that contains this function. It is empty in a program.
@@ -439,4 +439,4 @@ std::unique_ptr<RowSink> make_module_sink(const RowSinkPlan& plan) {
     return std::make_unique<ModuleSink>(plan);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -16,7 +16,7 @@
 #include "io/image/image_module.h"
 #include "io/image/row_codec.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Returns the folders of the image module and of the decoder program, in the order of the search:
 /// $RELIEF_MODULE_DIR, beside the shared library, in the tree of the program, and in the run path
@@ -59,4 +59,4 @@ std::unique_ptr<RowSource> module_rows(const ImageContainer& container,
 /// \throws FileError
 Image read_by_module(const std::filesystem::path& file);
 
-}  // namespace relief
+}  // namespace relief::detail

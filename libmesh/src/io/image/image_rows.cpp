@@ -27,6 +27,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 void check_shape(const ImageShape& shape) {
@@ -160,12 +162,12 @@ std::vector<Sample> all_samples(RowSource& rows) {
 
 }  // namespace
 
-std::size_t row_bytes_of(const ImageInfo& info) {
+std::size_t detail::row_bytes_of(const ImageInfo& info) {
     return static_cast<std::size_t>(info.width) *
            static_cast<std::size_t>(info.channels * info.bits / 8);
 }
 
-void require_image_fits(const ImageInfo& info, const std::filesystem::path& name) {
+void detail::require_image_fits(const ImageInfo& info, const std::filesystem::path& name) {
     const auto width = static_cast<std::size_t>(info.width);
     const auto height = static_cast<std::size_t>(info.height);
     require_pixels(name, info.width, info.height);
@@ -177,7 +179,7 @@ void require_image_fits(const ImageInfo& info, const std::filesystem::path& name
     require_memory_for(name, row_bytes_of(info), height);
 }
 
-void check_streamed_size(const ImageInfo& info, const std::filesystem::path& name) {
+void detail::check_streamed_size(const ImageInfo& info, const std::filesystem::path& name) {
     const std::size_t row =
         static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.channels);
     const auto height = static_cast<std::size_t>(info.height);
@@ -190,7 +192,7 @@ void check_streamed_size(const ImageInfo& info, const std::filesystem::path& nam
                                 info.width, info.height, info.channels, max_streamed_samples));
 }
 
-Image read_all(RowSource& rows, const std::filesystem::path& name) {
+Image detail::read_all(RowSource& rows, const std::filesystem::path& name) {
     const ImageInfo& info = rows.info();
     require_image_fits(info, name);
     Image image{info.width, info.height, info.channels, ColorSpace::data, {}};
@@ -203,11 +205,11 @@ Image read_all(RowSource& rows, const std::filesystem::path& name) {
     return image;
 }
 
-std::unique_ptr<RowSource> rows_of_image(Image image, ImageInfo info) {
+std::unique_ptr<RowSource> detail::rows_of_image(Image image, ImageInfo info) {
     return std::make_unique<WholeImageSource>(std::move(image), std::move(info));
 }
 
-std::unique_ptr<RowSource> open_streamed_rows(const std::filesystem::path& file) {
+std::unique_ptr<RowSource> detail::open_streamed_rows(const std::filesystem::path& file) {
     std::array<char, 16> start{};
     {
         const RandomAccessFile opened(file);

@@ -22,7 +22,7 @@
 #include "relief/mesh/report.h"
 #include "relief/version.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -459,4 +459,4 @@ std::vector<std::byte> ktx2_bytes(const GpuTexture& texture, const TextureWriteO
     return bytes;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

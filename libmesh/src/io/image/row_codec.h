@@ -11,7 +11,7 @@
 
 #include "relief/mesh/image_file.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A decoder that returns rows in order, tightly packed.
 class RowSource {
@@ -76,4 +76,4 @@ std::string encode_png(const Image& image, const std::map<std::string, std::stri
 std::unique_ptr<RowSink> make_png_sink(const RowSinkPlan& plan);
 std::unique_ptr<RowSink> make_module_sink(const RowSinkPlan& plan);
 
-}  // namespace relief
+}  // namespace relief::detail

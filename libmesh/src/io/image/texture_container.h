@@ -14,7 +14,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/texture_file.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// A level in a file.
 struct StoredLevel {
@@ -69,4 +69,4 @@ void append_little(std::vector<std::byte>& bytes, Number value) {
         bytes.push_back(static_cast<std::byte>(value >> (8 * i) & 255U));
 }
 
-}  // namespace relief
+}  // namespace relief::detail

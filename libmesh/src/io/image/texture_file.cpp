@@ -27,6 +27,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -245,7 +247,7 @@ bool is_texture_extension(const std::string& extension) {
 
 }  // namespace
 
-int level_side(int side, std::size_t level) {
+int detail::level_side(int side, std::size_t level) {
     return std::max(1, side >> std::min<std::size_t>(level, 31));
 }
 
@@ -303,14 +305,14 @@ Image decode_texture_level(const GpuTexture& texture, std::size_t level) {
 }
 
 /// The codes of signed formats are those of FlatCode::middle.
-ImageInfo image_info_of(const GpuTexture& header) {
+ImageInfo detail::image_info_of(const GpuTexture& header) {
     const FormatTraits& traits = traits_of(header.format);
     ImageInfo info{header.width, header.height, traits.channels, traits.bits, header.metadata};
     if (traits.blocks && is_signed(*traits.blocks)) info.metadata["relief:flat"] = "32768";
     return info;
 }
 
-std::optional<TextureContainer> open_dds(Bytes bytes, const std::filesystem::path& name) {
+std::optional<TextureContainer> detail::open_dds(Bytes bytes, const std::filesystem::path& name) {
     if (bytes.size() < dds_header_bytes) throw FileError(name, "is cut short within its header");
     const auto number = [&](std::size_t offset) { return little<std::uint32_t>(bytes, offset); };
     if ((number(80) & dds::four_letters) == 0) return std::nullopt;
@@ -366,7 +368,7 @@ std::optional<TextureContainer> open_dds(Bytes bytes, const std::filesystem::pat
     return container;
 }
 
-std::vector<std::byte> dds_bytes(const GpuTexture& texture) {
+std::vector<std::byte> detail::dds_bytes(const GpuTexture& texture) {
     const FormatTraits& traits = traits_of(texture.format);
     if (texture.is_srgb && traits.dxgi_srgb == 0) {
         throw InvalidInput(fmt::format("DDS has no sRGB variant of {}", enum_name(texture.format)));
@@ -405,8 +407,8 @@ std::vector<std::byte> dds_bytes(const GpuTexture& texture) {
     return bytes;
 }
 
-Image read_largest_level(const TextureContainer& container, Bytes bytes,
-                         const std::filesystem::path& name) {
+Image detail::read_largest_level(const TextureContainer& container, Bytes bytes,
+                                 const std::filesystem::path& name) {
     require_image_fits(image_info_of(container.header), name);
     GpuTexture texture = container.header;
     texture.levels.push_back(load_level(container, bytes, 0, name));

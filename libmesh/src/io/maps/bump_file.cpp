@@ -29,6 +29,8 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Returns a sample of any type; 1.0 is white.
@@ -189,7 +191,7 @@ class BandMaker {
 
 }  // namespace
 
-ImageShape shape_of(const BumpFileFormat& format, int width, int height) {
+ImageShape detail::shape_of(const BumpFileFormat& format, int width, int height) {
     if (format.content == BumpContent::slope_moments)
         return {width,
                 height,
@@ -201,9 +203,9 @@ ImageShape shape_of(const BumpFileFormat& format, int width, int height) {
     return {width, height, channels, format.normals.bits, ColorSpace::data, {}};
 }
 
-bool make_bump_band(const BumpBandSource& source, const BumpOptions& options,
-                    const BumpFileFormat& format, int first, int last, std::span<std::byte> rows,
-                    Report& report) {
+bool detail::make_bump_band(const BumpBandSource& source, const BumpOptions& options,
+                            const BumpFileFormat& format, int first, int last,
+                            std::span<std::byte> rows, Report& report) {
     const BandMaker maker(source, options, format);
     const auto count = static_cast<std::size_t>(last - first);
     const std::size_t row_bytes = rows.size() / count;

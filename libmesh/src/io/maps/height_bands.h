@@ -13,7 +13,7 @@
 #include "bump/bump_rows.h"
 #include "relief/mesh/bump_file.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Reads a height map by bands of rows, from the top.
 class HeightBandReader {
@@ -106,4 +106,4 @@ bool make_bump_band(const BumpBandSource& source, const BumpOptions& options,
                     const BumpFileFormat& format, int first, int last, std::span<std::byte> rows,
                     Report& report);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -19,6 +19,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 int whole_height(const HeightMapFile& file) {

@@ -20,6 +20,8 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// Adds findings of a band, whose texels count from its own first texel.
@@ -330,6 +332,8 @@ class ResizedRows {
     FloatWindow normals_, slopes_, alpha_;
     int next_ = 0;
 };
+
+using relief::detail::shape_of;
 
 ImageShape shape_of(const NormalMapConversion& conversion, bool has_alpha) {
     return {conversion.width,       conversion.height, has_alpha ? 4 : 3,

@@ -19,6 +19,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 bool ends_line(char c) {
@@ -31,7 +33,7 @@ char lower(char c) {
 
 }  // namespace
 
-double strtod_in_c_locale(std::string_view number) {
+double detail::strtod_in_c_locale(std::string_view number) {
     static const locale_t c = ::newlocale(LC_ALL_MASK, "C", nullptr);
     return ::strtod_l(std::string(number).c_str(), nullptr, c);
 }
@@ -85,7 +87,7 @@ void TextScanner::fail_at(std::string_view text, const char* wanted) const {
                       : fmt::format("expected {1}, but found {0}", quoted(text), wanted));
 }
 
-glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin) {
+glm::vec3 detail::position_in(TextScanner& text, const glm::dvec3& origin) {
     if (origin == glm::dvec3(0.0)) {
         const auto x = text.number<float>();
         const auto y = text.number<float>();
@@ -96,14 +98,14 @@ glm::vec3 position_in(TextScanner& text, const glm::dvec3& origin) {
     return glm::vec3(glm::dvec3(x, y, text.number<double>()) - origin);
 }
 
-std::string quoted(std::string_view word) {
+std::string detail::quoted(std::string_view word) {
     std::string result = "'";
     for (const char c : word.substr(0, 40))
         result += c >= ' ' && c != '\x7F' ? c : '?';
     return result + (word.size() > 40 ? "...'" : "'");
 }
 
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
+bool detail::equal_ignoring_case(std::string_view a, std::string_view b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](char x, char y) { return lower(x) == lower(y); });
 }
@@ -147,8 +149,8 @@ bool has_more_digits(const MeshFile& centered, const MeshFile& before) {
 
 }  // namespace
 
-MeshFile read_with_local_origin(const std::filesystem::path& file, const MeshReader& read,
-                                Report& report) {
+MeshFile detail::read_with_local_origin(const std::filesystem::path& file, const MeshReader& read,
+                                        Report& report) {
     Report findings;
     MeshFile best = read(file, glm::dvec3(0.0), findings);
     // Positions that are equal in float may be far apart compared with their size once the origin

@@ -20,7 +20,7 @@
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// Returns what strtod() does in the C locale; that of the process may have another decimal point.
 double strtod_in_c_locale(std::string_view number);
@@ -147,4 +147,4 @@ using MeshReader =
 MeshFile read_with_local_origin(const std::filesystem::path& file, const MeshReader& read,
                                 Report& report);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -36,7 +36,7 @@
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Objects that have faces, in order of first use. Equal names are the same object.
@@ -553,4 +553,4 @@ void write_obj(const std::filesystem::path& file, const MeshFile& contents, Repo
     files.commit();
 }
 
-}  // namespace relief
+}  // namespace relief::detail

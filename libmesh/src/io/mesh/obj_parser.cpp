@@ -32,7 +32,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// The statements of one piece of a file.
@@ -662,4 +662,4 @@ ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file
     return std::move(*result);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -17,7 +17,7 @@
 
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// One corner of a face: indices from 0, or -1 if absent.
 struct ObjCorner {
@@ -73,4 +73,4 @@ ObjStatements parse_obj(std::string_view text, const std::filesystem::path& file
 /// \return the ends of the pieces; the last one is the size of the text
 std::vector<std::size_t> obj_piece_ends(std::string_view text, std::size_t piece_size);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -15,7 +15,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 struct OffHeader {
@@ -145,4 +145,4 @@ MeshFile read_off(const std::filesystem::path& file, const glm::dvec3& origin, R
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -32,7 +32,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
@@ -682,4 +682,4 @@ void write_ply(const std::filesystem::path& file, const MeshFile& contents) {
     replace_file(file, std::as_bytes(std::span(bytes)));
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -24,7 +24,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 /// Returns twice the vector area of a polygon: its normal by Newell's method. It is computed
@@ -562,4 +562,4 @@ std::vector<std::uint32_t> unify_vertices(const ObjStatements& statements, Mesh&
     return vertex_of_corner;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -31,7 +31,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 
 /// The method that cut a polygon.
 enum class PolygonCut {
@@ -133,4 +133,4 @@ class KeyNumbers {
 /// \return the vertex of each corner
 std::vector<std::uint32_t> unify_vertices(const ObjStatements& statements, Mesh& mesh);
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -17,7 +17,7 @@
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t header_size = 84;
@@ -138,4 +138,4 @@ MeshFile read_stl(const std::filesystem::path& file, const glm::dvec3& origin, R
     return result;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <optional>
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 constexpr std::size_t max_symbols = 288;
@@ -733,4 +733,4 @@ std::uint64_t estimated_bits(std::span<const std::uint8_t> bytes, Repetitions re
            symbols.extra_bits;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -23,7 +23,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::detail {
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -455,4 +455,4 @@ std::unique_ptr<RowSource> open_png_rows(const std::filesystem::path& path) {
     return std::make_unique<PngSource>(std::move(file), std::move(*png), layout);
 }
 
-}  // namespace relief
+}  // namespace relief::detail

@@ -31,6 +31,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr std::size_t bytes_per_piece = std::size_t{1} << 20;
@@ -238,7 +240,7 @@ void PngEncoder::write(const std::byte* rows, std::size_t count) {
 
 }  // namespace
 
-std::string encode_png(const Image& image, const std::map<std::string, std::string>& text) {
+std::string detail::encode_png(const Image& image, const std::map<std::string, std::string>& text) {
     std::string file;
     PngEncoder encoder({image.width, image.height, image.channels, image.bits(), image.color_space},
                        text, WriteEffort::normal, [&](std::string_view bytes) { file += bytes; });
@@ -285,7 +287,7 @@ class PngSink final : public RowSink {
 
 }  // namespace
 
-std::unique_ptr<RowSink> make_png_sink(const RowSinkPlan& plan) {
+std::unique_ptr<RowSink> detail::make_png_sink(const RowSinkPlan& plan) {
     return std::make_unique<PngSink>(plan);
 }
 

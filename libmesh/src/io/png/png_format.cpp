@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace relief {
+namespace relief::detail {
 
 void append_big16(std::string& to, std::uint32_t value) {
     to += static_cast<char>(value >> 8);
@@ -348,4 +348,4 @@ bool InflateStream::is_complete() {
     return implementation_->left_after({&too_much, 1}, damaged) == 1 && !damaged;
 }
 
-}  // namespace relief
+}  // namespace relief::detail

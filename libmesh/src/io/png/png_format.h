@@ -30,7 +30,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 
-namespace relief {
+namespace relief::detail {
 
 // Encoder of deflate streams [RFC 1951]
 
@@ -185,4 +185,4 @@ std::optional<Image::Samples> decode(const PlainPng& png);
 /// FileError if the file is truncated, or if its header announces more than it can hold
 std::unique_ptr<RowSource> open_png_rows(const std::filesystem::path& file);
 
-}  // namespace relief
+}  // namespace relief::detail

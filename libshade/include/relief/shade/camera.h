@@ -12,6 +12,7 @@
 #include "relief/mesh/mesh.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// A camera that looks along its own -z.
 struct Camera {
@@ -73,4 +74,5 @@ Camera orthographic(const Scene& scene, Camera camera, float aspect);
 /// camera is multiplied instead.
 Camera at_distance(Camera camera, const glm::vec3& target, float factor);
 
+}  // namespace shade
 }  // namespace relief

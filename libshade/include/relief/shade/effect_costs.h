@@ -18,6 +18,7 @@
 #include "relief/shade/renderer.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// A scene and the settings with which it is drawn repeatedly.
 struct MeasuredFrame {
@@ -116,4 +117,5 @@ struct BudgetedPlan {
 /// effect can be dropped. \throws as Renderer does
 BudgetedPlan plan_within_budget(const MeasuredFrame& frame, const FramePlan& plan, double budget);
 
+}  // namespace shade
 }  // namespace relief

@@ -22,6 +22,7 @@
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// The map that perturbs the normal.
 enum class NormalDetail : std::uint8_t { none, normal_map, object_normal_map, bump_map };
@@ -325,4 +326,5 @@ struct ShaderListing {
 /// \throws GpuError if a file of $RELIEF_SHADER_DIR includes a missing part
 std::vector<ShaderListing> shader_listings(const FramePlan& plan);
 
+}  // namespace shade
 }  // namespace relief

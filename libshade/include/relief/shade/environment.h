@@ -12,6 +12,7 @@
 #include "relief/shade/image_source.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// Six square images of one size, in OpenGL's order and orientation: +x -x +y -y +z -z, each looked
 /// up by the world direction. Seen from inside, OpenGL's faces are those of a left-handed world:
@@ -58,4 +59,5 @@ Environment studio_environment();
 /// Returns true if the environment has the image of studio_environment().
 bool is_studio(const Environment& environment);
 
+}  // namespace shade
 }  // namespace relief

@@ -20,6 +20,7 @@
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 // Debug views show one input or term of shading instead of the picture. FrameSettings selects the
 // view. Views do not change the programs and pixels of the normal picture: a view selects other
@@ -218,4 +219,5 @@ glm::vec3 marker_color(MeshCondition condition);
 HealthMarkers health_markers(const Scene& scene,
                              std::optional<Severity> severity = Severity::problem);
 
+}  // namespace shade
 }  // namespace relief

@@ -12,6 +12,7 @@
 #include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// Differences of corresponding samples, in units of the images' own range (8 bit: 0 to 255).
 struct ImageDifference {
@@ -69,4 +70,5 @@ struct AngleDifference {
 /// \throws InvalidInput if one is empty or is not three float channels, or sizes differ
 AngleDifference angle_difference(const Image& a, const Image& b);
 
+}  // namespace shade
 }  // namespace relief

@@ -14,6 +14,7 @@
 #include "relief/shade/shared.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// The source of an image: a file, an encoded file in memory, or a decoded image.
 struct ImageSource {
@@ -27,4 +28,5 @@ struct ImageSource {
     bool is_required = false;
 };
 
+}  // namespace shade
 }  // namespace relief

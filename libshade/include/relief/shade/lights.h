@@ -12,6 +12,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// Light from infinitely far away.
 struct DirectionalLight {
@@ -56,4 +57,5 @@ struct SpotLight {
 /// at any distance. Products with it stay finite.
 inline constexpr float max_light = 1e18F;
 
+}  // namespace shade
 }  // namespace relief

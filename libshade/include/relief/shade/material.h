@@ -133,6 +133,7 @@
 #include "relief/mesh/material.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// Returns a metallic-roughness material's reflectance at normal incidence for metallic 0:
 /// min(((n - 1) / (n + 1))^2 specular_color, 1) specular, with n the refractive index. It is 0.04
@@ -156,4 +157,5 @@ std::optional<Material> material_by_name(std::string_view name);
 /// Returns the names of the classic table, sorted.
 const std::vector<std::string>& material_names();
 
+}  // namespace shade
 }  // namespace relief

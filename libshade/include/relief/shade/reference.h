@@ -18,6 +18,7 @@
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 struct ReferenceSettings {
     int width = 256;
@@ -84,4 +85,5 @@ void add_ambient_occlusion(Scene& scene, int rays = 64);
 /// Neutral].
 Image reference_picture(const Image& radiance, const Scene& scene, OutputCoding output);
 
+}  // namespace shade
 }  // namespace relief

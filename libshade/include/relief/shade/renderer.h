@@ -19,6 +19,7 @@
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// OpenGL is missing, too old or out of memory, or refuses a shader. The message contains that of
 /// the driver.
@@ -253,4 +254,5 @@ struct FrameSeries {
 std::vector<FrameSeries> time_frames(std::span<Renderer* const> renderers, const Camera& camera,
                                      const Repeats& repeats);
 
+}  // namespace shade
 }  // namespace relief

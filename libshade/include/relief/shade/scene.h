@@ -25,6 +25,7 @@
 #include "relief/shade/shared.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// The curve from radiance times exposure to the picture (shaders/tone.glsl). The names in panels
 /// are those of the glTF Sample Viewer.
@@ -163,4 +164,5 @@ void add_default_lights(Scene& scene, const Camera& camera);
 ///         scene did not change
 std::optional<std::string> add_default_environment(Scene& scene);
 
+}  // namespace shade
 }  // namespace relief

@@ -25,6 +25,7 @@
 #include "relief/shade/scene_graph.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// The axis of a model that points up in the world.
 enum class UpAxis {
@@ -33,9 +34,13 @@ enum class UpAxis {
     automatic,  ///< z for STL, as programs for parts and printing write it; y for others.
 };
 
+}  // namespace shade
+
 template <>
-inline constexpr auto enum_names<UpAxis> = std::to_array<EnumName<UpAxis>>(
-    {{"y", UpAxis::y}, {"z", UpAxis::z}, {"auto", UpAxis::automatic}});
+inline constexpr auto enum_names<shade::UpAxis> = std::to_array<EnumName<shade::UpAxis>>(
+    {{"y", shade::UpAxis::y}, {"z", shade::UpAxis::z}, {"auto", shade::UpAxis::automatic}});
+
+namespace shade {
 
 /// Edges of an STL file that are sharper are hard, in radians: 30 degrees. The format has one
 /// normal for each triangle, and is used for parts with sharp edges.
@@ -195,4 +200,5 @@ void note_image_file(const ImageSource& source);
 /// detect_flat_code(). \param image  decoded from the source
 FlatCode detected_flat_code(const ImageSource& source, const Image& image);
 
+}  // namespace shade
 }  // namespace relief

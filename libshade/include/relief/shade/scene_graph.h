@@ -22,6 +22,7 @@
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// A node at rest: scaled, then rotated, then translated within its parent's space.
 struct SceneNode {
@@ -179,4 +180,5 @@ glm::mat4 looking_along(const glm::vec3& position, const glm::vec3& direction);
 /// \throws InvalidInput if the radius is not positive and finite
 void add_light_markers(SceneGraph& graph, float radius);
 
+}  // namespace shade
 }  // namespace relief

@@ -29,6 +29,7 @@
 #include "relief/shade/scene.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// The kind of map that perturbs the normals.
 enum class MapUse { none, bump_map, normal_map };
@@ -104,4 +105,5 @@ Scene with_variant(const Scene& scene, const PreparedVariant& prepared);
 /// Gives another scene the lights, environment, background and exposure of this scene.
 Scene with_lighting_of(const Scene& scene, Scene other);
 
+}  // namespace shade
 }  // namespace relief

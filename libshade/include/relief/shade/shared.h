@@ -10,6 +10,7 @@
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
+namespace shade {
 
 /// A value that copies share until one of them is edited.
 ///
@@ -61,4 +62,5 @@ class Shared {
     std::shared_ptr<Held> held_;
 };
 
+}  // namespace shade
 }  // namespace relief

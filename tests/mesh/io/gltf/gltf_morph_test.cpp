@@ -17,6 +17,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using nlohmann::json;

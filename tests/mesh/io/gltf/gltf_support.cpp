@@ -13,6 +13,8 @@
 #include "relief/mesh/report.h"
 
 namespace relief::test {
+using namespace relief::detail;
+
 namespace {
 
 Json view_meaning(const GltfContents& contents, std::size_t number) {

@@ -25,6 +25,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::big32;

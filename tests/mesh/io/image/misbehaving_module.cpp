@@ -26,8 +26,9 @@
 #include "io/image/image_module.h"
 
 namespace relief {
+using namespace relief::detail;
 
-struct ImageModuleReader {
+struct relief::detail::ImageModuleReader {
     std::string behavior;
 };
 
@@ -237,6 +238,7 @@ constexpr ImageModule table{image_module_version,
 }  // namespace
 }  // namespace relief
 
-extern "C" __attribute__((visibility("default"))) const relief::ImageModule* relief_image_module() {
+extern "C" __attribute__((visibility("default"))) const relief::detail::ImageModule*
+relief_image_module() {
     return &relief::table;
 }

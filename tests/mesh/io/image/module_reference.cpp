@@ -12,6 +12,8 @@
 #include "support/shared_data.h"
 
 namespace relief::test {
+using namespace relief::detail;
+
 namespace {
 
 ImageContainer examined(const std::string& file) {

@@ -23,6 +23,8 @@
 #include "support/shared_data.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using ByteValues = std::vector<std::uint8_t>;

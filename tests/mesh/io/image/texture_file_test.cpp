@@ -23,6 +23,8 @@
 #include "support/invariants.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using test::image_of;

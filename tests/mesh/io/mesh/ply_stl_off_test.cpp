@@ -15,6 +15,8 @@
 #include "support/shapes.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 using testing::ElementsAre;
