@@ -454,7 +454,7 @@ TEST(MeshRefusal, StatesTheReasonAndWritesNoFile) {
          {"relief-mesh process square.obj out/old.glb --normals max --weld -1", 2, "--weld -1: "},
          {"relief-mesh process plain.obj out/old.glb --tangents mikktspace", 1,
           "plain.obj: no texture coordinates, so there can be no tangents (unwrap the model "
-          "first, or leave --tangents out)"},
+          "first with relief-mesh unwrap, or leave --tangents out)"},
          {"relief-mesh process square.obj nowhere/square.glb", 1,
           "nowhere/square.glb: the folder nowhere does not exist (create it first)"},
          {"relief-mesh process square.obj /dev/full/square.glb", 1, "/dev/full/square.glb: "},

@@ -277,7 +277,7 @@ BakeModels read_bake_models(const MeshBakeRequest& request, Findings& findings) 
     const ProgressScope scope(opened);
     MapModel low = read(request.low, findings);
     require_texcoords(request.low, low, "no texture coordinates, which a map needs",
-                      "unwrap it in a modeling program");
+                      "unwrap it with relief-mesh unwrap");
     std::vector<MapModel> high;
     std::vector<MapAppearance> appearances;
     for (const std::filesystem::path& file : request.high) {
@@ -482,7 +482,7 @@ FileError uncovered_error(const MeshBakeRequest& request, const Mesh& low) {
     }
     if (!(min.x <= max.x)) {
         return failure(request.low, "covers no texel of the map: no texture coordinates are finite",
-                       "unwrap it in a modeling program; nothing is written");
+                       "unwrap it with relief-mesh unwrap; nothing is written");
     }
     const bool is_outside = !request.bake.map.placement.repeat &&
                             (min.x < 0.0F || min.y < 0.0F || max.x > 1.0F || max.y > 1.0F);
@@ -493,7 +493,7 @@ FileError uncovered_error(const MeshBakeRequest& request, const Mesh& low) {
                     min.x, min.y, max.x, max.y,
                     is_outside ? ", outside of the unit square" : ", without any area"),
         is_outside ? "give --outside repeat, or <UDIM> in the map's name; nothing is written"
-                   : "unwrap it in a modeling program; nothing is written");
+                   : "unwrap it with relief-mesh unwrap; nothing is written");
 }
 
 void check_missed_early(const MeshBakeRequest& request, const BakeModels& models,

@@ -81,7 +81,7 @@ void check_texcoords(const ProcessRequest& request, const Model& model) {
     const std::set<int> sets = texcoord_sets(model);
     if (sets.empty() && computes_tangents(request.frames.tangents) && request.requires_tangents) {
         throw failure(request.input, "no texture coordinates, so there can be no tangents",
-                      "unwrap the model first, or leave --tangents out");
+                      "unwrap the model first with relief-mesh unwrap, or leave --tangents out");
     }
     if (document == nullptr || !request.uv_set || sets.contains(*request.uv_set)) return;
     throw failure(request.input,

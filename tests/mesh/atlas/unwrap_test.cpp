@@ -370,7 +370,7 @@ Mesh slivers(std::uint32_t count, float height) {
     return mesh;
 }
 
-TEST(Unwrap, MasksHardTopology) {
+TEST(Unwrap, HandlesHardTopology) {
     UnwrapOptions options;
     options.padding = 1;
     const Unwrapped strip = unwrap(moebius(200), options);

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "window/comparison.h"
+#include "window/controls.h"
 #include "window/orbit_camera.h"
 #include "window/viewer_state.h"
 
