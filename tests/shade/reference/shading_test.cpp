@@ -383,8 +383,8 @@ TEST(RaysWithoutRadiance, MakeTheSameDecisionsAndLookups) {
         for (const glm::dvec3 corners : {glm::dvec3(1.0 / 3.0), {0.7, 0.2, 0.1}}) {
             const reference::Hit hit{0, 0, 1.0, corners, true};
             reference::Trace with(true), without(false);
-            const reference::Shaded shaded = shade(prepared, hit, material, with);
-            EXPECT_EQ(shade(prepared, hit, material, without).alpha, shaded.alpha);
+            const reference::Shaded shaded = reference::shade(prepared, hit, material, with);
+            EXPECT_EQ(reference::shade(prepared, hit, material, without).alpha, shaded.alpha);
             EXPECT_TRUE(without.decided_like(with));
             EXPECT_EQ(without.places(), with.places());
         }
