@@ -191,8 +191,6 @@ vec3 radiance_along(Path path, Surface surface, float level) {
 }
 
 //@neutral dispersion
-//@include "refraction.glsl#behind"
-
 vec3 radiance_along(Path path, Surface surface, float level) {
     return radiance_behind(path.place, level);
 }

@@ -22,9 +22,10 @@ using testing::HasSubstr;
 TEST(UnwrapCommand, MakesAMeshReadyForBaking) {
     const Workplace workplace;
     workplace.write_square("out/plain.obj", true);
-    ASSERT_NE(workplace.run("relief-bake mesh out/plain.obj data/vase.obj -o out/n.png").exit_code,
-              0);
-    ProgramResult result = workplace.run(
+    ProgramResult result = workplace.run("relief-bake mesh data/vase.obj out/plain.obj out/n.png");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr("unwrap it with relief-mesh unwrap"));
+    result = workplace.run(
         "relief-mesh unwrap out/plain.obj out/a.obj --size 64x128 --padding 6 --report out/a.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("atlas     1 chart (0 below 64 texels), "));
@@ -43,7 +44,7 @@ TEST(UnwrapCommand, MakesAMeshReadyForBaking) {
     Report ignored;
     const Mesh mesh = read_mesh(workplace / "out/a.obj", ignored).mesh;
     ASSERT_EQ(mesh.texcoords.size(), 4U);
-    result = workplace.run("relief-bake mesh out/a.obj out/a.obj -o out/n.png --size 32");
+    result = workplace.run("relief-bake mesh out/a.obj out/a.obj out/n.png --size 32");
     EXPECT_EQ(result.exit_code, 0) << result.error;
 }
 

@@ -131,7 +131,9 @@ HeightDepth depth_of(const Heights<Sample>& heights) {
         if (divisor == 1) break;
     }
     const double spacing = level_spacing(heights.samples(), *least, *greatest, divisor);
-    const auto levels = static_cast<unsigned>(heights.largest / (spacing * divisor) + 0.25);
+    // The mean of rounded distances has an error; the distance of codes is exact.
+    const double slack = spacing > 1.0 ? 0.25 : 0.0;
+    const auto levels = static_cast<unsigned>(heights.largest / (spacing * divisor) + slack);
     return {static_cast<int>(std::bit_width(levels)), spacing * divisor / heights.largest};
 }
 
