@@ -82,6 +82,23 @@ double stored_offset(std::size_t coefficient, double code) {
 
 constexpr double max_step = 255.0;
 
+/// The distance from a multiple of a step within which a coefficient counts as one, in codes.
+/// Rounding to codes changes a coefficient by 0.3 codes.
+double tolerance_of(double step) {
+    return std::min(1.0, 0.25 * step);
+}
+
+/// Returns the probability that different values are as close to multiples of a step as these
+/// coefficients are, if they have no step.
+double chance_of(std::span<const double> coefficients, double step) {
+    std::vector<double> multiples;
+    for (const double value : coefficients)
+        multiples.push_back(std::round(std::abs(value) / step));
+    std::sort(multiples.begin(), multiples.end());
+    const auto count = std::unique(multiples.begin(), multiples.end()) - multiples.begin();
+    return portable::pow(2.0 * tolerance_of(step) / step, static_cast<double>(count));
+}
+
 /// Returns the largest integer whose multiples are close to the coefficients, in codes. 0 if there
 /// is none.
 double common_step(std::span<const double> coefficients) {
@@ -89,8 +106,7 @@ double common_step(std::span<const double> coefficients) {
     constexpr double max_misfits = 0.1;
     const auto count = static_cast<double>(coefficients.size());
     for (double step = max_step; step >= min_step; step -= 1.0) {
-        // Rounding to codes changes a coefficient by 0.3 codes.
-        const double tolerance = std::min(1.0, 0.25 * step);
+        const double tolerance = tolerance_of(step);
         double misfits = 0.0;
         for (const double value : coefficients) {
             if (std::abs(value - step * std::round(value / step)) > tolerance) misfits += 1.0;
@@ -121,6 +137,7 @@ std::optional<BlockQuantization> block_quantization(std::span<const HeightTile> 
     }
     constexpr std::size_t min_samples = 20;
     constexpr double min_coarse_step = 3.0;
+    constexpr double max_chance = 1e-3;
     BlockQuantization result;
     int tested = 0;
     int coarse = 0;
@@ -131,6 +148,8 @@ std::optional<BlockQuantization> block_quantization(std::span<const HeightTile> 
         }
         const double step = common_step(coefficients[i]);
         result.steps[i] = step * code;
+        // A few values are multiples of some step by chance, as in a map of equal slopes.
+        if (step >= min_coarse_step && chance_of(coefficients[i], step) > max_chance) continue;
         tested += 1;
         if (step >= min_coarse_step) coarse += 1;
     }
