@@ -234,13 +234,6 @@ std::vector<ScenePart> model_parts() {
                        model.attenuation_distance = 0.7F;
                        model.attenuation_color = {0.9F, 0.3F, 0.0F};
                    }),
-        plain_part("dispersion",
-                   [](Scene& s) {
-                       MetallicRoughness& model = clear_model_of(s);
-                       model.roughness = 0.2F;
-                       model.thickness = 0.5F;
-                       model.dispersion = 5.0F;
-                   }),
     };
 }
 
@@ -362,8 +355,22 @@ std::vector<ScenePart> all_slots() {
     return joined({model_slots(), common_slots()});
 }
 
+/// Of the newest effects: at the end, so that the scenes of the others do not change.
+std::vector<ScenePart> newest_parts() {
+    return {
+        plain_part("dispersion",
+                   [](Scene& s) {
+                       MetallicRoughness& model = clear_model_of(s);
+                       model.roughness = 0.2F;
+                       model.thickness = 0.5F;
+                       model.dispersion = 5.0F;
+                   }),
+    };
+}
+
 std::vector<ScenePart> all_parts() {
-    return joined({lighting_parts(), model_parts(), surface_parts(), environment_parts()});
+    return joined(
+        {lighting_parts(), model_parts(), surface_parts(), environment_parts(), newest_parts()});
 }
 
 /// A sphere that nearly fills the picture, under two lights and ambient light.
