@@ -20,13 +20,13 @@
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/report.h"
 
-namespace relief::detail {
+namespace RELIEF_API relief {
+
+namespace detail {
 class ProgressStage;
 void note_file(const std::filesystem::path& file);
 class WorkMemory;
-}  // namespace relief::detail
-
-namespace RELIEF_API relief {
+}  // namespace detail
 
 /// The floating-point type of a computation. Each option of this type documents its accuracy and
 /// time.
