@@ -345,7 +345,8 @@ class CellPacker {
         // The mask begins at the margin before the chart; the origin is rotated with it.
         const double w = each.width * cell_;
         const double h = each.height * cell_;
-        const glm::dvec2 corner = glm::dvec2(each.at.x, each.at.y) * static_cast<double>(cell_);
+        // Blocks of texels are counted from the upper edge of the map.
+        const glm::dvec2 corner(each.at.x * cell_, each.at.y * cell_ + options_.size.y % cell_);
         switch (each.turns) {
             case 0:
                 return {0, corner + glm::dvec2(margin)};
