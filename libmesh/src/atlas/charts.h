@@ -15,7 +15,7 @@
 
 namespace relief::detail {
 
-/// What a chart may span.
+/// The limits of the normals of a chart.
 struct ChartLimits {
     double cone = 1.309;   ///< Half angle of the cone that contains all mean normals, radians.
     double spread = 0.35;  ///< Mean squared chord between the normals and their mean.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <queue>
@@ -262,12 +263,8 @@ std::vector<FlatChart> flat_charts(const AtlasSurface& surface, const Segmentati
         }
     });
     std::vector<FlatChart> result;
-    for (std::uint32_t origin = 0; origin < parts.size(); ++origin) {
-        for (FlatChart& chart : parts[origin]) {
-            chart.origin = origin;
-            result.push_back(std::move(chart));
-        }
-    }
+    for (std::vector<FlatChart>& charts : parts)
+        std::move(charts.begin(), charts.end(), std::back_inserter(result));
     return result;
 }
 
@@ -277,8 +274,6 @@ std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers
     const double total = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
     std::vector<FlatChart> parts;
     ChartFlattener(surface, members, limits, total).divide(chart.mesh, face, parts);
-    for (FlatChart& part : parts)
-        part.origin = chart.origin;
     return parts;
 }
 

@@ -20,11 +20,9 @@ struct FlatChart {
     std::vector<glm::dvec2> coordinates;  ///< At least 0; the box begins at the origin.
     glm::dvec2 size{0.0};
     double area = 0.0;  ///< Of the surface.
-    /// The chart that contained the faces at the beginning.
-    std::uint32_t origin = 0;
 };
 
-/// What a chart must fulfil.
+/// The limits of a chart in the plane.
 struct FlatnessLimits {
     /// The largest permitted ratio of a triangle's singular values, and of its areas.
     double max_stretch = 4.0;

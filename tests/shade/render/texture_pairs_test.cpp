@@ -355,7 +355,7 @@ std::vector<ScenePart> all_slots() {
     return joined({model_slots(), common_slots()});
 }
 
-/// Of the newest effects: at the end, so that the scenes of the others do not change.
+/// New effects come last, so that the scenes of the other effects stay the same.
 std::vector<ScenePart> newest_parts() {
     return {
         plain_part("dispersion",
