@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "atlas/atlas_stats.h"
 #include "atlas/charts.h"
 #include "atlas/flat_charts.h"
 #include "atlas/injectivity.h"
@@ -29,8 +30,6 @@ constexpr double expected_use = 0.65;
 /// The length of a chart, in sides of the map, above which it is divided instead of shrinking all
 /// charts.
 constexpr double max_overlength = 1.25;
-constexpr double small_chart_texels = 64.0;
-constexpr double min_area_share = 1e-6;
 
 void check(const UnwrapOptions& options) {
     const auto refuse = [](const std::string& what, double value, const std::string& range) {
@@ -111,100 +110,25 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
     }
 }
 
-/// The value below which a share of the weights lies. \param values with weights, ascending
-double quantile(std::span<const std::pair<double, double>> values, double share) {
-    double sum = 0.0;
-    double total = 0.0;
-    for (const auto& [value, weight] : values)
-        total += weight;
-    for (const auto& [value, weight] : values) {
-        sum += weight;
-        if (sum >= share * total) return value;
-    }
-    return values.empty() ? 0.0 : values.back().first;
-}
-
-AtlasStats stats_of(const AtlasSurface& surface, const Atlas& atlas, const glm::ivec2& size) {
-    AtlasStats stats;
-    const glm::dvec2 texels = glm::dvec2(size) / lattice_size;
-    std::vector<std::pair<double, double>> densities;
-    std::vector<std::uint32_t> chart_of(surface.faces.size());
-    double map_area = 0.0;
-    double area = 0.0;
-    for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
-        const FlatChart& chart = atlas.charts[c];
-        double chart_texels = 0.0;
-        for (std::size_t i = 0; i < chart.mesh.faces.size(); ++i) {
-            const glm::uvec3& v = chart.mesh.vertices[i];
-            const std::uint32_t face = chart.mesh.faces[i];
-            chart_of[face] = c;
-            const auto point = [&](std::uint32_t vertex) {
-                return glm::dvec2(atlas.points[c][vertex]) * texels;
-            };
-            const Stretch stretch = stretch_of(surface, face, {point(v.x), point(v.y), point(v.z)});
-            const double weight = surface.areas[face];
-            chart_texels += weight * stretch.largest * stretch.smallest;
-            area += weight;
-            densities.emplace_back(std::sqrt(stretch.largest * stretch.smallest), weight);
-            stats.stretch += 0.5 * weight *
-                             (1.0 / (stretch.largest * stretch.largest) +
-                              1.0 / (stretch.smallest * stretch.smallest));
-            stats.mean_anisotropy += weight * (stretch.largest / stretch.smallest);
-        }
-        map_area += chart_texels;
-        if (chart_texels < small_chart_texels) ++stats.small_charts;
-    }
-    stats.charts = atlas.charts.size();
-    if (!(area > 0.0)) return stats;
-    for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
-        const FlatChart& chart = atlas.charts[c];
-        for (std::size_t i = 0; i < chart.mesh.faces.size(); ++i) {
-            const std::uint32_t face = chart.mesh.faces[i];
-            if (surface.areas[face] < min_area_share * area) continue;
-            const glm::uvec3& v = chart.mesh.vertices[i];
-            const auto point = [&](std::uint32_t vertex) {
-                return glm::dvec2(atlas.points[c][vertex]) * texels;
-            };
-            const Stretch stretch = stretch_of(surface, face, {point(v.x), point(v.y), point(v.z)});
-            stats.max_anisotropy =
-                std::max(stats.max_anisotropy, stretch.largest / stretch.smallest);
-        }
-    }
-    const double mean_density = std::sqrt(map_area / area);
-    std::sort(densities.begin(), densities.end());
-    stats.min_density = quantile(densities, 0.05) / mean_density;
-    stats.max_density = quantile(densities, 0.95) / mean_density;
-    stats.stretch = std::sqrt(stats.stretch / area) * mean_density;
-    stats.mean_anisotropy /= area;
-    stats.used = map_area / (static_cast<double>(size.x) * size.y);
-    stats.texels_per_unit = mean_density / surface.unit;
-    stats.area = area * surface.unit * surface.unit;
-    double seams = 0.0;
-    for (Corner edge = 0; edge < surface.opposite.size(); ++edge) {
-        const Corner other = surface.opposite[edge];
-        if (other == no_corner || (edge < other && chart_of[edge / 3] != chart_of[other / 3]))
-            seams += surface.edge_length(edge);
-    }
-    stats.relative_seam_length = seams / std::sqrt(area);
-    stats.seam_length = seams * surface.unit;
-    return stats;
-}
-
 /// Texture coordinates from lattice coordinates: v points down. The result is exact.
 glm::vec2 texcoord_of(const LatticePoint& point) {
     return {static_cast<float>(point.x / lattice_size),
             static_cast<float>((lattice_size - point.y) / lattice_size)};
 }
 
-void fill_corners(const AtlasSurface& surface, const Atlas& atlas, Unwrapped& result) {
+/// Fills the coordinates and charts of triangles. \return the charts of faces
+FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, Unwrapped& result) {
     struct Place {
         std::uint32_t chart = 0, index = 0;
     };
     std::vector<Place> places(surface.faces.size());
+    FaceCharts charts{std::vector<std::uint32_t>(surface.faces.size()), atlas.charts.size()};
     for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
         const std::vector<std::uint32_t>& faces = atlas.charts[c].mesh.faces;
-        for (std::uint32_t i = 0; i < faces.size(); ++i)
+        for (std::uint32_t i = 0; i < faces.size(); ++i) {
             places[faces[i]] = {c, i};
+            charts.chart[faces[i]] = c;
+        }
     }
     for (std::size_t t = 0; t < surface.face_of_triangle.size(); ++t) {
         const std::uint32_t face = surface.face_of_triangle[t];
@@ -218,6 +142,7 @@ void fill_corners(const AtlasSurface& surface, const Atlas& atlas, Unwrapped& re
                 texcoord_of(atlas.points[place.chart][v[static_cast<glm::length_t>(i)]]);
         }
     }
+    return charts;
 }
 
 }  // namespace
@@ -256,8 +181,8 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     PackingOptions packing{options.size, options.padding, options.alignment, std::nullopt};
     if (options.texels_per_unit) packing.texels_per_unit = texels_per_unit;
     const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, packing);
-    fill_corners(surface, atlas, result);
-    result.stats = stats_of(surface, atlas, options.size);
+    const FaceCharts face_charts = fill_corners(surface, atlas, result);
+    result.stats = stats_of(surface, result.corner_texcoords, face_charts, options.size);
     return result;
 }
 

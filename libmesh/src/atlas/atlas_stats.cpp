@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "atlas/atlas_stats.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "atlas/flatten.h"
+
+namespace relief::detail {
+namespace {
+
+constexpr double small_chart_texels = 64.0;
+constexpr double min_area_share = 1e-6;
+
+/// The value below which a share of the weights lies. \param values with weights, ascending
+double quantile(std::span<const std::pair<double, double>> values, double share) {
+    double sum = 0.0;
+    double total = 0.0;
+    for (const auto& [value, weight] : values)
+        total += weight;
+    for (const auto& [value, weight] : values) {
+        sum += weight;
+        if (sum >= share * total) return value;
+    }
+    return values.empty() ? 0.0 : values.back().first;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> triangles_of_faces(const AtlasSurface& surface) {
+    std::vector<std::uint32_t> triangles(surface.faces.size());
+    for (std::size_t t = surface.face_of_triangle.size(); t-- > 0;) {
+        const std::uint32_t face = surface.face_of_triangle[t];
+        if (face != no_face) triangles[face] = static_cast<std::uint32_t>(t);
+    }
+    return triangles;
+}
+
+std::array<glm::dvec2, 3> texels_of(std::span<const glm::vec2> corner_texcoords,
+                                    const AtlasSurface& surface, std::uint32_t triangle,
+                                    const glm::ivec2& size) {
+    std::array<glm::dvec2, 3> texels;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t corner = (i + surface.first_corner[triangle]) % 3;
+        const glm::dvec2 uv(corner_texcoords[3 * std::size_t{triangle} + corner]);
+        texels[i] = glm::dvec2(uv.x, 1.0 - uv.y) * glm::dvec2(size);
+    }
+    return texels;
+}
+
+AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corner_texcoords,
+                    const FaceCharts& charts, const glm::ivec2& size) {
+    AtlasStats stats;
+    stats.charts = charts.count;
+    const std::vector<std::uint32_t> triangles = triangles_of_faces(surface);
+    struct Measured {
+        std::uint32_t face;
+        double anisotropy;
+    };
+    std::vector<Measured> measured;
+    std::vector<std::pair<double, double>> densities;
+    std::vector<double> chart_texels(charts.count, 0.0);
+    double area = 0.0;
+    for (std::uint32_t face = 0; face < surface.faces.size(); ++face) {
+        if (charts.chart[face] == no_face) continue;
+        const Stretch stretch =
+            stretch_of(surface, face, texels_of(corner_texcoords, surface, triangles[face], size));
+        const double smallest = std::abs(stretch.smallest);
+        const double weight = surface.areas[face];
+        chart_texels[charts.chart[face]] += weight * stretch.largest * smallest;
+        area += weight;
+        densities.emplace_back(std::sqrt(stretch.largest * smallest), weight);
+        stats.stretch += 0.5 * weight *
+                         (1.0 / (stretch.largest * stretch.largest) + 1.0 / (smallest * smallest));
+        const double anisotropy = stretch.largest / smallest;
+        stats.mean_anisotropy += weight * anisotropy;
+        measured.push_back({face, anisotropy});
+    }
+    if (!(area > 0.0)) return stats;
+    for (const Measured& each : measured)
+        if (surface.areas[each.face] >= min_area_share * area)
+            stats.max_anisotropy = std::max(stats.max_anisotropy, each.anisotropy);
+    double map_area = 0.0;
+    for (const double texels : chart_texels) {
+        map_area += texels;
+        if (texels < small_chart_texels) ++stats.small_charts;
+    }
+    const double mean_density = std::sqrt(map_area / area);
+    std::sort(densities.begin(), densities.end());
+    stats.min_density = quantile(densities, 0.05) / mean_density;
+    stats.max_density = quantile(densities, 0.95) / mean_density;
+    stats.stretch = std::sqrt(stats.stretch / area) * mean_density;
+    stats.mean_anisotropy /= area;
+    stats.used = map_area / (static_cast<double>(size.x) * size.y);
+    stats.texels_per_unit = mean_density / surface.unit;
+    stats.area = area * surface.unit * surface.unit;
+    double seams = 0.0;
+    for (Corner edge = 0; edge < surface.opposite.size(); ++edge) {
+        const Corner other = surface.opposite[edge];
+        if (other == no_corner ||
+            (edge < other && charts.chart[edge / 3] != charts.chart[other / 3]))
+            seams += surface.edge_length(edge);
+    }
+    stats.relative_seam_length = seams / std::sqrt(area);
+    stats.seam_length = seams * surface.unit;
+    return stats;
+}
+
+}  // namespace relief::detail
