@@ -143,6 +143,38 @@ TEST(CheckCommand, OverlappingTextureIsAProblemForBaking) {
                           "another triangle: a bake is ambiguous\n"));
 }
 
+TEST(CheckCommand, MeasuresTextureCoordinates) {
+    const Workplace workplace;
+    // Two squares with the same coordinates; the second one has a material.
+    workplace.write("two.mtl", "newmtl red\n");
+    workplace.write("two.obj",
+                    "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 3 0 0\nv 4 0 0\n"
+                    "v 4 1 0\nv 3 1 0\nvt 0.25 0.25\nvt 0.75 0.25\nvt 0.75 0.75\nvt 0.25 0.75\n"
+                    "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nusemtl red\nf 5/2 6/1 7/4\nf 5/2 7/4 8/3\n");
+    const std::string one =
+        "1 chart (0 below 64 texels), 25.0 % used, 64 texels per unit (5 to 95 %: 1.00 to 1.00 of "
+        "it), stretch L2 1.000, seams 4";
+    ProgramResult result = workplace.run("relief-mesh check two.obj --map-size 128");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("texcoords no material: " + one +
+                                      "\n          material 0: " + one + ", 1 chart mirrored\n"));
+    result = workplace.run("relief-mesh check two.obj --map-size 128x64 --json");
+    const json maps = json::parse(result.out)["files"][0]["texcoords"];
+    ASSERT_EQ(maps.size(), 2U);
+    EXPECT_EQ(maps[1]["material"], "material 0");
+    EXPECT_EQ(maps[1]["mirrored_charts"], 1);
+    EXPECT_EQ(maps[1]["overlapping"], 0);
+    EXPECT_EQ(maps[1]["min_distance"], nullptr);
+    EXPECT_NEAR(maps[0]["atlas"]["mean_anisotropy"].get<double>(), 2.0, 1e-9);
+
+    workplace.write_square("square.obj", true);
+    EXPECT_THAT(workplace.run("relief-mesh check square.obj --map-size 64").out,
+                HasSubstr("texcoords none\n"));
+    result = workplace.run("relief-mesh check square.obj --map-size 8");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.error, HasSubstr("--map-size 8"));
+}
+
 TEST(CheckCommand, OutputDoesNotDependOnThreads) {
     const Workplace workplace;
     const std::string line =

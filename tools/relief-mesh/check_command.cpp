@@ -7,10 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "atlas_summary.h"
 #include "commands.h"
 #include "common/model_file.h"
 #include "common/options.h"
@@ -19,9 +24,66 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/tangents.h"
+#include "relief/mesh/texcoord_quality.h"
 
 namespace relief::tools {
 namespace {
+
+struct CheckOptions {
+    std::vector<std::filesystem::path> files;
+    bool json = false;
+    bool strict = false;
+    bool for_baking = false;
+    std::optional<glm::ivec2> map_size;
+    GeneralOptions general;
+};
+
+/// The texture coordinates of all triangles with one material, which share a map.
+struct MeasuredMap {
+    std::string material;  ///< "material 0", or empty if there is only one.
+    TexcoordQuality quality;
+    Report report;
+};
+
+/// Adds the triangles of `mesh` with their coordinates to the mesh of their material. Materials
+/// are numbered from 1; 0 is none.
+void add_by_material(const Mesh& mesh, std::map<std::uint32_t, Mesh>& meshes) {
+    if (mesh.texcoords.empty()) return;
+    std::vector<MaterialRange> ranges = mesh.material_ranges;
+    if (ranges.empty())
+        ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt}};
+    for (const MaterialRange& range : ranges) {
+        std::vector<std::uint32_t> triangles(range.triangle_count);
+        std::iota(triangles.begin(), triangles.end(), range.first_triangle);
+        const Mesh part = part_of(mesh, triangles);
+        Mesh& target = meshes[range.material ? *range.material + 1 : 0];
+        const auto first = static_cast<std::uint32_t>(target.positions.size());
+        target.positions.insert(target.positions.end(), part.positions.begin(),
+                                part.positions.end());
+        target.texcoords.insert(target.texcoords.end(), part.texcoords.begin(),
+                                part.texcoords.end());
+        for (const glm::uvec3& triangle : part.triangles)
+            target.triangles.push_back(triangle + first);
+    }
+}
+
+std::vector<MeasuredMap> measured_maps(const Model& model, const glm::ivec2& size) {
+    std::map<std::uint32_t, Mesh> meshes;
+    if (const auto* const document = std::get_if<GltfDocument>(&model)) {
+        for (const GltfPrimitiveId id : document->triangle_primitives())
+            add_by_material(document->mesh(id), meshes);
+    } else {
+        add_by_material(std::get<MeshFile>(model).mesh, meshes);
+    }
+    std::vector<MeasuredMap> maps;
+    for (const auto& [material, mesh] : meshes) {
+        MeasuredMap& map = maps.emplace_back();
+        if (meshes.size() > 1)
+            map.material = material == 0 ? "no material" : fmt::format("material {}", material - 1);
+        map.quality = measure_texcoords(mesh, size, map.report);
+    }
+    return maps;
+}
 
 /// A file and its check.
 struct CheckedFile {
@@ -29,19 +91,23 @@ struct CheckedFile {
     std::string error;  ///< The reason why the file cannot be read, or empty.
     std::string format;
     CheckedModel model;
+    std::vector<MeasuredMap> maps;
 
     [[nodiscard]] bool is_sound() const { return error.empty() && model.is_sound(); }
 };
 
 /// Reads and checks a file. A file that cannot be read, or is not valid, gets an `error`.
-CheckedFile check_file(const std::filesystem::path& file, bool for_baking) {
+CheckedFile check_file(const std::filesystem::path& file, const CheckOptions& options) {
     CheckedFile checked;
     checked.file = file;
     checked.format = format_name(readable_format(file));
     try {
         Report reading;
         const Model contents = read_model(file, reading);
-        checked.model = about(file, [&] { return check_model(contents, reading, for_baking); });
+        checked.model =
+            about(file, [&] { return check_model(contents, reading, options.for_baking); });
+        if (options.map_size)
+            checked.maps = about(file, [&] { return measured_maps(contents, *options.map_size); });
     } catch (const FileError& error) {
         checked.error = error.what();
     }
@@ -277,7 +343,8 @@ Json json_of(const CheckedPart& part) {
 }
 
 /// The text of a file that cannot be read is the error message.
-Summary summary_of(const CheckedFile& file) {
+/// \param is_measured  whether texture coordinates were measured
+Summary summary_of(const CheckedFile& file, bool is_measured) {
     Summary summary;
     summary.add_json({{"file", file.file.string()}, {"sound", file.is_sound()}});
     if (!file.error.empty()) {
@@ -292,6 +359,17 @@ Summary summary_of(const CheckedFile& file) {
     summary.add("problems", problem_lines(file.model),
                 {{"problems", json_of(file.model.reading_problems)}});
     summary.add("notes", notes_text(file.model), {{"notes", json_of(file.model.reading_notes)}});
+    std::vector<std::string> texcoords;
+    for (const MeasuredMap& map : file.maps)
+        texcoords.push_back(quality_text(map.material, map.quality));
+    if (is_measured && texcoords.empty()) texcoords.emplace_back("none");
+    summary.add("texcoords", texcoords,
+                {{"texcoords", json_list(file.maps, [](const MeasuredMap& map) {
+                      Json json = quality_json(map.quality);
+                      json["material"] = map.material;
+                      json["findings"] = json_of(map.report);
+                      return json;
+                  })}});
     summary.add("tangents", tangents_text(file.model),
                 {{"primitives", json_list(file.model.parts,
                                           [](const CheckedPart& part) { return json_of(part); })}});
@@ -299,14 +377,6 @@ Summary summary_of(const CheckedFile& file) {
 }
 
 constexpr const char* page = "docs/hard-cases.md";
-
-struct CheckOptions {
-    std::vector<std::filesystem::path> files;
-    bool json = false;
-    bool strict = false;
-    bool for_baking = false;
-    GeneralOptions general;
-};
 
 ExitCode run(const CLI::App& app, const CheckOptions& options) {
     if (options.json && options.general.quiet)
@@ -319,14 +389,13 @@ ExitCode run(const CLI::App& app, const CheckOptions& options) {
     Verdicts verdicts;
     Json files = Json::array();
     for (const std::filesystem::path& file : options.files) {
-        const CheckedFile checked = stages.run("check", "check " + file.string(), [&] {
-            return check_file(file, options.for_baking);
-        });
+        const CheckedFile checked = stages.run("check", "check " + file.string(),
+                                               [&] { return check_file(file, options); });
         ++(!checked.error.empty() ? verdicts.unreadable
            : checked.is_sound()   ? verdicts.sound
                                   : verdicts.with_problems);
         if (!checked.error.empty()) complain(app, checked.error);
-        const Summary summary = summary_of(checked);
+        const Summary summary = summary_of(checked, options.map_size.has_value());
         if (prints_text) summary.print();
         files.push_back(summary.json());
     }
@@ -351,7 +420,9 @@ Command add_check_command(CLI::App& tool) {
         app, "--json", options->json,
         "Print one JSON object: tool, version, sound, with_problems and unreadable (numbers of "
         "files), documentation (the page that describes the conditions), files [file, sound, "
-        "error or: format, problems and notes of reading, primitives [name, sound, triangles, "
+        "error or: format, problems and notes of reading, texcoords (with --map-size) [material, "
+        "atlas, overlapping, inverted, flat, outside, mirrored_charts, min_distance, findings], "
+        "primitives [name, sound, triangles, "
         "vertices, size, spacing, overlap_raster, tangents {basis, variant, nearest, "
         "nearest_by_far, same_here, texcoord_set, texcoord_set_of_material, corners, left_out, "
         "without_direction, stored_bits, tolerance, agreements} or null, problems and notes "
@@ -361,10 +432,18 @@ Command add_check_command(CLI::App& tool) {
     add_switch(app, "--for-baking", options->for_baking,
                "Check for baking: overlapping texture coordinates and triangles without texture "
                "gradient are problems, for any material.");
+    add_value(app, "--map-size", "N|WxH",
+              "Measure the texture coordinates too, for a map of this size, 16 to 65536 texels: "
+              "charts, used texels, density, stretch, seams, distances, and overlapping, inverted "
+              "and mirrored parts. Primitives with the same material share a map.",
+              [&map_size = options->map_size](const std::string& subject, const std::string& text) {
+                  map_size = parse_atlas_size(subject, text);
+              });
     add_general_options(app, options->general);
     set_examples(app, {"relief-mesh check data/vase.obj data/scenes/pot.glb",
                        "relief-mesh check data/scenes/knot.glb --for-baking --strict",
-                       "relief-mesh check data/vase.obj --strict --json"});
+                       "relief-mesh check data/vase.obj --strict --json",
+                       "relief-mesh check data/scenes/pot.glb --map-size 2048"});
     return {&app, [&app, options] { return run(app, *options); }};
 }
 

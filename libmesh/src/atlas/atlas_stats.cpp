@@ -27,6 +27,40 @@ double quantile(std::span<const std::pair<double, double>> values, double share)
     return values.empty() ? 0.0 : values.back().first;
 }
 
+/// The length of the borders of charts. Where several faces meet, each pair of opposite directions
+/// counts once.
+double seam_length(const AtlasSurface& surface, const FaceCharts& charts) {
+    struct BorderEdge {
+        std::uint32_t low, high;
+        bool is_forward;
+        Corner corner;
+    };
+    std::vector<BorderEdge> edges;
+    for (Corner edge = 0; edge < surface.opposite.size(); ++edge) {
+        const Corner other = surface.opposite[edge];
+        if (other != no_corner && charts.chart[edge / 3] == charts.chart[other / 3]) continue;
+        const glm::uvec3& face = surface.faces[edge / 3];
+        const std::uint32_t from = face[static_cast<glm::length_t>(edge % 3)];
+        const std::uint32_t to = face[static_cast<glm::length_t>((edge + 1) % 3)];
+        edges.push_back({std::min(from, to), std::max(from, to), from < to, edge});
+    }
+    std::sort(edges.begin(), edges.end(), [](const BorderEdge& a, const BorderEdge& b) {
+        if (a.low != b.low) return a.low < b.low;
+        return a.high != b.high ? a.high < b.high : a.corner < b.corner;
+    });
+    double length = 0.0;
+    for (auto first = edges.begin(); first != edges.end();) {
+        const auto last = std::find_if(first, edges.end(), [&](const BorderEdge& edge) {
+            return edge.low != first->low || edge.high != first->high;
+        });
+        const auto forward = std::count_if(first, last, [](auto& edge) { return edge.is_forward; });
+        const auto count = std::max(forward, last - first - forward);
+        length += static_cast<double>(count) * surface.edge_length(first->corner);
+        first = last;
+    }
+    return length;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> triangles_of_faces(const AtlasSurface& surface) {
@@ -96,13 +130,7 @@ AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corn
     stats.used = map_area / (static_cast<double>(size.x) * size.y);
     stats.texels_per_unit = mean_density / surface.unit;
     stats.area = area * surface.unit * surface.unit;
-    double seams = 0.0;
-    for (Corner edge = 0; edge < surface.opposite.size(); ++edge) {
-        const Corner other = surface.opposite[edge];
-        if (other == no_corner ||
-            (edge < other && charts.chart[edge / 3] != charts.chart[other / 3]))
-            seams += surface.edge_length(edge);
-    }
+    const double seams = seam_length(surface, charts);
     stats.relative_seam_length = seams / std::sqrt(area);
     stats.seam_length = seams * surface.unit;
     return stats;

@@ -33,12 +33,12 @@ PlaneBox box_of(std::span<const glm::vec2> points) {
     return box;
 }
 
-/// Numbers the parts of the surface that are connected.
-FaceCharts connected_parts(const AtlasSurface& surface) {
+/// Numbers the connected parts of the faces that are finite in the map.
+FaceCharts connected_parts(const AtlasSurface& surface, std::span<const std::uint8_t> is_finite) {
     FaceCharts charts{std::vector<std::uint32_t>(surface.faces.size(), no_face), 0};
     std::vector<std::uint32_t> open;
     for (std::uint32_t first = 0; first < surface.faces.size(); ++first) {
-        if (charts.chart[first] != no_face) continue;
+        if (charts.chart[first] != no_face || is_finite[first] == 0) continue;
         const auto number = static_cast<std::uint32_t>(charts.count++);
         charts.chart[first] = number;
         open.push_back(first);
@@ -47,7 +47,9 @@ FaceCharts connected_parts(const AtlasSurface& surface) {
             open.pop_back();
             for (Corner edge = 3 * face; edge < 3 * face + 3; ++edge) {
                 const Corner other = surface.opposite[edge];
-                if (other == no_corner || charts.chart[other / 3] != no_face) continue;
+                if (other == no_corner || charts.chart[other / 3] != no_face ||
+                    is_finite[other / 3] == 0)
+                    continue;
                 charts.chart[other / 3] = number;
                 open.push_back(other / 3);
             }
@@ -161,15 +163,16 @@ class Measurement {
             for (int i = 0; i < 3; ++i)
                 corner_texcoords_.push_back(mesh.texcoords[triangle[i]]);
         triangles_ = triangles_of_faces(surface_);
-        charts_ = connected_parts(surface_);
         classify(report);
+        charts_ = connected_parts(surface_, is_finite_);
     }
 
     TexcoordQuality result() {
         quality_.chart.assign(surface_.face_of_triangle.size(), std::nullopt);
         for (std::size_t t = 0; t < quality_.chart.size(); ++t) {
             const std::uint32_t face = surface_.face_of_triangle[t];
-            if (face != no_face && is_finite_[face] != 0) quality_.chart[t] = charts_.chart[face];
+            if (face != no_face && charts_.chart[face] != no_face)
+                quality_.chart[t] = charts_.chart[face];
         }
         count_inverted();
         quality_.overlapping = drawn_.empty() ? 0 : overlapping_among(drawn_);
@@ -222,10 +225,12 @@ class Measurement {
     void count_inverted() {
         std::vector<double> areas(charts_.count, 0.0);
         for (std::uint32_t face = 0; face < signs_.size(); ++face)
-            areas[charts_.chart[face]] += signs_[face] * surface_.areas[face];
+            if (signs_[face] != 0)
+                areas[charts_.chart[face]] += signs_[face] * surface_.areas[face];
         quality_.mirrored_charts = static_cast<std::size_t>(
             std::count_if(areas.begin(), areas.end(), [](double area) { return area < 0.0; }));
         for (std::uint32_t face = 0; face < signs_.size(); ++face) {
+            if (signs_[face] == 0) continue;
             const int usual = areas[charts_.chart[face]] < 0.0 ? -1 : 1;
             if (signs_[face] == -usual) ++quality_.inverted;
         }
