@@ -169,6 +169,7 @@ Camera camera_from(const JsonCursor& object, const Scene& scene, float aspect, J
         depth = 0.5F * (camera.near + camera.far);
     }
     camera.vertical_fov = given.vertical_fov;
+    camera.orthographic_height = given.orthographic_height;
     // The near plane is close, since objects may move towards the eye later.
     camera.near = object.find("near") ? given.near : 0.01F * depth;
     sees_all = !object.find("far");

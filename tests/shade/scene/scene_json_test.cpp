@@ -8,11 +8,13 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <tuple>
 
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/report.h"
+#include "relief/shade/scene_fields.h"
 #include "relief/shade/scene_file.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
@@ -413,6 +415,29 @@ TEST_F(SceneFile, CamerasLookAtAPointOrFrameTheScene) {
     // Markers do not move the camera away. The cube of edge 2 fills the height of the picture.
     EXPECT_NEAR(framed.camera->world_from_view[3].z, 1.0F + 1.04F / std::tan(0.30543F), 1e-3F);
     EXPECT_GT(framed.camera->far, 99.0F);
+}
+
+// Each form of the camera takes every field that the type has.
+TEST_F(SceneFile, CamerasTakeAllFieldsInEachForm) {
+    const std::string fields = R"("fov": 50, "near": 0.5, "far": 70, "orthographic_height": 3)";
+    const std::vector<std::string> forms = {
+        R"("eye": [0, 0, 5])", R"("azimuth": 20)",
+        R"("matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1])"};
+    const auto expect_fields = [](const Camera& camera, const std::string& form) {
+        EXPECT_NEAR(camera.vertical_fov, 50.0F * std::numbers::pi_v<float> / 180.0F, json_rounding)
+            << form;
+        EXPECT_EQ(camera.near, 0.5F) << form;
+        EXPECT_EQ(camera.far, 70.0F) << form;
+        EXPECT_EQ(camera.orthographic_height, 3.0F) << form;
+    };
+    static_assert(std::tuple_size_v<decltype(fields_of<Camera>)> == 4, "test the new field, too");
+    for (const std::string& form : forms) {
+        const SceneGraph graph =
+            load(R"("nodes": [{"shape": "cube"}], "camera": {)" + form + ", " + fields + "}");
+        expect_fields(graph.scene.camera.value(), form);
+    }
+    const SceneGraph graph = load(R"("nodes": [{"camera": {)" + fields + "}}]");
+    expect_fields(graph.scene.camera.value(), "node");
 }
 
 TEST_F(SceneFile, SettingsOfThePicture) {
