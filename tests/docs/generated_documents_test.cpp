@@ -8,9 +8,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "relief/mesh/image_file.h"
 #include "support/images.h"
 #include "support/labels.h"
 #include "support/shared_data.h"
@@ -33,6 +36,32 @@ TEST_P(GeneratedDocuments, EqualANewMeasurement) {
 
 INSTANTIATE_TEST_SUITE_P(All, GeneratedDocuments, testing::ValuesIn(generated_documents()),
                          [](const auto& document) { return document.param.name; });
+
+// Another version of Mesa may round differently, but a changed method or sample changes more.
+TEST_LABELS(slow);
+TEST(DocumentPictures, EqualTheirScript) {
+    const TemporaryDirectory folder;
+    const std::filesystem::path script = source_directory() / "scripts/dev/document-pictures";
+    const std::string command = fmt::format("RELIEF_TOOLS='{}' '{}' --folder '{}'", RELIEF_TOOLS,
+                                            script.string(), folder.path().string());
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    std::size_t compared = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+        const std::filesystem::path name = entry.path().filename();
+        const Image drawn = read_image(entry.path(), ImageUse::color);
+        const Image stored = read_image(source_directory() / "docs/images" / name, ImageUse::color);
+        ASSERT_EQ(drawn.sample_count(), stored.sample_count()) << name;
+        const auto a = drawn.as<std::uint8_t>();
+        const auto b = stored.as<std::uint8_t>();
+        double sum = 0.0;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            sum += std::abs(static_cast<int>(a[i]) - static_cast<int>(b[i]));
+        EXPECT_LT(sum / static_cast<double>(a.size()), 0.25)
+            << "run scripts/dev/document-pictures " << name.stem();
+        ++compared;
+    }
+    EXPECT_GE(compared, 7U);
+}
 
 TEST(NormalMapErrorTables, MapsHaveTheSlopesThatRowsState) {
     for (const double slope : {0.05, 0.4, 1.5}) {

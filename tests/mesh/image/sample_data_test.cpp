@@ -233,6 +233,36 @@ TEST(SampleData, TheVaseNeverStretchesNorMirrorsItsTexture) {
     }
 }
 
+// The inner wall must not come through the outer one, where it would be seen at the silhouette.
+TEST(SampleData, VaseHasAThickWall) {
+    Report report;
+    const Mesh mesh = read_mesh(data / "vase.obj", report).mesh;
+    // The profile from the foot up the outside, over the lip and down the inside, at u = 0.
+    std::vector<glm::vec2> outside;
+    std::vector<glm::vec2> inside;
+    float highest = 0.0F;
+    bool is_inside = false;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const glm::vec3& position = mesh.positions[v];
+        if (mesh.texcoords[v].x != 0.0F || position.x != 0.0F) continue;
+        is_inside = is_inside || position.y < highest;
+        highest = std::max(highest, position.y);
+        (is_inside ? inside : outside).emplace_back(position.z, position.y);
+    }
+    std::size_t compared = 0;
+    for (const glm::vec2& point : inside) {
+        for (std::size_t i = 1; i < outside.size(); ++i) {
+            const glm::vec2& low = outside[i - 1];
+            const glm::vec2& high = outside[i];
+            if (!(low.y <= point.y && point.y < high.y)) continue;
+            const float radius = glm::mix(low.x, high.x, (point.y - low.y) / (high.y - low.y));
+            EXPECT_GT(radius - point.x, 0.01F) << point.y;
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 15U);
+}
+
 TEST(SampleData, VaseNamesItsTexture) {
     Report report;
     const MeshFile file = read_mesh(data / "vase.obj", report);
