@@ -5,3 +5,7 @@
 #pragma once
 
 #define RELIEF_API [[gnu::visibility("default")]]
+
+#if __cplusplus < 202002L
+#error "relief needs C++20 (-std=c++20); programs in C and older C++ use relief/relief.h"
+#endif

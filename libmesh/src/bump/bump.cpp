@@ -17,12 +17,15 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <type_traits>
+#include <vector>
 
 #include "bump/bump_rows.h"
 #include "image/height_holes.h"
+#include "image/normal_coding.h"
 #include "image/texel_loops.h"
 #include "large_memory.h"
 #include "parallel.h"
@@ -492,16 +495,41 @@ void check(const ImageView& height, const BumpOptions& options) {
     check_bump(options);
 }
 
+/// Computes rows of a map of two or four channels: a few rows at a time are computed with three
+/// channels, in memory that stays in the cache of the processor, and copied.
+template <typename Sample>
+bool make_spread_rows(const HeightRows& heights, const BumpOptions& options,
+                      const NormalMapFormat& format, const MutableImageView& map, int first,
+                      int last) {
+    constexpr int texels_at_once = 1 << 15;
+    const int max_rows = std::max(1, texels_at_once / heights.width);
+    const auto width = static_cast<std::size_t>(heights.width);
+    const auto count = static_cast<std::size_t>(std::min(max_rows, last - first));
+    std::vector<Sample> threes(3 * width * count + 1);
+    for (int begin = first; begin < last; begin += max_rows) {
+        const int end = std::min(begin + max_rows, last);
+        const auto row_of = [&](int row) {
+            return threes.data() + 3 * width * static_cast<std::size_t>(row - begin);
+        };
+        if (!make_bump_rows(heights, options, {BumpResult::codes, format, row_of}, begin, end))
+            return false;
+        for (int row = begin; row < end; ++row)
+            spread_samples(row_of(row), width, map.channels, map.row<Sample>(row));
+    }
+    return true;
+}
+
+using MakeRows =
+    std::function<bool(const HeightRows& heights, const BumpOptions& options, int first, int last)>;
+
 /// Computes all rows in parallel. Returns false if a height is not finite.
-bool make_all_rows(const HeightRows& heights, const BumpOptions& options,
-                   const BumpTarget& target) {
+bool make_all_rows(const HeightRows& heights, const BumpOptions& options, const MakeRows& make) {
     const std::size_t grain =
         std::max<std::size_t>(1, bump_texels_per_piece / static_cast<std::size_t>(heights.width));
     std::atomic<bool> finite = true;
     parallel_for(static_cast<std::size_t>(heights.height), grain,
                  [&](std::size_t begin, std::size_t end) {
-                     if (!make_bump_rows(heights, options, target, static_cast<int>(begin),
-                                         static_cast<int>(end)))
+                     if (!make(heights, options, static_cast<int>(begin), static_cast<int>(end)))
                          finite = false;
                  });
     return finite;
@@ -513,18 +541,24 @@ std::function<const void*(int)> rows_of(std::span<const Sample> samples, int wid
 }
 
 /// Computes all rows of an image. If it has holes, the rows are computed from a filled copy.
-void make_image_rows(const ImageView& height, const BumpOptions& given, const BumpTarget& target,
+void make_image_rows(const ImageView& height, const BumpOptions& given, const MakeRows& make,
                      Report& report) {
     const BumpOptions options = resolve_options(height, given);
     HeightRows heights{height.width, height.height, height.bits(), {}};
     with_sample_type(height, [&]<typename Sample>(Sample) {
         heights.row = [&height](int row) { return height.row<Sample>(row); };
     });
-    if (make_all_rows(heights, options, target)) return;
+    if (make_all_rows(heights, options, make)) return;
     const Image whole = part_of(height, {0, 0, height.width, height.height});
     const std::vector<float> filled = filled_holes(whole, *options.wrap, report);
     heights.row = rows_of(std::span(filled), height.width);
-    make_all_rows(heights, options, target);
+    make_all_rows(heights, options, make);
+}
+
+MakeRows make_into(const BumpTarget& target) {
+    return [target](const HeightRows& heights, const BumpOptions& options, int first, int last) {
+        return make_bump_rows(heights, options, target, first, last);
+    };
 }
 
 /// The rows of an image as a target.
@@ -537,7 +571,7 @@ Image floats_from_height(const Image& height, int channels, BumpResult result,
                          const BumpOptions& options, Report& report) {
     check(height, options);
     Image image = make_image(height.width, height.height, channels, 32, ColorSpace::data);
-    make_image_rows(height, options, {result, {}, target_rows<float>(image)}, report);
+    make_image_rows(height, options, make_into({result, {}, target_rows<float>(image)}), report);
     return image;
 }
 
@@ -609,19 +643,18 @@ void normal_map_from_height(const ImageView& height, const BumpOptions& options,
                             Report& report, const ExecutionOptions& execution) {
     const ExecutionScope scope(execution);
     check(height, options);
-    const bool fits = result.width == height.width && result.height == height.height &&
-                      result.channels == 3 && result.bits() == format.bits;
-    if (!fits) {
-        throw InvalidInput(fmt::format(
-            "the memory for the normal map has {} x {} texels of {} channels with {} bits, but "
-            "must have {} x {} of 3 with {}",
-            result.width, result.height, result.channels, result.bits(), height.width,
-            height.height, format.bits));
-    }
-    BumpTarget target{BumpResult::codes, format, {}};
-    with_sample_type(result,
-                     [&]<typename Sample>(Sample) { target.row = target_rows<Sample>(result); });
-    make_image_rows(height, options, target, report);
+    check_target(result, height, format.bits, 2, 4, "normal map");
+    with_sample_type(result, [&]<typename Sample>(Sample) {
+        if (result.channels == 3) {
+            const BumpTarget target{BumpResult::codes, format, target_rows<Sample>(result)};
+            return make_image_rows(height, options, make_into(target), report);
+        }
+        const auto make = [&](const HeightRows& heights, const BumpOptions& resolved, int first,
+                              int last) {
+            return make_spread_rows<Sample>(heights, resolved, format, result, first, last);
+        };
+        make_image_rows(height, options, make, report);
+    });
 }
 
 Image normal_map_from_height(const Image& height, const BumpOptions& options,

@@ -18,7 +18,8 @@ namespace detail {
 std::optional<std::size_t> corner_beyond(TriangleSpan triangles, std::size_t vertex_count);
 
 /// \throws InvalidInput if there are too many corners for 32-bit indices, or for the first invalid
-///         index: "triangle 7 names vertex 12, but there are only 8"
+///         index: "triangle 7 names vertex 12, but there are only 8", or "vertex 4294967295 (-1 as
+///         a signed index)"
 void check_triangles(TriangleSpan triangles, std::size_t vertex_count);
 
 }  // namespace detail

@@ -65,9 +65,11 @@ void detail::check_triangles(TriangleSpan triangles, std::size_t vertex_count) {
     }
     const std::optional<std::size_t> corner = corner_beyond(triangles, vertex_count);
     if (!corner) return;
-    throw InvalidInput(
-        fmt::format("triangle {} names vertex {}, but there are only {}", *corner / 3,
-                    triangles[*corner / 3][static_cast<int>(*corner % 3)], vertex_count));
+    const std::uint32_t vertex = triangles[*corner / 3][static_cast<int>(*corner % 3)];
+    const auto as_signed = static_cast<std::int32_t>(vertex);
+    throw InvalidInput(fmt::format(
+        "triangle {} names vertex {}{}, but there are only {}", *corner / 3, vertex,
+        as_signed < 0 ? fmt::format(" ({} as a signed index)", as_signed) : "", vertex_count));
 }
 
 namespace {

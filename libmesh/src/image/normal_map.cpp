@@ -70,8 +70,15 @@ void encode(const ImageView& normals, const NormalMapFormat& format, int first_r
             const MutableImageView& map, Report& report) {
     for_each_row(normals.width, normals.height, report, [&](std::size_t index, Report& found) {
         const int row = static_cast<int>(index);
-        encode_row(normals.row<float>(row), normals.width, first_row + row, format,
-                   map.row<Sample>(row), found);
+        const auto encode_into = [&](Sample* threes) {
+            encode_row(normals.row<float>(row), normals.width, first_row + row, format, threes,
+                       found);
+        };
+        if (map.channels == 3) return encode_into(map.row<Sample>(row));
+        const auto width = static_cast<std::size_t>(normals.width);
+        std::vector<Sample> threes(3 * width + 1);
+        encode_into(threes.data());
+        spread_samples(threes.data(), width, map.channels, map.row<Sample>(row));
     });
 }
 
@@ -134,22 +141,22 @@ void check_map(const ImageView& map) {
     }
 }
 
-/// \param what  "normal map"
-/// \throws InvalidInput if the memory for a result does not have three channels of these bits and
-///         the size of the input
-void check_target(const MutableImageView& target, const ImageView& input, int bits,
-                  const char* what) {
-    if (target.width == input.width && target.height == input.height && target.channels == 3 &&
-        target.bits() == bits)
+}  // namespace
+
+void detail::check_target(const MutableImageView& target, const ImageView& input, int bits,
+                          int min_channels, int max_channels, const char* what) {
+    if (target.width == input.width && target.height == input.height &&
+        target.channels >= min_channels && target.channels <= max_channels && target.bits() == bits)
         return;
+    const std::string channels = min_channels == max_channels
+                                     ? fmt::format("{}", min_channels)
+                                     : fmt::format("{} to {}", min_channels, max_channels);
     throw InvalidInput(
         fmt::format("the memory for the {} has {} x {} texels of {} channels with {} bits, but "
-                    "must have {} x {} of 3 with {}",
+                    "must have {} x {} of {} with {}",
                     what, target.width, target.height, target.channels, target.bits(), input.width,
-                    input.height, bits));
+                    input.height, channels, bits));
 }
-
-}  // namespace
 
 Image encode_normal_map(const ImageView& normals, const NormalMapFormat& format, Report& report) {
     check_floats(normals, 3, "normals");
@@ -163,7 +170,7 @@ void encode_normal_map(const ImageView& normals, const NormalMapFormat& format,
                        const ExecutionOptions& execution) {
     const ExecutionScope scope(execution);
     check_floats(normals, 3, "normals");
-    check_target(map, normals, format.bits, "normal map");
+    check_target(map, normals, format.bits, 2, 4, "normal map");
     with_sample_type(
         map, [&]<typename Sample>(Sample) { encode<Sample>(normals, format, 0, map, report); });
 }
@@ -181,7 +188,7 @@ void decode_normal_map(const ImageView& map, Green green, FlatCode flat,
                        const ExecutionOptions& execution) {
     const ExecutionScope scope(execution);
     check_map(map);
-    check_target(normals, map, 32, "normals");
+    check_target(normals, map, 32, 3, 3, "normals");
     with_sample_type(map, [&]<typename Sample>(Sample) {
         decode<Sample>(map, green, flat, ExactFlat<Sample>(map, flat, texels, 0, 1), normals,
                        report);

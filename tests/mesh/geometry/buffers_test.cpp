@@ -112,6 +112,28 @@ TEST(Buffers, LargeMeshesWithShortIndicesGiveTheSameBits) {
     EXPECT_TRUE(test::same_bits(normals, copied(buffer.all(&Vertex::normal))));
 }
 
+TEST(Buffers, PlainFloatsAndSignedIndicesGiveTheSameBits) {
+    const Mesh mesh = test::sphere(20, 15);
+    VertexBuffer buffer(mesh);
+    const std::vector<std::int32_t> indices(buffer.indices.begin(), buffer.indices.end());
+    const TriangleSpan triangles{std::span<const std::int32_t>(indices)};
+    const float* const positions = &buffer.vertices[0].position.x;
+    float* const normals = &buffer.vertices[0].normal.x;
+    const std::size_t count = buffer.vertices.size();
+    vertex_normals({positions, count, sizeof(Vertex)}, triangles, NormalOptions{},
+                   {normals, count, sizeof(Vertex)});
+    const auto expected = vertex_normals(mesh.positions, mesh.triangles, NormalOptions{});
+    EXPECT_TRUE(test::same_bits(expected, copied(buffer.all(&Vertex::normal))));
+
+    using Positions = StridedSpan<const glm::vec3>;
+    EXPECT_EQ(Positions(positions, count, sizeof(Vertex))[1], buffer.vertices[1].position);
+    EXPECT_EQ(Positions(&mesh.positions[0].x, count).stride(), sizeof(glm::vec3));
+    static_assert(std::is_constructible_v<Positions, float*, std::size_t>);
+    static_assert(!std::is_constructible_v<StridedSpan<glm::vec3>, const float*, std::size_t>);
+    static_assert(!std::is_constructible_v<Positions, const double*, std::size_t>);
+    static_assert(!std::is_constructible_v<StridedSpan<int>, float*, std::size_t>);
+}
+
 TEST(Buffers, VertexTangentsAreThoseOfTheCorners) {
     const Mesh mesh = test::grid(8);
     VertexBuffer buffer(mesh);
@@ -177,6 +199,13 @@ TEST(Buffers, RefuseMemoryOfAnotherSizeAndIndicesBeyondTheVertices) {
                                  NormalOptions{}, normals);
               }),
               "triangle 1 names vertex 4, but there are only 4");
+    const std::vector<std::int32_t> negative = {0, 1, 2, 2, -3, 0};
+    EXPECT_EQ(test::message_of<InvalidInput>([&] {
+                  vertex_normals(mesh.positions,
+                                 TriangleSpan(std::span<const std::int32_t>(negative)),
+                                 NormalOptions{}, normals);
+              }),
+              "triangle 1 names vertex 4294967293 (-3 as a signed index), but there are only 4");
 }
 
 TEST(Buffers, IgnoreSurplusIndicesAndAcceptNoTriangles) {
@@ -292,7 +321,48 @@ TEST(Views, ResultsOfAnotherFormatAreRefused) {
                   normal_map_from_height(ImageView(heights), {}, format, MutableImageView(result));
               }),
               "the memory for the normal map has 150 x 90 texels of 3 channels with 8 bits, but "
-              "must have 150 x 90 of 3 with 16");
+              "must have 150 x 90 of 2 to 4 with 16");
+}
+
+/// Returns the texels of three channels with two or four: x and y, or with an opaque alpha.
+template <typename Sample>
+std::vector<Sample> spread(const Image& map, int channels, Sample opaque) {
+    std::vector<Sample> samples;
+    const std::span<const Sample> threes = map.as<Sample>();
+    for (std::size_t i = 0; i < threes.size(); i += 3) {
+        samples.insert(samples.end(), threes.begin() + static_cast<std::ptrdiff_t>(i),
+                       threes.begin() + static_cast<std::ptrdiff_t>(i + (channels == 2 ? 2 : 3)));
+        if (channels == 4) samples.push_back(opaque);
+    }
+    return samples;
+}
+
+template <typename Sample>
+void expect_codes_of_three_channels(const NormalMapFormat& format, Sample opaque) {
+    const Image heights = waves(32);
+    BumpOptions options;
+    options.kernel = Kernel::sobel3;
+    options.wrap = Wrap::clamp;
+    options.strength = 9.0;
+    const Image normals = normals_from_height(heights, options);
+    const Image map = normal_map_from_height(heights, options, format);
+    const Image encoded = encode_normal_map(normals, format);
+    for (const int channels : {2, 4}) {
+        SCOPED_TRACE(channels);
+        Image result = make_image(150, 90, channels, format.bits, ColorSpace::data);
+        normal_map_from_height(ImageView(heights), options, format, MutableImageView(result));
+        EXPECT_EQ(std::get<std::vector<Sample>>(result.samples), spread(map, channels, opaque));
+        encode_normal_map(normals, format, MutableImageView(result));
+        EXPECT_EQ(std::get<std::vector<Sample>>(result.samples), spread(encoded, channels, opaque));
+    }
+}
+
+TEST(Views, NormalMapsOfTwoAndFourChannelsHaveTheCodesOfThree) {
+    expect_codes_of_three_channels<std::uint8_t>({.bits = 8}, 255);
+    expect_codes_of_three_channels<std::uint8_t>(
+        {.bits = 8, .green = Green::down, .dither = Dither::blue_noise}, 255);
+    expect_codes_of_three_channels<std::uint16_t>({.bits = 16}, 65535);
+    expect_codes_of_three_channels<float>({.bits = 32}, 1.0F);
 }
 
 TEST(Views, PaddedPixelsAreCheckedLikeImages) {
@@ -343,7 +413,7 @@ TEST(Views, PaddedPixelsAreCodedLikeImages) {
     EXPECT_EQ(test::message_of<InvalidInput>(
                   [&] { encode_normal_map(normals, {.bits = 8}, MutableImageView(narrow)); }),
               "the memory for the normal map has 149 x 90 texels of 3 channels with 8 bits, but "
-              "must have 150 x 90 of 3 with 8");
+              "must have 150 x 90 of 2 to 4 with 8");
     EXPECT_THROW(decode_normal_map(normals, Green::up, FlatCode::half, MutableImageView(narrow)),
                  InvalidInput);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Views of arrays in the caller's memory: interleaved vertex buffers, and index buffers of 16 or
-/// 32 bits. Functions read and write them in place, without a copy.
+/// Views of arrays in the caller's memory: interleaved vertex buffers of GLM's vectors or plain
+/// floats, and index buffers of 16 or 32 bits. Functions read and write them in place, without a
+/// copy.
 /// Tests: tests/mesh/geometry/buffers_test.cpp.
 #pragma once
 
@@ -18,6 +19,12 @@
 
 namespace RELIEF_API relief {
 
+/// A type of vectors with components of a type.
+template <typename Vector, typename Component>
+concept VectorOf = requires {
+    requires std::is_same_v<typename Vector::value_type, Component>;
+};
+
 /// Values of type T in the caller's memory at equal distances, as in an interleaved vertex buffer.
 /// T is const if the values are only read.
 ///
@@ -26,7 +33,10 @@ namespace RELIEF_API relief {
 ///     const StridedSpan<const glm::vec3> positions(&vertices[0].position, vertices.size(),
 ///                                                  sizeof(Vertex));
 ///
-/// Contiguous arrays, such as std::vector<glm::vec3>, convert implicitly.
+/// Contiguous arrays, such as std::vector<glm::vec3>, convert implicitly. Vectors can be viewed in
+/// arrays of plain floats:
+///
+///     const StridedSpan<const glm::vec3> positions(floats, vertex_count, 8 * sizeof(float));
 template <typename T>
 class StridedSpan {
     using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;
@@ -41,6 +51,17 @@ class StridedSpan {
         : first_(reinterpret_cast<Byte*>(first)), size_(size), stride_(stride) {
         assert(stride % alignof(T) == 0);
     }
+
+    /// Views vectors whose components are plain numbers, such as `const float*` for glm::vec3.
+    ///
+    /// \param first  the first component of the first vector; may be null if `size` is 0
+    /// \param stride  as above
+    template <typename Component>
+    requires VectorOf<std::remove_const_t<T>, std::remove_const_t<Component>> &&
+        (std::is_const_v<T> ||
+         !std::is_const_v<Component>)StridedSpan(Component* first, std::size_t size,
+                                                 std::size_t stride = sizeof(T))
+        : StridedSpan(reinterpret_cast<T*>(first), size, stride) {}
 
     /// Views a contiguous array of T.
     template <std::ranges::contiguous_range Range>
@@ -72,7 +93,8 @@ class StridedSpan {
 
 /// The vertex indices of triangles, three for each, in an index buffer of 16 or 32 bits.
 ///
-/// Arrays of glm::uvec3 convert implicitly.
+/// Functions refuse negative indices, as they refuse those beyond the vertices. Arrays of
+/// glm::uvec3 convert implicitly.
 class TriangleSpan {
   public:
     TriangleSpan() = default;
@@ -84,6 +106,8 @@ class TriangleSpan {
 
     /// \param indices  three per triangle; surplus indices at the end are ignored
     explicit TriangleSpan(std::span<const std::uint32_t> indices)
+        : indices_(indices.data()), size_(indices.size() / 3) {}
+    explicit TriangleSpan(std::span<const std::int32_t> indices)
         : indices_(indices.data()), size_(indices.size() / 3) {}
     explicit TriangleSpan(std::span<const std::uint16_t> indices)
         : indices_(indices.data()), size_(indices.size() / 3), is_short_(true) {}

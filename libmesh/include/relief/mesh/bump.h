@@ -165,7 +165,9 @@ Image normal_map_from_height(const Image& height, const BumpOptions& options,
 ///
 /// \param height  one channel. It is copied only if a height is not finite; if `options` have no
 ///         kernel, at most nine squares of 128 texels are copied to choose one
-/// \param result  three channels with the size of `height` and the bits of `format`
+/// \param result  two channels (x and y), three, or four (with an alpha of 1), with the size of
+///         `height` and the bits of `format`. Two and four channels take about twice
+///         the time of three
 /// \param execution  threads, progress and cancellation; the map does not depend on it
 /// \throws InvalidInput also if `result` has another format; Cancelled
 void normal_map_from_height(const ImageView& height, const BumpOptions& options,

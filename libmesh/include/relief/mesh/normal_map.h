@@ -95,8 +95,8 @@ Image encode_normal_map(const ImageView& normals, const NormalMapFormat& format,
 
 /// Writes the codes into the caller's memory.
 ///
-/// \param map  three channels with the size of `normals` and the bits of `format`; must not overlap
-///         `normals`
+/// \param map  two channels (x and y), three, or four (with an alpha of 1), with the size of
+///         `normals` and the bits of `format`; must not overlap `normals`
 /// \param execution  threads, progress and cancellation; the codes do not depend on it
 /// \throws InvalidInput also if `map` has another format; Cancelled
 void encode_normal_map(const ImageView& normals, const NormalMapFormat& format,
