@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 # Each component stands after those that it needs. The packages of CMake and of pkg-config, and the libraries that
 # have neither, are for programs that link an installed static component.
-set(RELIEF_ALL mesh topology atlas files bake shade reference accuracy)
+set(RELIEF_ALL mesh topology atlas files bake c shade reference accuracy)
 set(RELIEF_PACKAGES_mesh fmt TBB)
 set(RELIEF_PKG_CONFIG_mesh fmt tbb)
 set(RELIEF_NEEDED_BY_topology mesh)
@@ -17,6 +17,9 @@ set(RELIEF_LIBRARIES_files -lmeshoptimizer -Wl,-rpath,\${libdir}/relief)
 set(RELIEF_NEEDED_BY_bake mesh)
 set(RELIEF_PACKAGES_bake embree)
 set(RELIEF_LIBRARIES_bake -lembree3)
+set(RELIEF_NEEDED_BY_c mesh atlas bake)
+# See libmesh/src/c/CMakeLists.txt.
+set(RELIEF_LIBRARIES_c -lstdc++ -lm)
 set(RELIEF_NEEDED_BY_shade files)
 set(RELIEF_NEEDED_BY_reference shade bake)
 set(RELIEF_NEEDED_BY_accuracy reference topology)
@@ -62,7 +65,11 @@ function(relief_add_library component folder)
                    DEFINE_SYMBOL "")
     set(needed ${RELIEF_NEEDED_BY_${component}})
     list(TRANSFORM needed PREPEND relief::)
-    target_compile_features(${target} PUBLIC cxx_std_20)
+    set(interface PUBLIC)
+    if(component STREQUAL c)  # Its header needs no other, and programs in C have no standard of C++.
+        set(interface PRIVATE)
+    endif()
+    target_compile_features(${target} ${interface} cxx_std_20)
     target_include_directories(
         ${target}
         PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${folder}/include>
@@ -70,7 +77,7 @@ function(relief_add_library component folder)
         PRIVATE ${PROJECT_SOURCE_DIR}/${folder}/src)
     target_link_libraries(
         ${target}
-        PUBLIC ${needed}
+        ${interface} ${needed}
         PRIVATE $<BUILD_INTERFACE:relief_flags> fmt::fmt ${ARG_PRIVATE})
     relief_precompile(${target} LIKE relief_precompiled)
     if(NOT component STREQUAL mesh)  # Its files are small, and repeat names.

@@ -171,6 +171,40 @@ TEST_F(Installed, TheBakeHasTheSlopesOfTheWave) {
 }
 
 TEST_LABELS(slow);
+TEST_F(Installed, CProgramsHaveTheSameResults) {
+    const std::string output = output_of("c_interface");
+    for (const std::string line : {"normal", "tangent"})
+        EXPECT_EQ(numbers_after(output, line),
+                  numbers_after(output_of("normals_and_tangents"), line));
+    EXPECT_EQ(numbers_after(output, "texel"), (std::vector<double>{70, 128, 242, 255}));
+    EXPECT_EQ(numbers_after(output, "baked"), (std::vector<double>{64 * 64, 64 * 64}));
+    const std::vector<double> slopes = numbers_after(output, "steepest slope");
+    ASSERT_EQ(slopes.size(), 2);
+    EXPECT_NEAR(slopes[0] / slopes[1], 1.0, 0.02);
+    EXPECT_THAT(output, testing::Not(HasSubstr("finding")));
+
+    const std::string example = (source_directory() / "examples/c_interface.c").string();
+    expect_success("PKG_CONFIG_PATH='" + tree().string() +
+                       "/lib/pkgconfig' && export PKG_CONFIG_PATH && cc -std=c99 -Wall -Wextra "
+                       "-pedantic -Werror '" +
+                       example + "' -o c_by_pkg_config $(pkg-config --cflags --libs relief-c)",
+                   folder->path());
+    EXPECT_EQ(run_clean("./c_by_pkg_config", folder->path()).out, output);
+
+    // A project without C++.
+    const std::filesystem::path project = *folder / "engine";
+    std::filesystem::create_directory(project);
+    std::ofstream(project / "CMakeLists.txt")
+        << "cmake_minimum_required(VERSION 3.25)\nproject(engine LANGUAGES C)\n"
+        << "find_package(relief REQUIRED COMPONENTS c)\nadd_executable(engine " << example
+        << ")\ntarget_link_libraries(engine PRIVATE relief::c m)\n";
+    expect_success("cmake -G Ninja -S . -B build -DCMAKE_PREFIX_PATH='" + tree().string() +
+                       "' && cmake --build build",
+                   project);
+    EXPECT_EQ(run_clean("build/engine", project).out, output);
+}
+
+TEST_LABELS(slow);
 TEST_F(Installed, TheCheckFindsGreenDown) {
     const std::string output = output_of("check_normal_map");
     EXPECT_THAT(output, HasSubstr("tangent-space normals: yes\n"));
@@ -358,6 +392,7 @@ TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
          "-lrelief_mesh $(pkg-config --libs tinyobjloader libdeflate libisal libturbojpeg libzstd "
          "draco) -lmeshoptimizer"},
         {"bake", "libmesh", "-lrelief_mesh -lembree3"},
+        {"c", "libmesh", "-lrelief_bake -lrelief_atlas -lrelief_mesh"},
         {"shade", "libshade", "-lrelief_files -lrelief_mesh"},
         {"reference", "libshade/src/reference",
          "-lrelief_shade -lrelief_bake -lrelief_files -lrelief_mesh -lembree3"},
@@ -379,7 +414,7 @@ TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
         const std::string foreign =
             run_clean("nm -DC --defined-only " + library +
                           ".so | cut -c20- | grep -vE '^((typeinfo|typeinfo name|vtable|guard "
-                          "variable) for )?relief::|std::'",
+                          "variable) for )?relief::|std::|relief_[a-z_]+$'",
                       folder.path())
                 .out;
         EXPECT_EQ(foreign, "") << component.name;
@@ -401,6 +436,20 @@ TEST(StaticShade, DefinesNoNamesOfGlad) {
                                     .out;
     EXPECT_THAT(symbols, HasSubstr(" T relief_gladLoadGLContext\n"));
     EXPECT_THAT(symbols, testing::Not(HasSubstr(" glad")));
+}
+
+// Older standards of C++ get one line that names the remedy.
+TEST(Headers, NameTheStandardThatTheyNeed) {
+    const std::string include = "-fsyntax-only -x c++ -I '" +
+                                (source_directory() / "libmesh/include").string() + "' -include ";
+    const ProgramResult older =
+        run_clean("'" + compiler + "' -std=c++17 " + include + "relief/mesh/buffers.h /dev/null",
+                  source_directory());
+    EXPECT_NE(older.exit_code, 0);
+    EXPECT_THAT(older.error, HasSubstr("relief needs C++20 (-std=c++20)"));
+    expect_success("'" + compiler + "' -std=c++11 -Wall -Wextra -pedantic -Werror " + include +
+                       "relief/relief.h /dev/null",
+                   source_directory());
 }
 
 TEST(Interface, IsTheCommittedOne) {
