@@ -17,7 +17,9 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
-set(version ${PROJECT_VERSION}-1)
+# Debian sorts "~" before the release.
+string(REPLACE - ~ CPACK_PACKAGE_VERSION ${PROJECT_VERSION}${version_suffix})
+set(version ${CPACK_PACKAGE_VERSION}-1)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 # Copyrights, changelogs and compressed manual pages, as Debian's policy requires them.

@@ -110,7 +110,7 @@ TEST(AllToolsAlike, PrintOnlyTheirVersion) {
     for (const char* tool : {"relief-mesh", "relief-bake", "relief-view"}) {
         const ProgramResult result = workplace.run(std::string(tool) + " --version");
         EXPECT_EQ(result.exit_code, 0);
-        EXPECT_EQ(result.out, std::string(tool) + " " + version() + "\n");
+        EXPECT_EQ(result.out, std::string(tool) + " " + version_and_commit() + "\n");
         EXPECT_EQ(result.error, "");
     }
 }

@@ -21,6 +21,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/build_commit.h"
 #include "common/help.h"
 #include "common/text.h"
 #include "file_replacement.h"
@@ -253,7 +254,7 @@ struct BuiltTool {
     explicit BuiltTool(const Tool& tool)
         : root(std::make_unique<CLI::App>(tool.sentence, tool.name)) {
         use_help_pages(*root);
-        root->set_version_flag("--version", tool.name + " " + version(),
+        root->set_version_flag("--version", tool.name + " " + version_and_commit(),
                                "Print the version and exit.");
         root->set_help_flag("-h,--help", "Print this help and exit.");
         for (const auto& add : tool.commands)
@@ -484,6 +485,11 @@ nlohmann::ordered_json describe(const Tool& tool) {
 
 std::string version() {
     return RELIEF_VERSION;
+}
+
+std::string version_and_commit() {
+    const std::string commit = build_commit;
+    return commit.empty() ? version() : fmt::format("{} (commit {})", version(), commit);
 }
 
 }  // namespace relief::tools

@@ -227,7 +227,10 @@ bool is_out_reserved();
 /// Returns whether err() is a terminal.
 bool is_err_terminal();
 
-/// "0.9.0"
+/// "1.1.0"
 std::string version();
+
+/// "1.1.0 (commit 0123456789ab)"; without the commit if the sources do not say it.
+std::string version_and_commit();
 
 }  // namespace relief::tools
