@@ -7,13 +7,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
 #include <variant>
 
 #include "relief/mesh/bake.h"
 #include "relief/mesh/execution.h"
+#include "relief/mesh/local_origin.h"
 #include "relief/shade/renderer.h"
 
 namespace relief::python {
@@ -28,6 +30,7 @@ std::string description(const py::array& array) {
     return fmt::format("{} of shape ({})", py::str(array.dtype()).cast<std::string>(), shape);
 }
 
+/// Views an array of numpy. \throws TypeError for other objects
 py::array as_array(const py::handle& value, const char* name, const std::string& expected) {
     if (!py::isinstance<py::array>(value)) {
         throw py::type_error(fmt::format("{}: expected a numpy array of {}, not {}", name, expected,
@@ -41,6 +44,16 @@ py::array as_array(const py::handle& value, const char* name, const std::string&
     return py::reinterpret_borrow<py::array>(value);
 }
 
+/// The same, also for objects that give numpy an array, such as the vectors of Open3D.
+py::array as_input_array(const py::handle& value, const char* name, const std::string& expected) {
+    const bool gives_array =
+        !py::isinstance<py::array>(value) &&
+        (PyObject_CheckBuffer(value.ptr()) != 0 || py::hasattr(value, "__array__") ||
+         py::hasattr(value, "__array_interface__"));
+    if (!gives_array) return as_array(value, name, expected);
+    return as_array(py::module_::import("numpy").attr("asarray")(value), name, expected);
+}
+
 [[noreturn]] void refuse_type(const py::array& array, const char* name, const std::string& expected,
                               const char* type) {
     throw py::type_error(fmt::format("{}: {}, expected {} (convert it: {}.astype(numpy.{}))", name,
@@ -52,7 +65,7 @@ py::array as_array(const py::handle& value, const char* name, const std::string&
     throw InvalidInput(fmt::format("{}: {}, expected {}", name, description(array), expected));
 }
 
-[[noreturn]] void refuse_layout(const char* name, const char* problem) {
+[[noreturn]] void refuse_layout(const char* name, const std::string& problem) {
     throw InvalidInput(
         fmt::format("{}: {} (copy it: numpy.ascontiguousarray({}))", name, problem, name));
 }
@@ -161,65 +174,254 @@ void add_errors(py::module_& module) {
                "0 means all processors. Results do not depend on it.");
 }
 
-RowView float_rows(const py::handle& value, const char* name, int columns, bool is_output) {
-    const std::string expected = fmt::format("float32 of shape (n, {})", columns);
-    const py::array array = as_array(value, name, expected);
-    if (!holds<float>(array)) refuse_type(array, name, expected, "float32");
-    if (array.ndim() != 2 || array.shape(1) != columns) refuse_shape(array, name, expected);
-    if (is_output && !array.writeable())
-        throw InvalidInput(fmt::format("{}: the array is read-only", name));
+namespace {
+
+/// What prevents that rows of float32 are read or written in place; empty if nothing does.
+std::string layout_problem(const py::array& array) {
+    if (array.shape(0) == 0) return "";
+    if (array.strides(1) != sizeof(float)) return "the values of a row are not adjacent in memory";
+    if (array.shape(0) > 1 && array.strides(0) < 0)
+        return "the rows are in reverse order in memory";
+    if (!is_aligned(array) ||
+        (array.shape(0) > 1 && array.strides(0) % static_cast<py::ssize_t>(alignof(float)) != 0))
+        return "the values are not aligned to 4 bytes";
+    return "";
+}
+
+/// Views rows without a layout problem.
+RowView row_view(const py::array& array) {
     const auto size = static_cast<std::size_t>(array.shape(0));
-    const std::size_t packed = static_cast<std::size_t>(columns) * sizeof(float);
+    const std::size_t packed = static_cast<std::size_t>(array.shape(1)) * sizeof(float);
     if (size == 0) return {nullptr, 0, packed};
-    if (array.strides(1) != sizeof(float))
-        refuse_layout(name, "the values of a row are not adjacent in memory");
-    const py::ssize_t stride = size == 1 ? static_cast<py::ssize_t>(packed) : array.strides(0);
-    if (stride < 0) refuse_layout(name, "the rows are in reverse order in memory");
-    if (!is_aligned(array) || stride % static_cast<py::ssize_t>(alignof(float)) != 0)
-        refuse_layout(name, "the values are not aligned to 4 bytes");
-    if (is_output && static_cast<std::size_t>(stride) < packed)
-        refuse_layout(name, "the rows overlap");
-    return {const_cast<void*>(array.data()), size, static_cast<std::size_t>(stride)};
+    return {const_cast<void*>(array.data()), size,
+            size == 1 ? packed : static_cast<std::size_t>(array.strides(0))};
 }
 
-TriangleSpan triangles_of(const py::handle& value, const char* name) {
-    const std::string expected = "uint16 or uint32 of shape (m, 3)";
-    const py::array array = as_array(value, name, expected);
-    const bool is_short = holds<std::uint16_t>(array);
-    if (!is_short && !holds<std::uint32_t>(array)) refuse_type(array, name, expected, "uint32");
-    if (array.ndim() != 2 || array.shape(1) != 3) refuse_shape(array, name, expected);
-    if (!is_packed(array)) refuse_layout(name, "the indices have gaps in memory");
-    const auto size = static_cast<std::size_t>(array.size());
-    if (is_short) {
-        return TriangleSpan(std::span(static_cast<const std::uint16_t*>(array.data()), size));
+bool is_float(const py::array& array) {
+    return array.dtype().kind() == 'f';
+}
+
+bool is_integer(const py::array& array) {
+    return array.dtype().kind() == 'i' || array.dtype().kind() == 'u';
+}
+
+/// Calls `work` with the first row and the converted values of blocks of rows. Ctrl+C ends it.
+template <typename Scalar, typename Work>
+void for_blocks(const py::array& array, const Work& work) {
+    constexpr py::ssize_t step = py::ssize_t{1} << 18;
+    for (py::ssize_t begin = 0; begin < array.shape(0); begin += step) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        const py::ssize_t end = std::min(begin + step, array.shape(0));
+        const py::array_t<Scalar, py::array::c_style | py::array::forcecast> block(
+            array[py::slice(begin, end, 1)]);
+        work(begin, std::span(block.data(), static_cast<std::size_t>(block.size())));
     }
-    return TriangleSpan(std::span(static_cast<const std::uint32_t*>(array.data()), size));
 }
 
-std::vector<glm::uvec3> copied_triangles(const py::handle& value, const char* name) {
-    const TriangleSpan triangles = triangles_of(value, name);
-    std::vector<glm::uvec3> result;
-    result.reserve(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-        result.push_back(triangles[i]);
+/// Returns the origin for positions of any type.
+glm::dvec3 origin_of(const py::array& array) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    glm::dvec3 low(infinity);
+    glm::dvec3 high(-infinity);
+    for_blocks<double>(array, [&](py::ssize_t, std::span<const double> values) {
+        for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+            const glm::dvec3 point(values[i], values[i + 1], values[i + 2]);
+            if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+                continue;
+            low = glm::min(low, point);
+            high = glm::max(high, point);
+        }
+    });
+    return low.x <= high.x ? local_origin(low, high) : glm::dvec3(0.0);
+}
+
+/// Rows as float32, and whether this changed a value.
+struct Floats {
+    py::array_t<float> values;
+    bool is_rounded = false;
+};
+
+/// Converts rows, minus an origin, to float32. \throws InvalidInput for too large numbers
+Floats to_floats(const py::array& array, const char* name, const glm::dvec3& origin) {
+    Floats result{py::array_t<float>({array.shape(0), array.shape(1)}), false};
+    const auto columns = static_cast<std::size_t>(array.shape(1));
+    const bool is_moved = origin != glm::dvec3(0.0);
+    for_blocks<double>(array, [&](py::ssize_t first_row, std::span<const double> values) {
+        float* const target =
+            result.values.mutable_data() + static_cast<std::size_t>(first_row) * columns;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double value =
+                is_moved ? values[i] - origin[static_cast<int>(i % columns)] : values[i];
+            if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max()) {
+                throw InvalidInput(
+                    fmt::format("{}: row {} has {}, but float32 holds at most 3.4e+38", name,
+                                static_cast<std::size_t>(first_row) + i / columns, values[i]));
+            }
+            target[i] = static_cast<float>(value);
+            result.is_rounded |= static_cast<double>(target[i]) != value && !std::isnan(value);
+        }
+    });
     return result;
 }
 
-std::span<const std::uint32_t> indices_of(const py::handle& value, const char* name) {
+/// Checks that an array of signed integers of native order, which is read as one of unsigned ones,
+/// has no negative value.
+template <typename Scalar>
+void refuse_negative(const py::array& array, const char* name) {
+    const std::span values(static_cast<const Scalar*>(array.data()),
+                           static_cast<std::size_t>(array.size()));
+    const auto negative =
+        std::find_if(values.begin(), values.end(), [](Scalar v) { return v < 0; });
+    if (negative == values.end()) return;
+    const py::ssize_t row = array.ndim() == 2 ? array.shape(1) : 1;
+    throw InvalidInput(fmt::format("{}: row {} has {}, expected at least 0", name,
+                                   (negative - values.begin()) / row, *negative));
+}
+
+}  // namespace
+
+py::array Inputs::kept(const py::handle& value, const char* name, const std::string& expected) {
+    arrays_.push_back(as_input_array(value, name, expected));
+    return arrays_.back();
+}
+
+void Inputs::report(const py::array& from, const py::array& to, const char* name,
+                    const std::string& remark) {
+    const auto type = [](const py::array& array) {
+        return py::str(array.dtype()).cast<std::string>();
+    };
+    findings_.add(
+        Finding{.kind = fmt::format("converted {}", name),
+                .element = "value",
+                .outcome = fmt::format("{} copied to {}, {:.3g} MB{}", type(from), type(to),
+                                       1e-6 * static_cast<double>(to.nbytes()), remark),
+                .count = static_cast<std::size_t>(to.size()),
+                .first = {}});
+}
+
+RowView Inputs::floats(const py::handle& value, const char* name, int columns, glm::dvec3* origin) {
+    const std::string expected = fmt::format("float32 of shape (n, {})", columns);
+    const py::array array = kept(value, name, expected);
+    if (!is_float(array) && !is_integer(array)) refuse_type(array, name, expected, "float32");
+    if (array.ndim() != 2 || array.shape(1) != columns) refuse_shape(array, name, expected);
+    const bool is_float32 = holds<float>(array);
+    const std::string problem = is_float32 ? layout_problem(array) : "";
+    if (is_float32 && problem.empty()) return row_view(array);
+    if (is_strict() && is_float32) refuse_layout(name, problem);
+    if (is_strict()) refuse_type(array, name, expected, "float32");
+    glm::dvec3 shift(0.0);
+    Floats converted = to_floats(array, name, shift);
+    if (origin != nullptr && converted.is_rounded) {
+        *origin = shift = origin_of(array);
+        if (shift != glm::dvec3(0.0)) converted = to_floats(array, name, shift);
+    }
+    std::string remark = problem.empty() ? "" : ": " + problem;
+    if (shift != glm::dvec3(0.0))
+        remark += fmt::format(", relative to ({}, {}, {})", shift.x, shift.y, shift.z);
+    if (converted.is_rounded) remark += ", rounded to 24 bits";
+    report(array, converted.values, name, remark);
+    arrays_.push_back(converted.values);
+    return row_view(converted.values);
+}
+
+StridedSpan<const glm::vec3> Inputs::positions(const py::handle& value, glm::dvec3& origin) {
+    const RowView rows = floats(value, "positions", 3, &origin);
+    return {static_cast<const glm::vec3*>(rows.data), rows.size, rows.stride};
+}
+
+py::array Inputs::converted_integers(const py::array& array, const char* name,
+                                     const std::string& expected) {
+    if (is_strict() && (holds<std::uint16_t>(array) || holds<std::uint32_t>(array)))
+        refuse_layout(name, "the values have gaps in memory");
+    if (is_strict()) refuse_type(array, name, expected, "uint32");
+    py::array_t<std::uint32_t> converted(
+        std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
+    const auto columns = static_cast<std::size_t>(array.ndim() == 2 ? array.shape(1) : 1);
+    const auto convert = [&]<typename Scalar>(Scalar) {
+        for_blocks<Scalar>(array, [&](py::ssize_t first_row, std::span<const Scalar> values) {
+            std::uint32_t* const target =
+                converted.mutable_data() + static_cast<std::size_t>(first_row) * columns;
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                if (!std::in_range<std::uint32_t>(values[i])) {
+                    throw InvalidInput(
+                        fmt::format("{}: row {} has {}, expected 0 to 4294967295", name,
+                                    static_cast<std::size_t>(first_row) + i / columns, values[i]));
+                }
+                target[i] = static_cast<std::uint32_t>(values[i]);
+            }
+        });
+    };
+    if (array.dtype().kind() == 'u')
+        convert(std::uint64_t{});
+    else
+        convert(std::int64_t{});
+    report(array, converted, name, "");
+    arrays_.push_back(converted);
+    return converted;
+}
+
+TriangleSpan Inputs::triangles(const py::handle& value, const char* name) {
+    const std::string expected = "uint16 or uint32 of shape (m, 3)";
+    py::array array = kept(value, name, expected);
+    if (!is_integer(array)) refuse_type(array, name, expected, "uint32");
+    if (array.ndim() != 2 || array.shape(1) != 3) refuse_shape(array, name, expected);
+    const bool is_short = holds<std::uint16_t>(array) || holds<std::int16_t>(array);
+    const bool is_long = holds<std::uint32_t>(array) || holds<std::int32_t>(array);
+    const auto size = static_cast<std::size_t>(array.size());
+    if (is_packed(array) && is_short) {
+        if (holds<std::int16_t>(array)) refuse_negative<std::int16_t>(array, name);
+        return TriangleSpan(std::span(static_cast<const std::uint16_t*>(array.data()), size));
+    }
+    if (!is_packed(array) || !is_long)
+        array = converted_integers(array, name, expected);
+    else if (holds<std::int32_t>(array))
+        refuse_negative<std::int32_t>(array, name);
+    return TriangleSpan(std::span(static_cast<const std::uint32_t*>(array.data()), size));
+}
+
+std::vector<glm::uvec3> Inputs::copied_triangles(const py::handle& value) {
+    const TriangleSpan views = triangles(value);
+    std::vector<glm::uvec3> result;
+    result.reserve(views.size());
+    for (std::size_t i = 0; i < views.size(); ++i)
+        result.push_back(views[i]);
+    return result;
+}
+
+std::span<const std::uint32_t> Inputs::indices(const py::handle& value, const char* name) {
     if (value.is_none()) return {};
     const std::string expected = "uint32 of shape (n,)";
-    const py::array array = as_array(value, name, expected);
-    if (!holds<std::uint32_t>(array)) refuse_type(array, name, expected, "uint32");
+    py::array array = kept(value, name, expected);
+    if (!is_integer(array)) refuse_type(array, name, expected, "uint32");
     if (array.ndim() != 1) refuse_shape(array, name, expected);
-    if (!is_packed(array)) refuse_layout(name, "the values have gaps in memory");
+    const bool is_signed = holds<std::int32_t>(array);
+    if (!is_packed(array) || (!is_signed && !holds<std::uint32_t>(array)))
+        array = converted_integers(array, name, expected);
+    else if (is_signed)
+        refuse_negative<std::int32_t>(array, name);
     return {static_cast<const std::uint32_t*>(array.data()),
             static_cast<std::size_t>(array.size())};
 }
 
-Image image_of(const py::handle& value, const char* name, ColorSpace color_space) {
+RowView output_floats(const py::handle& value, const char* name, int columns) {
+    const std::string expected = fmt::format("float32 of shape (n, {})", columns);
+    const py::array array = as_array(value, name, expected);
+    if (!holds<float>(array)) refuse_type(array, name, expected, "float32");
+    if (array.ndim() != 2 || array.shape(1) != columns) refuse_shape(array, name, expected);
+    if (!array.writeable()) throw InvalidInput(fmt::format("{}: the array is read-only", name));
+    if (const std::string problem = layout_problem(array); !problem.empty())
+        refuse_layout(name, problem);
+    const RowView rows = row_view(array);
+    if (rows.stride < static_cast<std::size_t>(columns) * sizeof(float))
+        refuse_layout(name, "the rows overlap");
+    return rows;
+}
+
+Image image_of(const py::handle& value, const char* name, Report& findings,
+               ColorSpace color_space) {
     const std::string expected =
         "uint8, uint16 or float32 of shape (height, width) or (height, width, channels)";
-    const py::array array = as_array(value, name, expected);
+    const py::array array = as_input_array(value, name, expected);
     if (array.ndim() < 2 || array.ndim() > 3) refuse_shape(array, name, expected);
     const py::ssize_t channels = array.ndim() == 2 ? 1 : array.shape(2);
     constexpr py::ssize_t max_side = 1 << 24;
@@ -234,10 +436,18 @@ Image image_of(const py::handle& value, const char* name, ColorSpace color_space
         image.samples = copied_samples<std::uint8_t>(array);
     else if (holds<std::uint16_t>(array))
         image.samples = copied_samples<std::uint16_t>(array);
-    else if (holds<float>(array))
+    else if (is_float(array) && (holds<float>(array) || !is_strict()))
         image.samples = copied_samples<float>(array);
     else
-        refuse_type(array, name, expected, "float32");
+        refuse_type(array, name, expected, is_float(array) ? "float32" : "uint16");
+    if (is_float(array) && !holds<float>(array)) {
+        findings.add(Finding{.kind = fmt::format("converted {}", name),
+                             .element = "value",
+                             .outcome = fmt::format("{} rounded to float32",
+                                                    py::str(array.dtype()).cast<std::string>()),
+                             .count = static_cast<std::size_t>(array.size()),
+                             .first = {}});
+    }
     return image;
 }
 

@@ -36,6 +36,7 @@ namespace py = pybind11;
 void add_errors(py::module_& module);
 void add_execution(py::module_& module);
 void add_meshes(py::module_& module);
+void add_unwrap(py::module_& module);
 void add_images(py::module_& module);
 void add_bake(py::module_& module);
 void add_scenes(py::module_& module);
@@ -63,6 +64,9 @@ auto without_gil(Work&& work, const TellProgress& tell = {}) {
 
 // Input arrays.
 
+/// Returns true within a block of an Execution that refuses conversions.
+bool is_strict();
+
 /// Rows of numbers in an array: n rows of equal length at equal distances.
 struct RowView {
     void* data = nullptr;
@@ -70,44 +74,82 @@ struct RowView {
     std::size_t stride = 0;  ///< In bytes.
 };
 
-/// Views an array of float32 and shape (n, columns). The values of a row must be adjacent; rows may
-/// have any distance, as in an interleaved vertex buffer.
-/// \param name  for messages
-/// \throws TypeError for another type, InvalidInput for another shape or layout, or if values are
-///         masked, with the remedy
-RowView float_rows(const py::handle& value, const char* name, int columns, bool is_output = false);
+/// The arrays that a call reads. An array of another type or layout is converted: the copy lives as
+/// long as this object, and a finding states what was copied. Create and destroy it with the GIL.
+///
+/// Arrays are those of numpy, and objects that give numpy one: with a buffer, __array__ or
+/// __array_interface__. The functions throw TypeError for another type, InvalidInput for another
+/// shape, values that are masked or out of range, and in strict blocks for what would be converted.
+/// `name` is for messages.
+class Inputs {
+  public:
+    /// \param findings  must outlive this object
+    explicit Inputs(Report& findings) : findings_(findings) {}
 
-/// The same as a span of vectors.
-template <typename Vector>
-StridedSpan<const Vector> rows_of(const py::handle& value, const char* name) {
-    const RowView rows = float_rows(value, name, Vector::length());
-    return {static_cast<const Vector*>(rows.data), rows.size, rows.stride};
-}
+    /// Views an array of float32 and shape (n, columns). The values of a row must be adjacent; rows
+    /// may have any distance, as in an interleaved vertex buffer. Other numbers are converted.
+    template <typename Vector>
+    StridedSpan<const Vector> rows(const py::handle& value, const char* name) {
+        const RowView rows = floats(value, name, Vector::length(), nullptr);
+        return {static_cast<const Vector*>(rows.data), rows.size, rows.stride};
+    }
+
+    /// The same for positions. If they are far from 0 and float32 cannot hold them, they are
+    /// relative to `origin` afterwards (relief/mesh/local_origin.h), as those of files are.
+    StridedSpan<const glm::vec3> positions(const py::handle& value, glm::dvec3& origin);
+
+    /// The same for results that do not depend on the origin.
+    StridedSpan<const glm::vec3> positions(const py::handle& value) {
+        glm::dvec3 unused(0.0);
+        return positions(value, unused);
+    }
+
+    /// Copies rows of floats; empty for None.
+    template <typename Vector>
+    std::vector<Vector> copied_rows(const py::handle& value, const char* name) {
+        if (value.is_none()) return {};
+        return copied(rows<Vector>(value, name));
+    }
+
+    /// Views an array of shape (m, 3) without gaps, of uint16, uint32, int16 or int32. Other
+    /// integers are converted to uint32.
+    TriangleSpan triangles(const py::handle& value, const char* name = "triangles");
+
+    /// Copies such an array.
+    std::vector<glm::uvec3> copied_triangles(const py::handle& value);
+
+    /// Views an array of uint32 or int32 and shape (n), without gaps; empty for None. Other
+    /// integers are converted.
+    std::span<const std::uint32_t> indices(const py::handle& value, const char* name);
+
+    template <typename Vector>
+    static std::vector<Vector> copied(const StridedSpan<const Vector>& rows) {
+        std::vector<Vector> values;
+        values.reserve(rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            values.push_back(rows[i]);
+        return values;
+    }
+
+  private:
+    RowView floats(const py::handle& value, const char* name, int columns, glm::dvec3* origin);
+    py::array kept(const py::handle& value, const char* name, const std::string& expected);
+    py::array converted_integers(const py::array& array, const char* name,
+                                 const std::string& expected);
+    void report(const py::array& from, const py::array& to, const char* name,
+                const std::string& remark);
+
+    Report& findings_;
+    std::vector<py::array> arrays_;
+};
+
+/// Views an output array of float32 and shape (n, columns), which is never converted.
+RowView output_floats(const py::handle& value, const char* name, int columns);
+
 template <typename Vector>
 StridedSpan<Vector> output_rows(const py::handle& value, const char* name) {
-    const RowView rows = float_rows(value, name, Vector::length(), true);
+    const RowView rows = output_floats(value, name, Vector::length());
     return {static_cast<Vector*>(rows.data), rows.size, rows.stride};
-}
-
-/// Views an array of uint16 or uint32 and shape (m, 3), without gaps.
-TriangleSpan triangles_of(const py::handle& value, const char* name = "triangles");
-
-/// Copies such an array.
-std::vector<glm::uvec3> copied_triangles(const py::handle& value, const char* name = "triangles");
-
-/// Views an array of uint32 and shape (n), without gaps; empty for None.
-std::span<const std::uint32_t> indices_of(const py::handle& value, const char* name);
-
-/// Copies rows of floats; empty for None.
-template <typename Vector>
-std::vector<Vector> copied_rows(const py::handle& value, const char* name) {
-    std::vector<Vector> values;
-    if (value.is_none()) return values;
-    const StridedSpan<const Vector> rows = rows_of<Vector>(value, name);
-    values.reserve(rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        values.push_back(rows[i]);
-    return values;
 }
 
 // Results.
@@ -142,8 +184,9 @@ struct FileName : std::filesystem::path {
 // Images.
 
 /// Copies an array of uint8, uint16 or float32 and shape (height, width) or (height, width,
-/// channels). \throws TypeError, InvalidInput
-Image image_of(const py::handle& value, const char* name,
+/// channels). Other floats are converted, which a finding states. Other integers are refused,
+/// because their largest value is unknown. \throws TypeError, InvalidInput
+Image image_of(const py::handle& value, const char* name, Report& findings,
                ColorSpace color_space = ColorSpace::data);
 
 /// Creates an array on the memory of an image. Images of one channel have the shape (height,

@@ -23,8 +23,8 @@ class Call;
 /// The class relief.Execution.
 class Execution {
   public:
-    Execution(unsigned threads, std::optional<py::function> tell)
-        : threads_(threads), tell_(std::move(tell)) {}
+    Execution(unsigned threads, std::optional<py::function> tell, bool strict)
+        : threads_(threads), tell_(std::move(tell)), is_strict_(strict) {}
     ~Execution();
     Execution(const Execution&) = delete;
     Execution& operator=(const Execution&) = delete;
@@ -40,6 +40,14 @@ class Execution {
     /// The limit of threads in the block; 0 if there is none.
     [[nodiscard]] unsigned limit() const { return limit_; }
 
+    /// Returns true if this block or one around it refuses conversions.
+    [[nodiscard]] bool is_strict() const {
+        return is_strict_ || (before_ != nullptr && before_->is_strict());
+    }
+
+    /// The maximum number of threads that this Execution asks for; 0: all.
+    [[nodiscard]] unsigned threads() const { return threads_; }
+
     /// The progress function of Python. \return nothing if there is none
     [[nodiscard]] const std::optional<py::function>& progress_function() const { return tell_; }
 
@@ -50,6 +58,7 @@ class Execution {
     unsigned threads_;
     unsigned limit_ = 0;
     std::optional<py::function> tell_;
+    bool is_strict_;
     bool is_entered_ = false;
     Execution* before_ = nullptr;
     mutable std::mutex mutex_;
@@ -215,6 +224,10 @@ void run_without_gil(const std::function<void()>& work, const TellProgress& tell
     Call(tell).run(work);
 }
 
+bool is_strict() {
+    return current_execution != nullptr && current_execution->is_strict();
+}
+
 void add_execution(py::module_& module) {
     using py::arg;
     py::class_<Execution>(
@@ -222,9 +235,18 @@ void add_execution(py::module_& module) {
         "Limits threads, reports progress and cancels everything that a `with` block calls.\n\n"
         "It applies to the thread that runs the block. `threads` is the maximum number of\n"
         "threads; 0: all. `progress` is called with the stage and its finished fraction, on the\n"
-        "thread that runs the block. An exception that it raises ends the operation.")
-        .def(py::init<unsigned, std::optional<py::function>>(), py::kw_only(), arg("threads") = 0,
-             arg("progress") = py::none())
+        "thread that runs the block. An exception that it raises ends the operation. `strict`\n"
+        "refuses arrays that would be converted, with TypeError or InvalidInput.")
+        .def(py::init<unsigned, std::optional<py::function>, bool>(), py::kw_only(),
+             arg("threads") = 0, arg("progress") = py::none(), arg("strict") = false,
+             "State the limits of a block.")
+        .def(
+            "__repr__",
+            [](const Execution& self) {
+                return "<relief.Execution, threads: " +
+                       (self.threads() == 0 ? std::string("all") : std::to_string(self.threads())) +
+                       ">";
+            })
         .def("__enter__",
              [](const py::object& self) {
                  self.cast<Execution&>().enter();

@@ -92,9 +92,9 @@ py::tuple py_read_image(const FileName& file) {
 
 void py_write_image(const FileName& file, const py::object& image, const std::string& color_space,
                     const Metadata& metadata, bool half, const FindingList& report) {
-    const Image copy =
-        image_of(image, "image", value_of<ColorSpace>(color_space, "color_space", color_spaces));
     Report findings;
+    const Image copy = image_of(image, "image", findings,
+                                value_of<ColorSpace>(color_space, "color_space", color_spaces));
     without_gil([&] {
         ImageWriteOptions options;
         options.half = half;
@@ -114,12 +114,12 @@ void py_write_texture(const FileName& file, const py::list& levels, const std::s
     const std::optional<BlockFormat> blocks = block_format_of(texture.format);
     const bool has_two = blocks && channels_of(*blocks) == 2;
     std::vector<Image> images;
+    Report findings;
     for (const py::handle& level : levels)
-        images.push_back(image_of(level, "levels"));
+        images.push_back(image_of(level, "levels", findings));
     if (images.empty()) throw InvalidInput("levels: is empty");
     texture.width = images.front().width;
     texture.height = images.front().height;
-    Report findings;
     without_gil([&] {
         for (const Image& image : images) {
             const bool is_normals = has_two && image.channels == 3 && image.bits() == 32;
@@ -134,7 +134,7 @@ void py_write_texture(const FileName& file, const py::list& levels, const std::s
 }
 
 py::list py_normal_mip_levels(const py::object& normals) {
-    const Image image = image_of(normals, "normals");
+    const Image image = image_of(normals, "normals", IgnoredReport());
     std::vector<Image> levels = without_gil([&] { return normal_mip_levels(image); });
     py::list result;
     for (Image& level : levels)
@@ -144,9 +144,9 @@ py::list py_normal_mip_levels(const py::object& normals) {
 
 // Height maps.
 
-Image heights_of(const py::object& height, const std::string& channel) {
+Image heights_of(const py::object& height, const std::string& channel, Report& findings) {
     const HeightChannel chosen = value_of<HeightChannel>(channel, "channel");
-    Image image = image_of(height, "height");
+    Image image = image_of(height, "height", findings);
     if (image.channels == 1) return image;
     return without_gil([&] { return height_field(image, chosen); });
 }
@@ -171,8 +171,8 @@ py::array py_bump(const py::object& height, double strength, const Text& kernel,
     const BumpOptions options =
         bump_options(strength, kernel, kernel_radius, wrap, texel, arithmetic);
     const NormalMapFormat format = format_of(bits, green, zero_code, dither);
-    const Image heights = heights_of(height, channel);
     Report findings;
+    const Image heights = heights_of(height, channel, findings);
     Image map =
         without_gil([&] { return normal_map_from_height(heights, options, format, findings); });
     append(findings, report);
@@ -184,8 +184,8 @@ py::array py_slopes(const py::object& height, double strength, const Text& kerne
                     const Text& arithmetic, const std::string& channel, const FindingList& report) {
     const BumpOptions options =
         bump_options(strength, kernel, kernel_radius, wrap, texel, arithmetic);
-    const Image heights = heights_of(height, channel);
     Report findings;
+    const Image heights = heights_of(height, channel, findings);
     Image slopes = without_gil([&] { return slopes_from_height(heights, options, findings); });
     append(findings, report);
     return array_of(std::move(slopes));
@@ -193,7 +193,7 @@ py::array py_slopes(const py::object& height, double strength, const Text& kerne
 
 py::dict py_bump_options(const py::object& height, double strength, const Text& kernel,
                          const Text& wrap, const std::string& channel) {
-    const Image heights = heights_of(height, channel);
+    const Image heights = heights_of(height, channel, IgnoredReport());
     const BumpOptions given = bump_options(strength, kernel, 2, wrap, {1.0, 1.0}, std::nullopt);
     const BumpOptions options = without_gil([&] { return resolve_options(heights, given); });
     py::dict result;
@@ -210,8 +210,8 @@ py::tuple py_heights(const py::object& normals, const std::string& kernel, const
     options.wrap = wraps_of(wrap);
     options.max_slope = max_slope;
     options.level = level;
-    const Image image = image_of(normals, "normals");
     Report findings;
+    const Image image = image_of(normals, "normals", findings);
     IntegratedHeights integrated =
         without_gil([&] { return heights_from_normals(image, options, findings); });
     append(findings, report);
@@ -229,8 +229,8 @@ py::array py_encode(const py::object& normals, int bits, const std::string& gree
                     const std::string& zero_code, const std::string& dither,
                     const FindingList& report) {
     const NormalMapFormat format = format_of(bits, green, zero_code, dither);
-    const Image image = image_of(normals, "normals");
     Report findings;
+    const Image image = image_of(normals, "normals", findings);
     Image map = without_gil([&] { return encode_normal_map(image, format, findings); });
     append(findings, report);
     return array_of(std::move(map));
@@ -240,8 +240,8 @@ py::array py_decode(const py::object& map, const std::string& green, const std::
                     bool exact_flat, const FindingList& report) {
     const Green direction = value_of<Green>(green, "green");
     const FlatCode flat = value_of<FlatCode>(zero_code, "zero_code");
-    const Image image = image_of(map, "map");
     Report findings;
+    const Image image = image_of(map, "map", findings);
     Image normals = without_gil([&] {
         return decode_normal_map(image, direction, flat, findings,
                                  exact_flat ? FlatTexels::exact : FlatTexels::as_coded);
@@ -253,8 +253,8 @@ py::array py_decode(const py::object& map, const std::string& green, const std::
 py::array py_flip_green(const py::object& map, const std::string& zero_code,
                         const FindingList& report) {
     const FlatCode flat = value_of<FlatCode>(zero_code, "zero_code");
-    Image image = image_of(map, "map");
     Report findings;
+    Image image = image_of(map, "map", findings);
     without_gil([&] {
         AxisMapping mapping = same_axes;
         mapping[1].is_negative = true;
@@ -267,17 +267,17 @@ py::array py_flip_green(const py::object& map, const std::string& zero_code,
 py::array py_blend(const py::object& base, const py::object& detail, const std::string& blend,
                    const FindingList& report) {
     const NormalBlend method = value_of<NormalBlend>(blend, "blend", blends);
-    Image result = image_of(base, "base");
-    const Image added = image_of(detail, "detail");
     Report findings;
+    Image result = image_of(base, "base", findings);
+    const Image added = image_of(detail, "detail", findings);
     without_gil([&] { blend_normals(result, added, method, findings); });
     append(findings, report);
     return array_of(std::move(result));
 }
 
 py::array py_scale_slopes(const py::object& normals, double strength, const FindingList& report) {
-    Image result = image_of(normals, "normals");
     Report findings;
+    Image result = image_of(normals, "normals", findings);
     without_gil([&] { scale_slopes(result, strength, findings); });
     append(findings, report);
     return array_of(std::move(result));
@@ -289,8 +289,8 @@ py::array py_resize(const py::object& normals, int width, int height, const std:
     options.filter = value_of<ResizeFilter>(filter, "filter", filters);
     options.domain = value_of<ResizeDomain>(domain, "domain", domains);
     options.wrap = wraps_of(wrap);
-    const Image image = image_of(normals, "normals");
     Report findings;
+    const Image image = image_of(normals, "normals", findings);
     Image result =
         without_gil([&] { return resize_normals(image, width, height, options, findings); });
     append(findings, report);
@@ -302,8 +302,8 @@ py::array py_convert_space(const py::object& normals, const MeshObject& mesh, co
     const VectorSpace target = value_of<VectorSpace>(to, "to");
     if (target == VectorSpace::world) refuse_name("to", to, {"tangent", "object"});
     const MapRegion region{.repeat = repeat};
-    const Image image = image_of(normals, "normals");
     Report findings;
+    const Image image = image_of(normals, "normals", findings);
     ConvertedNormals converted = without_gil([&] {
         return target == VectorSpace::object ? object_from_tangent(image, mesh, region, findings)
                                              : tangent_from_object(image, mesh, region, findings);
@@ -356,7 +356,7 @@ py::list conditions_of(const NormalMapCheck& check, Severity severity) {
 
 py::dict py_check_normal_map(const py::object& map, const Metadata& metadata,
                              const std::string& color_tag) {
-    const Image image = image_of(map, "map");
+    const Image image = image_of(map, "map", IgnoredReport());
     const NormalMapCheck check =
         without_gil([&] { return check_normal_map(image, metadata, color_tag); });
     py::dict result;
@@ -383,8 +383,8 @@ py::dict py_check_normal_map(const py::object& map, const Metadata& metadata,
 py::dict py_compare_images(const py::object& a, const py::object& b, const std::string& color_space,
                            double pixels_per_degree) {
     const ColorSpace space = value_of<ColorSpace>(color_space, "color_space", color_spaces);
-    const Image first = image_of(a, "a", space);
-    const Image second = image_of(b, "b", space);
+    const Image first = image_of(a, "a", IgnoredReport(), space);
+    const Image second = image_of(b, "b", IgnoredReport(), space);
     ImageDifference difference;
     std::optional<FlipDifference> flip;
     without_gil([&] {
@@ -406,8 +406,8 @@ py::dict py_compare_images(const py::object& a, const py::object& b, const std::
 }
 
 py::tuple py_compare_normals(const py::object& a, const py::object& b) {
-    const Image first = image_of(a, "a");
-    const Image second = image_of(b, "b");
+    const Image first = image_of(a, "a", IgnoredReport());
+    const Image second = image_of(b, "b", IgnoredReport());
     AngleDifference angles = without_gil([&] { return angle_difference(first, second); });
     return py::make_tuple(python::to_dict(angles.angles, "texels"),
                           array_of(std::move(angles.map)));
@@ -423,22 +423,31 @@ void add_height_functions(py::module_& module) {
                arg("bits") = 16, arg("green") = "up", arg("zero_code") = "127.5",
                arg("dither") = "none", arg("report") = none,
                "Convert a height map to a normal map of 8 or 16 bits, or 32 (float).\n\n"
-               "`strength` is the height of the value 1 (white) in texels. Absent options are\n"
-               "derived from the map, as `relief-bake bump` does.");
+               "height: uint8, uint16 or float32 (height, width), or with channels. The result\n"
+               "has the shape (height, width, 3). `strength` is the height of the value 1 (white)\n"
+               "in texels. Absent options are derived from the map, as `relief-bake bump` does.\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("slopes", &py_slopes, arg("height"), py::kw_only(), arg("strength") = 16.0,
                arg("kernel") = none, arg("kernel_radius") = 2, arg("wrap") = none,
                arg("texel") = texel, arg("arithmetic") = none, arg("channel") = "mean",
                arg("report") = none,
-               "Compute the slopes of a height map: to the right and upwards.");
+               "Compute the slopes of a height map: to the right and upwards.\n\n"
+               "height and the options are those of bump(); the result: float32 (height, width,\n"
+               "2).\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("bump_options", &py_bump_options, arg("height"), py::kw_only(),
                arg("strength") = 16.0, arg("kernel") = none, arg("wrap") = none,
                arg("channel") = "mean",
-               "Return the kernel and wrap that bump() derives from a height map.");
+               "Return the kernel and wrap that bump() derives from a height map.\n\n"
+               "The result is a dictionary with kernel, kernel_radius and wrap.\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("heights", &py_heights, arg("normals"), py::kw_only(), arg("kernel") = "central7",
                arg("wrap") = "repeat", arg("max_slope") = 16.0, arg("level") = false,
                arg("report") = none,
                "Integrate decoded normals to least-squares heights in texels.\n\n"
-               "The result is (heights, details): the remaining errors as a dictionary.");
+               "normals: float32 (height, width, 3). The result is (heights, details): float32\n"
+               "(height, width), and the remaining errors as a dictionary.\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
 }
 
 void add_normal_map_functions(py::module_& module) {
@@ -446,34 +455,57 @@ void add_normal_map_functions(py::module_& module) {
     const py::object none = py::none();
     module.def("encode_normals", &py_encode, arg("normals"), py::kw_only(), arg("bits") = 16,
                arg("green") = "up", arg("zero_code") = "127.5", arg("dither") = "none",
-               arg("report") = none, "Encode directions as a normal map of 8, 16 or 32 bits.");
+               arg("report") = none,
+               "Encode directions as a normal map of 8, 16 or 32 bits.\n\n"
+               "normals: float32 (height, width, 3), y up; the result: uint8, uint16 or float32\n"
+               "of the same shape.\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("decode_normals", &py_decode, arg("map"), py::kw_only(), arg("green") = "up",
                arg("zero_code") = "127.5", arg("exact_flat") = false, arg("report") = none,
                "Decode a normal map to unit normals, y up: float32 of shape (h, w, 3).\n\n"
-               "`exact_flat` decodes the code of flat texels as exactly flat.");
+               "map: uint8, uint16 or float32 (height, width, 3 or more). `exact_flat` decodes\n"
+               "the code of flat texels as exactly flat.\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("flip_green", &py_flip_green, arg("map"), py::kw_only(), arg("zero_code") = "127.5",
                arg("report") = none,
-               "Convert a stored map between OpenGL's and DirectX's direction of green.");
+               "Convert a stored map between OpenGL's and DirectX's direction of green.\n\n"
+               "The result has the type and shape of the map.\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("blend_normals", &py_blend, arg("base"), arg("detail"), py::kw_only(),
                arg("blend") = "reoriented", arg("report") = none,
                "Blend decoded detail normals into decoded base normals.\n\n"
-               "The detail repeats from the upper left corner.");
+               "base, detail and the result: float32 (height, width, 3). The detail repeats from\n"
+               "the upper left corner.\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("scale_slopes", &py_scale_slopes, arg("normals"), arg("strength"), py::kw_only(),
-               arg("report") = none, "Multiply the slopes of decoded normals.");
+               arg("report") = none,
+               "Multiply the slopes of decoded normals.\n\n"
+               "normals and the result: float32 (height, width, 3).\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("resize_normals", &py_resize, arg("normals"), arg("width"), arg("height"),
                py::kw_only(), arg("filter") = "best", arg("domain") = "slopes",
-               arg("wrap") = "repeat", arg("report") = none, "Resize decoded normals.");
+               arg("wrap") = "repeat", arg("report") = none,
+               "Resize decoded normals.\n\n"
+               "normals: float32 (h, w, 3); the result: float32 (height, width, 3).\n\n"
+               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("normal_mip_levels", &py_normal_mip_levels, arg("normals"),
                "Average decoded normals to all mip levels, from half the size to one texel.\n\n"
-               "The vectors are means, with a length of at most 1.");
+               "normals: float32 (height, width, 3); the result: a list of such arrays. The\n"
+               "vectors are means, with a length of at most 1.\n\n"
+               "Raises InvalidInput for wrong shapes, and TypeError for wrong types.");
     module.def("convert_space", &py_convert_space, arg("normals"), arg("mesh"), py::kw_only(),
                arg("to"), arg("repeat") = false, arg("report") = none,
                "Convert decoded normals between the tangent and the object space of a mesh.\n\n"
-               "The mesh needs normals, tangents and texture coordinates.");
+               "normals and the result: float32 (height, width, 3). The mesh needs normals,\n"
+               "tangents and texture coordinates.\n\n"
+               "Raises InvalidInput if it lacks one, and for wrong shapes and options, and\n"
+               "TypeError for wrong types.");
     module.def("check_normal_map", &py_check_normal_map, arg("map"), py::kw_only(),
                arg("metadata") = Metadata{}, arg("color_tag") = "",
                "Find the content, conventions and defects of a stored normal map.\n\n"
-               "The result has the keys of a file of `relief-bake check --json`.");
+               "map: uint8, uint16 or float32 (height, width, channels). The result has the keys\n"
+               "of a file of `relief-bake check --json`.\n\n"
+               "Raises InvalidInput for wrong shapes, and TypeError for wrong types.");
 }
 
 }  // namespace
@@ -481,11 +513,18 @@ void add_normal_map_functions(py::module_& module) {
 void add_images(py::module_& module) {
     using py::arg;
     module.def("read_image", &py_read_image, arg("file"),
-               "Read an image with its samples as stored: (image, metadata).");
+               "Read an image with its samples as stored: (image, metadata).\n\n"
+               "image: uint8, uint16 or float32, (height, width) or (height, width, channels);\n"
+               "metadata: a dictionary of texts.\n\n"
+               "Raises FileError if the file cannot be read, or is damaged.");
     module.def("write_image", &py_write_image, arg("file"), arg("image"), py::kw_only(),
                arg("color_space") = "data", arg("metadata") = Metadata{}, arg("half") = false,
                arg("report") = py::none(),
-               "Write an image. The extension decides the format: .png .tif .exr .hdr .jpg.");
+               "Write an image. The extension decides the format: .png .tif .exr .hdr .jpg.\n\n"
+               "image: uint8, uint16 or float32, (height, width) or (height, width, channels)\n"
+               "with 1 to 4 channels; other floats are rounded to float32.\n\n"
+               "Raises FileError if the file cannot be written; then an older file is unchanged.\n"
+               "Raises InvalidInput for wrong shapes, and TypeError for wrong types.");
     module.def(
         "write_texture", &py_write_texture, arg("file"), arg("levels"), py::kw_only(),
         arg("format") = "bc5", arg("quality") = "normal", arg("srgb") = false,
@@ -494,16 +533,22 @@ void add_images(py::module_& module) {
         "Formats and qualities are those of `relief-bake convert`. Levels are arrays of the\n"
         "format's channels and bits; for \"bc5\" and \"bc5-snorm\" also decoded normals:\n"
         "three channels of float32. read_image() reads the largest level. `zstd`\n"
-        "compresses .ktx2, 1 to 22.");
+        "compresses .ktx2, 1 to 22.\n\n"
+        "Raises FileError if the file cannot be written, InvalidInput for levels that do not\n"
+        "fit the format or each other, and TypeError for wrong types.");
     add_height_functions(module);
     add_normal_map_functions(module);
     module.def("compare_images", &py_compare_images, arg("a"), arg("b"), py::kw_only(),
                arg("color_space") = "srgb", arg("pixels_per_degree") = default_pixels_per_degree,
                "Compare the samples of two images, and their perceived difference (FLIP).\n\n"
-               "FLIP is absent for data. Beside `flip_map`, the keys are those of\n"
-               "`relief-view --json` with --reference.");
-    module.def("compare_normals", &py_compare_normals, arg("a"), arg("b"),
-               "Measure the angles between decoded normals: (statistics, degrees of each texel).");
+               "FLIP is absent for data. Beside `flip_map`, float32 (height, width), the keys\n"
+               "are those of `relief-view --json` with --reference.\n\n"
+               "Raises InvalidInput if the shapes differ, and TypeError for wrong types.");
+    module.def(
+        "compare_normals", &py_compare_normals, arg("a"), arg("b"),
+        "Measure the angles between decoded normals: (statistics, degrees of each texel).\n\n"
+        "a and b: float32 (height, width, 3); degrees: float32 (height, width).\n\n"
+        "Raises InvalidInput if the shapes differ, and TypeError for wrong types.");
 }
 
 }  // namespace relief::python

@@ -63,8 +63,10 @@ py::array py_vertex_normals(const py::object& positions, const py::object& trian
                             const std::string& weight, const std::string& arithmetic,
                             std::optional<double> weld_tolerance, const py::object& out,
                             const FindingList& report) {
-    const Positions points = rows_of<glm::vec3>(positions, "positions");
-    const TriangleSpan faces = triangles_of(triangles);
+    Report findings;
+    Inputs inputs(findings);
+    const Positions points = inputs.positions(positions);
+    const TriangleSpan faces = inputs.triangles(triangles);
     const std::optional<NormalWeight> chosen = weight_of(weight);
     NormalOptions options = normal_options(arithmetic, weld_tolerance);
     options.weight = chosen.value_or(options.weight);
@@ -74,7 +76,6 @@ py::array py_vertex_normals(const py::object& positions, const py::object& trian
         throw InvalidInput("out: " + std::to_string(normals.size()) + " rows for " +
                            std::to_string(points.size()) + " positions");
     }
-    Report findings;
     without_gil([&] {
         if (chosen) return vertex_normals(points, faces, options, normals, findings);
         const ChosenNormals automatic = chosen_normals(points, faces, options, findings);
@@ -89,13 +90,14 @@ py::array py_corner_normals(const py::object& positions, const py::object& trian
                             const std::string& weight, std::optional<double> crease_degrees,
                             const py::object& smoothing_groups, const std::string& arithmetic,
                             std::optional<double> weld_tolerance, const FindingList& report) {
-    const Positions points = rows_of<glm::vec3>(positions, "positions");
-    const TriangleSpan faces = triangles_of(triangles);
+    Report findings;
+    Inputs inputs(findings);
+    const Positions points = inputs.positions(positions);
+    const TriangleSpan faces = inputs.triangles(triangles);
     const HardEdges hard = {radians(crease_degrees),
-                            indices_of(smoothing_groups, "smoothing_groups")};
+                            inputs.indices(smoothing_groups, "smoothing_groups")};
     const NormalOptions options = normal_options(arithmetic, weld_tolerance);
     const std::optional<NormalWeight> chosen = weight_of(weight);
-    Report findings;
     CornerNormals corners =
         without_gil([&] { return corner_normals(points, faces, chosen, options, hard, findings); });
     append(findings, report);
@@ -105,9 +107,10 @@ py::array py_corner_normals(const py::object& positions, const py::object& trian
 
 py::array py_triangle_normals(const py::object& positions, const py::object& triangles,
                               const FindingList& report) {
-    const Positions points = rows_of<glm::vec3>(positions, "positions");
-    const TriangleSpan faces = triangles_of(triangles);
     Report findings;
+    Inputs inputs(findings);
+    const Positions points = inputs.positions(positions);
+    const TriangleSpan faces = inputs.triangles(triangles);
     std::vector<glm::vec3> normals =
         without_gil([&] { return triangle_normals(points, faces, findings); });
     append(findings, report);
@@ -117,10 +120,12 @@ py::array py_triangle_normals(const py::object& positions, const py::object& tri
 py::array py_corner_tangents(const py::object& positions, const py::object& normals,
                              const py::object& texcoords, const py::object& triangles,
                              const std::string& method, const FindingList& report) {
-    const Positions points = rows_of<glm::vec3>(positions, "positions");
-    const Positions directions = rows_of<glm::vec3>(normals, "normals");
-    const StridedSpan<const glm::vec2> coordinates = rows_of<glm::vec2>(texcoords, "texcoords");
-    const TriangleSpan faces = triangles_of(triangles);
+    Report findings;
+    Inputs inputs(findings);
+    const Positions points = inputs.positions(positions);
+    const Positions directions = inputs.rows<glm::vec3>(normals, "normals");
+    const StridedSpan<const glm::vec2> coordinates = inputs.rows<glm::vec2>(texcoords, "texcoords");
+    const TriangleSpan faces = inputs.triangles(triangles);
     const auto function_of = [&] {
         switch (value_of<TangentMethod>(method, "method")) {
             case TangentMethod::mikktspace:
@@ -134,7 +139,6 @@ py::array py_corner_tangents(const py::object& positions, const py::object& norm
         }
     };
     const auto function = function_of();
-    Report findings;
     std::vector<glm::vec4> tangents =
         without_gil([&] { return function(points, directions, coordinates, faces, findings); });
     append(findings, report);
@@ -145,13 +149,14 @@ py::array py_corner_tangents(const py::object& positions, const py::object& norm
 py::array py_vertex_tangents(const py::object& positions, const py::object& normals,
                              const py::object& texcoords, const py::object& triangles,
                              const py::object& out, const FindingList& report) {
-    const Positions points = rows_of<glm::vec3>(positions, "positions");
-    const Positions directions = rows_of<glm::vec3>(normals, "normals");
-    const StridedSpan<const glm::vec2> coordinates = rows_of<glm::vec2>(texcoords, "texcoords");
-    const TriangleSpan faces = triangles_of(triangles);
+    Report findings;
+    Inputs inputs(findings);
+    const Positions points = inputs.positions(positions);
+    const Positions directions = inputs.rows<glm::vec3>(normals, "normals");
+    const StridedSpan<const glm::vec2> coordinates = inputs.rows<glm::vec2>(texcoords, "texcoords");
+    const TriangleSpan faces = inputs.triangles(triangles);
     py::array result = output_for<glm::vec4>(out, points);
     const StridedSpan<glm::vec4> tangents = output_rows<glm::vec4>(result, "out");
-    Report findings;
     without_gil(
         [&] { vertex_tangents(points, directions, coordinates, faces, tangents, findings); });
     append(findings, report);
@@ -159,8 +164,10 @@ py::array py_vertex_tangents(const py::object& positions, const py::object& norm
 }
 
 py::tuple py_split_vertices(std::size_t vertex_count, const py::object& triangles,
-                            const py::object& corner_values) {
-    const std::vector<glm::uvec3> faces = copied_triangles(triangles);
+                            const py::object& corner_values, const FindingList& report) {
+    Report findings;
+    Inputs inputs(findings);
+    const std::vector<glm::uvec3> faces = inputs.copied_triangles(triangles);
     py::object values = corner_values;
     if (py::isinstance<py::array>(values) && values.attr("ndim").cast<int>() == 3) {
         const py::object last = values.attr("shape").attr("__getitem__")(2);
@@ -175,8 +182,9 @@ py::tuple py_split_vertices(std::size_t vertex_count, const py::object& triangle
                                               std::span<const Vector>(corners));
         });
     };
-    VertexSplit split = has_four ? split_by(copied_rows<glm::vec4>(values, "corner_values"))
-                                 : split_by(copied_rows<glm::vec3>(values, "corner_values"));
+    VertexSplit split = has_four ? split_by(inputs.copied_rows<glm::vec4>(values, "corner_values"))
+                                 : split_by(inputs.copied_rows<glm::vec3>(values, "corner_values"));
+    append(findings, report);
     const auto size = static_cast<py::ssize_t>(split.source_vertex.size());
     return py::make_tuple(array_of<std::uint32_t>(std::move(split.source_vertex), {size}),
                           array_of(std::move(split.triangles)));
@@ -184,9 +192,10 @@ py::tuple py_split_vertices(std::size_t vertex_count, const py::object& triangle
 
 py::array py_mean_curvatures(const py::object& positions, const py::object& triangles,
                              const FindingList& report) {
-    const std::vector<glm::vec3> points = copied_rows<glm::vec3>(positions, "positions");
-    const std::vector<glm::uvec3> faces = copied_triangles(triangles);
     Report findings;
+    Inputs inputs(findings);
+    const std::vector<glm::vec3> points = Inputs::copied(inputs.positions(positions));
+    const std::vector<glm::uvec3> faces = inputs.copied_triangles(triangles);
     std::vector<float> curvatures =
         without_gil([&] { return mean_curvatures(points, faces, findings); });
     append(findings, report);
@@ -199,19 +208,22 @@ py::array py_mean_curvatures(const py::object& positions, const py::object& tria
 MeshObject new_mesh(const py::object& positions, const py::object& triangles,
                     const py::object& normals, const py::object& texcoords,
                     const py::object& tangents, const py::object& colors,
-                    const py::object& smoothing_groups, const std::string& name) {
+                    const py::object& smoothing_groups, const std::string& name,
+                    const FindingList& report) {
+    Report findings;
+    Inputs inputs(findings);
     MeshObject mesh;
     mesh.name = name;
-    (void)rows_of<glm::vec3>(positions, "positions");
-    mesh.positions = copied_rows<glm::vec3>(positions, "positions");
-    mesh.triangles = copied_triangles(triangles);
-    mesh.normals = copied_rows<glm::vec3>(normals, "normals");
-    mesh.texcoords = copied_rows<glm::vec2>(texcoords, "texcoords");
-    mesh.tangents = copied_rows<glm::vec4>(tangents, "tangents");
-    mesh.colors = copied_rows<glm::vec4>(colors, "colors");
-    const auto groups = indices_of(smoothing_groups, "smoothing_groups");
+    mesh.positions = Inputs::copied(inputs.positions(positions, mesh.origin));
+    mesh.triangles = inputs.copied_triangles(triangles);
+    mesh.normals = inputs.copied_rows<glm::vec3>(normals, "normals");
+    mesh.texcoords = inputs.copied_rows<glm::vec2>(texcoords, "texcoords");
+    mesh.tangents = inputs.copied_rows<glm::vec4>(tangents, "tangents");
+    mesh.colors = inputs.copied_rows<glm::vec4>(colors, "colors");
+    const auto groups = inputs.indices(smoothing_groups, "smoothing_groups");
     mesh.smoothing_groups.assign(groups.begin(), groups.end());
     validate(mesh);
+    append(findings, report);
     return mesh;
 }
 
@@ -228,6 +240,59 @@ py::object view_of(const py::object& mesh, std::vector<Vector> Mesh::*member) {
 
 std::tuple<double, double, double> tuple_of(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
+}
+
+// Pickling: a dictionary with every member that a mesh has.
+
+template <typename Vector>
+std::vector<Vector> rows_in(const py::dict& state, const char* name) {
+    Report unused;
+    Inputs inputs(unused);
+    return inputs.copied_rows<Vector>(state[name], name);
+}
+
+py::dict state_of(const py::object& object) {
+    const auto& mesh = object.cast<const MeshObject&>();
+    py::list ranges;
+    for (const MaterialRange& range : mesh.material_ranges)
+        ranges.append(py::make_tuple(range.first_triangle, range.triangle_count, range.material));
+    py::dict state;
+    state["name"] = mesh.name;
+    state["origin"] = tuple_of(mesh.origin);
+    state["positions"] = view_of(object, &Mesh::positions);
+    state["triangles"] = view_of(object, &Mesh::triangles);
+    state["normals"] = view_of(object, &Mesh::normals);
+    state["texcoords"] = view_of(object, &Mesh::texcoords);
+    state["texcoords_2"] = view_of(object, &Mesh::texcoords_2);
+    state["tangents"] = view_of(object, &Mesh::tangents);
+    state["colors"] = view_of(object, &Mesh::colors);
+    state["material_ranges"] = std::move(ranges);
+    state["smoothing_groups"] = py::array_t<std::uint32_t>(
+        static_cast<py::ssize_t>(mesh.smoothing_groups.size()), mesh.smoothing_groups.data());
+    return state;
+}
+
+MeshObject mesh_of(const py::dict& state) {
+    MeshObject mesh;
+    mesh.name = state["name"].cast<std::string>();
+    const auto [x, y, z] = state["origin"].cast<std::tuple<double, double, double>>();
+    mesh.origin = {x, y, z};
+    mesh.positions = rows_in<glm::vec3>(state, "positions");
+    Report unused;
+    Inputs inputs(unused);
+    if (!state["triangles"].is_none()) mesh.triangles = inputs.copied_triangles(state["triangles"]);
+    mesh.normals = rows_in<glm::vec3>(state, "normals");
+    mesh.texcoords = rows_in<glm::vec2>(state, "texcoords");
+    mesh.texcoords_2 = rows_in<glm::vec2>(state, "texcoords_2");
+    mesh.tangents = rows_in<glm::vec4>(state, "tangents");
+    mesh.colors = rows_in<glm::vec4>(state, "colors");
+    using Range = std::tuple<std::uint32_t, std::uint32_t, std::optional<std::uint32_t>>;
+    for (const auto& [first, count, material] : state["material_ranges"].cast<std::vector<Range>>())
+        mesh.material_ranges.push_back({first, count, material});
+    const auto groups = inputs.indices(state["smoothing_groups"], "smoothing_groups");
+    mesh.smoothing_groups.assign(groups.begin(), groups.end());
+    validate(mesh);
+    return mesh;
 }
 
 MeshObject py_read_mesh(const FileName& file, const std::string& space, const FindingList& report) {
@@ -515,41 +580,63 @@ void add_array_functions(py::module_& module) {
         arg("weight") = "angle", arg("arithmetic") = "float64", arg("weld_tolerance") = 0.0,
         arg("out") = py::none(), arg("report") = py::none(),
         "Compute the unit normal of every vertex, the weighted mean over its triangles.\n\n"
-        "The inputs are not copied. The result is `out`, or a new array. A vertex without a\n"
-        "direction gets (0, 0, 1), and a finding is appended to the list `report`.\n"
-        "Vertices within `weld_tolerance` share their normal; None: none do.");
+        "positions: float32 (n, 3); triangles: uint16 or uint32 (m, 3), counter-clockwise.\n"
+        "Other types and layouts are converted. The result, float32 (n, 3), is `out` or a new\n"
+        "array. A vertex without a direction gets (0, 0, 1), and a finding is appended to the\n"
+        "list `report`. Vertices within `weld_tolerance` share their normal; None: none do.\n\n"
+        "Raises InvalidInput for wrong shapes, indices and options, and TypeError for wrong\n"
+        "types; `out` must be float32.");
     module.def("corner_normals", &py_corner_normals, arg("positions"), arg("triangles"),
                py::kw_only(), arg("weight") = "angle", arg("crease_degrees") = py::none(),
                arg("smoothing_groups") = py::none(), arg("arithmetic") = "float64",
                arg("weld_tolerance") = 0.0, arg("report") = py::none(),
                "Compute the unit normal of every corner, averaged up to hard edges.\n\n"
                "Edges are hard if their triangles' normals differ by more than `crease_degrees`,\n"
-               "or between different `smoothing_groups`. The result has the shape (m, 3, 3):\n"
-               "triangle, corner, component.");
+               "or between different `smoothing_groups`: uint32 (m,). positions: float32\n"
+               "(n, 3); triangles: uint16 or uint32 (m, 3). The result is float32 (m, 3, 3):\n"
+               "triangle, corner, component.\n\n"
+               "Raises InvalidInput for wrong shapes, indices and options, and TypeError for\n"
+               "wrong types.");
     module.def("triangle_normals", &py_triangle_normals, arg("positions"), arg("triangles"),
                py::kw_only(), arg("report") = py::none(),
-               "Compute the unit normal of every triangle by the right-hand rule.");
+               "Compute the unit normal of every triangle by the right-hand rule.\n\n"
+               "positions: float32 (n, 3); triangles: uint16 or uint32 (m, 3); the result:\n"
+               "float32 (m, 3), with (0, 0, 1) and a finding for degenerate triangles.\n\n"
+               "Raises InvalidInput for wrong shapes and indices, and TypeError for wrong types.");
     module.def("corner_tangents", &py_corner_tangents, arg("positions"), arg("normals"),
                arg("texcoords"), arg("triangles"), py::kw_only(), arg("method") = "mikktspace",
                arg("report") = py::none(),
                "Compute a tangent for every corner from texture coordinates (v points down).\n\n"
-               "The result has the shape (m, 3, 4): triangle, corner, x y z w. The bitangent is\n"
-               "w * cross(normal, tangent). Convert corners to vertices with split_vertices().");
+               "positions and normals: float32 (n, 3); texcoords: float32 (n, 2); triangles:\n"
+               "uint16 or uint32 (m, 3). The result is float32 (m, 3, 4): triangle, corner,\n"
+               "x y z w. The bitangent is w * cross(normal, tangent). Convert corners to vertices\n"
+               "with split_vertices().\n\n"
+               "Raises InvalidInput for wrong shapes, indices and options, and TypeError for\n"
+               "wrong types.");
     module.def(
         "vertex_tangents", &py_vertex_tangents, arg("positions"), arg("normals"), arg("texcoords"),
         arg("triangles"), py::kw_only(), arg("out") = py::none(), arg("report") = py::none(),
         "Compute the MikkTSpace tangent of every vertex of a mesh that is already split.\n\n"
-        "If the corners at a vertex differ, it gets the most frequent tangent, and a finding\n"
-        "is appended to the list `report`.");
+        "positions and normals: float32 (n, 3); texcoords: float32 (n, 2); triangles: uint16 or\n"
+        "uint32 (m, 3). The result, float32 (n, 4), is `out` or a new array. If the corners at\n"
+        "a vertex differ, it gets the most frequent tangent, and a finding is appended to the\n"
+        "list `report`.\n\n"
+        "Raises InvalidInput for wrong shapes and indices, and TypeError for wrong types; `out`\n"
+        "must be float32.");
     module.def(
         "split_vertices", &py_split_vertices, arg("vertex_count"), arg("triangles"),
-        arg("corner_values"),
+        arg("corner_values"), py::kw_only(), arg("report") = py::none(),
         "Split vertices until all corners of a vertex share a value, with fewest copies.\n\n"
-        "`corner_values` has the shape (m, 3, c) or (3 m, c) with c = 3 or 4. The result is\n"
-        "(source_vertex, triangles): index any vertex data with source_vertex.");
+        "triangles: uint16 or uint32 (m, 3); corner_values: float32 (m, 3, c) or (3 m, c) with\n"
+        "c = 3 or 4. The result is (source_vertex, triangles), uint32 (k,) and (m, 3): index any\n"
+        "vertex data with source_vertex.\n\n"
+        "Raises InvalidInput for wrong shapes and indices, and TypeError for wrong types.");
     module.def("mean_curvatures", &py_mean_curvatures, arg("positions"), arg("triangles"),
                py::kw_only(), arg("report") = py::none(),
-               "Compute the mean curvature at every vertex, positive for convex surfaces.");
+               "Compute the mean curvature at every vertex, positive for convex surfaces.\n\n"
+               "positions: float32 (n, 3); triangles: uint16 or uint32 (m, 3); the result:\n"
+               "float32 (n,).\n\n"
+               "Raises InvalidInput for wrong shapes and indices, and TypeError for wrong types.");
 }
 
 void add_mesh_class(py::module_& module) {
@@ -558,11 +645,19 @@ void add_mesh_class(py::module_& module) {
     py::class_<MeshObject>(module, "Mesh",
                            "Triangles and vertex attributes, which the mesh owns.\n\n"
                            "The attributes are arrays that view the mesh's memory: they may be\n"
-                           "written, but not resized. An absent attribute is None.")
+                           "written, but not resized. An absent attribute is None. Meshes can be\n"
+                           "copied (copy.copy() copies the arrays) and pickled.")
         .def(py::init(&new_mesh), arg("positions"), arg("triangles"), py::kw_only(),
              arg("normals") = none, arg("texcoords") = none, arg("tangents") = none,
              arg("colors") = none, arg("smoothing_groups") = none, arg("name") = "",
-             "Copy arrays to a new mesh. Texture coordinates have v downwards.")
+             arg("report") = none,
+             "Copy arrays to a new mesh. Texture coordinates have v downwards.\n\n"
+             "positions and normals: float32 (n, 3); texcoords: float32 (n, 2); tangents and\n"
+             "colors: float32 (n, 4); triangles: uint16 or uint32 (m, 3); smoothing_groups:\n"
+             "uint32 (m,). Other numbers are converted. Positions that are farther from 0 than 16\n"
+             "times their extent, and that float32 cannot hold, are stored relative to the\n"
+             "attribute `origin`.\n\n"
+             "Raises InvalidInput for wrong shapes and indices, and TypeError for wrong types.")
         .def_readwrite("name", &MeshObject::name, "The name of the mesh.")
         .def_property_readonly(
             "origin", [](const MeshObject& mesh) { return tuple_of(mesh.origin); },
@@ -585,6 +680,10 @@ void add_mesh_class(py::module_& module) {
         .def_property_readonly(
             "colors", [](const py::object& mesh) { return view_of(mesh, &Mesh::colors); },
             "Linear RGB and coverage: float32 of shape (n, 4), or None.")
+        .def("__copy__", [](const MeshObject& mesh) { return MeshObject(mesh); })
+        .def("__deepcopy__",
+             [](const MeshObject& mesh, const py::dict&) { return MeshObject(mesh); })
+        .def(py::pickle(&state_of, &mesh_of))
         .def("__repr__", [](const MeshObject& mesh) {
             return "<relief.Mesh of " + std::to_string(mesh.positions.size()) + " vertices and " +
                    std::to_string(mesh.triangles.size()) + " triangles>";
@@ -597,17 +696,21 @@ void add_mesh_functions(py::module_& module) {
                arg("report") = py::none(),
                "Read an OBJ, PLY, STL or OFF file, or a glTF file as one mesh.\n\n"
                "`space` is for glTF: all instances of the scene in world space, or each primitive\n"
-               "once in object space, with the exact numbers of the file.");
+               "once in object space, with the exact numbers of the file.\n\n"
+               "Raises FileError if the file cannot be read, or is damaged.");
     module.def("write_mesh", &py_write_mesh, arg("file"), arg("mesh"), py::kw_only(),
                arg("report") = py::none(),
-               "Write an OBJ or PLY file. Both formats cannot store tangents.");
+               "Write an OBJ or PLY file. Both formats cannot store tangents.\n\n"
+               "Raises FileError if the file cannot be written; then an older file is unchanged.");
     module.def("with_frames", &py_with_frames, arg("mesh"), py::kw_only(), arg("normals") = "keep",
                arg("tangents") = "keep", arg("crease_degrees") = py::none(),
                arg("weld_tolerance") = 0.0, arg("smoothing_groups") = true, arg("repair") = false,
                arg("report") = py::none(),
                "Compute normals, then tangents, and split vertices whose corners differ.\n\n"
                "The options are those of `relief-mesh process`. The result is (mesh,\n"
-               "source_vertex): the new mesh, and for each of its vertices the one it copies.");
+               "source_vertex): the new mesh, and for each of its vertices the one it copies,\n"
+               "uint32 (k,).\n\n"
+               "Raises InvalidInput for wrong options, and if tangents lack texture coordinates.");
     module.def(
         "decimate", &py_decimated, arg("mesh"), py::kw_only(), arg("triangles") = py::none(),
         arg("max_error") = py::none(), arg("max_normal_degrees") = py::none(),
@@ -620,30 +723,36 @@ void add_mesh_functions(py::module_& module) {
         "leave boundaries and seams unchanged. Without `keep_positions`, the vertices that\n"
         "remain move to where the result fits the mesh best. `weights` has any of \"texcoords\",\n"
         "\"normals\" and \"colors\", as for `relief-mesh decimate --weights`. The result is\n"
-        "(mesh, source_vertex).");
+        "(mesh, source_vertex), with source_vertex as for with_frames().\n\n"
+        "Raises InvalidInput for options that are missing or out of range.");
     module.def(
         "levels_of_detail", &py_levels_of_detail, arg("mesh"), arg("triangles"), py::kw_only(),
         arg("weights") = std::map<std::string, double>(), arg("report") = py::none(),
         "Decimate a mesh to several numbers of triangles, each level from the one before.\n\n"
         "All levels have the texture coordinates of the mesh, so that one normal map serves\n"
-        "all. The result is a list of meshes without the input.");
+        "all. The result is a list of meshes without the input.\n\n"
+        "Raises InvalidInput for options that are out of range.");
     module.def(
         "surface_distance", &py_surface_distance, arg("a"), arg("b"),
         "Measure the distances between two surfaces and the angles of their normals.\n\n"
         "The result is (from_a, from_b): dictionaries with the keys of the reports of\n"
-        "`relief-mesh decimate`, of the points of `a` from `b` and of those of `b` from `a`.");
+        "`relief-mesh decimate`, of the points of `a` from `b` and of those of `b` from `a`.\n\n"
+        "Raises InvalidInput if a mesh has no triangle.");
     module.def("subdivide", &py_subdivided, arg("mesh"), arg("levels"), py::kw_only(),
                arg("normals") = "keep", arg("report") = py::none(),
-               "Apply Loop subdivision: each level splits every triangle into four.");
+               "Apply Loop subdivision: each level splits every triangle into four.\n\n"
+               "Raises InvalidInput for wrong options, or if the result would be too large.");
     module.def("check_mesh", &py_check_mesh, arg("mesh"), py::kw_only(), arg("for_baking") = false,
                arg("for_tangents") = true,
                "Find degenerate, non-manifold, non-finite and other unusual elements.\n\n"
-               "The result has the keys of a primitive of `relief-mesh check --json`.");
+               "The result has the keys of a primitive of `relief-mesh check --json`.\n\n"
+               "Raises InvalidInput if a triangle names a vertex that does not exist.");
     module.def("compare_meshes", &py_compare_meshes, arg("a"), arg("b"), py::kw_only(),
                arg("position_tolerance") = py::none(), arg("texcoord_tolerance") = py::none(),
                arg("by_texcoord") = true,
                "Match the corners of two meshes and measure the angles between their frames.\n\n"
-               "The result has the keys of `relief-mesh compare --json`.");
+               "The result has the keys of `relief-mesh compare --json`.\n\n"
+               "Raises InvalidInput for wrong tolerances.");
 }
 
 }  // namespace

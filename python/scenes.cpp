@@ -53,7 +53,9 @@ SceneObject load(const FileName& file, bool studio, const FindingList& report) {
 
 SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color& specular,
                       float shininess, const Text& material, const py::object& normal_map,
-                      const std::string& green, const std::string& normal_space) {
+                      const std::string& green, const std::string& normal_space,
+                      const FindingList& report) {
+    Report findings;
     constexpr auto spaces = std::to_array<EnumName<NormalSpace>>(
         {{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}});
     Material surface;
@@ -71,7 +73,7 @@ SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color&
     Scene& scene = result.scene;
     if (!normal_map.is_none()) {
         scene.images.push_back(
-            {.name = "normal map", .source = Shared(image_of(normal_map, "normal_map"))});
+            {.name = "normal map", .source = Shared(image_of(normal_map, "normal_map", findings))});
         NormalMap map;
         map.texture.image = 0;
         map.green = value_of<Green>(green, "green");
@@ -81,10 +83,9 @@ SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color&
     surface.double_sided = true;
     Mesh copy = mesh;
     if (copy.normals.empty()) {
-        Report unused;
         FrameOptions options;
         options.normals = NormalWeight::angle;
-        copy = without_gil([&] { return with_frames(std::move(copy), options, unused).mesh; });
+        copy = without_gil([&] { return with_frames(std::move(copy), options, findings).mesh; });
     }
     copy.material_ranges = {
         {.triangle_count = static_cast<std::uint32_t>(copy.triangles.size()), .material = 0}};
@@ -92,6 +93,7 @@ SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color&
     scene.materials.push_back(std::move(surface));
     scene.instances.push_back({.mesh = 0, .name = mesh.name});
     scene.background = default_background;
+    append(findings, report);
     return result;
 }
 
@@ -186,25 +188,41 @@ py::array py_render(const SceneObject& scene, std::optional<std::pair<int, int>>
     return array_of(std::move(picture));
 }
 
-py::list py_effects(const SceneObject& object) {
-    const FramePlan plan = without_gil([&] {
-        const ViewRequest view;
+py::list to_list(const std::vector<EffectReason>& reasons) {
+    py::list effects;
+    for (const EffectReason& effect : reasons) {
+        py::dict entry;
+        entry["effect"] = effect.effect;
+        entry["on"] = effect.on;
+        entry["reason"] = effect.reason;
+        effects.append(std::move(entry));
+    }
+    return effects;
+}
+
+FramePlan plan_of(const SceneObject& object, const ViewRequest& view) {
+    return without_gil([&] {
         const FrameSettings settings = settings_of(object, view);
         return plan_effects(lit_scene(object, view, settings).scene, settings);
     });
+}
+
+py::list py_effects(const SceneObject& object, std::optional<std::pair<int, int>> size, int samples,
+                    const std::string& output,
+                    std::optional<std::tuple<double, double, double>> camera,
+                    std::optional<double> fov_degrees) {
     py::list draws;
-    for (const DrawPlan& draw : plan.draws) {
-        py::list effects;
-        for (const EffectReason& effect : draw.reasons) {
-            py::dict entry;
-            entry["effect"] = effect.effect;
-            entry["on"] = effect.on;
-            entry["reason"] = effect.reason;
-            effects.append(std::move(entry));
-        }
-        draws.append(std::move(effects));
-    }
+    const FramePlan plan = plan_of(object, {size, samples, output, camera, fov_degrees, "auto"});
+    for (const DrawPlan& draw : plan.draws)
+        draws.append(to_list(*draw.reasons));
     return draws;
+}
+
+py::list py_frame_effects(const SceneObject& object, std::optional<std::pair<int, int>> size,
+                          int samples, const std::string& output,
+                          std::optional<std::tuple<double, double, double>> camera,
+                          std::optional<double> fov_degrees) {
+    return to_list(plan_of(object, {size, samples, output, camera, fov_degrees, "auto"}).reasons);
 }
 
 }  // namespace
@@ -212,18 +230,24 @@ py::list py_effects(const SceneObject& object) {
 void add_scenes(py::module_& module) {
     using py::arg;
     const py::object none = py::none();
-    py::class_<SceneObject>(module, "Scene", "Meshes, materials, lights, and a camera to draw.")
+    py::class_<SceneObject>(module, "Scene",
+                            "Meshes, materials, lights, and a camera to draw.\n\n"
+                            "Copies share their meshes and images. Scenes cannot be pickled: send\n"
+                            "the name of the file.")
         .def(py::init(&new_scene), arg("mesh"), py::kw_only(),
              arg("diffuse") = Color(0.8F, 0.8F, 0.8F), arg("specular") = Color(0.0F, 0.0F, 0.0F),
              arg("shininess") = 32.0F, arg("material") = none, arg("normal_map") = none,
-             arg("green") = "up", arg("normal_space") = "tangent",
+             arg("green") = "up", arg("normal_space") = "tangent", arg("report") = none,
              "Create a scene of one mesh with a Phong material, or one of the classic table.\n\n"
-             "Colors are linear. The normal map is a stored map, as from bump().")
+             "Colors are linear RGB. The normal map is a stored map, as from bump(): uint8,\n"
+             "uint16 or float32, (height, width, 3). A mesh without normals gets them.\n\n"
+             "Raises InvalidInput for wrong values, and TypeError for wrong types.")
         .def_static("load", &load, arg("file"), py::kw_only(), arg("studio") = true,
                     arg("report") = none,
                     "Load a model (.glb .gltf .obj .ply .stl .off) or a scene file (.json).\n\n"
                     "Models with a metallic, coated or transmissive material get the built-in\n"
-                    "studio as their environment, unless `studio` is False.")
+                    "studio as their environment, unless `studio` is False.\n\n"
+                    "Raises FileError if a file cannot be read, or is damaged.")
         .def_property(
             "ambient",
             [](const SceneObject& object) {
@@ -258,16 +282,39 @@ void add_scenes(py::module_& module) {
             },
             arg("direction"), py::kw_only(), arg("irradiance") = Color(1.0F, 1.0F, 1.0F),
             "Add light that travels in a direction. A white surface that faces it has the\n"
-            "radiance `irradiance`. Scenes without a light get a key and a fill light.")
+            "radiance `irradiance`. Scenes without a light get a key and a fill light.\n\n"
+            "Raises TypeError unless both are three numbers.")
         .def("render", &py_render, py::kw_only(), arg("size") = none, arg("samples") = 4,
              arg("output") = "srgb", arg("camera") = none, arg("fov_degrees") = none,
              arg("backend") = "auto", arg("report") = none,
              "Draw the scene to an array of shape (height, width, 3 or 4), as relief-view does.\n\n"
              "`size` is (width, height). `output` is srgb (uint8), linear or clamped (float32).\n"
-             "`camera` is (azimuth, elevation, distance factor), in degrees.")
-        .def("effects", &py_effects,
+             "`camera` is (azimuth, elevation, distance factor), in degrees.\n\n"
+             "Raises GpuError if OpenGL is missing or lacks memory, and InvalidInput for wrong\n"
+             "options.")
+        .def("effects", &py_effects, py::kw_only(), arg("size") = none, arg("samples") = 4,
+             arg("output") = "srgb", arg("camera") = none, arg("fov_degrees") = none,
              "Return for each draw which effects render() uses, and why the others are off.\n\n"
-             "A scene without a light has the default lights, as in render().");
+             "The options are those of render(). The result is a list of draws, each a list of\n"
+             "dictionaries with effect, on and reason. A scene without a light has the default\n"
+             "lights, as in render(). Nothing is drawn.\n\n"
+             "Raises InvalidInput for wrong options.")
+        .def("frame_effects", &py_frame_effects, py::kw_only(), arg("size") = none,
+             arg("samples") = 4, arg("output") = "srgb", arg("camera") = none,
+             arg("fov_degrees") = none,
+             "Return which effects of the whole picture render() uses, and why: the background,\n"
+             "shadow maps, transmission, sorting, and averaging of samples.\n\n"
+             "The options are those of render(). The result is a list of dictionaries with\n"
+             "effect, on and reason. Nothing is drawn.\n\n"
+             "Raises InvalidInput for wrong options.")
+        .def("__copy__", [](const SceneObject& object) { return SceneObject(object); })
+        .def("__deepcopy__",
+             [](const SceneObject& object, const py::dict&) { return SceneObject(object); })
+        .def("__repr__", [](const SceneObject& object) {
+            return "<relief.Scene, instances: " + std::to_string(object.scene.instances.size()) +
+                   ", meshes: " + std::to_string(object.scene.meshes.size()) +
+                   ", materials: " + std::to_string(object.scene.materials.size()) + ">";
+        });
 }
 
 }  // namespace relief::python

@@ -2,8 +2,10 @@
 """Surface detail: normals, tangents, normal maps, baking and rendering on numpy arrays.
 
 Functions take arrays (positions: float32 of shape (n, 3), triangles: uint16 or uint32 of shape (m, 3), images:
-uint8, uint16 or float32) and return new arrays. Options have the names of the command lines. A list that is
-passed as `report` receives findings as dictionaries. docs/python.md is a tutorial.
+uint8, uint16 or float32) and return new arrays. Other numbers and memory layouts are converted by a copy, which
+`with Execution(strict=True):` refuses. Options have the names of the command lines. A list that is passed as
+`report` receives findings as dictionaries. All exceptions but TypeError are a relief.Error. docs/python.md is a
+tutorial.
 """
 from __future__ import annotations
 
@@ -68,16 +70,19 @@ from ._relief import (
 )
 
 if TYPE_CHECKING:
-    from ._relief import Floats, Layer, Rays, Space, States
+    import numpy
+    import numpy.typing
+
+    from ._relief import Floats, Indices, Layer, Rays, Report, Space, States
 
 __all__ = [
     "BakeMismatch", "Baked", "Cancelled", "Error", "Execution", "FileError", "Finding", "GpuError", "InvalidInput",
-    "Mesh", "Scene", "ToolError", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options",
+    "Mesh", "Scene", "ToolError", "Unwrapped", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options",
     "check_mesh", "check_normal_map", "compare_images", "compare_meshes", "compare_normals", "convert_space",
     "corner_normals", "corner_tangents", "decimate", "decode_normals", "encode_normals", "flip_green", "heights",
     "levels_of_detail", "mean_curvatures", "normal_mip_levels", "read_image", "read_mesh", "resize_normals", "run",
     "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
-    "triangle_normals", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
+    "triangle_normals", "unwrap", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
     "write_texture",
 ]
 
@@ -95,7 +100,7 @@ class Finding(TypedDict):
     outcome: str
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Baked:
     """The arrays of a bake. Layers that were not requested are None.
 
@@ -113,7 +118,13 @@ class Baked:
     report: dict[str, Any]
     """Results and findings, with the keys of `relief-bake mesh --report`."""
 
+    def __repr__(self) -> str:
+        layers = [field.name for field in dataclasses.fields(self)[:6] if getattr(self, field.name) is not None]
+        height, width = self.states.shape
+        return f"<relief.Baked of {width} x {height} texels: {', '.join(layers)}>"
 
+
+@_arguments.checks_keywords
 def bake(
     high: Mesh | Sequence[Mesh],
     low: Mesh,
@@ -138,15 +149,65 @@ def bake(
 ) -> Baked:
     """Bake maps of `size` (width, height) for a low mesh from one or more high meshes.
 
-    The low mesh needs texture coordinates. The options are those of `relief-bake mesh`; several high meshes are
-    copied, a single one is not. Encode the normals with encode_normals(). `progress` is called with the finished
-    fraction after each band of 64 rows; an exception of it ends the bake.
+    The low mesh needs texture coordinates: unwrap() computes them. The options are those of `relief-bake mesh`;
+    several high meshes are copied, a single one is not. Layers are float32 of shape (height, width), or (height,
+    width, 3). Encode the normals with encode_normals(). `progress` is called with the finished fraction, from 0.0
+    to 1.0, after each band of rows; an exception of it ends the bake.
+
+    Raises BakeMismatch if the meshes do not fit, InvalidInput for wrong options or missing texture coordinates, and
+    TypeError for wrong types.
     """
     return Baked(**_relief.bake(
         high, low, size, layers=list(layers), space=space, rays=rays, hardness=hardness, cage=cage, offset=offset,
         max_distance=max_distance, back_faces=back_faces, samples=samples, sample_degrees=sample_degrees,
         outside=outside, padding=padding, occlusion_rays=occlusion_rays, occlusion_distance=occlusion_distance,
         allow_size_mismatch=allow_size_mismatch, progress=progress))
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Unwrapped:
+    """A mesh with texture coordinates, and how good they are."""
+
+    mesh: Mesh
+    """The mesh, with vertices split along seams."""
+    source_vertex: Indices
+    """For each vertex of `mesh`, the vertex of the input that it copies: uint32 of shape (k,)."""
+    charts: numpy.typing.NDArray[numpy.int32]
+    """The chart of each triangle, of shape (m,); -1 for triangles without area and non-finite ones."""
+    stats: dict[str, Any]
+    """The quality, with the keys of "atlas" in the report of `relief-mesh unwrap`."""
+
+    def __repr__(self) -> str:
+        return f"<relief.Unwrapped of {len(self.charts)} triangles in {self.stats['charts']} charts>"
+
+
+@_arguments.checks_keywords
+def unwrap(
+    mesh: Mesh,
+    *,
+    size: tuple[int, int] = (2048, 2048),
+    padding: int = 4,
+    align: int = 1,
+    texels_per_unit: float | None = None,
+    max_stretch: float = 4.0,
+    split_hard_degrees: float | None = None,
+    split_materials: bool = False,
+    keep_seams: bool = False,
+    report: Report | None = None,
+) -> Unwrapped:
+    """Compute texture coordinates for a map of `size` (width, height), without overlapping or mirrored triangles.
+
+    The options are those of `relief-mesh unwrap`: `padding` is the least distance of charts in texels, 0 to 256; no
+    two charts share a block of `align` x `align` texels; `max_stretch`, above 1, limits the ratio of a triangle's two
+    scales; `split_hard_degrees` puts seams at sharper edges where they separate charts. Tangents are removed, and
+    old texture coordinates matter only with `keep_seams`. Every mesh with a triangle has a result; what is cut or
+    set aside is appended to the list `report`.
+
+    Raises InvalidInput for wrong options, or if the charts do not fit into the map, and TypeError for wrong types.
+    """
+    return Unwrapped(**_relief.unwrap(
+        mesh, size=size, padding=padding, align=align, texels_per_unit=texels_per_unit, max_stretch=max_stretch,
+        split_hard_degrees=split_hard_degrees, split_materials=split_materials, keep_seams=keep_seams, report=report))
 
 
 class ToolError(Error):
@@ -158,12 +219,20 @@ class ToolError(Error):
         self.output = output
         """What the tool printed to standard output."""
 
+    def __reduce__(self) -> tuple[type[ToolError], tuple[str, int, str]]:
+        """Pickle all arguments, so that the error of another process arrives whole."""
+        return type(self), (str(self), self.exit_code, self.output)
+
 
 def _tool(name: str) -> str:
-    beside = pathlib.Path(__file__).parent / _relief.tool_directory / name
-    found = str(beside.resolve()) if beside.exists() else shutil.which(name)
+    package = pathlib.Path(__file__).parent
+    installed = package / _relief.tool_directory / name
+    for file in (package / "bin" / name, installed):  # The first one is in a wheel.
+        if file.exists():
+            return str(file.resolve())
+    found = shutil.which(name)
     if found is None:
-        raise FileError(f"{name}: not found in {beside.parent.resolve()} and in PATH")
+        raise FileError(f"{name}: not found in {installed.parent.resolve()} and in PATH")
     return found
 
 
@@ -183,6 +252,7 @@ def _output_of(command: list[str]) -> tuple[int, bytes, bytes]:
             raise
 
 
+@_arguments.checks_keywords
 def run(tool: str, *arguments: str | os.PathLike[str], report: bool = False) -> Any:
     """Run a command-line tool on files: run("relief-mesh", "check", "vase.glb", "--json").
 
@@ -204,6 +274,7 @@ def run(tool: str, *arguments: str | os.PathLike[str], report: bool = False) -> 
     return json.loads(output) if "--json" in words else output
 
 
+@_arguments.checks_keywords
 def accuracy(
     *subjects: Literal["all", "normals", "tangents", "bump", "storage", "bake", "shading", "stability"],
     quick: bool = True,
@@ -212,7 +283,7 @@ def accuracy(
     """Measure the error and time of methods on inputs with a known ground truth.
 
     The experiments run in a process of their own, so that times are not disturbed. The result is the report of
-    `relief-accuracy run --json`, which docs/accuracy-schema.md describes.
+    `relief-accuracy run --json`, which docs/accuracy-schema.md describes. Raises ToolError if the tool fails.
     """
     options = (["--quick"] if quick else []) + ([] if times else ["--no-times"])
     report: dict[str, Any] = run("relief-accuracy", "run", *subjects, *options, "--json")

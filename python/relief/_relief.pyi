@@ -14,7 +14,9 @@ tool_directory: str
 
 Floats = numpy.typing.NDArray[numpy.float32]
 Indices = numpy.typing.NDArray[numpy.uint32]
-Triangles = numpy.typing.NDArray[numpy.uint16] | numpy.typing.NDArray[numpy.uint32]
+# Inputs: what is not float32, or uint16 or uint32, is converted.
+FloatArray = numpy.typing.NDArray[numpy.floating[Any]] | numpy.typing.NDArray[numpy.integer[Any]]
+IntegerArray = numpy.typing.NDArray[numpy.integer[Any]]
 States = numpy.typing.NDArray[numpy.uint8]
 # uint8, uint16 or float32.
 Image = numpy.typing.NDArray[Any]
@@ -59,7 +61,11 @@ def set_thread_limit(count: int) -> None: ...
 
 class Execution:
     def __init__(
-        self, *, threads: int = 0, progress: Callable[[str, float | None], object] | None = None
+        self,
+        *,
+        threads: int = 0,
+        progress: Callable[[str, float | None], object] | None = None,
+        strict: bool = False,
     ) -> None: ...
     def __enter__(self) -> Self: ...
     def __exit__(self, *exception: object) -> None: ...
@@ -70,16 +76,19 @@ class Execution:
 class Mesh:
     def __init__(
         self,
-        positions: Floats,
-        triangles: Triangles,
+        positions: FloatArray,
+        triangles: IntegerArray,
         *,
-        normals: Floats | None = None,
-        texcoords: Floats | None = None,
-        tangents: Floats | None = None,
-        colors: Floats | None = None,
-        smoothing_groups: Indices | None = None,
+        normals: FloatArray | None = None,
+        texcoords: FloatArray | None = None,
+        tangents: FloatArray | None = None,
+        colors: FloatArray | None = None,
+        smoothing_groups: IntegerArray | None = None,
         name: str = "",
+        report: Report | None = None,
     ) -> None: ...
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self: ...
     name: str
     @property
     def origin(self) -> tuple[float, float, float]: ...
@@ -97,8 +106,8 @@ class Mesh:
     def colors(self) -> Floats | None: ...
 
 def vertex_normals(
-    positions: Floats,
-    triangles: Triangles,
+    positions: FloatArray,
+    triangles: IntegerArray,
     *,
     weight: Weight = "angle",
     arithmetic: Arithmetic = "float64",
@@ -107,37 +116,39 @@ def vertex_normals(
     report: Report | None = None,
 ) -> Floats: ...
 def corner_normals(
-    positions: Floats,
-    triangles: Triangles,
+    positions: FloatArray,
+    triangles: IntegerArray,
     *,
     weight: Weight = "angle",
     crease_degrees: float | None = None,
-    smoothing_groups: Indices | None = None,
+    smoothing_groups: IntegerArray | None = None,
     arithmetic: Arithmetic = "float64",
     weld_tolerance: float | None = 0.0,
     report: Report | None = None,
 ) -> Floats: ...
-def triangle_normals(positions: Floats, triangles: Triangles, *, report: Report | None = None) -> Floats: ...
+def triangle_normals(positions: FloatArray, triangles: IntegerArray, *, report: Report | None = None) -> Floats: ...
 def corner_tangents(
-    positions: Floats,
-    normals: Floats,
-    texcoords: Floats,
-    triangles: Triangles,
+    positions: FloatArray,
+    normals: FloatArray,
+    texcoords: FloatArray,
+    triangles: IntegerArray,
     *,
     method: Literal["mikktspace", "area-weighted", "lengyel"] = "mikktspace",
     report: Report | None = None,
 ) -> Floats: ...
 def vertex_tangents(
-    positions: Floats,
-    normals: Floats,
-    texcoords: Floats,
-    triangles: Triangles,
+    positions: FloatArray,
+    normals: FloatArray,
+    texcoords: FloatArray,
+    triangles: IntegerArray,
     *,
     out: Floats | None = None,
     report: Report | None = None,
 ) -> Floats: ...
-def split_vertices(vertex_count: int, triangles: Triangles, corner_values: Floats) -> tuple[Indices, Indices]: ...
-def mean_curvatures(positions: Floats, triangles: Triangles, *, report: Report | None = None) -> Floats: ...
+def split_vertices(
+    vertex_count: int, triangles: IntegerArray, corner_values: FloatArray, *, report: Report | None = None
+) -> tuple[Indices, Indices]: ...
+def mean_curvatures(positions: FloatArray, triangles: IntegerArray, *, report: Report | None = None) -> Floats: ...
 def read_mesh(
     file: File, *, space: Literal["object", "world"] = "world", report: Report | None = None
 ) -> Mesh: ...
@@ -205,7 +216,7 @@ def write_texture(
     zstd: int | None = None,
     report: Report | None = None,
 ) -> None: ...
-def normal_mip_levels(normals: Floats) -> list[Floats]: ...
+def normal_mip_levels(normals: FloatArray) -> list[Floats]: ...
 def bump(
     height: Image,
     *,
@@ -243,7 +254,7 @@ def bump_options(
     channel: Channel = "mean",
 ) -> dict[str, Any]: ...
 def heights(
-    normals: Floats,
+    normals: FloatArray,
     *,
     kernel: Kernel = "central7",
     wrap: str = "repeat",
@@ -252,7 +263,7 @@ def heights(
     report: Report | None = None,
 ) -> tuple[Floats, dict[str, Any]]: ...
 def encode_normals(
-    normals: Floats,
+    normals: FloatArray,
     *,
     bits: Bits = 16,
     green: Green = "up",
@@ -270,11 +281,11 @@ def decode_normals(
 ) -> Floats: ...
 def flip_green(map: Image, *, zero_code: ZeroCode = "127.5", report: Report | None = None) -> Image: ...
 def blend_normals(
-    base: Floats, detail: Floats, *, blend: Blend = "reoriented", report: Report | None = None
+    base: FloatArray, detail: FloatArray, *, blend: Blend = "reoriented", report: Report | None = None
 ) -> Floats: ...
-def scale_slopes(normals: Floats, strength: float, *, report: Report | None = None) -> Floats: ...
+def scale_slopes(normals: FloatArray, strength: float, *, report: Report | None = None) -> Floats: ...
 def resize_normals(
-    normals: Floats,
+    normals: FloatArray,
     width: int,
     height: int,
     *,
@@ -284,7 +295,7 @@ def resize_normals(
     report: Report | None = None,
 ) -> Floats: ...
 def convert_space(
-    normals: Floats,
+    normals: FloatArray,
     mesh: Mesh,
     *,
     to: Literal["tangent", "object"],
@@ -295,7 +306,20 @@ def check_normal_map(map: Image, *, metadata: dict[str, str] = ..., color_tag: s
 def compare_images(
     a: Image, b: Image, *, color_space: ColorSpace = "srgb", pixels_per_degree: float = ...
 ) -> dict[str, Any]: ...
-def compare_normals(a: Floats, b: Floats) -> tuple[dict[str, Any], Floats]: ...
+def compare_normals(a: FloatArray, b: FloatArray) -> tuple[dict[str, Any], Floats]: ...
+def unwrap(
+    mesh: Mesh,
+    *,
+    size: tuple[int, int] = (2048, 2048),
+    padding: int = 4,
+    align: int = 1,
+    texels_per_unit: float | None = None,
+    max_stretch: float = 4.0,
+    split_hard_degrees: float | None = None,
+    split_materials: bool = False,
+    keep_seams: bool = False,
+    report: Report | None = None,
+) -> dict[str, Any]: ...
 def bake(
     high: Mesh | Sequence[Mesh],
     low: Mesh,
@@ -331,7 +355,10 @@ class Scene:
         normal_map: Image | None = None,
         green: Green = "up",
         normal_space: Literal["tangent", "object"] = "tangent",
+        report: Report | None = None,
     ) -> None: ...
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self: ...
     @staticmethod
     def load(file: File, *, studio: bool = True, report: Report | None = None) -> Scene: ...
     ambient: tuple[float, float, float]
@@ -354,4 +381,21 @@ class Scene:
         backend: Literal["auto", "osmesa", "egl"] = "auto",
         report: Report | None = None,
     ) -> Image: ...
-    def effects(self) -> list[list[dict[str, Any]]]: ...
+    def effects(
+        self,
+        *,
+        size: tuple[int, int] | None = None,
+        samples: Literal[1, 4] = 4,
+        output: Literal["srgb", "linear", "clamped"] = "srgb",
+        camera: tuple[float, float, float] | None = None,
+        fov_degrees: float | None = None,
+    ) -> list[list[dict[str, Any]]]: ...
+    def frame_effects(
+        self,
+        *,
+        size: tuple[int, int] | None = None,
+        samples: Literal[1, 4] = 4,
+        output: Literal["srgb", "linear", "clamped"] = "srgb",
+        camera: tuple[float, float, float] | None = None,
+        fov_degrees: float | None = None,
+    ) -> list[dict[str, Any]]: ...

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays in and out: views without copies, types and shapes that are refused, exceptions, reports and threads."""
+"""Arrays in and out: views without copies, conversions, shapes that are refused, exceptions, reports and threads."""
+import copy
 import json
 import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -81,6 +83,160 @@ print((peak() - before) / positions.nbytes)
         self.assertTrue(normals.flags.writeable)
 
 
+class Vectors:
+    """Gives numpy an array as the vectors of Open3D do."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __array__(self, dtype=None, copy=None):
+        return self.array
+
+
+class Conversions(unittest.TestCase):
+    """Other numbers and layouts are converted to the same results, which the report states."""
+
+    def setUp(self):
+        self.positions, self.texcoords, self.triangles = grid(5)
+        self.normals = relief.vertex_normals(self.positions, self.triangles)
+
+    def expect_normals(self, positions, triangles, *kinds):
+        report = []
+        numpy.testing.assert_array_equal(relief.vertex_normals(positions, triangles, report=report), self.normals)
+        self.assertEqual([finding["kind"] for finding in report], [f"converted {kind}" for kind in kinds])
+        return report
+
+    def test_types(self):
+        for dtype in ("float64", ">f4", "longdouble"):
+            with self.subTest(dtype):
+                self.expect_normals(self.positions.astype(dtype), self.triangles, "positions")
+        for dtype in ("int64", "uint64", "uint8", "int8", ">u4", ">i4"):
+            with self.subTest(dtype):
+                self.expect_normals(self.positions, self.triangles.astype(dtype), "triangles")
+        report = self.expect_normals(self.positions.astype("float64"), self.triangles.astype("int64"),
+                                     "positions", "triangles")
+        self.assertEqual([(finding["count"], finding["outcome"]) for finding in report],
+                         [(75, "float64 copied to float32, 0.0003 MB"), (96, "int64 copied to uint32, 0.000384 MB")])
+
+    def test_signed_indices_of_16_and_32_bits_are_not_copied(self):
+        for dtype in ("int16", "int32"):
+            with self.subTest(dtype), relief.Execution(strict=True):
+                self.expect_normals(self.positions, self.triangles.astype(dtype))
+
+    def test_layouts(self):
+        unaligned = numpy.zeros(25, dtype=[("flag", "u1"), ("position", "f4", 3)])["position"]
+        unaligned[:] = self.positions
+        for positions in (numpy.asfortranarray(self.positions), self.positions[::-1].copy()[::-1], unaligned):
+            self.expect_normals(positions, self.triangles, "positions")
+        wide = numpy.zeros((32, 4), "uint32")
+        wide[:, :3] = self.triangles
+        self.expect_normals(self.positions, wide[:, :3], "triangles")
+        self.expect_normals(self.positions, numpy.asfortranarray(self.triangles), "triangles")
+
+    def test_objects_that_give_arrays(self):
+        self.expect_normals(Vectors(self.positions.astype("float64")), Vectors(self.triangles.astype("int32")),
+                            "positions")
+        self.expect_normals(memoryview(self.positions), memoryview(self.triangles))
+
+    def test_rounding_is_reported(self):
+        report = []
+        relief.vertex_normals(self.positions.astype("float64") + 0.1, self.triangles, report=report)
+        self.assertTrue(report[0]["outcome"].endswith(", rounded to 24 bits"), report)
+
+    def test_distant_positions_keep_their_digits(self):
+        positions, _, triangles = grid(9)
+        distant = positions.astype("float64") + (500000.0, 4000000.0, 0.0)
+        report = []
+        numpy.testing.assert_array_equal(relief.vertex_normals(distant, triangles, report=report),
+                                         relief.vertex_normals(positions, triangles))
+        self.assertRegex(report[0]["outcome"], r"relative to \(50000[01], 400000[01], 0\)$")
+        mesh = relief.Mesh(distant, triangles)
+        self.assertEqual(mesh.origin[2], 0.0)
+        numpy.testing.assert_allclose(mesh.positions + numpy.array(mesh.origin), distant, atol=1e-9)
+        # As a file does.
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "distant.obj")
+            lines = [f"v {x} {y} {z}" for x, y, z in distant]
+            lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+            file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+            stored = relief.read_mesh(file)
+        self.assertEqual(stored.origin, mesh.origin)
+        numpy.testing.assert_array_equal(stored.positions[stored.triangles], mesh.positions[mesh.triangles])
+
+    def test_images(self):
+        height = numpy.random.default_rng(1).random((8, 8), dtype=numpy.float32)
+        report = []
+        numpy.testing.assert_array_equal(relief.bump(height.astype("float64"), kernel="sobel3", report=report),
+                                         relief.bump(height, kernel="sobel3"))
+        self.assertEqual(report[0]["kind"], "converted height")
+        self.assertEqual(report[0]["outcome"], "float64 rounded to float32")
+
+    def test_meshes(self):
+        mesh = relief.Mesh(self.positions.astype("float64"), self.triangles.astype("int64"),
+                           texcoords=self.texcoords.astype("float16"), smoothing_groups=numpy.ones(32, "int64"))
+        numpy.testing.assert_array_equal(mesh.positions, self.positions)
+        numpy.testing.assert_array_equal(mesh.texcoords, self.texcoords)
+
+    def test_values_that_do_not_fit(self):
+        with self.assertRaisesRegex(relief.InvalidInput, "triangles: row 31 has -2, expected 0 to 4294967295"):
+            triangles = self.triangles.astype("int64")
+            triangles[31, 1] = -2
+            relief.vertex_normals(self.positions, triangles)
+        with self.assertRaisesRegex(relief.InvalidInput, "triangles: row 31 has -2, expected at least 0"):
+            relief.vertex_normals(self.positions, triangles.astype("int32"))
+        with self.assertRaisesRegex(relief.InvalidInput, "triangles: row 0 has 18446744073709551615, expected"):
+            relief.vertex_normals(self.positions, numpy.full((1, 3), 2**64 - 1, "uint64"))
+        with self.assertRaisesRegex(relief.InvalidInput, "positions: row 0 has 1e.300, but float32 holds at most"):
+            relief.vertex_normals(numpy.array([(1e300, 0, 0), (0, 0, 0)]), self.triangles[:0])
+
+
+class Copies(unittest.TestCase):
+    def test_meshes_are_copied_and_pickled_whole(self):
+        mesh = relief.read_mesh(DATA / "urn-low.obj")
+        mesh, _ = relief.with_frames(mesh, normals="angle", tangents="mikktspace")
+        for name, other in {"copy": copy.copy(mesh), "deepcopy": copy.deepcopy(mesh),
+                            "pickle": pickle.loads(pickle.dumps(mesh))}.items():
+            with self.subTest(name):
+                self.assertEqual((other.name, other.origin), (mesh.name, mesh.origin))
+                for attribute in ("positions", "triangles", "normals", "texcoords", "tangents", "colors"):
+                    numpy.testing.assert_array_equal(getattr(other, attribute), getattr(mesh, attribute))
+                self.assertFalse(numpy.shares_memory(other.positions, mesh.positions))
+        empty = pickle.loads(pickle.dumps(relief.Mesh(numpy.zeros((0, 3)), numpy.zeros((0, 3), int))))
+        self.assertIsNone(empty.positions)
+
+    def test_smoothing_groups_are_pickled(self):
+        positions, _, triangles = grid(5)
+        mesh = relief.Mesh(positions, triangles, smoothing_groups=numpy.arange(32, dtype="uint32"))
+        expected, _ = relief.with_frames(mesh, normals="angle")
+        again, _ = relief.with_frames(pickle.loads(pickle.dumps(mesh)), normals="angle")
+        numpy.testing.assert_array_equal(again.normals, expected.normals)
+        self.assertGreater(len(again.positions), len(positions))
+
+    def test_errors_of_other_processes_arrive_whole(self):
+        error = pickle.loads(pickle.dumps(relief.ToolError("failed", 2, "output")))
+        self.assertEqual((str(error), error.exit_code, error.output), ("failed", 2, "output"))
+        self.assertEqual(str(pickle.loads(pickle.dumps(relief.InvalidInput("wrong")))), "wrong")
+
+    def test_scenes_are_copied(self):
+        positions, _, triangles = grid(5)
+        scene = relief.Scene(relief.Mesh(positions, triangles))
+        other = copy.deepcopy(scene)
+        other.exposure = 2.0
+        self.assertEqual(scene.exposure, 1.0)
+        with self.assertRaisesRegex(TypeError, "cannot pickle"):
+            pickle.dumps(scene)
+
+    def test_short_texts(self):
+        positions, texcoords, triangles = grid(5)
+        mesh = relief.Mesh(positions, triangles, texcoords=texcoords)
+        self.assertEqual(repr(mesh), "<relief.Mesh of 25 vertices and 32 triangles>")
+        self.assertEqual(repr(relief.Scene(mesh)), "<relief.Scene, instances: 1, meshes: 1, materials: 1>")
+        self.assertEqual(repr(relief.Execution(threads=2)), "<relief.Execution, threads: 2>")
+        baked = relief.bake(mesh, mesh, (8, 4), layers=["normals", "heights"])
+        self.assertEqual(repr(baked), "<relief.Baked of 8 x 4 texels: normals, heights>")
+        self.assertEqual(repr(relief.unwrap(mesh, size=(64, 64))), "<relief.Unwrapped of 32 triangles in 1 charts>")
+
+
 class Refusals(unittest.TestCase):
     """Wrong arrays and options give errors that name the argument, the value and the remedy."""
 
@@ -88,17 +244,35 @@ class Refusals(unittest.TestCase):
         self.positions, self.texcoords, self.triangles = grid(5)
 
     def test_types(self):
-        with self.assertRaisesRegex(TypeError, r"positions: float64 of shape \(25, 3\), expected float32 of shape "
-                                               r"\(n, 3\) \(convert it: positions.astype\(numpy.float32\)\)"):
-            relief.vertex_normals(self.positions.astype("float64"), self.triangles)
-        with self.assertRaisesRegex(TypeError, "triangles: int64 .*astype"):
-            relief.vertex_normals(self.positions, self.triangles.astype("int64"))
+        with self.assertRaisesRegex(TypeError, "triangles: float64 .*astype"):
+            relief.vertex_normals(self.positions, self.triangles.astype("float64"))
+        with self.assertRaisesRegex(TypeError, "positions: complex64 .*astype"):
+            relief.vertex_normals(self.positions.astype("complex64"), self.triangles)
         with self.assertRaisesRegex(TypeError, "positions: expected a numpy array .*, not list"):
             relief.vertex_normals(self.positions.tolist(), self.triangles)
-        with self.assertRaisesRegex(TypeError, "positions: >f4|positions: float32"):
-            relief.vertex_normals(self.positions.astype(">f4"), self.triangles)
-        with self.assertRaisesRegex(TypeError, "height: float64"):
-            relief.bump(numpy.zeros((4, 4)))
+        with self.assertRaisesRegex(TypeError, "height: int64 .*uint16"):
+            relief.bump(numpy.zeros((4, 4), "int64"))
+        with self.assertRaisesRegex(TypeError, "out: float64"):
+            relief.vertex_normals(self.positions, self.triangles, out=numpy.zeros((25, 3)))
+
+    def test_strict_blocks_refuse_conversions(self):
+        with relief.Execution(strict=True), relief.Execution():
+            with self.assertRaisesRegex(TypeError, r"positions: float64 of shape \(25, 3\), expected float32 of shape "
+                                                   r"\(n, 3\) \(convert it: positions.astype\(numpy.float32\)\)"):
+                relief.vertex_normals(self.positions.astype("float64"), self.triangles)
+            with self.assertRaisesRegex(TypeError, "triangles: int64 .*astype"):
+                relief.vertex_normals(self.positions, self.triangles.astype("int64"))
+            with self.assertRaisesRegex(TypeError, "positions: >f4|positions: float32"):
+                relief.vertex_normals(self.positions.astype(">f4"), self.triangles)
+            with self.assertRaisesRegex(TypeError, "height: float64"):
+                relief.bump(numpy.zeros((4, 4)))
+            with self.assertRaisesRegex(relief.InvalidInput, "reverse order .*ascontiguousarray"):
+                relief.vertex_normals(self.positions[::-1], self.triangles)
+            with self.assertRaisesRegex(relief.InvalidInput, "not adjacent"):
+                relief.vertex_normals(numpy.asfortranarray(self.positions), self.triangles)
+            with self.assertRaisesRegex(relief.InvalidInput, "triangles: the values have gaps"):
+                relief.vertex_normals(self.positions, self.triangles[::2])
+        relief.vertex_normals(self.positions[::-1], self.triangles)
 
     def test_shapes(self):
         with self.assertRaisesRegex(relief.InvalidInput, r"positions: float32 of shape \(25, 2\), expected"):
@@ -113,15 +287,14 @@ class Refusals(unittest.TestCase):
             relief.encode_normals(numpy.zeros(4, "float32"))
 
     def test_layouts(self):
-        with self.assertRaisesRegex(relief.InvalidInput, "reverse order .*ascontiguousarray"):
-            relief.vertex_normals(self.positions[::-1], self.triangles)
-        with self.assertRaisesRegex(relief.InvalidInput, "not adjacent"):
-            relief.vertex_normals(numpy.asfortranarray(self.positions), self.triangles)
-        with self.assertRaisesRegex(relief.InvalidInput, "triangles: the indices have gaps"):
-            relief.vertex_normals(self.positions, self.triangles[::2])
+        target = numpy.zeros_like(self.positions)
+        with self.assertRaisesRegex(relief.InvalidInput, "out: the rows are in reverse order .*ascontiguousarray"):
+            relief.vertex_normals(self.positions, self.triangles, out=target[::-1])
+        with self.assertRaisesRegex(relief.InvalidInput, "out: the values of a row are not adjacent"):
+            relief.vertex_normals(self.positions, self.triangles, out=numpy.asfortranarray(target))
         unaligned = numpy.zeros(25, dtype=[("flag", "u1"), ("position", "f4", 3)])["position"]
         with self.assertRaisesRegex(relief.InvalidInput, "not aligned"):
-            relief.vertex_normals(unaligned, self.triangles)
+            relief.vertex_normals(self.positions, self.triangles, out=unaligned)
         frozen = numpy.zeros_like(self.positions)
         frozen.flags.writeable = False
         with self.assertRaisesRegex(relief.InvalidInput, "out: the array is read-only"):
@@ -155,7 +328,11 @@ class Refusals(unittest.TestCase):
         self.assertEqual(error_of(lambda: relief.Execution(thread=1)),
                          "Execution() has no argument 'thread': did you mean 'threads'?")
         self.assertRegex(error_of(lambda: relief.bump(height, strength="high")),
-                         r"^bump\(\) got \(ndarray, strength: str\), expected \(height: object, .*strength: float")
+                         r"^bump\(\) got \(ndarray, strength: str\), expected \(height: Image, .*strength: float")
+        self.assertRegex(error_of(lambda: relief.vertex_normals(self.positions)),
+                         r"^vertex_normals\(\): missing a required argument: 'triangles'; expected ")
+        self.assertEqual(error_of(lambda: relief.bake(None, None, (4, 4), layer=["normals"])),
+                         "bake() has no argument 'layer': did you mean 'layers'?")
 
     def test_values(self):
         with self.assertRaisesRegex(relief.InvalidInput, "triangle 0 names vertex 5, but there are only 5"):

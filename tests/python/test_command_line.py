@@ -149,6 +149,39 @@ class MeshTools(CommandLineCase):
         self.assertEqual({name: expected[name] for name in result}, json.loads(json.dumps(result)))
 
 
+class Unwrapping(CommandLineCase):
+    def test_unwrap(self):
+        file, out = DATA / "urn-low.obj", self.folder / "out.ply"
+        for options, words in (({}, []),
+                               ({"padding": 8, "align": 4, "max_stretch": 1.5, "split_hard_degrees": 40.0,
+                                 "keep_seams": True},
+                                ["--padding", "8", "--align", "4", "--max-stretch", "1.5", "--split-hard", "40",
+                                 "--keep-seams"])):
+            with self.subTest(**options):
+                report = relief.run("relief-mesh", "unwrap", file, out, "--size", "256x128", *words, report=True)
+                unwrapped = relief.unwrap(relief.read_mesh(file), size=(256, 128), **options)
+                self.assertEqual(unwrapped.stats, report["atlas"])
+                stored = relief.read_mesh(out)
+                self.assert_equal_meshes(unwrapped.mesh, stored)
+                # PLY stores v upwards, which rounds v near 1.
+                numpy.testing.assert_allclose(unwrapped.mesh.texcoords, stored.texcoords, atol=1e-7)
+                self.assertEqual(len(set(unwrapped.charts)), unwrapped.stats["charts"])
+        mesh = relief.read_mesh(file)
+        numpy.testing.assert_array_equal(mesh.positions[unwrapped.source_vertex], unwrapped.mesh.positions)
+
+    def test_triangles_that_are_set_aside(self):
+        positions = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (2, 0, 0)])
+        report = []
+        unwrapped = relief.unwrap(relief.Mesh(positions, numpy.array([(0, 1, 2), (0, 1, 3)])), size=(64, 64),
+                                  report=report)
+        self.assertEqual(unwrapped.charts.tolist(), [0, -1])
+        self.assertEqual([finding["count"] for finding in report], [1])
+        with self.assertRaisesRegex(relief.InvalidInput, "padding"):
+            relief.unwrap(unwrapped.mesh, padding=1000)
+        with self.assertRaisesRegex(TypeError, r"unwrap\(\) has no argument 'sise': did you mean 'size'"):
+            relief.unwrap(unwrapped.mesh, sise=(64, 64))
+
+
 class MapTools(CommandLineCase):
     @classmethod
     def setUpClass(cls):
@@ -303,6 +336,10 @@ class Pictures(CommandLineCase):
                     self.run_tool("relief-view", file, "--output", out, "--size", "96x64", *words)
                     picture = relief.Scene.load(file).render(size=(96, 64), **options)
                     numpy.testing.assert_array_equal(picture, relief.read_image(out)[0])
+        explained = relief.run("relief-view", model, "--explain-effects", "--samples", "1", "--json")["effects"]
+        scene = relief.Scene.load(model)
+        self.assertEqual(scene.frame_effects(samples=1), explained["frame"])
+        self.assertEqual(scene.effects(samples=1)[0], explained["draws"][0]["effects"])
         metal = self.folder / "metal.glb"
         self.run_tool("relief-mesh", "process", DATA / "vase.obj", self.folder / "vase.gltf")
         document = json.loads((self.folder / "vase.gltf").read_text())
@@ -333,6 +370,10 @@ class Pictures(CommandLineCase):
         self.assertGreater(picture[..., :3].max(), 0.45)
         names = {effect["effect"]: effect for effect in scene.effects()[0]}
         self.assertFalse(names["normal map"]["on"])
+        self.assertEqual(scene.effects(size=(8, 8), output="linear", camera=(0.0, 0.0, 1.0))[0], scene.effects()[0])
+        for samples in (1, 4):
+            frame = {effect["effect"]: effect for effect in scene.frame_effects(samples=samples)}
+            self.assertEqual(frame["finishing pass"]["on"], samples == 4, frame["finishing pass"]["reason"])
         with self.assertRaisesRegex(relief.InvalidInput, "material: 'butter' is not one of"):
             relief.Scene(mesh, material="butter")
 

@@ -67,6 +67,13 @@ class Interruption(unittest.TestCase):
         self.expect_end(lambda: relief.subdivide(self.low, levels=8))
         self.expect_end(lambda: relief.surface_distance(self.dense, self.low))
 
+    def test_unwrapping_ends(self):
+        self.expect_end(lambda: relief.unwrap(self.dense), 0.3)
+
+    def test_conversions_end(self):
+        positions = numpy.zeros((20_000_000, 3))
+        self.expect_end(lambda: relief.triangle_normals(positions, self.dense.triangles))
+
     def test_normals_end(self):
         positions, triangles = self.dense.positions, self.dense.triangles
         self.expect_end(lambda: relief.vertex_normals(positions, triangles, weld_tolerance=0.02))

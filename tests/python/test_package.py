@@ -4,6 +4,7 @@ import ast
 import inspect
 import os
 import pathlib
+import pydoc
 import re
 import shutil
 import subprocess
@@ -39,6 +40,24 @@ class Package(unittest.TestCase):
                 for member, attribute in vars(value).items():
                     if not member.startswith("_"):
                         self.assertTrue(inspect.getdoc(attribute), f"{name}.{member}")
+
+    def test_help_states_types_shapes_and_exceptions(self):
+        for name in relief.__all__:
+            value = getattr(relief, name)
+            if not inspect.isfunction(value) or name in ("set_thread_limit", "run"):
+                continue
+            with self.subTest(name):
+                text = pydoc.plaintext.document(value)
+                self.assertNotIn("...)", text.splitlines()[0])
+                self.assertRegex(text, r"Raises? \w+")
+                signature = inspect.signature(value)
+                self.assertNotIn(inspect.Parameter.empty, [p.annotation for p in signature.parameters.values()])
+                for argument in signature.parameters.values():
+                    if "Array" in str(argument.annotation):
+                        self.assertRegex(text, rf"\b{argument.name}\b[^.;]*(float32|uint)", argument.name)
+        text = pydoc.plaintext.document(relief.Mesh)
+        self.assertIn("Mesh(positions: FloatArray, triangles: IntegerArray, *, normals", text)
+        self.assertIn("(file: File, *, studio: bool = True", pydoc.plaintext.document(relief.Scene))
 
     def test_types_name_the_functions_of_the_module(self):
         stub = ast.parse((SOURCES / "python" / "relief" / "_relief.pyi").read_text(encoding="utf-8"))
@@ -91,6 +110,8 @@ class Tutorial(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(done.stdout.splitlines()[0], "(3038, 3) (5760, 3, 4)")
             self.assertIn("expected float32 of shape (n, 3)", done.stdout)
+            self.assertIn("float64 copied to float32", done.stdout)
             self.assertRegex(done.stdout, r"\(320, 320, 3\) \[.*'normal map'.*'directional lights'.*\]")
             names = {file.name for file in (root / "out").iterdir()}
-            self.assertEqual(names, {"bricks.ktx2", "bricks.png", "urn.png", "vase-bricks.glb", "vase-python.png", "vase-python.glb"})
+            self.assertEqual(names, {"bricks.ktx2", "bricks.png", "urn-unwrapped.ply", "urn.png", "vase-bricks.glb",
+                                     "vase-python.png", "vase-python.glb"})

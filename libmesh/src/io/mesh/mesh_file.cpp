@@ -16,6 +16,7 @@
 
 #include "files.h"
 #include "io/mesh/mesh_formats.h"
+#include "relief/mesh/local_origin.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -110,26 +111,28 @@ bool detail::equal_ignoring_case(std::string_view a, std::string_view b) {
                       [](char x, char y) { return lower(x) == lower(y); });
 }
 
-namespace {
-
-/// Returns the offset to the middle of the mesh; zero if the mesh is near 0 compared with its size.
-glm::dvec3 offset_if_distant(const Mesh& mesh) {
+glm::dvec3 local_origin(const glm::dvec3& low, const glm::dvec3& high) {
     constexpr double max_ratio =
         16.0;  // At this ratio floats still resolve 20 bits of the mesh's size.
-    const Bounds bounds = bounds_of(mesh);
-    if (bounds.empty()) return glm::dvec3(0.0);
-    const glm::dvec3 low(bounds.min);
-    const glm::dvec3 high(bounds.max);
     const glm::dvec3 extent = high - low;
     const double size = std::max({extent.x, extent.y, extent.z});
     const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
     if (std::max({farthest.x, farthest.y, farthest.z}) <= max_ratio * size) return glm::dvec3(0.0);
-    if (size == 0.0) return low;  // All positions are equal in float.
+    if (size == 0.0) return low;  // All positions are equal.
     // The power of two that is not less than the size.
     int exponent = 0;
     const double fraction = std::frexp(size, &exponent);
     const double step = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
-    return glm::round(0.5 * (low + high) / step) * step;
+    return glm::round(0.5 * (low + high) / step) * step + 0.0;  // No negative zero.
+}
+
+namespace {
+
+/// Returns the offset to the middle of the mesh; zero if the mesh is near 0 compared with its size.
+glm::dvec3 offset_if_distant(const Mesh& mesh) {
+    const Bounds bounds = bounds_of(mesh);
+    if (bounds.empty()) return glm::dvec3(0.0);
+    return local_origin(glm::dvec3(bounds.min), glm::dvec3(bounds.max));
 }
 
 /// Returns true if the positions that were read with an origin have digits that the old ones lack.

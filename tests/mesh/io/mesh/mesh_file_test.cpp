@@ -17,6 +17,7 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/local_origin.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
@@ -225,6 +226,16 @@ std::string stl_text(double far) {
 std::vector<glm::vec3> normals_of(const Mesh& mesh) {
     Report report;
     return vertex_normals(mesh.positions, mesh.triangles, NormalWeight::angle, report);
+}
+
+TEST(LocalOrigin, IsZeroUpTo16TimesTheSize) {
+    EXPECT_EQ(local_origin({15.0, 0.0, 0.0}, {16.0, 1.0, 0.5}), glm::dvec3(0.0));
+    EXPECT_EQ(local_origin({-16.0, 0.0, 0.0}, {-15.0, 1.0, 0.5}), glm::dvec3(0.0));
+}
+
+TEST(LocalOrigin, IsTheMiddleRoundedToAPowerOfTwo) {
+    EXPECT_EQ(local_origin({100.0, -1.0, 0.0}, {103.0, 1.0, 0.0}), glm::dvec3(100.0, 0.0, 0.0));
+    EXPECT_EQ(local_origin({7.25, 0.0, 0.0}, {7.25, 0.0, 0.0}), glm::dvec3(7.25, 0.0, 0.0));
 }
 
 TEST_F(FarPositions, AreReadInDoubleFromEveryTextFormat) {

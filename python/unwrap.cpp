@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texture coordinates of meshes.
+// Tests: tests/python/test_command_line.py.
+#include "relief/mesh/unwrap.h"
+
+#include <numbers>
+
+#include "arrays.h"
+#include "mesh_type.h"
+
+namespace relief::python {
+namespace {
+
+/// Returns the statistics with the keys of `relief-mesh unwrap --report`.
+py::dict to_dict(const AtlasStats& stats) {
+    py::dict result;
+    result["charts"] = stats.charts;
+    result["small_charts"] = stats.small_charts;
+    result["used"] = stats.used;
+    result["texels_per_unit"] = stats.texels_per_unit;
+    result["min_density"] = stats.min_density;
+    result["max_density"] = stats.max_density;
+    result["stretch"] = stats.stretch;
+    result["mean_anisotropy"] = stats.mean_anisotropy;
+    result["max_anisotropy"] = stats.max_anisotropy;
+    result["seam_length"] = stats.seam_length;
+    result["relative_seam_length"] = stats.relative_seam_length;
+    result["area"] = stats.area;
+    return result;
+}
+
+/// Returns the chart of each triangle; -1 for those that are set aside.
+py::array_t<std::int32_t> charts_of(const Unwrapped& unwrapped) {
+    std::vector<std::int32_t> charts;
+    charts.reserve(unwrapped.chart.size());
+    for (const std::optional<std::uint32_t>& chart : unwrapped.chart)
+        charts.push_back(chart ? static_cast<std::int32_t>(*chart) : -1);
+    const auto size = static_cast<py::ssize_t>(charts.size());
+    return array_of<std::int32_t>(std::move(charts), {size});
+}
+
+py::dict py_unwrap(const MeshObject& mesh, std::pair<int, int> size, int padding, int align,
+                   std::optional<double> texels_per_unit, double max_stretch,
+                   std::optional<double> split_hard_degrees, bool split_materials, bool keep_seams,
+                   const FindingList& report) {
+    UnwrapOptions options;
+    options.size = {size.first, size.second};
+    options.padding = padding;
+    options.alignment = align;
+    options.texels_per_unit = texels_per_unit;
+    options.max_stretch = max_stretch;
+    if (split_hard_degrees) options.split_hard = *split_hard_degrees * std::numbers::pi / 180.0;
+    options.split_materials = split_materials;
+    options.keep_seams = keep_seams;
+    Report findings;
+    Unwrapped unwrapped;
+    FramedMesh result;
+    without_gil([&] {
+        unwrapped = unwrap(mesh, options, findings);
+        result = with_texcoords(mesh, unwrapped);
+    });
+    append(findings, report);
+    const auto vertices = static_cast<py::ssize_t>(result.source_vertex.size());
+    py::dict parts;
+    parts["mesh"] = MeshObject(std::move(result.mesh), mesh.origin);
+    parts["source_vertex"] = array_of<std::uint32_t>(std::move(result.source_vertex), {vertices});
+    parts["charts"] = charts_of(unwrapped);
+    parts["stats"] = to_dict(unwrapped.stats);
+    return parts;
+}
+
+}  // namespace
+
+void add_unwrap(py::module_& module) {
+    using py::arg;
+    const py::object none = py::none();
+    module.def("unwrap", &py_unwrap, arg("mesh"), py::kw_only(),
+               arg("size") = std::pair(2048, 2048), arg("padding") = 4, arg("align") = 1,
+               arg("texels_per_unit") = none, arg("max_stretch") = 4.0,
+               arg("split_hard_degrees") = none, arg("split_materials") = false,
+               arg("keep_seams") = false, arg("report") = none,
+               "Compute texture coordinates without overlaps.\n\n"
+               "See relief.unwrap() for the result.");
+}
+
+}  // namespace relief::python
