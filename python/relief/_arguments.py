@@ -12,7 +12,7 @@ import difflib
 import functools
 import inspect
 import pathlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -45,6 +45,7 @@ def _signature(function: ast.FunctionDef) -> inspect.Signature:
     return inspect.Signature(parameters, return_annotation=result)
 
 
+@functools.cache
 def _stated_signatures() -> dict[str, inspect.Signature]:
     """The signatures in the stub: of "bump", "Mesh.__init__" and so on."""
     stub = ast.parse((pathlib.Path(__file__).parent / "_relief.pyi").read_text(encoding="utf-8"))
@@ -57,6 +58,26 @@ def _stated_signatures() -> dict[str, inspect.Signature]:
                 if isinstance(member, ast.FunctionDef):
                     signatures[f"{node.name}.{member.name}"] = _signature(member)
     return signatures
+
+
+class _StatedSignature(inspect.Signature):
+    """The signature of a name in the stub, which is parsed for help() and for errors, and not on import."""
+
+    __slots__ = ("_name",)
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    @property
+    def parameters(self) -> Mapping[str, inspect.Parameter]:  # type: ignore[override]
+        return _stated_signatures()[self._name].parameters
+
+    @property
+    def return_annotation(self) -> Any:
+        return _stated_signatures()[self._name].return_annotation
+
+    def replace(self, **changes: Any) -> inspect.Signature:  # type: ignore[override]
+        return _stated_signatures()[self._name].replace(**changes)
 
 
 def _unknown_keyword(name: str, signature: inspect.Signature, keywords: dict[str, Any]) -> str | None:
@@ -126,22 +147,21 @@ def checks_keywords(function: Function) -> Function:
 
 def shorten_errors(names: dict[str, Any]) -> None:
     """Replace the functions of relief._relief in a namespace, and the methods of its classes."""
-    signatures = _stated_signatures()
     for name, value in list(names.items()):
         if getattr(value, "__module__", None) != "relief._relief":
             continue
         if inspect.isbuiltin(value):
-            names[name] = _shortened(value, name, signatures[name], is_method=False)
+            names[name] = _shortened(value, name, _StatedSignature(name), is_method=False)
         elif inspect.isclass(value) and not issubclass(value, BaseException):
-            _shorten_methods(value, signatures)
+            _shorten_methods(value)
 
 
-def _shorten_methods(kind: type, signatures: dict[str, inspect.Signature]) -> None:
+def _shorten_methods(kind: type) -> None:
     for name, member in list(vars(kind).items()):
-        signature = signatures.get(f"{kind.__name__}.{name}")
-        if signature is None or not callable(getattr(kind, name)) or (name.startswith("__") and name != "__init__"):
+        if not callable(getattr(kind, name)) or (name.startswith("_") and name != "__init__"):
             continue
         shown = kind.__name__ if name == "__init__" else f"{kind.__name__}.{name}"
         is_static = isinstance(member, staticmethod)
+        signature = _StatedSignature(f"{kind.__name__}.{name}")
         short = _shortened(getattr(kind, name), shown, signature, is_method=not is_static)
         setattr(kind, name, staticmethod(short) if is_static else short)
