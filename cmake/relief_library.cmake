@@ -1,8 +1,10 @@
 # The components of the library: which are built, how, and how they are installed and found.
 include(CMakePackageConfigHelpers)
+include(relief-third-parties)
 
-# Each component stands after those that it needs. The packages of CMake and of pkg-config, and the libraries that
-# have neither, are for programs that link an installed static component.
+# Each component stands after those that it needs. The packages of CMake (NAME or NAME=VERSION), third parties of
+# relief-third-parties.cmake, packages of pkg-config, and the libraries that it does not know, are for programs that
+# link an installed static component.
 set(RELIEF_ALL mesh topology atlas files bake c shade reference accuracy)
 set(RELIEF_PACKAGES_mesh fmt TBB)
 set(RELIEF_PKG_CONFIG_mesh fmt tbb)
@@ -12,11 +14,10 @@ set(RELIEF_PKG_CONFIG_topology openmesh)
 set(RELIEF_NEEDED_BY_atlas mesh)
 set(RELIEF_NEEDED_BY_files mesh)
 set(RELIEF_PACKAGES_files tinyobjloader meshoptimizer)
+set(RELIEF_THIRD_PARTIES_files deflate isal turbojpeg zstd draco)
 set(RELIEF_PKG_CONFIG_files tinyobjloader libdeflate libisal libturbojpeg libzstd draco)
 set(RELIEF_LIBRARIES_files -lmeshoptimizer -Wl,-rpath,\${libdir}/relief)
 set(RELIEF_NEEDED_BY_bake mesh)
-set(RELIEF_PACKAGES_bake embree)
-set(RELIEF_LIBRARIES_bake -lembree3)
 set(RELIEF_NEEDED_BY_c mesh atlas bake)
 # See libmesh/src/c/CMakeLists.txt.
 set(RELIEF_LIBRARIES_c -lstdc++ -lm)
@@ -39,6 +40,30 @@ foreach(component IN LISTS RELIEF_BACKWARDS)
     endif()
 endforeach()
 list(REMOVE_DUPLICATES RELIEF_BUILT)
+
+# relief_require_third_parties(NAMES...): the targets relief_third_party::NAME.
+function(relief_require_third_parties)
+    foreach(name IN LISTS ARGN)
+        relief_find_third_party(${name} missing)
+        if(missing)
+            message(FATAL_ERROR "${missing}")
+        endif()
+    endforeach()
+endfunction()
+if("files" IN_LIST RELIEF_BUILT)
+    relief_require_third_parties(${RELIEF_THIRD_PARTIES_files})
+endif()
+
+# Rays are cast with Embree 4 or 3, which libmesh/src/bake/embree_scene.cpp both supports. The functions of both have
+# the same names, so programs that link the component must use the same version.
+if("bake" IN_LIST RELIEF_BUILT)
+    find_package(embree 4 QUIET)
+    if(NOT embree_FOUND)
+        find_package(embree 3 REQUIRED)
+    endif()
+    set(RELIEF_PACKAGES_bake embree=${embree_VERSION_MAJOR})
+    set(RELIEF_LIBRARIES_bake -lembree${embree_VERSION_MAJOR})
+endif()
 
 # Libraries that are loaded when they are needed.
 set(RELIEF_MODULE_DIRECTORY ${CMAKE_INSTALL_LIBDIR}/relief)
@@ -115,6 +140,7 @@ function(relief_install_package)
         # Shared libraries name what they need by themselves.
         if(NOT BUILD_SHARED_LIBS)
             string(APPEND tables "set(relief_packages_${component} ${RELIEF_PACKAGES_${component}})\n")
+            string(APPEND tables "set(relief_third_parties_${component} ${RELIEF_THIRD_PARTIES_${component}})\n")
         endif()
     endforeach()
     configure_package_config_file(
@@ -122,6 +148,7 @@ function(relief_install_package)
         INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief)
     write_basic_package_version_file(${PROJECT_BINARY_DIR}/relief-config-version.cmake COMPATIBILITY SameMajorVersion)
     install(FILES ${PROJECT_BINARY_DIR}/relief-config.cmake ${PROJECT_BINARY_DIR}/relief-config-version.cmake
+                  ${PROJECT_SOURCE_DIR}/cmake/relief-third-parties.cmake
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/relief
             COMPONENT development)
 

@@ -4,7 +4,11 @@
 // tests/mesh/rays/embree_scene_test.cpp.
 #include "bake/embree_scene.h"
 
+#if RELIEF_EMBREE_MAJOR == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +20,7 @@
 #include <new>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "progress_stage.h"
@@ -101,9 +106,16 @@ constexpr double max_origin = 1e10;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+#if RELIEF_EMBREE_MAJOR == 3
+using RayContext = RTCIntersectContext;
+#else
+using RayContext = RTCRayQueryContext;
+#endif
+
 /// The state of one call of Embree. The context comes first, because Embree passes its address.
 struct Cast {
-    RTCIntersectContext context;
+    RayContext context;
+    bool is_coherent;
     RayPacket* packet;
     bool have_one_axis;  ///< All rays have the same RayLines::along.
     std::vector<TiedHit>* tied;
@@ -284,6 +296,30 @@ void cast_each(const RayPacket& packet, std::size_t count, const Rays& rays_of, 
         std::fill_n(valid.begin(), here, -1);
         call(begin, here, valid.data(), all);
     }
+}
+
+/// Calls one of rtcIntersect1() to rtcIntersect16() or rtcOccluded1() to rtcOccluded16().
+/// \param valid  the flags of the rays; none for a single ray
+template <typename Function, typename Rays, typename... Valid>
+void cast_rays(Function* function, RTCScene scene, Cast& cast, Rays& rays, Valid... valid) {
+#if RELIEF_EMBREE_MAJOR == 3
+    rtcInitIntersectContext(&cast.context);
+    if (cast.is_coherent) cast.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    function(valid..., scene, &cast.context, &rays);
+#else
+    rtcInitRayQueryContext(&cast.context);
+    constexpr bool has_hits = requires {
+        rays.hit;
+    };
+    std::conditional_t<has_hits, RTCIntersectArguments, RTCOccludedArguments> arguments;
+    if constexpr (has_hits)
+        rtcInitIntersectArguments(&arguments);
+    else
+        rtcInitOccludedArguments(&arguments);
+    if (cast.is_coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    arguments.context = &cast.context;
+    function(valid..., scene, &rays, &arguments);
+#endif
 }
 
 bool have_one_axis(const RayPacket& packet, std::size_t count) {
@@ -468,8 +504,7 @@ void EmbreeScene::set(RayPacket& packet, std::size_t lane, const Ray& ray, doubl
 void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
     std::vector<TiedHit> tied;
     Cast cast{};
-    rtcInitIntersectContext(&cast.context);
-    cast.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    cast.is_coherent = true;
     cast.packet = &packet;
     cast.have_one_axis = have_one_axis(packet, count);
     cast.tied = &tied;
@@ -478,22 +513,22 @@ void EmbreeScene::find_nearest(RayPacket& packet, std::size_t count) const {
     switch (rays_at_once_.value_or(16)) {
         case 1:
             cast_nearest<RTCRayHit>(packet, count, [&](const int*, RTCRayHit& rays) {
-                rtcIntersect1(scene_, &cast.context, &rays);
+                cast_rays(rtcIntersect1, scene_, cast, rays);
             });
             break;
         case 4:
             cast_nearest<RTCRayHit4>(packet, count, [&](const int* valid, RTCRayHit4& rays) {
-                rtcIntersect4(valid, scene_, &cast.context, &rays);
+                cast_rays(rtcIntersect4, scene_, cast, rays, valid);
             });
             break;
         case 8:
             cast_nearest<RTCRayHit8>(packet, count, [&](const int* valid, RTCRayHit8& rays) {
-                rtcIntersect8(valid, scene_, &cast.context, &rays);
+                cast_rays(rtcIntersect8, scene_, cast, rays, valid);
             });
             break;
         default:
             cast_nearest<RTCRayHit16>(packet, count, [&](const int* valid, RTCRayHit16& rays) {
-                rtcIntersect16(valid, scene_, &cast.context, &rays);
+                cast_rays(rtcIntersect16, scene_, cast, rays, valid);
             });
     }
     if (!tied.empty()) settle_ties(packet, tied);
@@ -527,28 +562,27 @@ void EmbreeScene::settle_ties(RayPacket& packet, std::vector<TiedHit>& tied) con
 
 void EmbreeScene::find_any(RayPacket& packet, std::size_t count) const {
     Cast cast{};
-    rtcInitIntersectContext(&cast.context);
     cast.packet = &packet;
     // These rays are incoherent, so packets are slower.
     switch (rays_at_once_.value_or(1)) {
         case 1:
             cast_any<RTCRay>(packet, count, [&](const int*, RTCRay& rays) {
-                rtcOccluded1(scene_, &cast.context, &rays);
+                cast_rays(rtcOccluded1, scene_, cast, rays);
             });
             break;
         case 4:
             cast_any<RTCRay4>(packet, count, [&](const int* valid, RTCRay4& rays) {
-                rtcOccluded4(valid, scene_, &cast.context, &rays);
+                cast_rays(rtcOccluded4, scene_, cast, rays, valid);
             });
             break;
         case 8:
             cast_any<RTCRay8>(packet, count, [&](const int* valid, RTCRay8& rays) {
-                rtcOccluded8(valid, scene_, &cast.context, &rays);
+                cast_rays(rtcOccluded8, scene_, cast, rays, valid);
             });
             break;
         default:
             cast_any<RTCRay16>(packet, count, [&](const int* valid, RTCRay16& rays) {
-                rtcOccluded16(valid, scene_, &cast.context, &rays);
+                cast_rays(rtcOccluded16, scene_, cast, rays, valid);
             });
     }
 }
@@ -557,11 +591,11 @@ void EmbreeScene::find_all(const Ray& ray, std::vector<MetTriangle>& triangles) 
     RayPacket packet;
     set(packet, 0, ray);
     Cast cast{};
-    rtcInitIntersectContext(&cast.context);
     cast.packet = &packet;
     cast.all = &triangles;
-    cast_nearest<RTCRayHit>(
-        packet, 1, [&](const int*, RTCRayHit& one) { rtcIntersect1(scene_, &cast.context, &one); });
+    cast_nearest<RTCRayHit>(packet, 1, [&](const int*, RTCRayHit& one) {
+        cast_rays(rtcIntersect1, scene_, cast, one);
+    });
 }
 
 double EmbreeScene::distance_from(const glm::dvec3& point, double enough) const {

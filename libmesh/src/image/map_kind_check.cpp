@@ -20,19 +20,27 @@ bool is_accepted(std::span<const MapKind> accepted, MapKind kind) {
     return std::ranges::find(accepted, kind) != accepted.end();
 }
 
-/// The kind that an image with this content seems to have.
-WrongMapKind seeming_kind(MapContent content) {
+/// Returns the kind that an image with this content seems to have. In an optional, because GCC 14
+/// warns of moving its string into one later.
+std::optional<WrongMapKind> seeming_kind(MapContent content) {
+    std::optional<WrongMapKind> seeming(std::in_place);
     switch (content) {
         case MapContent::gray:
-            return {MapKind::height,
-                    "is gray, like a height map or a mask, so it is not a normal map"};
+            seeming->kind = MapKind::height;
+            seeming->problem = "is gray, like a height map or a mask, so it is not a normal map";
+            break;
         case MapContent::other:
-            return {std::nullopt, "is not a normal map: its texels are colors, or several masks"};
+            seeming->problem = "is not a normal map: its texels are colors, or several masks";
+            break;
         case MapContent::object_normals:
-            return {MapKind::object_normal, "seems to be a normal map in object space"};
+            seeming->kind = MapKind::object_normal;
+            seeming->problem = "seems to be a normal map in object space";
+            break;
         default:
-            return {MapKind::normal, "seems to be a normal map"};
+            seeming->kind = MapKind::normal;
+            seeming->problem = "seems to be a normal map";
     }
+    return seeming;
 }
 
 }  // namespace
@@ -81,10 +89,10 @@ std::optional<MapContent> unstated_content(const ImageView& map, const MapDescri
 std::optional<WrongMapKind> judged_wrong_kind(std::span<const MapKind> accepted,
                                               MapContent content) {
     if (!is_judged_by_texels(accepted)) return std::nullopt;
-    WrongMapKind seeming = seeming_kind(content);
-    if (seeming.kind && is_accepted(accepted, *seeming.kind)) return std::nullopt;
+    std::optional<WrongMapKind> seeming = seeming_kind(content);
+    if (seeming->kind && is_accepted(accepted, *seeming->kind)) return std::nullopt;
     // Colors may be heights: their mean or their red channel is read.
-    const bool are_normals = seeming.kind && holds_normals(*seeming.kind);
+    const bool are_normals = seeming->kind && holds_normals(*seeming->kind);
     if (accepted.front() == MapKind::height && !are_normals) return std::nullopt;
     return seeming;
 }
