@@ -20,27 +20,19 @@ bool is_accepted(std::span<const MapKind> accepted, MapKind kind) {
     return std::ranges::find(accepted, kind) != accepted.end();
 }
 
-/// Returns the kind that an image with this content seems to have. In an optional, because GCC 14
-/// warns of moving its string into one later.
-std::optional<WrongMapKind> seeming_kind(MapContent content) {
-    std::optional<WrongMapKind> seeming(std::in_place);
+/// The kind that an image with this content seems to have.
+WrongMapKind seeming_kind(MapContent content) {
     switch (content) {
         case MapContent::gray:
-            seeming->kind = MapKind::height;
-            seeming->problem = "is gray, like a height map or a mask, so it is not a normal map";
-            break;
+            return {MapKind::height,
+                    "is gray, like a height map or a mask, so it is not a normal map"};
         case MapContent::other:
-            seeming->problem = "is not a normal map: its texels are colors, or several masks";
-            break;
+            return {std::nullopt, "is not a normal map: its texels are colors, or several masks"};
         case MapContent::object_normals:
-            seeming->kind = MapKind::object_normal;
-            seeming->problem = "seems to be a normal map in object space";
-            break;
+            return {MapKind::object_normal, "seems to be a normal map in object space"};
         default:
-            seeming->kind = MapKind::normal;
-            seeming->problem = "seems to be a normal map";
+            return {MapKind::normal, "seems to be a normal map"};
     }
-    return seeming;
 }
 
 }  // namespace
@@ -89,10 +81,10 @@ std::optional<MapContent> unstated_content(const ImageView& map, const MapDescri
 std::optional<WrongMapKind> judged_wrong_kind(std::span<const MapKind> accepted,
                                               MapContent content) {
     if (!is_judged_by_texels(accepted)) return std::nullopt;
-    std::optional<WrongMapKind> seeming = seeming_kind(content);
-    if (seeming->kind && is_accepted(accepted, *seeming->kind)) return std::nullopt;
+    WrongMapKind seeming = seeming_kind(content);
+    if (seeming.kind && is_accepted(accepted, *seeming.kind)) return std::nullopt;
     // Colors may be heights: their mean or their red channel is read.
-    const bool are_normals = seeming->kind && holds_normals(*seeming->kind);
+    const bool are_normals = seeming.kind && holds_normals(*seeming.kind);
     if (accepted.front() == MapKind::height && !are_normals) return std::nullopt;
     return seeming;
 }
