@@ -2,6 +2,11 @@
 if(NOT CPACK_GENERATOR STREQUAL DEB)
     return()
 endif()
+set(suite unstable)
+if(EXISTS /etc/os-release)
+    file(STRINGS /etc/os-release suite REGEX "^VERSION_CODENAME=")
+    string(REGEX REPLACE "^VERSION_CODENAME=" "" suite "${suite}")
+endif()
 string(TIMESTAMP year %Y UTC)
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
@@ -21,7 +26,7 @@ License: Apache-2.0
 ")
     configure_file(${CPACK_RELIEF_SOURCE_DIR}/CHANGELOG.md ${documents}/changelog COPYONLY)
     file(WRITE ${documents}/changelog.Debian
-         "relief (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) bookworm; urgency=medium
+         "relief (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) ${suite}; urgency=medium
 
   * Package version ${CPACK_PACKAGE_VERSION}.
 

@@ -192,8 +192,9 @@ std::filesystem::path find_decoder(const std::filesystem::path& file) {
         if (::access(program.c_str(), X_OK) == 0) return program;
         places += fmt::format("; not at {}", program.string());
     }
-    throw FileError(file, fmt::format("relief's image decoder {} was not found{}; set "
-                                      "RELIEF_MODULE_DIR to its folder",
+    throw FileError(file, fmt::format("relief's image decoder {} was not found{}; install the "
+                                      "package relief-image-formats, or set RELIEF_MODULE_DIR to "
+                                      "its folder",
                                       decoder_name, places));
 }
 

@@ -119,8 +119,9 @@ const ImageModule& image_module(const std::filesystem::path& file) {
         module = loaded_from(folder / image_module_name, reasons);
         if (module != nullptr) return *module;
     }
-    throw FileError(file, fmt::format("relief's image module {} was not found{}; set "
-                                      "RELIEF_MODULE_DIR to its folder",
+    throw FileError(file, fmt::format("relief's image module {} was not found{}; install the "
+                                      "package relief-image-formats, or set RELIEF_MODULE_DIR to "
+                                      "its folder",
                                       image_module_name, reasons));
 }
 
