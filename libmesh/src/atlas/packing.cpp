@@ -1,370 +1,372 @@
 // SPDX-License-Identifier: Apache-2.0
-// Charts are bit masks of cells: all cells that a chart touches when half of the padding is added
-// around it. Charts that share no cell therefore keep their distance. For one row of positions, all
-// columns are tested at once: a position is blocked if a run of cells of the chart meets an
-// occupied cell.
+// Charts are placed one after the other, the large ones first, each at the lowest position in one
+// of several rotations: first on large cells, then they slide on small ones. No rule for the order
+// and for the best rotation suits all charts. So several rules are tried at one scale, and
+// variations of the best one; the scale rises as long as an attempt succeeds.
 #include "atlas/packing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <numeric>
+#include <optional>
+#include <utility>
 
+#include "atlas/cell_map.h"
+#include "atlas/cell_mask.h"
 #include "parallel.h"
 #include "progress_stage.h"
 
 namespace relief::detail {
 namespace {
 
-/// The number of packs after which the best scale is good enough, and after which packing fails.
-constexpr int min_attempts = 7;
-constexpr int max_attempts = 400;
-constexpr double scale_tolerance = 0.003;
-
-using Word = std::uint64_t;
-
-/// Rows of bits. Bit x of a row is bit x % 64 of word x / 64.
-class Bits {
-  public:
-    Bits() = default;
-    Bits(int width, int height)
-        : width_(width),
-          height_(height),
-          words_((static_cast<std::size_t>(width) + 63) / 64),
-          bits_(words_ * static_cast<std::size_t>(height), 0) {}
-
-    [[nodiscard]] int width() const { return width_; }
-    [[nodiscard]] int height() const { return height_; }
-    [[nodiscard]] std::size_t words() const { return words_; }
-    [[nodiscard]] Word* row(int y) { return bits_.data() + words_ * static_cast<std::size_t>(y); }
-    [[nodiscard]] const Word* row(int y) const {
-        return bits_.data() + words_ * static_cast<std::size_t>(y);
-    }
-    [[nodiscard]] bool get(int x, int y) const { return (row(y)[x / 64] >> (x % 64) & 1) != 0; }
-    void set(int x, int y) { row(y)[x / 64] |= Word{1} << (x % 64); }
-    void set_run(int begin, int end, int y) {
-        Word* const words = row(y);
-        const int first = begin / 64;
-        const int last = (end - 1) / 64;
-        const Word head = ~Word{0} << (begin % 64);
-        const Word tail = ~Word{0} >> (63 - (end - 1) % 64);
-        if (first == last) {
-            words[first] |= head & tail;
-            return;
-        }
-        words[first] |= head;
-        for (int i = first + 1; i < last; ++i)
-            words[i] = ~Word{0};
-        words[last] |= tail;
-    }
-    void add_rows(int height) {
-        height_ += height;
-        bits_.resize(words_ * static_cast<std::size_t>(height_), 0);
-    }
-
-  private:
-    int width_ = 0;
-    int height_ = 0;
-    std::size_t words_ = 0;
-    std::vector<Word> bits_;
-};
-
-/// Cells [begin, end) of a row.
-struct Run {
-    int begin, end;
-};
-
-/// The cells of a chart in one of four rotations.
-struct Mask {
-    Bits bits;
-    std::vector<std::vector<Run>> runs;  ///< Of each row.
-    int cell_count = 0;
-    bool is_full = false;  ///< All cells of the box are set.
-};
-
-void find_runs(Mask& mask) {
-    mask.runs.resize(static_cast<std::size_t>(mask.bits.height()));
-    mask.cell_count = 0;
-    for (int y = 0; y < mask.bits.height(); ++y) {
-        std::vector<Run>& runs = mask.runs[static_cast<std::size_t>(y)];
-        runs.clear();
-        for (int x = 0; x < mask.bits.width();) {
-            if (!mask.bits.get(x, y)) {
-                ++x;
-                continue;
-            }
-            const int begin = x;
-            while (x < mask.bits.width() && mask.bits.get(x, y))
-                ++x;
-            runs.push_back({begin, x});
-            mask.cell_count += x - begin;
-        }
-    }
-    mask.is_full = mask.cell_count == mask.bits.width() * mask.bits.height();
-}
-
-/// Adds the cells that a triangle touches, with a margin around it.
-void add_triangle(const std::array<glm::dvec2, 3>& p, double margin, double cell, Bits& bits) {
-    const double low_y = std::min({p[0].y, p[1].y, p[2].y});
-    const double high_y = std::max({p[0].y, p[1].y, p[2].y});
-    const int first = std::max(static_cast<int>(std::floor((low_y - margin) / cell)), 0);
-    const int last =
-        std::min(static_cast<int>(std::floor((high_y + margin) / cell)), bits.height() - 1);
-    for (int row = first; row <= last; ++row) {
-        const double y0 = row * cell - margin;
-        const double y1 = (row + 1) * cell + margin;
-        double low = std::numeric_limits<double>::infinity();
-        double high = -low;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec2& a = p[i];
-            const glm::dvec2& b = p[(i + 1) % 3];
-            if (a.y >= y0 && a.y <= y1) {
-                low = std::min(low, a.x);
-                high = std::max(high, a.x);
-            }
-            for (const double y : {y0, y1}) {
-                if ((a.y < y) == (b.y < y)) continue;
-                const double x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
-                low = std::min(low, x);
-                high = std::max(high, x);
-            }
-        }
-        if (!(low <= high)) continue;
-        const int begin = std::max(static_cast<int>(std::floor((low - margin) / cell)), 0);
-        const int end =
-            std::min(static_cast<int>(std::floor((high + margin) / cell)) + 1, bits.width());
-        if (begin < end) bits.set_run(begin, end, row);
-    }
-}
+/// The largest number of cells along the longer side of a map.
+constexpr int max_cells = 1024;
+/// Positions are searched on cells 2 or 4 times as large, the smaller ones for charts up to this
+/// many of them.
+constexpr int max_search_cells = 32;
+constexpr int level_count = 3;
+/// Charts up to this many search cells begin where the last one of the same size was placed, less
+/// some rows. Larger ones try all positions.
+constexpr int max_hinted_cells = 16;
+constexpr int hint_slack = 8;
+/// Up to this many charts also try rotations by 45 degrees.
+constexpr std::size_t max_freely_rotated = 64;
+/// Above this number of charts, the first attempt should succeed.
+constexpr std::size_t max_varied = 1000;
+/// The share of the map that charts and half of their padding cover at first.
+constexpr double expected_use = 0.75;
+/// The rise of the scale after a success; it is halved if no attempt succeeds.
+constexpr double scale_step = 0.01;
+constexpr double min_scale_step = 0.002;
+/// The number of reductions of the scale after which charts do not fit at all.
+constexpr int max_reductions = 60;
 
 /// Half of the padding, and a little for the rounding of coordinates.
 double margin_of(const PackingOptions& options) {
     return 0.5 * options.padding + 1e-3;
 }
 
-/// The cells of a chart whose box begins at the margin.
-Mask mask_of(const FlatChart& chart, double scale, double margin, int cell) {
-    const auto cells = [&](double length) {
-        return std::max(static_cast<int>(std::ceil((length * scale + 2.0 * margin) / cell)), 1);
-    };
-    Mask mask;
-    mask.bits = Bits(cells(chart.size.x), cells(chart.size.y));
-    const auto point = [&](std::uint32_t vertex) {
-        return chart.coordinates[vertex] * scale + margin;
-    };
-    for (const glm::uvec3& v : chart.mesh.vertices)
-        add_triangle({point(v.x), point(v.y), point(v.z)}, margin, cell, mask.bits);
-    find_runs(mask);
-    return mask;
+/// Texels of a side of the smallest cells: a multiple of the blocks.
+int cell_of(const PackingOptions& options) {
+    int cell = options.alignment;
+    while (std::max(options.size.x, options.size.y) / cell > max_cells)
+        cell *= 2;
+    return cell;
 }
 
-/// Rotates a mask counter-clockwise (y up).
-Mask turned(const Mask& mask) {
-    Mask result;
-    result.bits = Bits(mask.bits.height(), mask.bits.width());
-    for (int y = 0; y < mask.bits.height(); ++y) {
-        for (const Run& run : mask.runs[static_cast<std::size_t>(y)])
-            for (int x = run.begin; x < run.end; ++x)
-                result.bits.set(mask.bits.height() - 1 - y, x);
+/// The number of packs in all, unless none succeeds. Many charts differ little from their mean, so
+/// that the estimated scale is exact for them, and each pack takes long.
+std::size_t attempts_for(std::size_t chart_count) {
+    const std::size_t attempts = std::min(10 * chart_count, 4000 / (chart_count + 40));
+    return std::clamp<std::size_t>(attempts, 3, 80);
+}
+
+glm::dvec2 rotated(const glm::dvec2& point, const glm::dvec2& direction) {
+    return {direction.x * point.x - direction.y * point.y,
+            direction.y * point.x + direction.x * point.y};
+}
+
+/// The border of a chart in one rotation.
+struct Outline {
+    glm::dvec2 direction{1.0, 0.0};  ///< The image of the x axis.
+    glm::dvec2 low{0.0};             ///< The corner of the box before it is shifted to the origin.
+    glm::dvec2 size{0.0};
+    std::vector<BorderSegment> border;
+};
+
+Outline outline_of(const FlatChart& chart, const glm::dvec2& direction) {
+    Outline outline;
+    outline.direction = direction;
+    outline.low = glm::dvec2(std::numeric_limits<double>::infinity());
+    glm::dvec2 high(-std::numeric_limits<double>::infinity());
+    for (Corner corner = 0; corner < chart.mesh.opposite.size(); ++corner) {
+        if (chart.mesh.opposite[corner] != no_corner) continue;
+        const glm::uvec3& v = chart.mesh.vertices[corner / 3];
+        const auto point = [&](Corner i) {
+            return rotated(chart.coordinates[v[static_cast<glm::length_t>(i % 3)]], direction);
+        };
+        const BorderSegment segment(point(corner), point(corner + 1));
+        // Borders are loops, so that each point is the first one of a segment.
+        outline.low = glm::min(outline.low, segment.first);
+        high = glm::max(high, segment.first);
+        outline.border.push_back(segment);
     }
-    find_runs(result);
-    return result;
-}
-
-/// bits[x] |= bits[x + distance], for all x.
-void or_shifted_down(std::vector<Word>& bits, int distance) {
-    const auto words = static_cast<std::size_t>(distance / 64);
-    const int rest = distance % 64;
-    for (std::size_t i = 0; i + words < bits.size(); ++i) {
-        const Word low = bits[i + words] >> rest;
-        const Word high =
-            rest != 0 && i + words + 1 < bits.size() ? bits[i + words + 1] << (64 - rest) : 0;
-        bits[i] |= low | high;
+    for (auto& [a, b] : outline.border) {
+        a -= outline.low;
+        b -= outline.low;
     }
+    outline.size = high - outline.low;
+    return outline;
 }
 
-/// A map of cells with a width and as many rows as charts need.
-class CellMap {
+/// A chart in one rotation at one scale.
+struct Pose {
+    glm::dvec2 direction{1.0, 0.0};
+    glm::dvec2 offset{0.0};  ///< Of the chart's origin from the corner of the mask, texels.
+    CellMask mask;
+    CellMask coarse;  ///< The mask on the cells of the search.
+    std::vector<RowRun> lower;
+};
+
+/// How to place charts: in which order, and by which preference among rotations.
+struct Rule {
+    std::vector<std::uint32_t> order;
+    /// The cost of a place is its upper edge, plus its lower edge and its left edge with these
+    /// weights.
+    double lower_weight = 0.0;
+    double left_weight = 0.0;
+};
+
+/// Places charts at one scale.
+class Packer {
   public:
-    explicit CellMap(int width) : bits_(width, 0), blocked_(bits_.words()), row_(bits_.words()) {}
+    Packer(std::span<const FlatChart> charts, const PackingOptions& options)
+        : options_(options),
+          cell_(cell_of(options)),
+          outlines_(charts.size()),
+          poses_(charts.size()),
+          levels_(charts.size()),
+          places_(charts.size()) {
+        const double diagonal = std::sqrt(0.5);
+        parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                outlines_[i].push_back(outline_of(charts[i], {1.0, 0.0}));
+                outlines_[i].push_back(outline_of(charts[i], {0.0, 1.0}));
+                if (charts.size() > max_freely_rotated) continue;
+                outlines_[i].push_back(outline_of(charts[i], {diagonal, diagonal}));
+                outlines_[i].push_back(outline_of(charts[i], {-diagonal, diagonal}));
+            }
+        });
+    }
 
-    struct Position {
-        int x, y;
-    };
+    void set_scale(double scale) {
+        parallel_for(outlines_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                find_poses(i, scale);
+        });
+    }
 
-    /// Finds the lowest position, and the leftmost one in that row.
-    /// \param first  the row to begin with. \param end  the rows before which to stop
-    std::optional<Position> find(const Mask& mask, int first, int end) {
-        const int free = bits_.width() - mask.bits.width() + 1;
-        if (free <= 0) return std::nullopt;
-        for (int y = first; y < end; ++y) {
-            if (y + mask.bits.height() > bits_.height())
-                bits_.add_rows(y + mask.bits.height() - bits_.height());
-            if (const std::optional<int> x = free_column(mask, y, free)) return Position{*x, y};
+    /// Places all charts, until one does not fit into `rows` rows of cells.
+    /// \return the index of this chart in the order
+    std::optional<std::size_t> pack(const Rule& rule, int rows) {
+        CellMap map(options_.size.x / cell_, rows, level_count);
+        hints_.fill(0);
+        height_ = 0;
+        for (std::size_t i = 0; i < rule.order.size(); ++i) {
+            check_cancelled();
+            if (!place(rule.order[i], rule, map)) return i;
         }
         return std::nullopt;
     }
 
-    void occupy(const Mask& mask, const Position& at) {
-        for (int y = 0; y < mask.bits.height(); ++y) {
-            for (const Run& run : mask.runs[static_cast<std::size_t>(y)])
-                bits_.set_run(at.x + run.begin, at.x + run.end, at.y + y);
-        }
-        height_ = std::max(height_, at.y + mask.bits.height());
-    }
+    /// The rows of cells of the map.
+    [[nodiscard]] int rows() const { return options_.size.y / cell_; }
+    /// The rows of cells that charts use after pack().
     [[nodiscard]] int height() const { return height_; }
 
+    /// Returns the place of a chart after pack().
+    [[nodiscard]] Placement placement(std::size_t chart) const {
+        const Pose& pose = poses_[chart][places_[chart].pose];
+        const CellMap::Position& at = places_[chart].at;
+        // Blocks of texels are counted from the upper edge of the map.
+        const glm::dvec2 corner(at.x * cell_, at.y * cell_ + options_.size.y % cell_);
+        return {pose.direction, corner + pose.offset};
+    }
+
   private:
-    std::optional<int> free_column(const Mask& mask, int y, int free) {
-        std::fill(blocked_.begin(), blocked_.end(), 0);
-        const auto free_words = static_cast<std::size_t>((free + 63) / 64);
-        // Positions beyond the last one are blocked.
-        if (free % 64 != 0) blocked_[free_words - 1] = ~Word{0} << (free % 64);
-        // From the middle outwards the widest rows come first, which block the most.
-        const int height = mask.bits.height();
-        for (int i = 0; i < height; ++i) {
-            const int offset = height / 2 + (i % 2 == 0 ? i / 2 : -(i / 2) - 1);
-            const int row = std::clamp(offset, 0, height - 1);
-            block(mask.runs[static_cast<std::size_t>(row)], y + row);
-            if (std::all_of(blocked_.begin(),
-                            blocked_.begin() + static_cast<std::ptrdiff_t>(free_words),
-                            [](Word word) { return word == ~Word{0}; }))
-                return std::nullopt;
+    struct Place {
+        std::size_t pose = 0;
+        CellMap::Position at{0, 0};
+    };
+
+    void find_poses(std::size_t chart, double scale) {
+        const double margin = margin_of(options_);
+        std::vector<Pose>& poses = poses_[chart];
+        poses.clear();
+        std::vector<BorderSegment> border;
+        for (const Outline& outline : outlines_[chart]) {
+            border.clear();
+            for (const auto& [a, b] : outline.border)
+                border.emplace_back(a * scale, b * scale);
+            Pose& pose = poses.emplace_back();
+            pose.direction = outline.direction;
+            pose.offset = glm::dvec2(margin) - outline.low * scale;
+            pose.mask = mask_of(border, outline.size * scale, margin, cell_);
         }
-        for (std::size_t i = 0; i < free_words; ++i) {
-            if (blocked_[i] != ~Word{0})
-                return static_cast<int>(i * 64) + std::countr_one(blocked_[i]);
-        }
-        return std::nullopt;
-    }
-    /// Blocks the positions at which the runs of a row meet occupied cells.
-    void block(const std::vector<Run>& runs, int y) {
-        const Word* const occupied = bits_.row(y);
-        if (std::all_of(occupied, occupied + bits_.words(), [](Word word) { return word == 0; }))
-            return;
-        for (const Run& run : runs) {
-            row_.assign(occupied, occupied + bits_.words());
-            // Bit x becomes the union of the bits from x to x + length - 1.
-            int covered = 1;
-            const int length = run.end - run.begin;
-            while (covered < length) {
-                const int step = std::min(covered, length - covered);
-                or_shifted_down(row_, step);
-                covered += step;
-            }
-            const auto words = static_cast<std::size_t>(run.begin / 64);
-            const int rest = run.begin % 64;
-            for (std::size_t i = 0; i + words < row_.size(); ++i) {
-                const Word low = row_[i + words] >> rest;
-                const Word high = rest != 0 && i + words + 1 < row_.size()
-                                      ? row_[i + words + 1] << (64 - rest)
-                                      : 0;
-                blocked_[i] |= low | high;
-            }
+        const int longest = std::max(poses[0].mask.width, poses[0].mask.height);
+        int level = 1;
+        while (level + 1 < level_count && longest >> level > max_search_cells)
+            ++level;
+        levels_[chart] = level;
+        for (Pose& pose : poses)
+            prepare(pose, level);
+        // Half turns; those of a rectangle change nothing.
+        const std::size_t upright = poses.size();
+        for (std::size_t i = 0; i < upright; ++i) {
+            if (is_full(poses[i].coarse)) continue;
+            const CellMask& mask = poses[i].mask;
+            Pose turned;
+            turned.direction = -poses[i].direction;
+            turned.offset =
+                glm::dvec2(mask.width, mask.height) * static_cast<double>(cell_) - poses[i].offset;
+            turned.mask = half_turned(mask);
+            prepare(turned, level);
+            poses.push_back(std::move(turned));
         }
     }
-
-    Bits bits_;
-    int height_ = 0;
-    std::vector<Word> blocked_;
-    std::vector<Word> row_;
-};
-
-struct CellPlacement {
-    int turns = 0;
-    CellMap::Position at{0, 0};
-    int height = 0;  ///< Of the mask before it was turned.
-    int width = 0;
-};
-
-/// The charts at one scale, in cells.
-class CellPacker {
-  public:
-    CellPacker(std::span<const FlatChart> charts, double scale, const PackingOptions& options,
-               int cell)
-        : options_(options), cell_(cell), masks_(charts.size()), placements_(charts.size()) {
-        parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                masks_[i] = mask_of(charts[i], scale, margin_of(options), cell);
-        });
+    static void prepare(Pose& pose, int level) {
+        pose.coarse = coarser(pose.mask, level);
+        pose.lower = lower_border(pose.mask);
+    }
+    static bool is_full(const CellMask& mask) {
+        return std::all_of(mask.longest.begin(), mask.longest.end(),
+                           [&](int length) { return length == mask.width; });
     }
 
-    /// \return whether all charts fit into a map of this many rows
-    bool pack(int max_rows) {
-        CellMap map(options_.size.x / cell_);
-        std::vector<std::uint32_t> order(masks_.size());
-        std::iota(order.begin(), order.end(), 0U);
-        const auto longest = [&](std::uint32_t i) {
-            return std::max(masks_[i].bits.width(), masks_[i].bits.height());
-        };
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            if (longest(a) != longest(b)) return longest(a) > longest(b);
-            return masks_[a].cell_count > masks_[b].cell_count;
-        });
-        // For masks without gaps, the row below which there is no position for them.
-        std::map<std::pair<int, int>, int> lowest;
-        for (const std::uint32_t index : order) {
-            check_cancelled();
-            std::array<Mask, 4> turns;
-            turns[0] = masks_[index];
-            const int count =
-                turns[0].is_full ? (turns[0].bits.width() == turns[0].bits.height() ? 1 : 2) : 4;
-            for (std::size_t k = 1; k < static_cast<std::size_t>(count); ++k)
-                turns[k] = turned(turns[k - 1]);
-            std::optional<CellPlacement> best;
-            int best_top = max_rows + 1;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-                const Mask& mask = turns[k];
-                const std::pair key(mask.bits.width(), mask.bits.height());
-                const auto known = mask.is_full ? lowest.find(key) : lowest.end();
-                const int first = known == lowest.end() ? 0 : known->second;
-                // A position must have a lower upper edge than the best one.
-                const auto at = map.find(mask, first, best_top - mask.bits.height());
-                if (!at) continue;
-                if (mask.is_full) lowest[key] = at->y;
-                best = CellPlacement{static_cast<int>(k), *at, turns[0].bits.height(),
-                                     turns[0].bits.width()};
-                best_top = at->y + mask.bits.height();
-            }
-            if (!best) return false;
-            map.occupy(turns[static_cast<std::size_t>(best->turns)], best->at);
-            placements_[index] = *best;
+    bool place(std::uint32_t chart, const Rule& rule, CellMap& map) {
+        const int level = levels_[chart];
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < poses_[chart].size(); ++i) {
+            const Pose& pose = poses_[chart][i];
+            int* const hint = hint_of(pose.coarse, level);
+            // Higher positions cost more, even if charts slide down by one large cell.
+            const double highest =
+                (least - pose.mask.height) / (1.0 + rule.lower_weight) + (1 << level);
+            const int end = static_cast<int>(std::min<double>(map.height(), highest));
+            std::optional<CellMap::Position> at =
+                map.find(pose.mask, pose.coarse, level, hint != nullptr ? *hint : 0, end);
+            if (!at) continue;
+            if (hint != nullptr) *hint = std::max(at->y - hint_slack, 0);
+            at = map.slid(pose.mask, pose.lower, *at);
+            const double cost =
+                at->y + pose.mask.height + rule.lower_weight * at->y + rule.left_weight * at->x;
+            if (cost >= least) continue;
+            least = cost;
+            places_[chart] = {i, *at};
         }
-        height_ = map.height();
+        if (std::isinf(least)) return false;
+        const CellMask& mask = poses_[chart][places_[chart].pose].mask;
+        map.occupy(mask, places_[chart].at);
+        height_ = std::max(height_, places_[chart].at.y + mask.height);
         return true;
     }
-    [[nodiscard]] int height() const { return height_; }
+    /// The row to begin with for small charts of one size; null for others.
+    int* hint_of(const CellMask& coarse, int level) {
+        if (level > 1 || std::max(coarse.width, coarse.height) > max_hinted_cells) return nullptr;
+        return &hints_[static_cast<std::size_t>((coarse.width - 1) * max_hinted_cells +
+                                                coarse.height - 1)];
+    }
 
-    /// Returns the position of a chart after pack().
-    [[nodiscard]] Placement placement(std::size_t index) const {
-        const CellPlacement& each = placements_[index];
-        const double margin = margin_of(options_);
-        // The mask begins at the margin before the chart; the origin is rotated with it.
-        const double w = each.width * cell_;
-        const double h = each.height * cell_;
-        // Blocks of texels are counted from the upper edge of the map.
-        const glm::dvec2 corner(each.at.x * cell_, each.at.y * cell_ + options_.size.y % cell_);
-        switch (each.turns) {
-            case 0:
-                return {0, corner + glm::dvec2(margin)};
-            case 1:
-                return {1, corner + glm::dvec2(h - margin, margin)};
-            case 2:
-                return {2, corner + glm::dvec2(w - margin, h - margin)};
-            default:
-                return {3, corner + glm::dvec2(margin, w - margin)};
+    PackingOptions options_;
+    int cell_;
+    std::vector<std::vector<Outline>> outlines_;
+    std::vector<std::vector<Pose>> poses_;
+    std::vector<int> levels_;
+    std::vector<Place> places_;
+    std::array<int, std::size_t{max_hinted_cells} * max_hinted_cells> hints_{};
+    int height_ = 0;
+};
+
+/// The area of charts with half of the padding, texels: a polynomial of the scale.
+class PaddedArea {
+  public:
+    PaddedArea(std::span<const FlatChart> charts, const PackingOptions& options) {
+        // Cells at the border are covered in part.
+        const double margin = margin_of(options) + 0.5 * cell_of(options);
+        for (const FlatChart& chart : charts) {
+            square_ += chart.area;
+            linear_ += 2.0 * (chart.size.x + chart.size.y) * margin;
+            constant_ += 4.0 * margin * margin;
         }
+    }
+    [[nodiscard]] double at(double scale) const {
+        return (square_ * scale + linear_) * scale + constant_;
+    }
+    /// Returns the scale for an area, which is above 0 even if there is none.
+    [[nodiscard]] double scale_for(double area) const {
+        const double rest = std::max(area - constant_, 0.02 * area);
+        return 2.0 * rest / (linear_ + std::sqrt(linear_ * linear_ + 4.0 * square_ * rest));
     }
 
   private:
-    PackingOptions options_;
-    int cell_;
-    std::vector<Mask> masks_;
-    std::vector<CellPlacement> placements_;
-    int height_ = 0;
+    double square_ = 0.0;
+    double linear_ = 0.0;
+    double constant_ = 0.0;
+};
+
+/// The rules of the first attempts, each with one of three orders.
+class Rules {
+  public:
+    explicit Rules(std::span<const FlatChart> charts) {
+        sort(charts, [](const FlatChart& chart) { return std::max(chart.size.x, chart.size.y); });
+        sort(charts, [](const FlatChart& chart) { return chart.size.x + chart.size.y; });
+        sort(charts, [](const FlatChart& chart) { return chart.area; });
+    }
+    static constexpr std::size_t count = 21;
+    [[nodiscard]] Rule rule(std::size_t index) const {
+        constexpr std::array<std::pair<double, double>, 7> weights{
+            {{0.0, 0.0}, {1.0, 0.3}, {1.0, 1.0}, {0.0, 0.1}, {1.0, 0.0}, {0.0, 0.3}, {0.0, 1.0}}};
+        const auto& [lower, left] = weights[index / 3 % weights.size()];
+        return {orders_[index % 3], lower, left};
+    }
+
+  private:
+    template <typename Size>
+    void sort(std::span<const FlatChart> charts, const Size& size) {
+        std::vector<std::uint32_t>& order = orders_.emplace_back(charts.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return size(charts[a]) > size(charts[b]);
+        });
+    }
+    std::vector<std::vector<std::uint32_t>> orders_;
+};
+
+/// Finds the rule of the next attempt after one that failed.
+class RuleSearch {
+  public:
+    explicit RuleSearch(std::span<const FlatChart> charts) : rules_(charts) {}
+
+    [[nodiscard]] Rule first() const { return rules_.rule(0); }
+
+    /// \param rule  of the last attempt. \param best  of the last one that succeeded
+    /// \param failed  the index in the order of the chart that did not fit
+    /// \param failures  at the present scale before this one
+    Rule next(Rule rule, const Rule& best, std::size_t failed, int failures) {
+        if (failures == 0) {
+            // The chart comes earlier.
+            const auto at = rule.order.begin() + static_cast<std::ptrdiff_t>(failed);
+            std::rotate(rule.order.begin() + static_cast<std::ptrdiff_t>(failed / 2), at, at + 1);
+            return rule;
+        }
+        if (failures % 2 == 1 && next_rule_ < Rules::count) return rules_.rule(next_rule_++);
+        rule = best;
+        if (rule.order.size() > 1) {
+            const std::size_t a = random(rule.order.size() - 1);
+            const std::size_t b =
+                a + 1 + random(std::min<std::size_t>(rule.order.size() - a - 1, 4));
+            std::swap(rule.order[a], rule.order[b]);
+        }
+        if (random(3) == 0) {
+            const Rule other = rules_.rule(random(Rules::count));
+            rule.lower_weight = other.lower_weight;
+            rule.left_weight = other.left_weight;
+        }
+        return rule;
+    }
+
+  private:
+    /// Returns a number below `count`, the same in each run.
+    std::size_t random(std::size_t count) {
+        state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+        return static_cast<std::size_t>(state_ >> 33) % count;
+    }
+
+    Rules rules_;
+    std::size_t next_rule_ = 1;
+    std::uint64_t state_ = 1;
 };
 
 /// The largest scale at which every chart, upright or turned, is inside of a map.
@@ -378,77 +380,75 @@ double largest_scale(std::span<const FlatChart> charts, const glm::dvec2& size) 
     return scale;
 }
 
+/// Estimates the scale at which charts fill the map, from one pack into a map that is too high.
+double estimated_scale(std::span<const FlatChart> charts, const PackingOptions& options,
+                       double largest, Packer& packer) {
+    const PaddedArea area(charts, options);
+    const double map_area = static_cast<double>(options.size.x) * options.size.y;
+    const double first = std::min(area.scale_for(expected_use * map_area), largest);
+    packer.set_scale(first);
+    const int rows = packer.rows();
+    if (packer.pack(Rules(charts).rule(0), 2 * rows)) return 0.7 * first;
+    const double estimate = area.scale_for(area.at(first) * rows / packer.height());
+    return std::min(charts.size() > max_varied ? 0.985 * estimate : estimate, largest);
+}
+
 }  // namespace
 
 Packing packed(std::span<const FlatChart> charts, const PackingOptions& options) {
-    Packing packing;
-    double area = 0.0;
-    for (const FlatChart& chart : charts)
-        area += chart.area;
-    const glm::dvec2 size(options.size);
-    const int coarse = std::max(options.alignment, 8);
-    const int fine = std::max(options.alignment, 4);
-    const double largest = largest_scale(charts, size - 2.0 * margin_of(options));
+    const double largest =
+        largest_scale(charts, glm::dvec2(options.size) - 2.0 * margin_of(options));
     if (!(largest > 0.0)) throw InvalidInput("the padding leaves no room in the map");
-    double scale = std::min(std::sqrt(0.7 * size.x * size.y / area), largest);
-    const auto finish = [&](const CellPacker& packer) {
-        packing.texels_per_unit = scale;
-        packing.placements.resize(charts.size());
-        for (std::size_t i = 0; i < charts.size(); ++i)
-            packing.placements[i] = packer.placement(i);
-        return packing;
-    };
-    if (options.texels_per_unit) {
-        scale = *options.texels_per_unit;
-        const bool is_larger = scale > largest;
-        CellPacker packer(charts, std::min(scale, largest), options, fine);
-        if (is_larger || !packer.pack(options.size.y / fine))
-            throw InvalidInput("the charts do not fit into the map at the requested density");
-        return finish(packer);
-    }
-    constexpr int unlimited = 1 << 20;
-    for (int round = 0; round < 3; ++round) {
-        CellPacker packer(charts, scale, options, coarse);
-        if (!packer.pack(unlimited)) {
-            scale *= 0.8;  // A chart is wider than the map.
-            continue;
-        }
-        scale = std::min(scale * std::sqrt(size.y / (packer.height() * coarse)), largest);
-    }
-    // Bisects between a scale that fits and one that does not.
-    double too_large = std::numeric_limits<double>::infinity();
-    bool fits = false;
-    for (int attempt = 0; attempt < max_attempts; ++attempt) {
-        CellPacker packer(charts, scale, options, fine);
-        if (packer.pack(options.size.y / fine)) {
-            finish(packer);
-            fits = true;
-            if (too_large <= scale * (1.0 + scale_tolerance)) break;
-            if (scale >= largest) break;
-            scale =
-                std::isinf(too_large) ? std::min(scale * 1.04, largest) : 0.5 * (scale + too_large);
+    if (options.texels_per_unit && *options.texels_per_unit > largest)
+        throw InvalidInput("the charts do not fit into the map at the requested density");
+    const std::size_t attempts = attempts_for(charts.size());
+    ProgressStage stage("packing charts", attempts);
+    Packer packer(charts, options);
+    RuleSearch search(charts);
+    Packing packing;
+    double scale = options.texels_per_unit ? *options.texels_per_unit
+                                           : estimated_scale(charts, options, largest, packer);
+    double step = scale_step;
+    Rule rule = search.first();
+    Rule best = rule;
+    int failures = 0;    // At this scale.
+    int reductions = 0;  // Of the scale, before the first success.
+    const int max_failures = static_cast<int>(std::clamp<std::size_t>(attempts / 3, 1, 21));
+    packer.set_scale(scale);
+    for (std::size_t attempt = 1; attempt < attempts || packing.placements.empty(); ++attempt) {
+        if (attempt < attempts) stage.advance(1);
+        const std::optional<std::size_t> failed = packer.pack(rule, packer.rows());
+        if (!failed) {
+            packing.texels_per_unit = scale;
+            packing.placements.resize(charts.size());
+            for (std::size_t i = 0; i < charts.size(); ++i)
+                packing.placements[i] = packer.placement(i);
+            if (options.texels_per_unit || scale >= largest) break;
+            best = rule;
+            scale = std::min(scale * (1.0 + step), largest);
         } else {
-            too_large = scale;
-            scale = fits ? 0.5 * (packing.texels_per_unit + scale) : scale * 0.97;
+            rule = search.next(std::move(rule), best, *failed, failures);
+            if (++failures < max_failures) continue;
+            if (options.texels_per_unit)
+                throw InvalidInput("the charts do not fit into the map at the requested density");
+            if (!packing.placements.empty()) {
+                step *= 0.5;
+                if (step < min_scale_step) break;
+                scale = packing.texels_per_unit * (1.0 + step);
+            } else {
+                if (++reductions > max_reductions)
+                    throw InvalidInput("the charts do not fit into the map");
+                scale *= 1.0 - std::min(scale_step * (1 << std::min(reductions - 1, 5)), 0.25);
+            }
         }
-        if (fits && attempt >= min_attempts) break;
+        failures = 0;
+        packer.set_scale(scale);
     }
-    if (!fits) throw InvalidInput("the charts do not fit into the map");
     return packing;
 }
 
 glm::dvec2 placed(const glm::dvec2& point, const Placement& placement, double texels_per_unit) {
-    const glm::dvec2 p = point * texels_per_unit;
-    switch (placement.quarter_turns) {
-        case 0:
-            return placement.offset + p;
-        case 1:
-            return placement.offset + glm::dvec2(-p.y, p.x);
-        case 2:
-            return placement.offset - p;
-        default:
-            return placement.offset + glm::dvec2(p.y, -p.x);
-    }
+    return placement.offset + rotated(point * texels_per_unit, placement.direction);
 }
 
 }  // namespace relief::detail

@@ -21,11 +21,10 @@ struct PackingOptions {
     std::optional<double> texels_per_unit;  ///< Of the surface; absent: as large as possible.
 };
 
-/// Where a chart is: first rotated about the origin by a whole number of quarter turns (counter-
-/// clockwise), then shifted.
+/// Where a chart is: first rotated about the origin, then shifted.
 struct Placement {
-    int quarter_turns = 0;
-    glm::dvec2 offset{0.0};  ///< Texels, y up.
+    glm::dvec2 direction{1.0, 0.0};  ///< The image of the x axis, unit.
+    glm::dvec2 offset{0.0};          ///< Texels, y up.
 };
 
 struct Packing {

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "atlas/cell_map.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace relief::detail {
+namespace {
+
+std::size_t word_count(int bits) {
+    return (static_cast<std::size_t>(bits) + word_bits - 1) / word_bits;
+}
+
+/// Loops over words have blocks of a fixed size.
+constexpr std::size_t word_block = 4;
+
+std::size_t padded(std::size_t words) {
+    return (words + word_block - 1) / word_block * word_block;
+}
+
+bool meets_run(const BitWord* words, int begin, int end) {
+    const int first = begin / word_bits;
+    const int last = (end - 1) / word_bits;
+    const BitWord head = ~BitWord{0} << (begin % word_bits);
+    const BitWord tail = ~BitWord{0} >> (word_bits - 1 - (end - 1) % word_bits);
+    if (first == last) return (words[first] & head & tail) != 0;
+    if ((words[first] & head) != 0 || (words[last] & tail) != 0) return true;
+    for (int i = first + 1; i < last; ++i)
+        if (words[i] != 0) return true;
+    return false;
+}
+
+}  // namespace
+
+CellMap::CellMap(int width, int height, int level_count)
+    : levels_(static_cast<std::size_t>(level_count)) {
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        Level& level = levels_[i];
+        const int side = 1 << i;
+        level.width = (width + side - 1) / side;
+        level.height = (height + side - 1) / side;
+        level.words = word_count(std::max(level.width, 1)) + 1;
+        const int tables = i == 0 ? 1 : std::bit_width(static_cast<unsigned>(level.width));
+        level.tables.resize(static_cast<std::size_t>(tables));
+    }
+    blocked_.resize(padded(levels_.front().words));
+    clear();
+}
+
+void CellMap::clear() {
+    for (Level& level : levels_) {
+        for (std::vector<BitWord>& table : level.tables)
+            table.assign(level.words * static_cast<std::size_t>(level.height + 1) + word_block, 0);
+        level.longest_free.assign(static_cast<std::size_t>(level.height), level.width);
+    }
+}
+
+std::optional<CellMap::Position> CellMap::find(const CellMask& mask, const CellMask& coarse,
+                                               int level_index, int first, int end) {
+    const Level& level = levels_[static_cast<std::size_t>(level_index)];
+    const int count = level.width - coarse.width + 1;
+    if (count <= 0 || mask.width > width()) return std::nullopt;
+    end = std::min(end, height() - mask.height + 1);
+    const int last = std::min((end - 1) >> level_index, level.height - coarse.height);
+    for (int y = first >> level_index; y <= last; ++y) {
+        const std::optional<int> x = free_column(coarse, level, y, count);
+        if (!x) continue;
+        // The last cells of a level may be larger than the rest of the map.
+        const Position in_level{*x << level_index, y << level_index};
+        const Position at{std::min(in_level.x, width() - mask.width),
+                          std::min(in_level.y, height() - mask.height)};
+        if ((at.x == in_level.x && at.y == in_level.y) || is_free(mask, at)) return at;
+    }
+    return std::nullopt;
+}
+
+std::optional<int> CellMap::free_column(const CellMask& mask, const Level& level, int y,
+                                        int count) {
+    for (int row = 0; row < mask.height; ++row)
+        if (level.longest_free[static_cast<std::size_t>(y + row)] <
+            mask.longest[static_cast<std::size_t>(row)])
+            return std::nullopt;
+    const std::size_t words = padded(word_count(count));
+    // Positions beyond the last one are blocked.
+    std::fill_n(blocked_.begin(), words, ~BitWord{0});
+    std::fill_n(blocked_.begin(), count / word_bits, BitWord{0});
+    if (count % word_bits != 0)
+        blocked_[static_cast<std::size_t>(count / word_bits)] = ~BitWord{0} << (count % word_bits);
+    // From the middle outwards the widest rows come first, which block the most.
+    for (int i = 0; i < mask.height; ++i) {
+        const int row = mask.height / 2 + (i % 2 == 0 ? i / 2 : -(i / 2) - 1);
+        for (const Run& run : mask.row(row)) {
+            // Two runs of 2^k cells cover it.
+            const int length = run.end - run.begin;
+            const int k = std::bit_width(static_cast<unsigned>(length)) - 1;
+            const BitWord* const table = level.row(static_cast<std::size_t>(k), y + row);
+            block(table, run.begin, words);
+            if (length != 1 << k) block(table, run.end - (1 << k), words);
+        }
+        BitWord all = ~BitWord{0};
+        for (std::size_t w = 0; w < words; ++w)
+            all &= blocked_[w];
+        if (all == ~BitWord{0}) return std::nullopt;
+    }
+    for (std::size_t w = 0; w < words; ++w) {
+        if (blocked_[w] != ~BitWord{0})
+            return static_cast<int>(w) * word_bits + std::countr_one(blocked_[w]);
+    }
+    return std::nullopt;
+}
+
+void CellMap::block(const BitWord* table, int shift, std::size_t words) {
+    // Words after the end of a row only matter for positions that are blocked anyway.
+    const BitWord* const from = table + shift / word_bits;
+    const int rest = shift % word_bits;
+    for (std::size_t w = 0; w < words; w += word_block) {
+        for (std::size_t i = w; i < w + word_block; ++i)
+            blocked_[i] |= (from[i] >> rest) | (from[i + 1] << 1 << (word_bits - 1 - rest));
+    }
+}
+
+bool CellMap::is_free(const CellMask& mask, const Position& at) const {
+    const Level& level = levels_.front();
+    for (int y = 0; y < mask.height; ++y) {
+        const BitWord* const words = level.row(0, at.y + y);
+        for (const Run& run : mask.row(y))
+            if (meets_run(words, at.x + run.begin, at.x + run.end)) return false;
+    }
+    return true;
+}
+
+CellMap::Position CellMap::slid(const CellMask& mask, std::span<const RowRun> lower,
+                                Position at) const {
+    const Level& level = levels_.front();
+    const auto can_move_down = [&] {
+        return at.y > 0 && std::none_of(lower.begin(), lower.end(), [&](const RowRun& run) {
+                   return meets_run(level.row(0, at.y - 1 + run.y), at.x + run.begin,
+                                    at.x + run.end);
+               });
+    };
+    const auto can_move_left = [&] {
+        if (at.x == 0) return false;
+        for (int y = 0; y < mask.height; ++y) {
+            const BitWord* const words = level.row(0, at.y + y);
+            for (const Run& run : mask.row(y)) {
+                const int x = at.x + run.begin - 1;
+                if ((words[x / word_bits] >> (x % word_bits) & 1) != 0) return false;
+            }
+        }
+        return true;
+    };
+    for (;;) {
+        while (can_move_down())
+            --at.y;
+        const int x = at.x;
+        while (can_move_left())
+            --at.x;
+        if (at.x == x) return at;
+    }
+}
+
+void CellMap::occupy(const CellMask& mask, const Position& at) {
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        Level& level = levels_[i];
+        for (int y = 0; y < mask.height; ++y) {
+            const int row = (at.y + y) >> i;
+            for (const Run& run : mask.row(y))
+                set_run(level.row(0, row), (at.x + run.begin) >> i,
+                        ((at.x + run.end - 1) >> i) + 1);
+        }
+        if (i == 0) continue;
+        for (int row = at.y >> i; row <= (at.y + mask.height - 1) >> i; ++row)
+            renew_tables(level, row);
+    }
+}
+
+void CellMap::renew_tables(Level& level, int y) {
+    for (std::size_t k = 0; k + 1 < level.tables.size(); ++k) {
+        const BitWord* const from = level.row(k, y);
+        BitWord* const to = level.row(k + 1, y);
+        const int shift = 1 << k;
+        const auto skipped = static_cast<std::size_t>(shift / word_bits);
+        const int rest = shift % word_bits;
+        const std::size_t words = level.words - 1;
+        for (std::size_t w = 0; w < words; ++w) {
+            BitWord value = from[w];
+            if (w + skipped < words)
+                value |= (from[w + skipped] >> rest) |
+                         (from[w + skipped + 1] << 1 << (word_bits - 1 - rest));
+            to[w] = value;
+        }
+    }
+    // The longest run of free cells: the gap between two runs of occupied ones.
+    const BitWord* const words = level.row(0, y);
+    int longest = 0;
+    for (int x = next_bit(words, 0, level.width, false); x < level.width;) {
+        const int end = next_bit(words, x, level.width, true);
+        longest = std::max(longest, end - x);
+        x = next_bit(words, end, level.width, false);
+    }
+    level.longest_free[static_cast<std::size_t>(y)] = longest;
+}
+
+}  // namespace relief::detail

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Charts as rows of cells.
+///
+/// A mask has all cells that a chart touches when half of the padding is added around it. Charts
+/// whose masks share no cell therefore keep their distance.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace relief::detail {
+
+/// Cells [begin, end) of a row.
+struct Run {
+    int begin, end;
+};
+
+/// The cells of a chart, row by row.
+struct CellMask {
+    int width = 0;
+    int height = 0;
+    std::vector<Run> runs;             ///< Ascending, with a gap between any two of a row.
+    std::vector<std::uint32_t> first;  ///< For each row, its first run; and the number of runs.
+    std::vector<int> longest;          ///< For each row, the length of its longest run.
+
+    [[nodiscard]] std::span<const Run> row(int y) const {
+        const auto i = static_cast<std::size_t>(y);
+        return std::span(runs).subspan(first[i], first[i + 1] - first[i]);
+    }
+};
+
+/// Cells of a row of a mask.
+struct RowRun {
+    int y, begin, end;
+};
+
+/// An edge of the border of a chart in texels, with the chart on its left side.
+using BorderSegment = std::pair<glm::dvec2, glm::dvec2>;
+
+/// The mask of a chart whose box begins at the origin.
+/// \param margin  is added on all sides, so that the box begins at (margin, margin) in the mask
+/// \param cell  side of a cell, texels
+CellMask mask_of(std::span<const BorderSegment> border, const glm::dvec2& size, double margin,
+                 int cell);
+
+/// Rotates a mask by a half turn.
+CellMask half_turned(const CellMask& mask);
+
+/// The mask with cells 2^level times as large.
+CellMask coarser(const CellMask& mask, int level);
+
+/// The cells of a mask that are occupied newly when it moves down by one cell.
+std::vector<RowRun> lower_border(const CellMask& mask);
+
+/// Rows of bits: bit x is bit x % 64 of word x / 64.
+using BitWord = std::uint64_t;
+inline constexpr int word_bits = 64;
+
+/// Sets the bits [begin, end), at least one.
+void set_run(BitWord* words, int begin, int end);
+
+/// Returns the first bit from `x` on that is set, or that is not; `width` if there is none.
+int next_bit(const BitWord* words, int x, int width, bool is_set);
+
+}  // namespace relief::detail
